@@ -1,0 +1,92 @@
+//! Why a method cannot give an estimate; every variant carries the numbers a reader needs.
+
+use thiserror::Error;
+
+/// A failed identification: a result like any other, it becomes a row of the study.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum IdentifyError {
+    /// No trial was given.
+    #[error("no trial was given")]
+    NoTrial,
+    /// The ship was not steered: nothing can be learnt from the record.
+    #[error(
+        "not excited: the rudder of {trial} moves over {rudder_deg:.2} deg and the heading over {heading_deg:.2} deg; \
+         give a record in which the rudder is put to both sides"
+    )]
+    NotExcited {
+        /// Name of the trial.
+        trial: String,
+        /// Range of the rudder, deg.
+        rudder_deg: f64,
+        /// Range of the heading, deg.
+        heading_deg: f64,
+    },
+    /// Fewer samples than the method needs.
+    #[error("needs at least {needed} samples, {trial} has {found}")]
+    TooFewSamples {
+        /// Name of the trial.
+        trial: String,
+        /// Samples needed.
+        needed: usize,
+        /// Samples found.
+        found: usize,
+    },
+    /// Fewer points of a kind than the method needs.
+    #[error("needs at least {needed} {what}, found {found}")]
+    TooFewPoints {
+        /// What is counted, e.g. "heading extrema".
+        what: &'static str,
+        /// Points needed.
+        needed: usize,
+        /// Points found.
+        found: usize,
+    },
+    /// The method needs a channel that the record does not have.
+    #[error("{trial} has no {channel}")]
+    NoChannel {
+        /// Name of the trial.
+        trial: String,
+        /// The channel.
+        channel: &'static str,
+    },
+    /// The equations are singular or too ill-conditioned.
+    #[error("the equations are singular (condition number {condition:.1e}, limit {limit:.0e})")]
+    Singular {
+        /// Condition number of the scaled equations.
+        condition: f64,
+        /// Largest accepted.
+        limit: f64,
+    },
+    /// An iteration did not settle.
+    #[error("did not converge in {iterations} iterations (last relative step {step:.1e})")]
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Last relative step.
+        step: f64,
+    },
+    /// The answer is not a ship: K/T ≤ 0 or not finite.
+    #[error("the answer is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²")]
+    NotAShip {
+        /// 1/T, 1/s.
+        inverse_time: f64,
+        /// K/T, 1/s².
+        gain: f64,
+    },
+}
+
+impl IdentifyError {
+    /// A short word for tables and rows.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::NoTrial => "no-trial",
+            Self::NotExcited { .. } => "not-excited",
+            Self::TooFewSamples { .. } => "too-few-samples",
+            Self::TooFewPoints { .. } => "too-few-points",
+            Self::NoChannel { .. } => "no-channel",
+            Self::Singular { .. } => "singular",
+            Self::NotConverged { .. } => "not-converged",
+            Self::NotAShip { .. } => "not-a-ship",
+        }
+    }
+}

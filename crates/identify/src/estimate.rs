@@ -1,0 +1,207 @@
+//! What a method returns: the response, how sure it is, and how it got there.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use nalgebra::{Matrix3, Vector3};
+use ship::FirstOrder;
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+/// Why a method stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StopReason {
+    /// The answer comes from a closed formula.
+    Direct,
+    /// An iteration settled within its tolerance.
+    Converged,
+    /// The largest number of iterations was reached; the best point so far is returned.
+    IterationLimit,
+    /// The best point lies at the end of the searched range.
+    RangeLimit,
+}
+
+impl StopReason {
+    /// The word used in tables and JSON.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Direct => "direct",
+            Self::Converged => "converged",
+            Self::IterationLimit => "iteration-limit",
+            Self::RangeLimit => "range-limit",
+        }
+    }
+}
+
+/// A covariance of (1/T, K/T, δ_r), units 1/s, 1/s², rad, with its degrees of freedom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Covariance {
+    /// The 3 × 3 matrix.
+    pub matrix: Matrix3<f64>,
+    /// Degrees of freedom of the noise variance; `None` when the variance was known.
+    pub degrees_of_freedom: Option<f64>,
+}
+
+/// What a method knows of its own error.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Uncertainty {
+    /// A covariance of the parameters.
+    Covariance(Covariance),
+    /// Intervals that do not come from a covariance.
+    Intervals {
+        /// 95 % interval of K, 1/s.
+        K: [f64; 2],
+        /// 95 % interval of T, s.
+        T: [f64; 2],
+        /// 95 % interval of δ_r, rad.
+        rudder_bias: [f64; 2],
+        /// What the intervals cover, in words.
+        meaning: &'static str,
+    },
+    /// None, and why.
+    None {
+        /// The reason, in words.
+        reason: &'static str,
+    },
+}
+
+/// A number with what is known of its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// The value.
+    pub value: f64,
+    /// Standard deviation, where the method has one.
+    pub sd: Option<f64>,
+    /// 95 % interval, where the method has one and it is bounded.
+    pub ci95: Option<[f64; 2]>,
+}
+
+/// The result of one identification.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// The first-order response.
+    pub response: FirstOrder,
+    /// What is known of its error, if the residual is white.
+    pub uncertainty: Uncertainty,
+    /// Covariance that also holds when the residual is coloured, where the method has one.
+    pub robust: Option<Covariance>,
+    /// Why the method stopped.
+    pub stop: StopReason,
+    /// Model evaluations (simulations or solved systems).
+    pub evaluations: usize,
+    /// Named figures for a reader: fit R², condition numbers, counts; the unit is in the name.
+    pub diagnostics: Vec<(&'static str, f64)>,
+    /// Sentences a reader should see beside the numbers.
+    pub warnings: Vec<String>,
+}
+
+impl Estimate {
+    /// K with its error, 1/s.
+    pub fn K(&self) -> Quantity {
+        match &self.uncertainty {
+            Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
+            Uncertainty::Intervals { K, .. } => Quantity { value: self.response.K(), sd: None, ci95: Some(*K) },
+            Uncertainty::None { .. } => Quantity { value: self.response.K(), sd: None, ci95: None },
+        }
+    }
+
+    /// T with its error, s.
+    pub fn T(&self) -> Quantity {
+        match &self.uncertainty {
+            Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
+            Uncertainty::Intervals { T, .. } => Quantity { value: self.response.T(), sd: None, ci95: Some(*T) },
+            Uncertainty::None { .. } => Quantity { value: self.response.T(), sd: None, ci95: None },
+        }
+    }
+
+    /// δ_r with its error, rad.
+    pub fn rudder_bias(&self) -> Quantity {
+        let value = self.response.rudder_bias;
+        match &self.uncertainty {
+            Uncertainty::Covariance(covariance) => bias(&self.response, covariance),
+            Uncertainty::Intervals { rudder_bias, .. } => Quantity { value, sd: None, ci95: Some(*rudder_bias) },
+            Uncertainty::None { .. } => Quantity { value, sd: None, ci95: None },
+        }
+    }
+
+    /// K, T and δ_r with the errors of the robust covariance, where there is one.
+    pub fn robust_indices(&self) -> Option<[Quantity; 3]> {
+        let covariance = self.robust.as_ref()?;
+        let response = &self.response;
+        Some([index_K(response, covariance), index_T(response, covariance), bias(response, covariance)])
+    }
+}
+
+impl Covariance {
+    /// Two-sided 95 % quantile: Student's t for an estimated variance, normal for a known one.
+    pub fn quantile95(&self) -> f64 {
+        let normal = || Normal::standard().inverse_cdf(0.975);
+        match self.degrees_of_freedom {
+            Some(freedom) => StudentsT::new(0.0, 1.0, freedom).map_or_else(|_| normal(), |t| t.inverse_cdf(0.975)),
+            None => normal(),
+        }
+    }
+
+    fn sd_along(&self, gradient: &Vector3<f64>) -> f64 {
+        gradient.dot(&(self.matrix * gradient)).max(0.0).sqrt()
+    }
+}
+
+/// K = b/a with the delta-method standard deviation and Fieller's interval (Fieller 1954), unbounded when the
+/// interval of a = 1/T holds zero.
+fn index_K(response: &FirstOrder, covariance: &Covariance) -> Quantity {
+    let (a, b) = (response.inverse_T, response.K_over_T);
+    let value = response.K();
+    let sd = covariance.sd_along(&Vector3::new(-b / (a * a), 1.0 / a, 0.0));
+    let m = &covariance.matrix;
+    let z2 = covariance.quantile95().powi(2);
+    // (b − K a)² = z² (s_bb − 2 K s_ab + K² s_aa), a quadratic in K.
+    let (p, q, c) = (a * a - z2 * m[(0, 0)], a * b - z2 * m[(0, 1)], b * b - z2 * m[(1, 1)]);
+    let root = (q * q - p * c).max(0.0).sqrt();
+    let ci95 = (p > 0.0 && value.is_finite()).then(|| [(q - root) / p, (q + root) / p]);
+    Quantity { value, sd: sd.is_finite().then_some(sd), ci95 }
+}
+
+/// T = 1/a with the delta-method standard deviation and the reciprocal of the interval of a.
+fn index_T(response: &FirstOrder, covariance: &Covariance) -> Quantity {
+    let a = response.inverse_T;
+    let sd_a = covariance.matrix[(0, 0)].max(0.0).sqrt();
+    let reach = covariance.quantile95() * sd_a;
+    let ci95 = (reach < a.abs()).then(|| [1.0 / (a + reach), 1.0 / (a - reach)]);
+    let sd = sd_a / (a * a);
+    Quantity { value: response.T(), sd: sd.is_finite().then_some(sd), ci95 }
+}
+
+fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
+    let sd = covariance.matrix[(2, 2)].max(0.0).sqrt();
+    let reach = covariance.quantile95() * sd;
+    let value = response.rudder_bias;
+    Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn covariance(sd_a: f64, sd_b: f64) -> Covariance {
+        Covariance { matrix: Matrix3::from_diagonal(&Vector3::new(sd_a * sd_a, sd_b * sd_b, 1e-8)), degrees_of_freedom: None }
+    }
+
+    #[test]
+    fn small_errors_give_symmetric_intervals() {
+        let response = FirstOrder::from_indices(0.1, 16.3, 0.0);
+        let covariance = covariance(1e-6, 1e-9);
+        let T = index_T(&response, &covariance);
+        let sd = T.sd.expect("a covariance gives a standard deviation");
+        let [lo, hi] = T.ci95.expect("bounded");
+        assert_relative_eq!(hi - lo, 2.0 * 1.959964 * sd, max_relative = 1e-3);
+        let K = index_K(&response, &covariance);
+        let [lo, hi] = K.ci95.expect("bounded");
+        assert_relative_eq!(0.5 * (lo + hi), 0.1, max_relative = 1e-6);
+    }
+
+    #[test]
+    fn a_neutrally_stable_ship_has_no_bounded_interval_of_T() {
+        let response = FirstOrder { inverse_T: 1e-6, K_over_T: 3e-4, rudder_bias: 0.0 };
+        assert_eq!(index_T(&response, &covariance(1e-4, 1e-6)).ci95, None);
+        assert_eq!(index_K(&response, &covariance(1e-4, 1e-6)).ci95, None);
+    }
+}

@@ -1,0 +1,89 @@
+//! A record as methods want it: the rows with a heading, and the rudder integrated exactly up to them.
+
+use ship::angle::to_deg;
+use trial::Trial;
+
+use crate::error::IdentifyError;
+
+/// Smallest range of rudder and heading, deg, that counts as steering.
+const SMALLEST_RANGE_DEG: f64 = 0.5;
+
+/// The observed rows of a trial. All columns have the same length; time starts at 0.
+#[derive(Debug, Clone, Default)]
+pub struct Samples {
+    /// Time since the first observed row, s.
+    pub time: Vec<f64>,
+    /// Heading ψ, rad.
+    pub heading: Vec<f64>,
+    /// Rudder δ, rad.
+    pub rudder: Vec<f64>,
+    /// ∫δ from the first observed row, rad s, exact for a rudder that is linear between rows.
+    pub rudder_integral: Vec<f64>,
+    /// ∫∫δ from the first observed row, rad s².
+    pub rudder_double_integral: Vec<f64>,
+}
+
+impl Samples {
+    /// Takes the observed rows of a trial.
+    ///
+    /// Fails with [`IdentifyError::NotExcited`] when rudder or heading move over less than half a degree, and with
+    /// [`IdentifyError::TooFewSamples`] when there are fewer than `needed` rows.
+    pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
+        let mut samples = Self::default();
+        let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
+        let (mut once, mut twice) = (0.0, 0.0);
+        let mut before: Option<usize> = None;
+        let mut start = 0.0;
+        for row in 0..trial.len() {
+            if let Some(last) = before {
+                let h = t[row] - t[last];
+                twice += h * once + h * h * (2.0 * delta[last] + delta[row]) / 6.0;
+                once += 0.5 * h * (delta[last] + delta[row]);
+            }
+            if psi[row].is_finite() {
+                if before.is_none() {
+                    start = t[row];
+                }
+                samples.time.push(t[row] - start);
+                samples.heading.push(psi[row]);
+                samples.rudder.push(delta[row]);
+                samples.rudder_integral.push(once);
+                samples.rudder_double_integral.push(twice);
+            }
+            // Integration starts at the first observed row.
+            before = (before.is_some() || psi[row].is_finite()).then_some(row);
+        }
+        let found = samples.len();
+        if found < needed {
+            return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, found });
+        }
+        let (rudder_deg, heading_deg) = (range_deg(&samples.rudder), range_deg(&samples.heading));
+        if rudder_deg < SMALLEST_RANGE_DEG || heading_deg < SMALLEST_RANGE_DEG {
+            return Err(IdentifyError::NotExcited { trial: trial.name().into(), rudder_deg, heading_deg });
+        }
+        Ok(samples)
+    }
+
+    /// Samples of every trial, or the first reason why there are none.
+    pub fn of_all(trials: &[Trial], needed: usize) -> Result<Vec<Self>, IdentifyError> {
+        if trials.is_empty() {
+            return Err(IdentifyError::NoTrial);
+        }
+        trials.iter().map(|trial| Self::new(trial, needed)).collect()
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}
+
+fn range_deg(values: &[f64]) -> f64 {
+    let (lo, hi) = values.iter().fold((f64::MAX, f64::MIN), |(lo, hi), &x| (lo.min(x), hi.max(x)));
+    to_deg(hi - lo)
+}

@@ -1,0 +1,78 @@
+//! What everything that can be steered has to offer: a state, its rate of change, and the motion seen from it.
+//!
+//! Response models ([`crate::response::Response`]) and hulls ([`crate::vessel`]) both implement [`Dynamics`], so
+//! simulation and replay are written once.
+
+/// Channels a record may hold beside heading and rudder, at one instant; `None` where the record has none.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Measured {
+    /// Speed through the water, m/s.
+    pub speed: Option<f64>,
+    /// Sway velocity to starboard, m/s.
+    pub sway: Option<f64>,
+    /// Relative wind speed, m/s.
+    pub wind_speed: Option<f64>,
+    /// Direction the relative wind comes from, clockwise from the bow, rad.
+    pub wind_from: Option<f64>,
+}
+
+/// What acts on a ship at one instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Input {
+    /// Rudder angle that acts (dead time already applied), rad, positive turns to starboard.
+    pub rudder: f64,
+    /// Yaw disturbance as the rudder angle with the same yaw moment at approach speed, rad.
+    pub disturbance: f64,
+    /// Measured channels that effects may use as regressors.
+    pub measured: Measured,
+}
+
+/// The motion of a ship at one instant.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Motion {
+    /// Heading ψ, rad, clockwise, not wrapped.
+    pub heading: f64,
+    /// Yaw rate r, rad/s.
+    pub yaw_rate: f64,
+    /// Yaw acceleration r', rad/s².
+    pub yaw_acceleration: f64,
+    /// Speed through the water, m/s, where the model has one.
+    pub speed: Option<f64>,
+    /// Sway velocity to starboard, m/s, where the model has one.
+    pub sway: Option<f64>,
+}
+
+/// A system with a rudder and a heading: x' = f(t, x, input).
+///
+/// The first two states are always heading ψ (rad) and yaw rate r (rad/s); what follows belongs to the
+/// implementation. A value of this type is immutable during a run: all memory is in the state vector.
+pub trait Dynamics: Send + Sync {
+    /// Number of states, at least 2.
+    fn dimension(&self) -> usize;
+
+    /// State of a steady straight approach with the given heading (rad) and yaw rate (rad/s), rudder amidships.
+    ///
+    /// `state` has length [`dimension`](Self::dimension) and is overwritten.
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]);
+
+    /// Writes x' into `rate` (both of length [`dimension`](Self::dimension)).
+    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]);
+
+    /// Updates memory that is not a differential equation (backlash), once at the end of every step.
+    ///
+    /// Between two calls the rudder is monotone: drivers end a step at every corner of the rudder signal.
+    fn settle(&self, _t: f64, _state: &mut [f64], _input: &Input) {}
+
+    /// The motion seen from outside.
+    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion;
+
+    /// Dead time between the rudder signal and the rudder that acts, s; negative for a late clock in a record.
+    fn dead_time(&self) -> f64 {
+        0.0
+    }
+
+    /// Largest step, s, at which a fourth-order integrator keeps its accuracy for this system.
+    fn largest_step(&self) -> f64 {
+        0.1
+    }
+}

@@ -1,0 +1,148 @@
+//! Effects a first-order response lacks, one file each.
+//!
+//! An effect is structure only: its parameters travel beside it as a slice in the order of [`Effect::parameters`]. The
+//! same effect simulates an undeclared influence and is a candidate when a residual is traced. With all parameters at
+//! their neutral value a model with the effect is the model without it.
+//!
+//! An effect may act in five places, all optional: it can transform the rudder that acts (with memory), add states,
+//! scale damping and gain, add a yaw acceleration, and add to the heading that is seen. To add one: a file here, one
+//! line in [`all`].
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::dynamics::Input;
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Symbol, as in the equation.
+    pub symbol: &'static str,
+    /// Unit, in SI and radians.
+    pub unit: &'static str,
+    /// Value at which the effect is absent (for the others of the same effect: where a search may start).
+    pub neutral: f64,
+    /// A typical size, for scaling and for tests.
+    pub typical: f64,
+    /// Smallest physical value.
+    pub lowest: f64,
+    /// Largest physical value.
+    pub highest: f64,
+    /// Whether the parameter changes sign when port and starboard are exchanged.
+    pub odd: bool,
+}
+
+/// The instant at which an effect is evaluated.
+#[derive(Debug, Clone, Copy)]
+pub struct Now<'a> {
+    /// Time, s, on the clock of the record.
+    pub t: f64,
+    /// Heading ψ, rad.
+    pub heading: f64,
+    /// Yaw rate r, rad/s.
+    pub yaw_rate: f64,
+    /// Rudder that acts after every transformation, without δ_r, rad.
+    pub rudder: f64,
+    /// a = 1/T at approach speed, 1/s.
+    pub inverse_time: f64,
+    /// b = K/T at approach speed, 1/s².
+    pub gain: f64,
+    /// What acts from outside.
+    pub input: &'a Input,
+}
+
+/// Factors on a = 1/T and b = K/T.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scale {
+    /// Factor on a.
+    pub damping: f64,
+    /// Factor on b.
+    pub gain: f64,
+}
+
+impl Scale {
+    /// Leaves damping and gain as they are.
+    pub const NONE: Self = Self { damping: 1.0, gain: 1.0 };
+}
+
+/// Time constants of a second-order response, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SwayCoupling {
+    /// T₂, s, positive.
+    pub second_time: f64,
+    /// T₃, s.
+    pub rudder_time: f64,
+}
+
+/// Something a first-order response lacks.
+///
+/// `p` is always the effect's own parameters, `z` its own states.
+pub trait Effect: fmt::Debug + Send + Sync {
+    /// Fixed identifier, shared by all forms of the effect.
+    fn id(&self) -> &'static str;
+
+    /// Which form of the effect this is, in words ("r³", "dead time").
+    fn form(&self) -> &'static str;
+
+    /// The equation, for reports.
+    fn equation(&self) -> &'static str;
+
+    /// The parameters, in the order in which their values travel.
+    fn parameters(&self) -> &'static [Parameter];
+
+    /// Number of own states.
+    fn states(&self) -> usize {
+        0
+    }
+
+    /// Own states on a straight approach.
+    fn approach(&self, _p: &[f64], _now: &Now, z: &mut [f64]) {
+        z.fill(0.0);
+    }
+
+    /// Dead time of the rudder, s.
+    fn dead_time(&self, _p: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// The rudder that acts, from the one before this effect, rad.
+    fn rudder(&self, _p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+        rudder
+    }
+
+    /// Rates of own states; `before` is the rudder before this effect, rad.
+    fn rates(&self, _p: &[f64], _z: &[f64], _now: &Now, _before: f64, _rate: &mut [f64]) {}
+
+    /// Update of memory that is not a differential equation, once a step.
+    fn settle(&self, _p: &[f64], _z: &mut [f64], _before: f64) {}
+
+    /// Factors on damping and gain.
+    fn scale(&self, _p: &[f64], _z: &[f64], _now: &Now) -> Scale {
+        Scale::NONE
+    }
+
+    /// Addition to the yaw acceleration, rad/s².
+    fn yaw_acceleration(&self, _p: &[f64], _z: &[f64], _now: &Now) -> f64 {
+        0.0
+    }
+
+    /// Second time constants, for the one effect that raises the order of the response.
+    fn sway_coupling(&self, _p: &[f64]) -> Option<SwayCoupling> {
+        None
+    }
+
+    /// Spectrum of a random heading that is added to the one seen; the deterministic part of the response ignores it.
+    fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBand> {
+        None
+    }
+
+    /// Speed through the water, m/s, where the effect carries one.
+    fn speed(&self, _p: &[f64], _z: &[f64]) -> Option<f64> {
+        None
+    }
+}
+
+/// Every effect in every form; the order of reports.
+pub fn all() -> Vec<Arc<dyn Effect>> {
+    vec![]
+}

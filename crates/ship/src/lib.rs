@@ -1,0 +1,35 @@
+//! Ships as equations: response models of the Nomoto family, the effects that can be added to them, and
+//! three-degree-of-freedom vessels that serve as a truth no response model matches.
+//!
+//! This crate is the bottom of the house. It knows how a ship turns when its rudder moves; it knows nothing of
+//! manoeuvres, sensors, records or identification.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | the first-order response and its closed form | [`first_order`] |
+//! | effects a first-order response lacks | [`effects`] |
+//! | a response model: base plus effects | [`response`] |
+//! | what every simulated thing has to offer | [`dynamics`] |
+//! | stepping it through time | [`integrate`] and [`replay`] |
+//! | KVLCC2, Mariner and the SEIUN-like training ship | [`vessel`] |
+//! | parameter sets with their sources | [`ships`] |
+//!
+//! Inside, everything is in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
+//! grows clockwise seen from above, `v` is positive to starboard.
+
+pub mod angle;
+pub mod dynamics;
+pub mod effects;
+pub mod first_order;
+pub mod integrate;
+pub mod narrow_band;
+pub mod replay;
+pub mod response;
+pub mod ships;
+pub mod signal;
+
+pub use dynamics::{Dynamics, Input, Measured, Motion};
+pub use first_order::FirstOrder;
+pub use response::{Response, ResponseModel};
+pub use ships::{Particulars, Ship};
+pub use signal::Polyline;

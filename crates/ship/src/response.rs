@@ -1,0 +1,258 @@
+//! The response-model family: a first-order base and any number of effects, as one system of differential equations.
+//!
+//! ψ' = r,  r' = −a s_a r + b s_b (δ_e + δ_r + disturbance) + Σ accelerations of effects,
+//!
+//! where δ_e is the recorded rudder after dead time and every transformation, and s_a, s_b are the products of the
+//! scales of the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and
+//! T₂ r' = s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is
+//! T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a (Liénard form: no derivative of the rudder
+//! is needed, and a Bech polynomial in r keeps its place).
+
+use std::sync::Arc;
+
+use crate::dynamics::{Dynamics, Input, Motion};
+use crate::effects::{Effect, Now, Parameter, Scale, SwayCoupling};
+use crate::first_order::FirstOrder;
+
+/// Number of base parameters: a = 1/T, b = K/T, δ_r.
+pub const BASE_PARAMETERS: usize = 3;
+
+/// The base parameters, described like those of effects.
+pub const BASE: [Parameter; BASE_PARAMETERS] = [
+    Parameter { symbol: "1/T", unit: "1/s", neutral: 0.05, typical: 0.05, lowest: -10.0, highest: 10.0, odd: false },
+    Parameter { symbol: "K/T", unit: "1/s²", neutral: 5e-3, typical: 5e-3, lowest: 0.0, highest: 100.0, odd: false },
+    Parameter { symbol: "δ_r", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -0.6, highest: 0.6, odd: true },
+];
+
+/// Where the parameters and states of one effect lie.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    parameters: (usize, usize),
+    states: (usize, usize),
+}
+
+/// Structure of a response model: base plus effects. Parameters travel beside it, base first.
+#[derive(Debug, Clone, Default)]
+pub struct ResponseModel {
+    effects: Vec<Arc<dyn Effect>>,
+    places: Vec<Place>,
+    parameters: usize,
+    states: usize,
+    /// Index of the effect that makes the response second order; its first own state is s.
+    second_order: Option<usize>,
+}
+
+/// What the effects make of one instant.
+struct Instant {
+    rudder: f64,
+    scale: Scale,
+    acceleration: f64,
+}
+
+impl ResponseModel {
+    /// The first-order base with the given effects; the rudder passes through them in this order.
+    pub fn new(effects: Vec<Arc<dyn Effect>>) -> Self {
+        let (mut parameters, mut states) = (BASE_PARAMETERS, 2);
+        let mut places = Vec::with_capacity(effects.len());
+        let mut second_order = None;
+        for (index, effect) in effects.iter().enumerate() {
+            let place = Place {
+                parameters: (parameters, parameters + effect.parameters().len()),
+                states: (states, states + effect.states()),
+            };
+            (parameters, states) = (place.parameters.1, place.states.1);
+            let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
+            if effect.sway_coupling(&neutral).is_some() {
+                second_order = Some(index);
+            }
+            places.push(place);
+        }
+        Self { effects, places, parameters, states, second_order }
+    }
+
+    /// The base alone.
+    pub fn first_order() -> Self {
+        Self::new(Vec::new())
+    }
+
+    /// The effects, in the order in which the rudder passes through them.
+    pub fn effects(&self) -> &[Arc<dyn Effect>] {
+        &self.effects
+    }
+
+    /// Number of parameters, base included.
+    pub fn parameter_count(&self) -> usize {
+        self.parameters
+    }
+
+    /// Description of every parameter in the order of its value, base first.
+    pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> {
+        BASE.iter().chain(self.effects.iter().flat_map(|effect| effect.parameters()))
+    }
+
+    /// The model with a value for every parameter.
+    ///
+    /// # Panics
+    /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a user.
+    pub fn with(self, parameters: Vec<f64>) -> Response {
+        assert_eq!(parameters.len(), self.parameters, "one value per parameter");
+        Response { model: self, parameters }
+    }
+}
+
+/// A response model with its parameters: a ship that can be simulated or replayed.
+#[derive(Debug, Clone)]
+pub struct Response {
+    model: ResponseModel,
+    parameters: Vec<f64>,
+}
+
+impl Response {
+    /// A purely first-order ship.
+    pub fn first_order_ship(base: FirstOrder) -> Self {
+        ResponseModel::first_order().with(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
+    }
+
+    /// The structure.
+    pub fn model(&self) -> &ResponseModel {
+        &self.model
+    }
+
+    /// The values, base first.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// The values, to be changed in place between replays.
+    pub fn parameters_mut(&mut self) -> &mut [f64] {
+        &mut self.parameters
+    }
+
+    /// The base.
+    pub fn first_order(&self) -> FirstOrder {
+        FirstOrder { inverse_T: self.parameters[0], K_over_T: self.parameters[1], rudder_bias: self.parameters[2] }
+    }
+
+    /// Sum of the random headings the effects add to the one seen.
+    pub fn random_headings(&self) -> impl Iterator<Item = crate::narrow_band::NarrowBand> {
+        self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
+    }
+
+    fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[f64], Place)> {
+        self.model.effects.iter().zip(&self.model.places).map(|(effect, &place)| {
+            (effect.as_ref(), &self.parameters[place.parameters.0..place.parameters.1], place)
+        })
+    }
+
+    fn now<'a>(&self, t: f64, state: &[f64], rudder: f64, input: &'a Input) -> Now<'a> {
+        Now {
+            t,
+            heading: state[0],
+            yaw_rate: state[1],
+            rudder,
+            inverse_time: self.parameters[0],
+            gain: self.parameters[1],
+            input,
+        }
+    }
+
+    fn instant(&self, t: f64, state: &[f64], input: &Input) -> Instant {
+        let mut rudder = input.rudder;
+        for (effect, p, place) in self.effects() {
+            rudder = effect.rudder(p, &state[place.states.0..place.states.1], rudder);
+        }
+        let now = self.now(t, state, rudder, input);
+        let mut scale = Scale::NONE;
+        let mut acceleration = 0.0;
+        for (effect, p, place) in self.effects() {
+            let z = &state[place.states.0..place.states.1];
+            let own = effect.scale(p, z, &now);
+            scale.damping *= own.damping;
+            scale.gain *= own.gain;
+            acceleration += effect.yaw_acceleration(p, z, &now);
+        }
+        Instant { rudder, scale, acceleration }
+    }
+
+    fn sway_coupling(&self) -> Option<(SwayCoupling, usize)> {
+        let place = self.model.places[self.model.second_order?];
+        let effect = &self.model.effects[self.model.second_order?];
+        let coupling = effect.sway_coupling(&self.parameters[place.parameters.0..place.parameters.1])?;
+        Some((coupling, place.states.0))
+    }
+
+    /// f of the module's equation and, for a second-order response, r' as well.
+    fn accelerations(&self, state: &[f64], input: &Input, instant: &Instant) -> (f64, f64) {
+        let a = self.parameters[0] * instant.scale.damping;
+        let b = self.parameters[1] * instant.scale.gain;
+        let steering = instant.rudder + self.parameters[2] + input.disturbance;
+        let f = -a * state[1] + b * steering + instant.acceleration;
+        match self.sway_coupling() {
+            Some((coupling, s)) => {
+                let (t2, t3) = (coupling.second_time, coupling.rudder_time);
+                (f, (state[s] - (1.0 + t2 * a) * state[1] + b * t3 * instant.rudder) / t2)
+            }
+            None => (f, f),
+        }
+    }
+}
+
+impl Dynamics for Response {
+    fn dimension(&self) -> usize {
+        self.model.states
+    }
+
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        state.fill(0.0);
+        (state[0], state[1]) = (heading, yaw_rate);
+        let input = Input::default();
+        let now = Now { heading, yaw_rate, ..self.now(0.0, &[heading, yaw_rate], 0.0, &input) };
+        for (effect, p, place) in self.effects() {
+            effect.approach(p, &now, &mut state[place.states.0..place.states.1]);
+        }
+        if let Some((coupling, s)) = self.sway_coupling() {
+            // s that belongs to r' = 0 at this yaw rate.
+            state[s] = (1.0 + coupling.second_time * self.parameters[0]) * yaw_rate;
+        }
+    }
+
+    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        let instant = self.instant(t, state, input);
+        let (f, yaw_acceleration) = self.accelerations(state, input, &instant);
+        rate[0] = state[1];
+        rate[1] = yaw_acceleration;
+        if self.model.states > 2 {
+            let now = self.now(t, state, instant.rudder, input);
+            let mut before = input.rudder;
+            for (effect, p, place) in self.effects() {
+                let own = place.states.0..place.states.1;
+                let z = &state[own.clone()];
+                effect.rates(p, z, &now, before, &mut rate[own]);
+                before = effect.rudder(p, z, before);
+            }
+            if let Some((_, s)) = self.sway_coupling() {
+                rate[s] = f;
+            }
+        }
+    }
+
+    fn settle(&self, _t: f64, state: &mut [f64], input: &Input) {
+        let mut before = input.rudder;
+        for (effect, p, place) in self.effects() {
+            let z = &mut state[place.states.0..place.states.1];
+            effect.settle(p, z, before);
+            before = effect.rudder(p, z, before);
+        }
+    }
+
+    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+        let instant = self.instant(t, state, input);
+        let (_, yaw_acceleration) = self.accelerations(state, input, &instant);
+        let speed = self.effects().find_map(|(effect, p, place)| effect.speed(p, &state[place.states.0..place.states.1]));
+        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed, sway: None }
+    }
+
+    fn dead_time(&self) -> f64 {
+        self.effects().map(|(effect, p, _)| effect.dead_time(p)).sum()
+    }
+}

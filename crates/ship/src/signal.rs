@@ -1,0 +1,124 @@
+//! A piecewise-linear signal of time: a recorded rudder, a measured wind, the path of a steering gear.
+
+use thiserror::Error;
+
+/// Why a list of points is not a signal.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SignalError {
+    /// There is nothing to interpolate.
+    #[error("a signal needs at least one point, found none")]
+    Empty,
+    /// Times and values do not pair up.
+    #[error("a signal needs as many values as times, found {times} times and {values} values")]
+    Lengths {
+        /// Number of times.
+        times: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A time or value is not a finite number, or time does not grow.
+    #[error("a signal needs finite values at increasing times, point {index} is ({time}, {value})")]
+    Point {
+        /// Index of the offending point.
+        index: usize,
+        /// Its time, s.
+        time: f64,
+        /// Its value.
+        value: f64,
+    },
+}
+
+/// A piecewise-linear signal: linear between its points, constant before the first and after the last.
+///
+/// Times in seconds, strictly increasing; values in the unit of the quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polyline {
+    time: Vec<f64>,
+    value: Vec<f64>,
+}
+
+impl Polyline {
+    /// Checks the points and makes the signal.
+    ///
+    /// Fails when there are no points, lengths differ, a number is not finite or time does not increase.
+    pub fn new(time: Vec<f64>, value: Vec<f64>) -> Result<Self, SignalError> {
+        if time.len() != value.len() {
+            return Err(SignalError::Lengths { times: time.len(), values: value.len() });
+        }
+        if time.is_empty() {
+            return Err(SignalError::Empty);
+        }
+        for index in 0..time.len() {
+            let increasing = index == 0 || time[index] > time[index - 1];
+            if !increasing || !time[index].is_finite() || !value[index].is_finite() {
+                return Err(SignalError::Point { index, time: time[index], value: value[index] });
+            }
+        }
+        Ok(Self { time, value })
+    }
+
+    /// The signal that has one value at all times.
+    pub fn constant(value: f64) -> Self {
+        Self { time: vec![0.0], value: vec![value] }
+    }
+
+    /// Times of the points, s.
+    pub fn times(&self) -> &[f64] {
+        &self.time
+    }
+
+    /// Values at the points.
+    pub fn values(&self) -> &[f64] {
+        &self.value
+    }
+
+    /// Index of the piece that holds `t`: the last point not after it (0 before the first point).
+    pub fn piece(&self, t: f64) -> usize {
+        self.time.partition_point(|&point| point <= t).saturating_sub(1)
+    }
+
+    /// Value at time `t`.
+    pub fn at(&self, t: f64) -> f64 {
+        self.at_from(t, self.piece(t))
+    }
+
+    /// Value at time `t`, looked for from the piece `hint` onwards; O(1) when the hint is near.
+    pub fn at_from(&self, t: f64, hint: usize) -> f64 {
+        let last = self.time.len() - 1;
+        let mut piece = hint.min(last);
+        while piece < last && self.time[piece + 1] <= t {
+            piece += 1;
+        }
+        while piece > 0 && self.time[piece] > t {
+            piece -= 1;
+        }
+        if piece == last || t <= self.time[piece] {
+            return self.value[piece];
+        }
+        let share = (t - self.time[piece]) / (self.time[piece + 1] - self.time[piece]);
+        self.value[piece] + share * (self.value[piece + 1] - self.value[piece])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interpolates_and_holds_its_ends() {
+        let ramp = Polyline::new(vec![1.0, 3.0, 4.0], vec![0.0, 4.0, 4.0]).expect("valid points");
+        for hint in 0..4 {
+            assert_eq!(ramp.at_from(0.0, hint), 0.0);
+            assert_eq!(ramp.at_from(2.0, hint), 2.0);
+            assert_eq!(ramp.at_from(3.0, hint), 4.0);
+            assert_eq!(ramp.at_from(9.0, hint), 4.0);
+        }
+        assert_eq!(ramp.at(2.5), 3.0);
+    }
+
+    #[test]
+    fn refuses_time_that_runs_backwards() {
+        let error = Polyline::new(vec![0.0, 2.0, 1.0], vec![0.0; 3]).expect_err("time runs back");
+        assert_eq!(error, SignalError::Point { index: 2, time: 1.0, value: 0.0 });
+    }
+}

@@ -1,0 +1,287 @@
+//! The record of one trial: columns that belong together, checked once when the record is made.
+
+use std::collections::BTreeMap;
+
+use ship::replay::Recorded;
+use ship::{Particulars, Polyline};
+use thiserror::Error;
+
+use crate::channel::Channel;
+
+/// Where a record comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Origin {
+    /// Simulated: the scenario and the place of the trial in it.
+    Simulated {
+        /// Name of the scenario.
+        scenario: String,
+        /// Cell of the design.
+        cell: u64,
+        /// Replicate within the cell.
+        replicate: u64,
+    },
+    /// Measured: the file and its content.
+    Measured {
+        /// File as the user named it.
+        file: String,
+        /// SHA-256 of the bytes, hexadecimal.
+        sha256: String,
+    },
+}
+
+/// Declared standard deviations of the sensors; `None` where nothing is declared.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Noise {
+    /// Heading, rad.
+    pub heading: Option<f64>,
+    /// Yaw rate, rad/s.
+    pub yaw_rate: Option<f64>,
+    /// Rudder angle, rad.
+    pub rudder: Option<f64>,
+}
+
+/// The columns a record is made of, in SI units and radians. NaN means missing.
+#[derive(Debug, Clone, Default)]
+pub struct Columns {
+    /// Time, s. Rows with a missing time or rudder have to be left out before.
+    pub time: Vec<f64>,
+    /// All other quantities by name; each as long as `time`.
+    pub channels: BTreeMap<Channel, Vec<f64>>,
+    /// Columns with a name that is not known, carried as they are.
+    pub unknown: Vec<(String, Vec<f64>)>,
+}
+
+/// Why columns do not make a record.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TrialError {
+    /// A needed quantity is absent.
+    #[error("the record has no {0}")]
+    Missing(&'static str),
+    /// Columns of different length.
+    #[error("{channel:?} has {found} values, time has {expected}")]
+    Length {
+        /// The channel.
+        channel: Channel,
+        /// Values found.
+        found: usize,
+        /// Values expected.
+        expected: usize,
+    },
+    /// Too short to be a manoeuvre.
+    #[error("a record needs at least {needed} rows with heading and rudder, this one has {found}")]
+    TooShort {
+        /// Rows needed.
+        needed: usize,
+        /// Rows found.
+        found: usize,
+    },
+    /// Time does not increase or is not finite.
+    #[error("time must increase: row {row} has {time} s after {before} s")]
+    Time {
+        /// Row of the record, from 0.
+        row: usize,
+        /// Time of the row before, s.
+        before: f64,
+        /// Time found, s.
+        time: f64,
+    },
+    /// A rudder angle is not finite.
+    #[error("row {row} has no rudder angle")]
+    Rudder {
+        /// Row of the record, from 0.
+        row: usize,
+    },
+}
+
+/// One manoeuvring trial as a time series; immutable, in SI units and radians.
+///
+/// Time increases strictly; the rudder is finite in every row; heading (and any other channel) may be missing in single
+/// rows, as NaN. A record without a heading column gets the integral of its yaw rate, and says so.
+#[derive(Debug, Clone)]
+pub struct Trial {
+    name: String,
+    origin: Origin,
+    rudder: Polyline,
+    channels: BTreeMap<Channel, Vec<f64>>,
+    unknown: Vec<(String, Vec<f64>)>,
+    heading_from_yaw_rate: bool,
+    noise: Noise,
+    particulars: Option<Particulars>,
+}
+
+impl Trial {
+    /// Fewest rows with a heading that make a record.
+    pub const FEWEST_ROWS: usize = 8;
+
+    /// Checks the columns and makes the record.
+    ///
+    /// Fails when the rudder, or both heading and yaw rate, are absent; when columns differ in length; when time does
+    /// not increase; or when fewer than [`FEWEST_ROWS`](Self::FEWEST_ROWS) rows hold a heading.
+    pub fn new(name: impl Into<String>, origin: Origin, columns: Columns) -> Result<Self, TrialError> {
+        let Columns { time, mut channels, unknown } = columns;
+        for (&channel, values) in &channels {
+            if values.len() != time.len() {
+                return Err(TrialError::Length { channel, found: values.len(), expected: time.len() });
+            }
+        }
+        for row in 0..time.len() {
+            let before = if row == 0 { f64::NEG_INFINITY } else { time[row - 1] };
+            if !time[row].is_finite() || time[row] <= before {
+                return Err(TrialError::Time { row, before, time: time[row] });
+            }
+        }
+        let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
+        if let Some(row) = rudder.iter().position(|delta| !delta.is_finite()) {
+            return Err(TrialError::Rudder { row });
+        }
+        let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
+        if heading_from_yaw_rate {
+            let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
+            channels.insert(Channel::Heading, integrate(&time, rate));
+        }
+        let found = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
+        if found < Self::FEWEST_ROWS {
+            return Err(TrialError::TooShort { needed: Self::FEWEST_ROWS, found });
+        }
+        let rudder = Polyline::new(time, rudder).expect("times and rudder angles were checked above");
+        Ok(Self {
+            name: name.into(),
+            origin,
+            rudder,
+            channels,
+            unknown,
+            heading_from_yaw_rate,
+            noise: Noise::default(),
+            particulars: None,
+        })
+    }
+
+    /// The same record with declared sensor noise.
+    pub fn with_noise(self, noise: Noise) -> Self {
+        Self { noise, ..self }
+    }
+
+    /// The same record with the length and speed of its ship.
+    pub fn with_particulars(self, particulars: Particulars) -> Self {
+        Self { particulars: Some(particulars), ..self }
+    }
+
+    /// Name of the record: the stem of its file, or the cell of its scenario.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where the record comes from.
+    pub fn origin(&self) -> &Origin {
+        &self.origin
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.time().len()
+    }
+
+    /// Never: a record has at least [`FEWEST_ROWS`](Self::FEWEST_ROWS) rows.
+    pub fn is_empty(&self) -> bool {
+        self.time().is_empty()
+    }
+
+    /// Time of every row, s, strictly increasing; the clock of the record, not necessarily from 0.
+    pub fn time(&self) -> &[f64] {
+        self.rudder.times()
+    }
+
+    /// Length of the record in time, s.
+    pub fn duration(&self) -> f64 {
+        self.time()[self.len() - 1] - self.time()[0]
+    }
+
+    /// Median time between rows, s.
+    pub fn sampling_period(&self) -> f64 {
+        let mut steps: Vec<f64> = self.time().windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let middle = steps.len() / 2;
+        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// Heading of every row, rad, unwrapped; NaN where it was not recorded.
+    pub fn heading(&self) -> &[f64] {
+        &self.channels[&Channel::Heading]
+    }
+
+    /// Whether the heading is the integral of the yaw rate, because none was recorded.
+    pub fn heading_from_yaw_rate(&self) -> bool {
+        self.heading_from_yaw_rate
+    }
+
+    /// Rudder angle of every row, rad.
+    pub fn rudder(&self) -> &[f64] {
+        self.rudder.values()
+    }
+
+    /// The rudder as a signal, linear between rows.
+    pub fn rudder_signal(&self) -> &Polyline {
+        &self.rudder
+    }
+
+    /// Yaw rate of every row, rad/s, where the record has it; NaN where a row does not.
+    pub fn yaw_rate(&self) -> Option<&[f64]> {
+        self.channel(Channel::YawRate)
+    }
+
+    /// Any channel, row by row, where the record has it.
+    pub fn channel(&self, channel: Channel) -> Option<&[f64]> {
+        match channel {
+            Channel::Rudder => Some(self.rudder()),
+            other => self.channels.get(&other).map(Vec::as_slice),
+        }
+    }
+
+    /// The channels of the record, rudder excepted.
+    pub fn channels(&self) -> impl Iterator<Item = (Channel, &[f64])> {
+        self.channels.iter().map(|(&channel, values)| (channel, values.as_slice()))
+    }
+
+    /// Columns with a name that is not known, as they were read.
+    pub fn unknown(&self) -> &[(String, Vec<f64>)] {
+        &self.unknown
+    }
+
+    /// Declared sensor noise.
+    pub fn noise(&self) -> Noise {
+        self.noise
+    }
+
+    /// Length and approach speed of the ship, where declared.
+    pub fn particulars(&self) -> Option<Particulars> {
+        self.particulars
+    }
+
+    /// The recorded rudder alone, ready to be replayed through a model.
+    pub fn recorded_rudder(&self) -> Recorded<'_> {
+        Recorded::rudder(&self.rudder)
+    }
+
+    /// Rows in which the heading was recorded.
+    pub fn observed_rows(&self) -> impl Iterator<Item = usize> {
+        self.heading().iter().enumerate().filter(|(_, psi)| psi.is_finite()).map(|(row, _)| row)
+    }
+}
+
+/// Trapezoid integral of a rate from 0; over a missing value the neighbours are joined by a straight line.
+fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
+    let mut total = 0.0;
+    let mut last: Option<(f64, f64)> = None;
+    time.iter()
+        .zip(rate)
+        .map(|(&t, &r)| {
+            if !r.is_finite() {
+                return f64::NAN;
+            }
+            if let Some((before, rate)) = last {
+                total += 0.5 * (r + rate) * (t - before);
+            }
+            last = Some((t, r));
+            total
+        })
+        .collect()
+}
