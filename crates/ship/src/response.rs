@@ -139,9 +139,11 @@ impl Response {
     }
 
     fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[f64], Place)> {
-        self.model.effects.iter().zip(&self.model.places).map(|(effect, &place)| {
-            (effect.as_ref(), &self.parameters[place.parameters.0..place.parameters.1], place)
-        })
+        self.model
+            .effects
+            .iter()
+            .zip(&self.model.places)
+            .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters.0..place.parameters.1], place))
     }
 
     fn now<'a>(&self, t: f64, state: &[f64], rudder: f64, input: &'a Input) -> Now<'a> {
@@ -190,7 +192,7 @@ impl Response {
         match self.sway_coupling() {
             Some((coupling, s)) => {
                 let (t2, t3) = (coupling.second_time, coupling.rudder_time);
-                (f, (state[s] - (1.0 + t2 * a) * state[1] + b * t3 * instant.rudder) / t2)
+                (f, (state[s] - (1.0 + t2 * a) * state[1] + b * t3 * (instant.rudder + self.parameters[2])) / t2)
             }
             None => (f, f),
         }
@@ -211,8 +213,9 @@ impl Dynamics for Response {
             effect.approach(p, &now, &mut state[place.states.0..place.states.1]);
         }
         if let Some((coupling, s)) = self.sway_coupling() {
-            // s that belongs to r' = 0 at this yaw rate.
-            state[s] = (1.0 + coupling.second_time * self.parameters[0]) * yaw_rate;
+            // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
+            let lead = coupling.second_time - coupling.rudder_time;
+            state[s] = yaw_rate + self.parameters[1] * lead * self.parameters[2];
         }
     }
 
@@ -248,11 +251,147 @@ impl Dynamics for Response {
     fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
         let instant = self.instant(t, state, input);
         let (_, yaw_acceleration) = self.accelerations(state, input, &instant);
-        let speed = self.effects().find_map(|(effect, p, place)| effect.speed(p, &state[place.states.0..place.states.1]));
-        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed, sway: None }
+        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed: None, sway: None }
     }
 
     fn dead_time(&self) -> f64 {
         self.effects().map(|(effect, p, _)| effect.dead_time(p)).sum()
+    }
+
+    /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
+    fn largest_step(&self) -> f64 {
+        let own = self.parameters[0].abs().recip();
+        let shortest = self.effects().map(|(effect, p, _)| effect.shortest_time(p)).fold(own, f64::min);
+        (shortest / 50.0).clamp(1e-3, 0.1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::Measured;
+    use crate::effects;
+    use crate::first_order::{State, Transition};
+    use crate::replay::{Recorded, replay};
+    use crate::signal::Polyline;
+    use approx::assert_relative_eq;
+
+    const BASE_VALUES: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.01];
+
+    /// A zig-zag-like rudder: ramps of 2.5 deg/s between ±10 deg.
+    fn rudder(sign: f64) -> Polyline {
+        let d = sign * crate::angle::from_deg(10.0);
+        let time = vec![0.0, 4.0, 20.0, 28.0, 60.0, 68.0, 100.0];
+        Polyline::new(time, vec![0.0, d, d, -d, -d, d, d]).expect("increasing times")
+    }
+
+    fn heading_at_end(response: &Response, rudder: &Polyline, side: f64) -> f64 {
+        let times: Vec<f64> = (0..=100).map(f64::from).collect();
+        let mut state = vec![0.0; response.dimension()];
+        response.approach(0.0, 0.0, &mut state);
+        let speed = Polyline::new(vec![0.0, 100.0], vec![1.0, 0.7]).expect("increasing times");
+        let (sway, wind, from) =
+            (Polyline::constant(0.2 * side), Polyline::constant(3.0), Polyline::constant(0.8 * side));
+        let recorded = Recorded {
+            rudder,
+            speed: Some(&speed),
+            sway: Some(&sway),
+            wind_speed: Some(&wind),
+            wind_from: Some(&from),
+        };
+        let mut last = f64::NAN;
+        replay(response, &recorded, &times, response.largest_step(), &mut state, |_, motion| last = motion.heading);
+        last
+    }
+
+    fn with_effect(effect: Arc<dyn Effect>, value: impl Fn(&Parameter) -> f64, side: f64) -> Response {
+        let mut parameters = BASE_VALUES.to_vec();
+        parameters[2] *= side;
+        parameters.extend(effect.parameters().iter().map(|p| if p.odd { side * value(p) } else { value(p) }));
+        ResponseModel::new(vec![effect]).with(parameters)
+    }
+
+    #[test]
+    fn the_base_is_the_closed_form() {
+        let response = ResponseModel::first_order().with(BASE_VALUES.to_vec());
+        let signal = rudder(1.0);
+        let mut state = State::default();
+        for k in 0..signal.times().len() - 1 {
+            let h = signal.times()[k + 1] - signal.times()[k];
+            let slope = (signal.values()[k + 1] - signal.values()[k]) / h;
+            let b = BASE_VALUES[1];
+            state =
+                Transition::new(BASE_VALUES[0], h).advance(state, b * (signal.values()[k] + BASE_VALUES[2]), b * slope);
+        }
+        assert_relative_eq!(heading_at_end(&response, &signal, 1.0), state.heading, max_relative = 1e-9);
+    }
+
+    #[test]
+    fn a_neutral_effect_is_no_effect() {
+        let base = heading_at_end(&ResponseModel::first_order().with(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
+        for effect in effects::all() {
+            let model = with_effect(effect.clone(), |p| p.neutral, 1.0);
+            let heading = heading_at_end(&model, &rudder(1.0), 1.0);
+            assert!((heading - base).abs() < 1e-8, "{} ({}): {heading} is not {base}", effect.id(), effect.form());
+        }
+    }
+
+    #[test]
+    fn every_effect_acts_is_finite_and_keeps_its_mirror_symmetry() {
+        let base = heading_at_end(&ResponseModel::first_order().with(BASE_VALUES.to_vec()), &rudder(1.0), 1.0);
+        for effect in effects::all() {
+            let starboard = heading_at_end(&with_effect(effect.clone(), |p| p.typical, 1.0), &rudder(1.0), 1.0);
+            let port = heading_at_end(&with_effect(effect.clone(), |p| p.typical, -1.0), &rudder(-1.0), -1.0);
+            let name = format!("{} ({})", effect.id(), effect.form());
+            assert!(starboard.is_finite(), "{name}");
+            assert_relative_eq!(starboard, -port, max_relative = 1e-12);
+            let deterministic =
+                effect.random_heading(&effect.parameters().iter().map(|p| p.typical).collect::<Vec<_>>()).is_none();
+            assert_eq!(
+                (starboard - base).abs() > 1e-6,
+                deterministic,
+                "{name} moves the heading by {}",
+                starboard - base
+            );
+        }
+    }
+
+    #[test]
+    fn effects_without_their_channel_are_silent() {
+        for effect in effects::all().iter().filter(|effect| effect.form().starts_with("measured")) {
+            let response = with_effect(effect.clone(), |p| p.typical, 1.0);
+            let mut state = vec![0.0; response.dimension()];
+            response.approach(0.0, 0.01, &mut state);
+            let mut rate = state.clone();
+            response.rates(
+                0.0,
+                &state,
+                &Input { rudder: 0.1, measured: Measured::default(), ..Input::default() },
+                &mut rate,
+            );
+            assert_relative_eq!(rate[1], -BASE_VALUES[0] * 0.01 + BASE_VALUES[1] * 0.11, max_relative = 1e-12);
+        }
+    }
+
+    /// Steady state and slow roots of a second-order response: r∞ = K (δ + δ_r) and the characteristic polynomial.
+    #[test]
+    fn second_order_has_the_declared_transfer_function() {
+        let (gain, t1, t2, t3, delta) = (0.1, 20.0, 2.5, 6.2, 0.2);
+        let response =
+            ResponseModel::new(vec![Arc::new(effects::SecondOrder)]).with(vec![1.0 / t1, gain / t1, 0.0, t2, t3]);
+        let mut state = vec![0.0; 3];
+        response.approach(0.0, 0.0, &mut state);
+        let signal = Polyline::constant(delta);
+        let times = [0.0, 1.0, 5.0, 20.0, 60.0];
+        replay(&response, &Recorded::rudder(&signal), &times, 0.01, &mut state, |k, motion| {
+            // Step response of K (1 + T₃ s)/((1 + T₁ s)(1 + T₂ s)) by partial fractions.
+            let t = times[k];
+            let exact = gain
+                * delta
+                * (1.0 - (t1 - t3) / (t1 - t2) * (-t / t1).exp() - (t3 - t2) / (t1 - t2) * (-t / t2).exp());
+            if k > 0 {
+                assert_relative_eq!(motion.yaw_rate, exact, max_relative = 1e-8);
+            }
+        });
     }
 }

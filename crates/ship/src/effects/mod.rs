@@ -8,6 +8,32 @@
 //! scale damping and gain, add a yaw acceleration, and add to the heading that is seen. To add one: a file here, one
 //! line in [`all`].
 
+mod moment_drift;
+mod nonlinear_damping;
+mod port_starboard_asymmetry;
+mod rudder_deadband;
+mod rudder_saturation;
+mod second_order;
+mod speed_loss;
+mod steering_lag;
+mod sway_coupling_measured;
+mod transient_disturbance;
+mod wave_yaw;
+mod wind_moment;
+
+pub use moment_drift::MomentDrift;
+pub use nonlinear_damping::NonlinearDamping;
+pub use port_starboard_asymmetry::PortStarboardAsymmetry;
+pub use rudder_deadband::RudderDeadband;
+pub use rudder_saturation::RudderSaturation;
+pub use second_order::SecondOrder;
+pub use speed_loss::SpeedLoss;
+pub use steering_lag::SteeringLag;
+pub use sway_coupling_measured::SwayCouplingMeasured;
+pub use transient_disturbance::TransientDisturbance;
+pub use wave_yaw::WaveYaw;
+pub use wind_moment::WindMoment;
+
 use std::fmt;
 use std::sync::Arc;
 
@@ -136,13 +162,34 @@ pub trait Effect: fmt::Debug + Send + Sync {
         None
     }
 
-    /// Speed through the water, m/s, where the effect carries one.
-    fn speed(&self, _p: &[f64], _z: &[f64]) -> Option<f64> {
-        None
+    /// Shortest time constant the effect brings in, s: what a step has to resolve.
+    fn shortest_time(&self, _p: &[f64]) -> f64 {
+        f64::INFINITY
     }
 }
 
-/// Every effect in every form; the order of reports.
+/// Every effect in every form, in the order of reports.
+///
+/// Forms that need a constant of the record have it at a neutral value: approach speed 1 m/s, reference time 0.
 pub fn all() -> Vec<Arc<dyn Effect>> {
-    vec![]
+    vec![
+        Arc::new(SecondOrder),
+        Arc::new(NonlinearDamping::Cubic),
+        Arc::new(NonlinearDamping::Quadratic),
+        Arc::new(NonlinearDamping::Square),
+        Arc::new(WindMoment::Steady),
+        Arc::new(WindMoment::Measured),
+        Arc::new(SpeedLoss::Modelled),
+        Arc::new(SpeedLoss::Measured { approach_speed: 1.0 }),
+        Arc::new(SteeringLag::DeadTime),
+        Arc::new(SteeringLag::FirstOrder),
+        Arc::new(RudderSaturation),
+        Arc::new(RudderDeadband::Backlash),
+        Arc::new(RudderDeadband::DeadBand),
+        Arc::new(PortStarboardAsymmetry),
+        Arc::new(MomentDrift { reference_time: 0.0 }),
+        Arc::new(TransientDisturbance),
+        Arc::new(WaveYaw),
+        Arc::new(SwayCouplingMeasured),
+    ]
 }

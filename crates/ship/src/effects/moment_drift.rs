@@ -1,0 +1,35 @@
+//! A slow trend of the yaw moment over the record.
+
+use super::{Effect, Now, Parameter};
+
+/// m (t − t₀) as an equivalent rudder angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MomentDrift {
+    /// Instant t₀ at which the trend is zero, s; the start of a record keeps the trend apart from δ_r.
+    pub reference_time: f64,
+}
+
+const PARAMETERS: [Parameter; 1] =
+    [Parameter { symbol: "m", unit: "rad/s", neutral: 0.0, typical: 7e-5, lowest: -0.01, highest: 0.01, odd: true }];
+
+impl Effect for MomentDrift {
+    fn id(&self) -> &'static str {
+        "moment_drift"
+    }
+
+    fn form(&self) -> &'static str {
+        "linear trend"
+    }
+
+    fn equation(&self) -> &'static str {
+        "T r' + r = K (δ + δ_r + m (t − t₀))"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+        now.gain * p[0] * (now.t - self.reference_time)
+    }
+}

@@ -1,0 +1,32 @@
+//! A rudder gain that differs by side.
+
+use super::{Effect, Parameter};
+
+/// K (δ + a |δ| + δ_r): gain 1 + a to starboard, 1 − a to port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PortStarboardAsymmetry;
+
+const PARAMETERS: [Parameter; 1] =
+    [Parameter { symbol: "a", unit: "1", neutral: 0.0, typical: 0.05, lowest: -0.8, highest: 0.8, odd: true }];
+
+impl Effect for PortStarboardAsymmetry {
+    fn id(&self) -> &'static str {
+        "port_starboard_asymmetry"
+    }
+
+    fn form(&self) -> &'static str {
+        "gain by side"
+    }
+
+    fn equation(&self) -> &'static str {
+        "T r' + r = K (δ + a |δ| + δ_r)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn rudder(&self, p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+        rudder + p[0] * rudder.abs()
+    }
+}

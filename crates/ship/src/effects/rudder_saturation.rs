@@ -1,0 +1,33 @@
+//! A rudder that loses lift at large angles.
+
+use super::{Effect, Parameter};
+
+/// δ_e = δ − c₃ δ³ (stall).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RudderSaturation;
+
+// The highest value keeps δ − c₃ δ³ growing up to 35 deg: c₃ < 1/(3 δ²).
+const PARAMETERS: [Parameter; 1] =
+    [Parameter { symbol: "c₃", unit: "1/rad²", neutral: 0.0, typical: 0.5, lowest: -2.0, highest: 0.9, odd: false }];
+
+impl Effect for RudderSaturation {
+    fn id(&self) -> &'static str {
+        "rudder_saturation"
+    }
+
+    fn form(&self) -> &'static str {
+        "stall"
+    }
+
+    fn equation(&self) -> &'static str {
+        "T r' + r = K (δ − c₃ δ³ + δ_r)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn rudder(&self, p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+        rudder - p[0] * rudder * rudder * rudder
+    }
+}

@@ -1,0 +1,45 @@
+//! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
+
+use super::{Effect, Parameter, SwayCoupling};
+
+/// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
+///
+/// Absent when T₂ = T₃: zero and pole cancel. Source: Nomoto, Taguchi, Honda and Hirano (1957).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SecondOrder;
+
+const PARAMETERS: [Parameter; 2] = [
+    Parameter { symbol: "T₂", unit: "s", neutral: 1.0, typical: 2.5, lowest: 0.02, highest: 600.0, odd: false },
+    Parameter { symbol: "T₃", unit: "s", neutral: 1.0, typical: 6.2, lowest: -600.0, highest: 2000.0, odd: false },
+];
+
+impl Effect for SecondOrder {
+    fn id(&self) -> &'static str {
+        "second_order"
+    }
+
+    fn form(&self) -> &'static str {
+        "sway coupling"
+    }
+
+    fn equation(&self) -> &'static str {
+        "T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ'"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    /// One state, s of [`crate::response`]; the response itself steps it.
+    fn states(&self) -> usize {
+        1
+    }
+
+    fn sway_coupling(&self, p: &[f64]) -> Option<SwayCoupling> {
+        Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
+    }
+
+    fn shortest_time(&self, p: &[f64]) -> f64 {
+        p[0]
+    }
+}

@@ -1,0 +1,98 @@
+//! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
+
+use super::{Effect, Now, Parameter, Scale};
+
+/// K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
+///
+/// A propeller that keeps its revolutions holds up the flow over the rudder, so the exponent of b may be below two and
+/// is a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SpeedLoss {
+    /// q = U/U₀ as a state: q' = (1 − q)/T_u − c r².
+    Modelled,
+    /// q from the measured speed; 1 where the record has none.
+    Measured {
+        /// Approach speed U₀, m/s.
+        approach_speed: f64,
+    },
+}
+
+const MODELLED: [Parameter; 3] = [
+    Parameter { symbol: "c_u", unit: "s/rad²", neutral: 0.0, typical: 15.0, lowest: 0.0, highest: 1e5, odd: false },
+    Parameter { symbol: "T_u", unit: "s", neutral: 100.0, typical: 100.0, lowest: 1.0, highest: 1e4, odd: false },
+    Parameter { symbol: "m_b", unit: "1", neutral: 2.0, typical: 2.0, lowest: 0.0, highest: 3.0, odd: false },
+];
+const MEASURED: [Parameter; 2] = [
+    Parameter { symbol: "m_a", unit: "1", neutral: 0.0, typical: 1.0, lowest: -1.0, highest: 3.0, odd: false },
+    Parameter { symbol: "m_b", unit: "1", neutral: 0.0, typical: 2.0, lowest: -1.0, highest: 4.0, odd: false },
+];
+
+/// Speed ratio below which the scaling laws mean nothing; keeps a bad trial step of a search finite.
+const SLOWEST: f64 = 0.05;
+
+impl Effect for SpeedLoss {
+    fn id(&self) -> &'static str {
+        "speed_loss"
+    }
+
+    fn form(&self) -> &'static str {
+        match self {
+            Self::Modelled => "modelled speed",
+            Self::Measured { .. } => "measured speed",
+        }
+    }
+
+    fn equation(&self) -> &'static str {
+        match self {
+            Self::Modelled => "r' = −(q/T) r + (K/T) q^m_b (δ + δ_r), q' = (1 − q)/T_u − c_u r²",
+            Self::Measured { .. } => "r' = −(q^m_a/T) r + (K/T) q^m_b (δ + δ_r), q = U/U₀",
+        }
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        match self {
+            Self::Modelled => &MODELLED,
+            Self::Measured { .. } => &MEASURED,
+        }
+    }
+
+    fn states(&self) -> usize {
+        match self {
+            Self::Modelled => 1,
+            Self::Measured { .. } => 0,
+        }
+    }
+
+    fn approach(&self, _p: &[f64], _now: &Now, z: &mut [f64]) {
+        z.fill(1.0);
+    }
+
+    fn rates(&self, p: &[f64], z: &[f64], now: &Now, _before: f64, rate: &mut [f64]) {
+        if let Self::Modelled = self {
+            rate[0] = (1.0 - z[0]) / p[1] - p[0] * now.yaw_rate * now.yaw_rate;
+        }
+    }
+
+    fn scale(&self, p: &[f64], z: &[f64], now: &Now) -> Scale {
+        match self {
+            Self::Modelled => {
+                let q = z[0].max(SLOWEST);
+                Scale { damping: q, gain: q.powf(p[2]) }
+            }
+            Self::Measured { approach_speed } => match now.input.measured.speed {
+                Some(speed) => {
+                    let q = (speed / approach_speed).max(SLOWEST);
+                    Scale { damping: q.powf(p[0]), gain: q.powf(p[1]) }
+                }
+                None => Scale::NONE,
+            },
+        }
+    }
+
+    fn shortest_time(&self, p: &[f64]) -> f64 {
+        match self {
+            Self::Modelled => p[1],
+            Self::Measured { .. } => f64::INFINITY,
+        }
+    }
+}

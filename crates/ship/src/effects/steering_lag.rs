@@ -1,0 +1,85 @@
+//! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
+
+use super::{Effect, Now, Parameter};
+
+/// Lag between the recorded and the acting rudder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SteeringLag {
+    /// δ_e(t) = δ(t − τ); a negative τ is a clock that runs ahead, never a steering gear.
+    DeadTime,
+    /// τ_E δ_e' + δ_e = δ.
+    FirstOrder,
+}
+
+const DEAD_TIME: [Parameter; 1] =
+    [Parameter { symbol: "τ", unit: "s", neutral: 0.0, typical: 1.0, lowest: -20.0, highest: 20.0, odd: false }];
+const FIRST_ORDER: [Parameter; 1] =
+    [Parameter { symbol: "τ_E", unit: "s", neutral: 0.0, typical: 1.0, lowest: 0.0, highest: 30.0, odd: false }];
+
+/// A lag shorter than this, s, is below the resolution of any record and passes the rudder through.
+const SHORTEST_LAG: f64 = 0.02;
+
+impl Effect for SteeringLag {
+    fn id(&self) -> &'static str {
+        "steering_lag"
+    }
+
+    fn form(&self) -> &'static str {
+        match self {
+            Self::DeadTime => "dead time",
+            Self::FirstOrder => "first-order lag",
+        }
+    }
+
+    fn equation(&self) -> &'static str {
+        match self {
+            Self::DeadTime => "T r' + r = K (δ(t − τ) + δ_r)",
+            Self::FirstOrder => "T r' + r = K (δ_e + δ_r), τ_E δ_e' + δ_e = δ",
+        }
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        match self {
+            Self::DeadTime => &DEAD_TIME,
+            Self::FirstOrder => &FIRST_ORDER,
+        }
+    }
+
+    fn states(&self) -> usize {
+        match self {
+            Self::DeadTime => 0,
+            Self::FirstOrder => 1,
+        }
+    }
+
+    fn approach(&self, _p: &[f64], now: &Now, z: &mut [f64]) {
+        z.fill(now.rudder);
+    }
+
+    fn dead_time(&self, p: &[f64]) -> f64 {
+        match self {
+            Self::DeadTime => p[0],
+            Self::FirstOrder => 0.0,
+        }
+    }
+
+    fn rudder(&self, p: &[f64], z: &[f64], rudder: f64) -> f64 {
+        match self {
+            Self::FirstOrder if p[0] >= SHORTEST_LAG => z[0],
+            _ => rudder,
+        }
+    }
+
+    fn rates(&self, p: &[f64], z: &[f64], _now: &Now, before: f64, rate: &mut [f64]) {
+        if let Self::FirstOrder = self {
+            rate[0] = (before - z[0]) / p[0].max(SHORTEST_LAG);
+        }
+    }
+
+    fn shortest_time(&self, p: &[f64]) -> f64 {
+        match self {
+            Self::DeadTime => f64::INFINITY,
+            Self::FirstOrder => p[0].max(SHORTEST_LAG),
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Sway velocity as a regressor, where the record has it.
+
+use super::{Effect, Now, Parameter};
+
+/// c v with the measured sway velocity v, as an equivalent rudder angle; zero where the record has none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SwayCouplingMeasured;
+
+const PARAMETERS: [Parameter; 1] = [Parameter {
+    symbol: "c_v",
+    unit: "rad s/m",
+    neutral: 0.0,
+    typical: 0.1,
+    lowest: -100.0,
+    highest: 100.0,
+    odd: false,
+}];
+
+impl Effect for SwayCouplingMeasured {
+    fn id(&self) -> &'static str {
+        "sway_coupling_measured"
+    }
+
+    fn form(&self) -> &'static str {
+        "measured sway"
+    }
+
+    fn equation(&self) -> &'static str {
+        "T r' + r = K (δ + δ_r + c_v v)"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+        now.input.measured.sway.map_or(0.0, |sway| now.gain * p[0] * sway)
+    }
+}

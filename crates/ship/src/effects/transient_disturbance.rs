@@ -1,0 +1,44 @@
+//! A moment that is present for a part of the record only: a squall, a passing ship.
+
+use super::{Effect, Now, Parameter};
+
+/// m over a span of time with smooth edges, as an equivalent rudder angle:
+/// m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TransientDisturbance;
+
+const PARAMETERS: [Parameter; 3] = [
+    Parameter { symbol: "m", unit: "rad", neutral: 0.0, typical: 0.03, lowest: -0.6, highest: 0.6, odd: true },
+    Parameter { symbol: "t_c", unit: "s", neutral: 100.0, typical: 100.0, lowest: -1e7, highest: 1e7, odd: false },
+    Parameter { symbol: "d", unit: "s", neutral: 30.0, typical: 30.0, lowest: 0.5, highest: 1e5, odd: false },
+];
+
+/// Width of an edge as a share of the duration.
+const EDGE: f64 = 0.1;
+
+impl Effect for TransientDisturbance {
+    fn id(&self) -> &'static str {
+        "transient_disturbance"
+    }
+
+    fn form(&self) -> &'static str {
+        "moment for a while"
+    }
+
+    fn equation(&self) -> &'static str {
+        "T r' + r = K (δ + δ_r + m s(t; t_c, d))"
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+        let (from_centre, half, width) = (now.t - p[1], 0.5 * p[2], EDGE * p[2]);
+        now.gain * 0.5 * p[0] * (((from_centre + half) / width).tanh() - ((from_centre - half) / width).tanh())
+    }
+
+    fn shortest_time(&self, p: &[f64]) -> f64 {
+        EDGE * p[2]
+    }
+}

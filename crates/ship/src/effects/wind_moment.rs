@@ -1,0 +1,66 @@
+//! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
+
+use super::{Effect, Now, Parameter};
+
+/// Wind as the rudder angle with the same yaw moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WindMoment {
+    /// w_c cos 2ψ + w_s sin 2ψ, which is w sin 2(ψ_w − ψ): steady wind of unknown strength and direction.
+    Steady,
+    /// c U_rel² sin γ_rel from the measured relative wind; zero where the record has none.
+    Measured,
+}
+
+const STEADY: [Parameter; 2] = [
+    Parameter { symbol: "w_c", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -0.6, highest: 0.6, odd: true },
+    Parameter { symbol: "w_s", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -0.6, highest: 0.6, odd: false },
+];
+const MEASURED: [Parameter; 1] = [Parameter {
+    symbol: "c_w",
+    unit: "rad s²/m²",
+    neutral: 0.0,
+    typical: 0.01,
+    lowest: -10.0,
+    highest: 10.0,
+    odd: false,
+}];
+
+impl Effect for WindMoment {
+    fn id(&self) -> &'static str {
+        "wind_moment"
+    }
+
+    fn form(&self) -> &'static str {
+        match self {
+            Self::Steady => "steady wind",
+            Self::Measured => "measured wind",
+        }
+    }
+
+    fn equation(&self) -> &'static str {
+        match self {
+            Self::Steady => "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)",
+            Self::Measured => "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)",
+        }
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        match self {
+            Self::Steady => &STEADY,
+            Self::Measured => &MEASURED,
+        }
+    }
+
+    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+        match self {
+            Self::Steady => {
+                let (sin, cos) = (2.0 * now.heading).sin_cos();
+                now.gain * (p[0] * cos + p[1] * sin)
+            }
+            Self::Measured => match (now.input.measured.wind_speed, now.input.measured.wind_from) {
+                (Some(speed), Some(from)) => now.gain * p[0] * speed * speed * from.sin(),
+                _ => 0.0,
+            },
+        }
+    }
+}
