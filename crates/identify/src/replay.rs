@@ -1,1 +1,68 @@
-//! Replay.
+//! The recorded rudder replayed through a given first-order response: how far is the heading from the record?
+//!
+//! Only the initial state is fitted (linear least squares, exact): K, T and δ_r stay as they are, so the error judges
+//! them and not the luck of a start. Works for any sign of T.
+
+use ship::FirstOrder;
+use ship::angle::to_deg;
+use ship::first_order::State;
+use trial::Trial;
+
+use crate::linear::LeastSquares;
+use crate::track::{Coefficients, Columns, Track};
+
+/// Condition number above which the initial yaw rate is left at the value of least norm.
+const CONDITION_LIMIT: f64 = 1e9;
+
+/// A replay of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Replay {
+    /// Time of every row between the first and last observed heading, s.
+    pub time: Vec<f64>,
+    /// Heading of these rows, rad.
+    pub heading: Vec<f64>,
+    /// Yaw rate of these rows, rad/s.
+    pub yaw_rate: Vec<f64>,
+    /// Measured less replayed heading at the observed rows, rad.
+    pub residual: Vec<f64>,
+    /// Times of the observed rows, s.
+    pub residual_time: Vec<f64>,
+    /// Root mean square of the residual, deg.
+    pub heading_rmse_deg: f64,
+}
+
+/// Replays the rudder of `trial` through `response` with the best initial state.
+///
+/// `None` when the replay is not finite (a response with infinite or undefined parameters) or the record is too short to fit two initial values.
+pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
+    let a = response.inverse_T;
+    let track = Track::unchecked(trial);
+    let mut columns = Columns::default();
+    track.fill(a, &mut columns);
+    let mut coefficients = Coefficients::of(response);
+    let rest: Vec<f64> = (0..track.len())
+        .map(|k| track.heading[k] - coefficients.gain * columns.rudder[k] - coefficients.offset * columns.constant[k])
+        .collect();
+    if rest.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let ones = vec![1.0; track.len()];
+    coefficients.anchor = match LeastSquares::solve(&[&ones, &columns.homogeneous], &rest, CONDITION_LIMIT) {
+        Ok(fit) => State { heading: fit.parameters[0], yaw_rate: fit.parameters[1] },
+        // The transient of the initial yaw rate dies within a sample: only the heading can be fitted.
+        Err(_) => State { heading: rest.iter().sum::<f64>() / rest.len() as f64, yaw_rate: 0.0 },
+    };
+    let states = track.simulate(a, &coefficients);
+    let residual: Vec<f64> =
+        track.observed().zip(&track.heading).map(|(row, &measured)| measured - states[row].heading).collect();
+    let mean_square = residual.iter().map(|e| e * e).sum::<f64>() / residual.len() as f64;
+    let residual_time = track.observed().map(|row| track.time()[row]).collect();
+    mean_square.is_finite().then(|| Replay {
+        time: track.time().to_vec(),
+        heading: states.iter().map(|state| state.heading).collect(),
+        yaw_rate: states.iter().map(|state| state.yaw_rate).collect(),
+        residual,
+        residual_time,
+        heading_rmse_deg: to_deg(mean_square.sqrt()),
+    })
+}

@@ -1,0 +1,413 @@
+//! `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
+//!
+//! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. Once 1/T is
+//! given the heading is linear in all the others ([`crate::track`]), so the whole problem is a search over one number:
+//! the profiled sum of squares is scanned over both signs of 1/T, every local minimum of the scan is polished by
+//! variable projection with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), and the lowest wins. A local
+//! minimum therefore cannot be mistaken for the answer unless it is narrower than the scan.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+use ship::FirstOrder;
+use ship::angle::to_deg;
+use ship::first_order::State;
+use trial::Trial;
+
+use crate::error::IdentifyError;
+use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::profile::Profile;
+use crate::settings::SettingsError;
+use crate::track::{Coefficients, Track};
+use crate::{Identifier, robust};
+
+/// Settings of [`OutputError`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct Settings {
+    /// Points of the scan per decade of |1/T|, for each sign.
+    pub grid_per_decade: usize,
+    /// Smallest |T| searched, s; `None` is half a sampling period.
+    pub smallest_time_constant_s: Option<f64>,
+    /// Largest number of steps when a minimum is polished.
+    pub iterations: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { grid_per_decade: 8, smallest_time_constant_s: None, iterations: 50 }
+    }
+}
+
+impl Settings {
+    /// Checks the settings and makes the method.
+    pub fn build(self) -> Result<OutputError, SettingsError> {
+        if self.grid_per_decade == 0 {
+            return Err(SettingsError::new("grid-per-decade", self.grid_per_decade, "at least 1"));
+        }
+        if self.iterations == 0 {
+            return Err(SettingsError::new("iterations", self.iterations, "at least 1"));
+        }
+        if let Some(smallest) = self.smallest_time_constant_s
+            && !(smallest.is_finite() && smallest > 0.0)
+        {
+            return Err(SettingsError::new("smallest-time-constant-s", smallest, "a positive number of seconds"));
+        }
+        Ok(OutputError { settings: self })
+    }
+}
+
+/// Maximum likelihood by simulation, global in 1/T.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputError {
+    settings: Settings,
+}
+
+/// Smallest |1/T| of the scan, in units of one over the length of the record: below it the response cannot be told
+/// from a neutrally stable one.
+const SLOWEST: f64 = 0.02;
+
+/// Relative step at which the polish stops.
+const TOLERANCE: f64 = 1e-11;
+
+/// Unknowns of the base that all trials share: 1/T, K/T, δ_r.
+const SHARED: usize = 3;
+
+/// Fewest headings of one trial.
+const FEWEST_ROWS: usize = 12;
+
+/// A polished minimum of the profiled sum of squares.
+struct Minimum {
+    inverse_time: f64,
+    rss: f64,
+    stop: StopReason,
+    iterations: usize,
+}
+
+impl OutputError {
+    /// Values of 1/T to scan, in increasing order: logarithmic for both signs, and zero.
+    fn grid(&self, tracks: &[Track], trials: &[Trial]) -> Vec<f64> {
+        let longest = tracks.iter().map(Track::duration).fold(0.0, f64::max);
+        let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
+        let slowest = SLOWEST / longest;
+        let fastest = self.settings.smallest_time_constant_s.unwrap_or(0.5 * finest).recip().max(10.0 * slowest);
+        let decades = (fastest / slowest).log10();
+        let points = (decades * self.settings.grid_per_decade as f64).ceil() as usize;
+        let positive = (0..=points).map(|k| slowest * 10f64.powf(decades * k as f64 / points as f64));
+        let mut grid: Vec<f64> = positive.clone().map(|a| -a).collect();
+        grid.reverse();
+        grid.push(0.0);
+        grid.extend(positive);
+        grid
+    }
+
+    /// Variable projection from a start, with step halving; never leaves a lower point for a higher one.
+    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64) -> Option<Minimum> {
+        let mut inverse_time = start;
+        let mut rss = profile.evaluate(inverse_time)?;
+        for iterations in 1..=self.settings.iterations {
+            let mut step = profile.newton_step(inverse_time);
+            let accepted = (0..40).find_map(|_| {
+                let trial = profile.evaluate(inverse_time + step).filter(|&trial| trial <= rss);
+                if trial.is_none() {
+                    step *= 0.5;
+                }
+                trial
+            });
+            let settled = step.abs() <= TOLERANCE * (inverse_time.abs() + resolution);
+            match accepted {
+                Some(lower) => (inverse_time, rss) = (inverse_time + step, lower),
+                // No step downhill is left: a minimum to rounding.
+                None => {
+                    profile.evaluate(inverse_time)?;
+                    return Some(Minimum { inverse_time, rss, stop: StopReason::Converged, iterations });
+                }
+            }
+            if settled {
+                return Some(Minimum { inverse_time, rss, stop: StopReason::Converged, iterations });
+            }
+        }
+        Some(Minimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: self.settings.iterations })
+    }
+}
+
+impl Identifier for OutputError {
+    fn id(&self) -> &'static str {
+        "output-error"
+    }
+
+    fn summary(&self) -> &'static str {
+        "maximum likelihood by simulation with the recorded rudder, global in both signs of T"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        if trials.is_empty() {
+            return Err(IdentifyError::NoTrial);
+        }
+        let tracks =
+            trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let grid = self.grid(&tracks, trials);
+        let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
+        let mut profile = Profile::new(tracks);
+        let scan: Vec<Option<f64>> = grid.iter().map(|&a| profile.evaluate(a)).collect();
+        let height = |k: usize| scan.get(k).copied().flatten().unwrap_or(f64::INFINITY);
+        let valleys = (0..grid.len()).filter(|&k| {
+            height(k).is_finite()
+                && (k == 0 || height(k - 1) >= height(k))
+                && (k + 1 == grid.len() || height(k + 1) >= height(k))
+        });
+        let mut minima = 0usize;
+        let mut best: Option<(Minimum, bool)> = None;
+        for k in valleys {
+            minima += 1;
+            let at_end = k == 0 || k + 1 == grid.len();
+            if let Some(minimum) = self.polish(&mut profile, grid[k], resolution)
+                && best.as_ref().is_none_or(|(so_far, _)| minimum.rss < so_far.rss)
+            {
+                best = Some((minimum, at_end));
+            }
+        }
+        let Some((minimum, at_end)) = best else {
+            // No 1/T of the scan gave a rudder that turns the ship to its own side.
+            return Err(IdentifyError::NotAShip { inverse_time: f64::NAN, gain: profile.steering().0 });
+        };
+        let inverse_time = minimum.inverse_time;
+        profile.evaluate(inverse_time);
+        let (gain, offset) = profile.steering();
+        let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };
+        let range_end = at_end && !(grid[0]..=grid[grid.len() - 1]).contains(&inverse_time);
+
+        let information = profile.information(inverse_time);
+        let observations = profile.observations();
+        let freedom = observations as f64 - (SHARED + 2 * trials.len()) as f64;
+        let variance = minimum.rss / freedom;
+        let inverse =
+            information.try_inverse().ok_or(IdentifyError::Singular { condition: f64::INFINITY, limit: 1e15 })?;
+        let white = to_response(&(inverse * variance), &response, freedom);
+        let scores = profile.scores();
+        let robust = to_response(&(inverse * robust::newey_west(&scores) * inverse), &response, freedom);
+        let lag1 = robust::lag1_autocorrelation(profile.residuals());
+        // Bartlett's standard error of an autocorrelation of white noise; 1 % two-sided.
+        let coloured = lag1.abs() > 2.58 / (observations as f64).sqrt();
+
+        let mut warnings = Vec::new();
+        if coloured {
+            warnings.push(format!(
+                "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance"
+            ));
+        }
+        if response.is_course_unstable() {
+            warnings.push("course-unstable: 1/T is negative, K and T are negative".into());
+        }
+        let condition = profile.condition(inverse_time);
+        Ok(Estimate {
+            response,
+            uncertainty: Uncertainty::Covariance(if coloured { robust.clone() } else { white }),
+            robust: Some(robust),
+            stop: if range_end { StopReason::RangeLimit } else { minimum.stop },
+            evaluations: profile.evaluations(),
+            diagnostics: vec![
+                ("heading_rmse_deg", to_deg((minimum.rss / observations as f64).sqrt())),
+                ("r_squared", 1.0 - minimum.rss / profile.total_sum_of_squares()),
+                ("condition", condition),
+                ("iterations", minimum.iterations as f64),
+                ("local_minima", minima as f64),
+                ("lag1_autocorrelation", lag1),
+                ("degrees_of_freedom", freedom),
+            ],
+            warnings,
+        })
+    }
+}
+
+/// Covariance of (1/T, K/T, δ_r) from that of (1/T, b, b δ_r).
+fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
+    let b = response.K_over_T;
+    let jacobian = Matrix3::from_rows(&[
+        Vector3::new(1.0, 0.0, 0.0).transpose(),
+        Vector3::new(0.0, 1.0, 0.0).transpose(),
+        Vector3::new(0.0, -response.rudder_bias / b, 1.0 / b).transpose(),
+    ]);
+    Covariance { matrix: jacobian * of_linear * jacobian.transpose(), degrees_of_freedom: Some(freedom) }
+}
+
+/// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and white heading noise of sd `heading_sd` (rad):
+/// the smallest covariance an unbiased method can have when the initial state is unknown as well.
+///
+/// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the record does not determine the parameters.
+/// Source: Cramér (1946), Rao (1945).
+pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd: f64) -> Option<Covariance> {
+    let track = Track::unchecked(trial);
+    let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
+    if crate::track::is_backward(truth.inverse_T) {
+        coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
+    }
+    let mut profile = Profile::new(vec![track]);
+    let information = profile.information_at(truth.inverse_T, &[coefficients])?;
+    let covariance = information.try_inverse()? * heading_sd.powi(2);
+    Some(Covariance { degrees_of_freedom: None, ..to_response(&covariance, truth, 1.0) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Case, Start};
+    use approx::assert_relative_eq;
+    use ship::angle::from_deg;
+    use ship::first_order::Transition;
+    use trial::{Channel, Columns, Origin};
+
+    fn method() -> OutputError {
+        Settings::default().build().expect("default settings are valid")
+    }
+
+    /// A record whose heading is exactly the response to its own rudder, linear between rows.
+    fn exact_record(response: &FirstOrder, initial: State, rows: usize, period: f64) -> Trial {
+        let rudder = Case { samples: rows, period_s: period, start: Start::Rest, ..Case::default() }.truth().rudder;
+        let time: Vec<f64> = (0..rows).map(|k| 5.0 + k as f64 * period).collect();
+        let mut state = initial;
+        let mut heading = vec![state.heading];
+        for k in 1..rows {
+            let h = time[k] - time[k - 1];
+            let u0 = response.K_over_T * (rudder[k - 1] + response.rudder_bias);
+            let slope = response.K_over_T * (rudder[k] - rudder[k - 1]) / h;
+            state = Transition::new(response.inverse_T, h).advance(state, u0, slope);
+            heading.push(state.heading);
+        }
+        let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
+        let origin = Origin::Simulated { scenario: "exact".into(), cell: 0, replicate: 0 };
+        Trial::new("exact", origin, Columns { time, channels, unknown: vec![] }).expect("a valid record")
+    }
+
+    #[test]
+    fn recovers_ships_of_either_stability_to_rounding() {
+        let initial = State { heading: 0.2, yaw_rate: -0.004 };
+        for (inverse_time, gain) in
+            [(1.0 / 16.3, 0.1 / 16.3), (0.4, 0.03), (1e-6, 6e-3), (0.0, 6e-3), (-0.01, 5e-3), (-0.03, 6e-3)]
+        {
+            let truth = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: from_deg(0.7) };
+            let trial = exact_record(&truth, initial, 271, 1.0);
+            let found = method().identify(&[trial]).expect("noise-free").response;
+            let scale = 1.0 / 271.0;
+            assert!(
+                (found.inverse_T - inverse_time).abs() < 1e-7 * (inverse_time.abs() + scale),
+                "{found:?} for {truth:?}"
+            );
+            assert_relative_eq!(found.K_over_T, gain, max_relative = 1e-6);
+            assert_relative_eq!(found.rudder_bias, truth.rudder_bias, max_relative = 1e-5);
+        }
+    }
+
+    /// No start of a local search over T in 2..500 s, of either sign, ends lower than the scan.
+    #[test]
+    fn no_start_beats_the_scan() {
+        for case in [
+            Case { noise_deg: 0.5, seed: 3, ..Case::default() },
+            Case {
+                noise_deg: 0.1,
+                seed: 4,
+                rudder_deg: 20.0,
+                heading_deg: 20.0,
+                start: Start::Rest,
+                bias_deg: 1.0,
+                ..Case::default()
+            },
+        ] {
+            let trial = case.trial();
+            let estimate = method().identify(std::slice::from_ref(&trial)).expect("excited");
+            let best = estimate.diagnostics.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("reported").1;
+            let mut profile = Profile::new(vec![Track::unchecked(&trial)]);
+            for k in 0..=60 {
+                for sign in [1.0, -1.0] {
+                    let start = sign / (2.0 * 250f64.powf(k as f64 / 60.0));
+                    if let Some(minimum) = method().polish(&mut profile, start, 1.0 / trial.duration()) {
+                        let rmse = to_deg((minimum.rss / trial.len() as f64).sqrt());
+                        assert!(
+                            rmse >= best * (1.0 - 1e-9),
+                            "1/T = {start} leads to {rmse} deg, the scan to {best} deg"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    /// Table 6.2 of the technical reference (Fisher information by an independent program), 0.1 deg at 271 samples of
+    /// 1 s from rest: sd of K and T in per cent, sd of δ_r in deg. Printed to two digits, so 3 %.
+    #[test]
+    fn the_bound_is_the_published_one() {
+        for (rudder_deg, heading_deg, k_percent, t_percent, bias_deg) in [
+            (5.0, 5.0, 0.156, 0.241, 0.0010),
+            (10.0, 5.0, 0.113, 0.156, 0.0010),
+            (10.0, 10.0, 0.073, 0.113, 0.0010),
+            (10.0, 20.0, 0.042, 0.077, 0.0009),
+            (20.0, 10.0, 0.040, 0.063, 0.0010),
+            (20.0, 20.0, 0.029, 0.048, 0.0010),
+        ] {
+            let case = Case { rudder_deg, heading_deg, start: Start::Rest, ..Case::default() };
+            let bound = cramer_rao(&case.trial(), &case.ship(), State::default(), from_deg(0.1)).expect("excited");
+            let estimate = Estimate {
+                response: case.ship(),
+                uncertainty: Uncertainty::Covariance(bound),
+                robust: None,
+                stop: StopReason::Direct,
+                evaluations: 0,
+                diagnostics: vec![],
+                warnings: vec![],
+            };
+            let relative =
+                |quantity: crate::estimate::Quantity| 100.0 * quantity.sd.expect("a covariance") / quantity.value;
+            let found = (
+                relative(estimate.K()),
+                relative(estimate.T()),
+                to_deg(estimate.rudder_bias().sd.expect("a covariance")),
+            );
+            println!("{rudder_deg}/{heading_deg}: {found:?}");
+            assert!(
+                (found.0 / k_percent - 1.0).abs() < 0.03,
+                "{rudder_deg}/{heading_deg}: K {} for {k_percent}",
+                found.0
+            );
+            assert!(
+                (found.1 / t_percent - 1.0).abs() < 0.03,
+                "{rudder_deg}/{heading_deg}: T {} for {t_percent}",
+                found.1
+            );
+            assert!((found.2 - bias_deg).abs() < 1e-4, "{rudder_deg}/{heading_deg}: δ_r {} for {bias_deg}", found.2);
+        }
+    }
+
+    #[test]
+    fn two_records_share_the_ship_and_not_the_start() {
+        let truth = FirstOrder::from_indices(0.1, 16.3, 0.01);
+        let one = exact_record(&truth, State { heading: 0.5, yaw_rate: 0.01 }, 200, 1.0);
+        let two = exact_record(&truth, State { heading: -3.0, yaw_rate: -0.01 }, 300, 0.5);
+        let estimate = method().identify(&[one, two]).expect("noise-free");
+        assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
+        assert_relative_eq!(estimate.response.rudder_bias, 0.01, max_relative = 1e-6);
+    }
+
+    #[test]
+    fn missing_headings_cost_information_and_nothing_else() {
+        let truth = FirstOrder::from_indices(0.1, 16.3, 0.0);
+        let full = exact_record(&truth, State::default(), 271, 1.0);
+        let mut heading = full.heading().to_vec();
+        (0..271).filter(|k| k % 3 == 1 || (100..130).contains(k)).for_each(|k| heading[k] = f64::NAN);
+        let channels = [(Channel::Heading, heading), (Channel::Rudder, full.rudder().to_vec())].into();
+        let columns = Columns { time: full.time().to_vec(), channels, unknown: vec![] };
+        let gappy = Trial::new("gappy", full.origin().clone(), columns).expect("a valid record");
+        let estimate = method().identify(&[gappy]).expect("noise-free");
+        assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
+    }
+
+    #[test]
+    fn a_straight_run_is_refused() {
+        let columns = Columns {
+            time: (0..100).map(f64::from).collect(),
+            channels: [(Channel::Heading, vec![0.3; 100]), (Channel::Rudder, vec![0.0; 100])].into(),
+            unknown: vec![],
+        };
+        let origin = Origin::Simulated { scenario: "straight".into(), cell: 0, replicate: 0 };
+        let trial = Trial::new("straight", origin, columns).expect("a valid record");
+        assert_eq!(method().identify(&[trial]).expect_err("nothing to learn").kind(), "not-excited");
+    }
+}
