@@ -37,9 +37,7 @@ mod tests {
 
     #[test]
     fn heading_is_continuous_across_north() {
-        let mut heading: Vec<f64> = [350.0, 358.0, f64::NAN, 6.0, 20.0, 355.0]
-            .map(from_deg)
-            .to_vec();
+        let mut heading: Vec<f64> = [350.0, 358.0, f64::NAN, 6.0, 20.0, 355.0].map(from_deg).to_vec();
         unwrap_heading(&mut heading);
         let deg: Vec<f64> = heading.iter().map(|&psi| to_deg(psi).round()).collect();
         assert_eq!(deg[..2], [350.0, 358.0]);

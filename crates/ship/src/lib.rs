@@ -11,7 +11,8 @@
 //! | a response model: base plus effects | [`response`] |
 //! | what every simulated thing has to offer | [`dynamics`] |
 //! | stepping it through time | [`integrate`] and [`replay`] |
-//! | KVLCC2, Mariner and the SEIUN-like training ship | [`vessel`] |
+//! | hulls with three degrees of freedom | [`vessel`] |
+//! | linear sway-yaw equations and their indices | [`linear`] |
 //! | parameter sets with their sources | [`ships`] |
 //!
 //! Inside, everything is in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
@@ -22,11 +23,13 @@ pub mod dynamics;
 pub mod effects;
 pub mod first_order;
 pub mod integrate;
+pub mod linear;
 pub mod narrow_band;
 pub mod replay;
 pub mod response;
 pub mod ships;
 pub mod signal;
+pub mod vessel;
 
 pub use dynamics::{Dynamics, Input, Measured, Motion};
 pub use first_order::FirstOrder;

@@ -34,10 +34,7 @@ impl NarrowBand {
         let e = (-zeta * w0 * h).exp();
         let (c, s) = ((wd * h).cos(), (wd * h).sin());
         let ratio = zeta * w0 / wd;
-        let transition = [
-            [e * (c + ratio * s), e * s / wd],
-            [-e * w0 * w0 * s / wd, e * (c - ratio * s)],
-        ];
+        let transition = [[e * (c + ratio * s), e * s / wd], [-e * w0 * w0 * s / wd, e * (c - ratio * s)]];
         // Stationary covariance P = diag(σ², σ²ω₀²); what a step adds is P − Φ P Φᵀ.
         let [p0, p1] = self.stationary_sd().map(|sd| sd * sd);
         let [[f00, f01], [f10, f11]] = transition;

@@ -1,1 +1,28 @@
-//! Studies.
+//! Studies: scenario files, the engine that runs them, and the command line.
+//!
+//! This is the only crate that seeds generators and writes result folders.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | scenario files | [`scenario`] |
+//! | running a design | [`engine`] |
+//! | what is stored | [`rows`], [`manifest`], [`showcase`] |
+//! | what is said about it | [`summary`], [`present`] |
+//! | measured records | [`fit`] |
+//! | commands and exit codes | [`cli`], [`failure`] |
+
+pub mod check;
+pub mod cli;
+pub mod engine;
+pub mod failure;
+pub mod fit;
+pub mod list;
+pub mod manifest;
+pub mod present;
+mod progress;
+pub mod rows;
+pub mod run;
+pub mod scenario;
+pub mod showcase;
+pub mod statistics;
+pub mod summary;

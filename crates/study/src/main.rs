@@ -1,1 +1,7 @@
-fn main() {}
+//! The `study` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    study::cli::main()
+}

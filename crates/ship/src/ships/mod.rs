@@ -1,13 +1,25 @@
 //! The ships of the project, each in a file of its own with the source of every number.
 //!
 //! A ship is a set of particulars and one model: a response model with its parameters, or a hull with three degrees
-//! of freedom. Only parameter sets whose source was seen are here.
+//! of freedom. Only parameter sets whose source was seen are here. [`user`] makes ships from a user's own numbers.
+//!
+//! To add one: a file here with a function that returns the [`Ship`], and one line in [`all`].
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::dynamics::Dynamics;
 use crate::first_order::FirstOrder;
 use crate::response::Response;
+
+pub mod frigate;
+pub mod kvlcc2;
+pub mod mariner;
+pub mod oil_tanker;
+pub mod seiun_like;
+pub mod user;
+pub mod yukun;
+pub mod zeefakkel;
 
 /// Length and speed, the two numbers every nondimensional index needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,13 +43,17 @@ pub enum Model {
 #[derive(Clone)]
 pub struct Ship {
     /// Identifier used in scenario files.
-    pub id: &'static str,
+    pub id: Cow<'static, str>,
     /// Name and condition, for people.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Author and year of the numbers.
-    pub source: &'static str,
+    pub source: Cow<'static, str>,
     /// Length and approach speed, where they are known.
     pub particulars: Option<Particulars>,
+    /// Rudder rate of the steering gear, rad/s, where the source gives one.
+    pub rudder_rate: Option<f64>,
+    /// Largest rudder angle to either side, rad, where the source gives one.
+    pub largest_rudder: Option<f64>,
     /// The equations.
     pub model: Model,
 }
@@ -59,3 +75,28 @@ impl Ship {
         }
     }
 }
+
+/// Every ship of the project, in the order of reports: response models first.
+pub fn all() -> Vec<Ship> {
+    vec![
+        yukun::ship(),
+        mariner::second_order(),
+        zeefakkel::ship(),
+        frigate::ship(),
+        mariner::hull(),
+        kvlcc2::full_scale(),
+        kvlcc2::model_l7(),
+        seiun_like::ship(),
+    ]
+}
+
+/// The ship with this identifier.
+pub fn find(id: &str) -> Option<Ship> {
+    all().into_iter().find(|ship| ship.id == id)
+}
+
+/// One knot in m/s: 1852 m an hour.
+const KNOT: f64 = 1852.0 / 3600.0;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,345 @@
+//! One suite over every ship, and the numbers of single ships against an independent computation.
+
+#![expect(non_snake_case, reason = "L and U, M and N are the symbols of the field")]
+
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
+
+use approx::assert_relative_eq;
+
+use super::*;
+use crate::dynamics::{Input, Motion};
+use crate::integrate::RungeKutta4;
+use crate::linear::{PrimeSwayYaw, SecondOrderIndices};
+use crate::replay::{Recorded, replay};
+use crate::signal::Polyline;
+use crate::vessel::mmg::{BySign, Mmg, Wake};
+use crate::vessel::{Hull, Velocity, state};
+
+fn every_finite(state: &[f64]) -> bool {
+    state.iter().all(|x| x.is_finite())
+}
+
+/// Motion at the end of `duration` seconds of approach and rudder held at `delta_deg`, put over at 2.32 deg/s.
+fn held_rudder(dynamics: &dyn Dynamics, delta_deg: f64, duration: f64, largest_step: f64) -> (Vec<f64>, Motion) {
+    let ramp = (delta_deg.abs() / 2.32).max(0.1);
+    let rudder = Polyline::new(vec![0.0, ramp], vec![0.0, delta_deg.to_radians()]).expect("a ramp");
+    let mut state = vec![0.0; dynamics.dimension()];
+    dynamics.approach(0.0, 0.0, &mut state);
+    let mut end = Motion::default();
+    replay(dynamics, &Recorded::rudder(&rudder), &[0.0, duration], largest_step, &mut state, |_, motion| end = *motion);
+    (state, end)
+}
+
+fn turning_rate_deg(ship: &Ship, delta_deg: f64) -> f64 {
+    let dynamics = ship.dynamics();
+    held_rudder(dynamics.as_ref(), delta_deg, 3000.0, dynamics.largest_step()).1.yaw_rate.to_degrees()
+}
+
+// --- every ship -------------------------------------------------------------------------------------------------------
+
+#[test]
+fn identifiers_are_unique_and_found() {
+    let ids: BTreeSet<_> = all().iter().map(|ship| ship.id.clone()).collect();
+    assert_eq!(ids.len(), all().len());
+    for id in ids {
+        assert_eq!(find(&id).expect("listed").id, id);
+    }
+    assert!(find("titanic").is_none());
+}
+
+#[test]
+fn particulars_and_steering_gear_are_positive() {
+    for ship in all() {
+        let particulars = ship.particulars.map(|p| [p.length, p.speed]);
+        for value in particulars.iter().flatten().chain(&ship.rudder_rate).chain(&ship.largest_rudder) {
+            assert!(value.is_finite() && *value > 0.0, "{}: {value}", ship.id);
+        }
+        assert!(ship.largest_rudder.is_none_or(|delta| delta < 0.5 * PI), "{}", ship.id);
+        assert!(!ship.name.is_empty() && !ship.source.is_empty());
+    }
+}
+
+#[test]
+fn a_straight_approach_stays_finite_and_a_rudder_turns_to_its_own_side() {
+    for ship in all() {
+        let dynamics = ship.dynamics();
+        let (state, motion) = held_rudder(dynamics.as_ref(), 0.0, 600.0, dynamics.largest_step());
+        assert!(every_finite(&state), "{}", ship.id);
+        assert!(motion.speed.is_none_or(|speed| speed > 0.0), "{}", ship.id);
+        for delta_deg in [35.0, 10.0, -10.0, -35.0] {
+            let (state, motion) = held_rudder(dynamics.as_ref(), delta_deg, 600.0, dynamics.largest_step());
+            assert!(every_finite(&state), "{} at {delta_deg}°", ship.id);
+            assert!(motion.yaw_rate * delta_deg > 0.0, "{} at {delta_deg}°: r = {}", ship.id, motion.yaw_rate);
+            if let (Some(kept), Some(approach)) = (motion.speed, ship.particulars) {
+                assert!(kept > approach.speed / 3.0, "{} at {delta_deg}° slows to {kept} m/s", ship.id);
+            }
+        }
+    }
+}
+
+/// Standstill, drifting and going astern included: a search may lead anywhere.
+#[test]
+fn rates_are_finite_wherever_the_state_is() {
+    for ship in all() {
+        let dynamics = ship.dynamics();
+        let mut rest = vec![0.0; dynamics.dimension()];
+        dynamics.approach(1.0, 0.0, &mut rest);
+        let mut rate = rest.clone();
+        for delta_deg in [-35.0_f64, 0.0, 35.0] {
+            let input = Input { rudder: delta_deg.to_radians(), disturbance: 0.02, ..Input::default() };
+            for yaw_rate in [-0.05, 0.0, 0.05] {
+                for share in [-0.5, 0.0, 1e-9, 0.05, 0.5, 1.0, 1.5] {
+                    for sway in [-1.0, 0.0, 1.0] {
+                        let mut state = rest.clone();
+                        state[state::YAW_RATE] = yaw_rate;
+                        if matches!(ship.model, Model::Hull(_)) {
+                            state[state::SURGE] *= share;
+                            state[state::SWAY] = sway * share;
+                        }
+                        dynamics.rates(0.0, &state, &input, &mut rate);
+                        assert!(every_finite(&rate), "{} at {state:?}, {delta_deg}°: {rate:?}", ship.id);
+                        let seen = dynamics.motion(0.0, &state, &input);
+                        assert_eq!(seen.yaw_acceleration, rate[state::YAW_RATE], "{}", ship.id);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The disturbance is an equivalent rudder: at the first instant it gives the yaw acceleration of its moment, with the
+/// sign of the rudder. (A rudder also pushes sideways, so of a hull only the larger part of its acceleration is left.)
+#[test]
+fn a_disturbance_acts_like_the_rudder_it_is_equivalent_to() {
+    for ship in all() {
+        let dynamics = ship.dynamics();
+        let mut state = vec![0.0; dynamics.dimension()];
+        dynamics.approach(0.0, 0.0, &mut state);
+        let angle = 0.01;
+        let acceleration = |input: Input| dynamics.motion(0.0, &state, &input).yaw_acceleration;
+        let still = acceleration(Input::default());
+        let by_rudder = acceleration(Input { rudder: angle, ..Input::default() }) - still;
+        let by_disturbance = acceleration(Input { disturbance: angle, ..Input::default() }) - still;
+        match ship.model {
+            Model::Hull(_) => {
+                let share = by_disturbance / by_rudder;
+                assert!((0.8..1.25).contains(&share), "{}: {share}", ship.id);
+            }
+            // T3 puts the rudder, not the disturbance, straight into the yaw acceleration.
+            Model::Response(_) => assert!(by_disturbance >= 0.0 && by_rudder > 0.0, "{}", ship.id),
+        }
+    }
+}
+
+/// Heading, rad, after five reversals of a 20° rudder, four ship lengths apart: inflow angles change sign many times.
+fn heading_after_reversals(dynamics: &dyn Dynamics, unit: f64, largest_step: f64) -> f64 {
+    let mut corners = (vec![0.0], vec![0.0]);
+    for k in 0..6 {
+        let (start, side) = (4.0 * unit * f64::from(k), if k % 2 == 0 { 20f64 } else { -20.0 });
+        corners.0.extend([start + unit, start + 3.9 * unit]);
+        corners.1.extend([side.to_radians(); 2]);
+    }
+    let rudder = Polyline::new(corners.0, corners.1).expect("increasing times");
+    let mut state = vec![0.0; dynamics.dimension()];
+    dynamics.approach(0.0, 0.0, &mut state);
+    let mut heading = 0.0;
+    let times = [0.0, 24.0 * unit];
+    replay(dynamics, &Recorded::rudder(&rudder), &times, largest_step, &mut state, |_, motion| {
+        heading = motion.heading
+    });
+    heading
+}
+
+/// An eighth of the largest step must not move the final heading by 0.0001°.
+#[test]
+fn the_largest_step_is_small_enough() {
+    for ship in all() {
+        let dynamics = ship.dynamics();
+        let unit = ship.particulars.map_or(10.0, |p| p.length / p.speed);
+        let step = dynamics.largest_step();
+        let coarse = heading_after_reversals(dynamics.as_ref(), unit, step);
+        let fine = heading_after_reversals(dynamics.as_ref(), unit, 0.125 * step);
+        let difference = (coarse - fine).to_degrees();
+        assert!(difference.abs() < 1e-4, "{}: {difference}° with {step} s", ship.id);
+    }
+}
+
+// --- single ships -----------------------------------------------------------------------------------------------------
+
+/// Indices printed for the Mariner in the Marine Systems Simulator, to more digits from an independent linearisation.
+#[test]
+fn mariner_linearises_to_its_published_indices() {
+    let hull = mariner::hull();
+    let particulars = hull.particulars.expect("known");
+    let found = mariner::equations().linearised().indices().expect("course-stable").at(particulars);
+    for (value, expected, half_digit) in
+        [(found.K, 0.1850, 5e-5), (found.T1, 117.98, 5e-3), (found.T2, 7.76, 5e-3), (found.T3, 18.53, 5e-3)]
+    {
+        assert_relative_eq!(value, expected, epsilon = half_digit);
+    }
+    let SecondOrderIndices { K, T1, T2, T3 } = mariner::INDICES;
+    for (value, rounded) in [(found.K, K), (found.T1, T1), (found.T2, T2), (found.T3, T3)] {
+        assert_relative_eq!(value, rounded, max_relative = 6e-3);
+    }
+}
+
+/// The linear equations of a hull against central differences of its accelerations on the straight approach.
+#[test]
+fn linear_equations_are_the_slopes_of_the_hull() {
+    let mut tanker = kvlcc2::FULL_SCALE;
+    tanker.rudder.gammaR = BySign { positive: 0.5, negative: 0.5 };
+    let tanker = Mmg::at_speed(tanker, 8.0).expect("balances");
+    let cargo_ship = mariner::equations();
+    let hulls: [(&dyn Hull, PrimeSwayYaw); 2] =
+        [(&tanker, tanker.linearised()), (&cargo_ship, cargo_ship.linearised())];
+    for (hull, PrimeSwayYaw { M, N, b }) in hulls {
+        let (L, U) = (hull.length(), hull.approach_speed());
+        let at = |v: f64, r: f64, rudder: f64| {
+            let velocity = Velocity { surge: U, sway: v * U, yaw: r * U / L };
+            let a = hull.acceleration(velocity, &Input { rudder, ..Input::default() });
+            [a.sway * L / (U * U), a.yaw * L * L / (U * U)]
+        };
+        let e = 1e-5;
+        let slope = |v: f64, r: f64, d: f64| {
+            let (plus, minus) = (at(v * e, r * e, d * e), at(-v * e, -r * e, -d * e));
+            [(plus[0] - minus[0]) / (2.0 * e), (plus[1] - minus[1]) / (2.0 * e)]
+        };
+        for ([dv, dr], expected) in [
+            (slope(1.0, 0.0, 0.0), [-N[0][0], -N[1][0]]),
+            (slope(0.0, 1.0, 0.0), [-N[0][1], -N[1][1]]),
+            (slope(0.0, 0.0, 1.0), b),
+        ] {
+            assert_relative_eq!(M[0][0] * dv + M[0][1] * dr, expected[0], max_relative = 1e-5);
+            assert_relative_eq!(M[1][0] * dv + M[1][1] * dr, expected[1], max_relative = 1e-5);
+        }
+    }
+}
+
+/// Steady turning rates, deg/s, of an independent implementation (Runge–Kutta, 0.05 s); tolerance: its last digit.
+#[test]
+fn mariner_turns_at_the_reference_rates() {
+    let ship = mariner::hull();
+    for (delta_deg, expected) in [
+        (1.0, 0.258),
+        (2.0, 0.317),
+        (5.0, 0.423),
+        (10.0, 0.514),
+        (20.0, 0.594),
+        (35.0, 0.620),
+        (-5.0, -0.346),
+        (-10.0, -0.472),
+        (-20.0, -0.570),
+        (-35.0, -0.601),
+    ] {
+        assert_relative_eq!(turning_rate_deg(&ship, delta_deg), expected, epsilon = 1e-3);
+    }
+}
+
+/// As for the Mariner.
+#[test]
+fn kvlcc2_turns_at_the_reference_rates() {
+    let ship = kvlcc2::full_scale();
+    for (delta_deg, expected) in [
+        (1.0, 0.111),
+        (2.0, 0.165),
+        (5.0, 0.251),
+        (10.0, 0.327),
+        (20.0, 0.413),
+        (35.0, 0.478),
+        (-5.0, -0.314),
+        (-10.0, -0.372),
+        (-20.0, -0.441),
+        (-35.0, -0.493),
+    ] {
+        assert_relative_eq!(turning_rate_deg(&ship, delta_deg), expected, epsilon = 1e-3);
+    }
+}
+
+/// KVLCC2 has K/T = 3.0e-4 1/s² and no usable T: with the mean flow straightening |T1| exceeds a day.
+#[test]
+fn kvlcc2_is_neutrally_stable() {
+    let hull = Mmg::at_speed(kvlcc2::FULL_SCALE, 15.5 * KNOT).expect("balances");
+    let particulars = kvlcc2::full_scale().particulars.expect("known");
+    let found = hull.linearised().indices().expect("not exactly neutral").at(particulars);
+    assert!(found.T1.abs() > 1e5, "{found:?}");
+    assert_relative_eq!(found.K / found.T1, 3.0e-4, epsilon = 5e-6);
+}
+
+/// Pairs of revolutions and speed of an independent implementation; tolerance: one unit of the last digit (a knot of
+/// 0.5144 m/s instead of 1852 m an hour moves the fourth digit).
+#[test]
+fn revolutions_and_speed_of_the_straight_approach_agree() {
+    for (parameters, speed_kn, revolutions) in
+        [(kvlcc2::FULL_SCALE, 15.5, 1.778), (seiun_like::PARAMETERS, 16.7, 2.438)]
+    {
+        let by_speed = Mmg::at_speed(parameters, speed_kn * KNOT).expect("balances");
+        assert_relative_eq!(by_speed.revolutions(), revolutions, epsilon = 1e-3);
+        let by_revolutions = Mmg::at_revolutions(parameters, by_speed.revolutions()).expect("balances");
+        assert_relative_eq!(by_revolutions.approach_speed(), speed_kn * KNOT, max_relative = 1e-12);
+        let (state, motion) = held_rudder(&by_speed, 0.0, 600.0, 0.1);
+        assert_relative_eq!(motion.speed.expect("a hull has a speed"), speed_kn * KNOT, max_relative = 1e-10);
+        assert_relative_eq!(state[state::NORTH], 600.0 * speed_kn * KNOT, max_relative = 1e-10);
+    }
+}
+
+#[test]
+fn a_hull_without_sides_is_its_own_mirror() {
+    let mut tanker = kvlcc2::FULL_SCALE;
+    tanker.rudder.gammaR = BySign { positive: 0.5, negative: 0.5 };
+    tanker.propeller.wake = Wake::Exponential { C1: 2.0, C2: BySign { positive: 1.3, negative: 1.3 } };
+    let mut training_ship = seiun_like::PARAMETERS;
+    training_ship.rudder.gammaR = BySign { positive: 0.35, negative: 0.35 };
+    let mut cargo_ship = mariner::DERIVATIVES;
+    for side in [&mut cargo_ship.Y, &mut cargo_ship.N] {
+        (side.zero, side.zero_u, side.zero_uu) = (0.0, 0.0, 0.0);
+    }
+    let hulls: [Box<dyn Dynamics>; 3] = [
+        Box::new(Mmg::at_speed(tanker, 8.0).expect("balances")),
+        Box::new(Mmg::at_speed(training_ship, 8.0).expect("balances")),
+        Box::new(crate::vessel::abkowitz::Abkowitz::new(Particulars { length: 160.93, speed: 7.7175 }, cargo_ship)),
+    ];
+    for hull in hulls {
+        let (starboard, _) = held_rudder(hull.as_ref(), 20.0, 500.0, 0.1);
+        let (port, _) = held_rudder(hull.as_ref(), -20.0, 500.0, 0.1);
+        for odd in [state::HEADING, state::YAW_RATE, state::SWAY, state::EAST] {
+            assert_relative_eq!(starboard[odd], -port[odd], max_relative = 1e-9);
+        }
+        for even in [state::SURGE, state::NORTH] {
+            assert_relative_eq!(starboard[even], port[even], max_relative = 1e-9);
+        }
+        assert!(starboard[state::HEADING] > 1.0);
+    }
+}
+
+/// n₃ in deg/s: 0.5 · 30 = 3.1 + 0.4 · 3.1³ to two digits.
+#[test]
+fn zeefakkel_turns_at_3_degrees_a_second() {
+    assert_relative_eq!(turning_rate_deg(&zeefakkel::ship(), 30.0), 3.1, epsilon = 0.05);
+}
+
+#[test]
+fn the_oil_tanker_keeps_the_loop_it_is_given() {
+    let loop_rate = 0.4f64.to_radians();
+    let ship = oil_tanker::with_loop(loop_rate).expect("a positive rate");
+    let dynamics = ship.dynamics();
+    let mut state = vec![0.0; dynamics.dimension()];
+    dynamics.approach(0.0, 1e-5, &mut state);
+    let mut solver = RungeKutta4::new(dynamics.dimension());
+    for k in 0..40_000 {
+        solver.step(dynamics.as_ref(), 0.1 * f64::from(k), 0.1, &mut state, |_| Input::default());
+    }
+    assert_relative_eq!(state[1], loop_rate, max_relative = 1e-6);
+    assert!(ship.first_order().is_none());
+    assert!(oil_tanker::INDICES.is_course_unstable());
+    assert!(oil_tanker::with_loop(0.0).is_err());
+}
+
+#[test]
+fn the_first_order_ship_of_the_paper_is_exactly_that() {
+    let truth = yukun::ship().first_order().expect("exactly first order");
+    assert_relative_eq!(truth.K(), 0.1, max_relative = 1e-12);
+    assert_relative_eq!(truth.T(), 16.3, max_relative = 1e-12);
+    let first_order_ships = all().iter().filter(|ship| ship.first_order().is_some()).count();
+    assert_eq!(first_order_ships, 1);
+}

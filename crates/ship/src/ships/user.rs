@@ -1,0 +1,135 @@
+//! Ships from a user's own numbers.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use super::{Model, Particulars, Ship};
+use crate::effects::{Effect, SecondOrder};
+use crate::first_order::FirstOrder;
+use crate::linear::SecondOrderIndices;
+use crate::response::{Response, ResponseModel};
+
+/// Why numbers do not make a ship.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum ShipError {
+    /// A number has no physical meaning in its place.
+    #[error("{symbol} = {value} does not make a ship: {reason}")]
+    Value {
+        /// Symbol of the number.
+        symbol: &'static str,
+        /// The number.
+        value: f64,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+}
+
+fn check(symbol: &'static str, value: f64, holds: bool, reason: &'static str) -> Result<(), ShipError> {
+    if holds && value.is_finite() { Ok(()) } else { Err(ShipError::Value { symbol, value, reason }) }
+}
+
+fn check_particulars(particulars: Option<Particulars>) -> Result<(), ShipError> {
+    let Some(Particulars { length, speed }) = particulars else { return Ok(()) };
+    check("length", length, length > 0.0, "it has to be positive")?;
+    check("speed", speed, speed > 0.0, "it has to be positive")
+}
+
+fn check_indices(K: f64, T: f64, symbol: &'static str) -> Result<(), ShipError> {
+    check("K", K, K != 0.0, "it has to be a finite number other than zero")?;
+    check(symbol, T, T != 0.0, "it has to be a finite number other than zero")?;
+    check("K", K, K / T > 0.0, "its sign has to be that of T, or the ship turns away from its rudder")
+}
+
+fn ship(name: String, response: Response, particulars: Option<Particulars>) -> Ship {
+    Ship {
+        id: "user".into(),
+        name: name.into(),
+        source: "user".into(),
+        particulars,
+        rudder_rate: None,
+        largest_rudder: None,
+        model: Model::Response(response),
+    }
+}
+
+/// A first-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
+///
+/// `K` (1/s) and `T` (s) both negative make a course-unstable ship. `rudder_bias` δ_r in rad. Fails for numbers that
+/// are not finite, K or T of zero, K and T of different sign, and particulars that are not positive.
+pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particulars>) -> Result<Ship, ShipError> {
+    check_indices(K, T, "T")?;
+    check("rudder bias", rudder_bias, true, "it has to be finite")?;
+    check_particulars(particulars)?;
+    let response = Response::first_order_ship(FirstOrder::from_indices(K, T, rudder_bias));
+    Ok(ship(format!("first order, K = {K} 1/s, T = {T} s"), response, particulars))
+}
+
+/// A second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
+///
+/// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite.
+pub fn second_order(
+    indices: SecondOrderIndices,
+    rudder_bias: f64,
+    particulars: Option<Particulars>,
+) -> Result<Ship, ShipError> {
+    let SecondOrderIndices { K, T1, T2, T3 } = indices;
+    check_indices(K, T1, "T1")?;
+    check("T2", T2, T2 > 0.0, "it has to be positive; of a course-unstable ship T1 is the negative one")?;
+    check("T3", T3, true, "it has to be finite")?;
+    check("rudder bias", rudder_bias, true, "it has to be finite")?;
+    check_particulars(particulars)?;
+    let name = format!("second order, K = {K} 1/s, T1 = {T1} s, T2 = {T2} s, T3 = {T3} s");
+    Ok(ship(name, second_order_response(indices, rudder_bias, Vec::new(), &[]), particulars))
+}
+
+/// A second-order response, and after it `more` effects with their `values`.
+pub(super) fn second_order_response(
+    indices: SecondOrderIndices,
+    rudder_bias: f64,
+    more: Vec<Arc<dyn Effect>>,
+    values: &[f64],
+) -> Response {
+    let SecondOrderIndices { K, T1, T2, T3 } = indices;
+    let mut effects: Vec<Arc<dyn Effect>> = vec![Arc::new(SecondOrder)];
+    effects.extend(more);
+    let mut parameters = vec![1.0 / T1, K / T1, rudder_bias, T2, T3];
+    parameters.extend_from_slice(values);
+    ResponseModel::new(effects).with(parameters)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn keeps_the_numbers_it_is_given() {
+        let particulars = Some(Particulars { length: 105.0, speed: 8.0 });
+        let ship = first_order(0.1, 16.3, 0.01, particulars).expect("a ship");
+        let base = ship.first_order().expect("exactly first order");
+        assert_relative_eq!(base.K(), 0.1, max_relative = 1e-14);
+        assert_relative_eq!(base.T(), 16.3, max_relative = 1e-14);
+        assert_eq!(base.rudder_bias, 0.01);
+        assert_eq!(ship.particulars, particulars);
+        let second = SecondOrderIndices { K: 0.1, T1: 20.0, T2: 2.5, T3: 6.2 };
+        let ship = second_order(second, 0.0, None).expect("a ship");
+        assert!(ship.first_order().is_none(), "a second-order ship has no exact K and T");
+    }
+
+    #[test]
+    fn refuses_numbers_that_make_no_ship() {
+        for (K, T, symbol) in
+            [(0.1, 0.0, "T"), (0.0, 16.3, "K"), (0.1, -16.3, "K"), (f64::NAN, 16.3, "K"), (0.1, f64::INFINITY, "T")]
+        {
+            let Err(ShipError::Value { symbol: found, .. }) = first_order(K, T, 0.0, None) else {
+                panic!("K = {K}, T = {T} was taken for a ship")
+            };
+            assert_eq!(found, symbol);
+        }
+        assert!(first_order(0.1, 16.3, 0.0, Some(Particulars { length: 0.0, speed: 8.0 })).is_err());
+        let unstable_twice = SecondOrderIndices { K: -0.1, T1: -20.0, T2: -2.5, T3: 6.2 };
+        assert!(second_order(unstable_twice, 0.0, None).is_err());
+    }
+}

@@ -1,0 +1,148 @@
+//! The Mariner-type polynomial model: one Taylor series for the forces on hull, propeller and rudder together.
+//!
+//! Prime system ½ρL²U² with the momentary speed U: surge perturbation u' = (u − U₀)/U, sway v' = v/U, yaw r' = r L/U.
+//! The series is that of Chislett and Strøm-Tejsen (1965); its centrifugal terms are inside the derivatives (Yr holds
+//! −m', Xrv holds m'), so mass appears on the left only.
+//!
+//! The rudder of the source is positive to port. It is turned round here, at the border ([`Abkowitz::new`] takes the
+//! coefficients as printed), and nowhere else.
+#![expect(non_snake_case, reason = "Xvv is a derivative of the force X; names are those of the source")]
+
+use super::{Acceleration, Hull, SLOWEST, Velocity};
+use crate::dynamics::Input;
+use crate::linear::PrimeSwayYaw;
+use crate::ships::Particulars;
+
+/// Derivatives as printed by the source: prime, rudder positive to port, radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(missing_docs, reason = "each name is the symbol of a derivative: Yvvr multiplies v'² r' in Y")]
+pub struct Derivatives {
+    /// Mass m'.
+    pub m: f64,
+    /// Moment of inertia I_z' about midship.
+    pub Iz: f64,
+    /// Centre of gravity x_G' forward of midship.
+    pub xG: f64,
+    pub Xudot: f64,
+    pub Yvdot: f64,
+    pub Yrdot: f64,
+    pub Nvdot: f64,
+    pub Nrdot: f64,
+    pub Xu: f64,
+    pub Xuu: f64,
+    pub Xuuu: f64,
+    pub Xvv: f64,
+    pub Xrr: f64,
+    pub Xdd: f64,
+    pub Xudd: f64,
+    pub Xrv: f64,
+    pub Xvd: f64,
+    pub Xuvd: f64,
+    pub Y: Lateral,
+    pub N: Lateral,
+}
+
+/// Derivatives of the sway force or the yaw moment; the two have the same terms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(missing_docs, reason = "each name is the index of a derivative: vvr multiplies v'² r'")]
+pub struct Lateral {
+    pub v: f64,
+    pub r: f64,
+    pub vvv: f64,
+    pub vvr: f64,
+    pub vu: f64,
+    pub ru: f64,
+    pub d: f64,
+    pub ddd: f64,
+    pub ud: f64,
+    pub uud: f64,
+    pub vdd: f64,
+    pub vvd: f64,
+    /// Constant force of a single propeller; with `zero_u` and `zero_uu` the built-in asymmetry of the ship.
+    pub zero: f64,
+    pub zero_u: f64,
+    pub zero_uu: f64,
+}
+
+impl Lateral {
+    fn at(&self, u: f64, v: f64, r: f64, d: f64) -> f64 {
+        self.v * v
+            + self.r * r
+            + self.vvv * v * v * v
+            + self.vvr * v * v * r
+            + self.vu * v * u
+            + self.ru * r * u
+            + d * (self.d + self.ud * u + self.uud * u * u + self.ddd * d * d + self.vdd * v * d + self.vvd * v * v)
+            + self.zero
+            + self.zero_u * u
+            + self.zero_uu * u * u
+    }
+}
+
+/// A hull described by one polynomial in u', v', r' and δ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Abkowitz {
+    particulars: Particulars,
+    derivatives: Derivatives,
+}
+
+impl Abkowitz {
+    /// A ship of this length whose derivatives were measured at this approach speed.
+    pub fn new(particulars: Particulars, derivatives: Derivatives) -> Self {
+        Self { particulars, derivatives }
+    }
+
+    /// The derivatives as printed by the source.
+    pub fn derivatives(&self) -> &Derivatives {
+        &self.derivatives
+    }
+
+    /// The linear part of sway and yaw, rudder positive to starboard.
+    pub fn linearised(&self) -> PrimeSwayYaw {
+        let p = &self.derivatives;
+        PrimeSwayYaw { M: self.mass(), N: [[-p.Y.v, -p.Y.r], [-p.N.v, -p.N.r]], b: [-p.Y.d, -p.N.d] }
+    }
+
+    fn mass(&self) -> [[f64; 2]; 2] {
+        let p = &self.derivatives;
+        [[p.m - p.Yvdot, p.m * p.xG - p.Yrdot], [p.m * p.xG - p.Nvdot, p.Iz - p.Nrdot]]
+    }
+}
+
+impl Hull for Abkowitz {
+    fn length(&self) -> f64 {
+        self.particulars.length
+    }
+
+    fn approach_speed(&self) -> f64 {
+        self.particulars.speed
+    }
+
+    /// m' a' = F'(u', v', r', δ), and a = a' U²/L (r' by U²/L²).
+    ///
+    /// The disturbance adds the yaw moment N_δ δ of approach speed. The polynomial was fitted near that speed.
+    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
+        let p = &self.derivatives;
+        let Particulars { length: L, speed: U0 } = self.particulars;
+        let U = velocity.surge.hypot(velocity.sway).max(SLOWEST * U0);
+        let (u, v, r) = ((velocity.surge - U0) / U, velocity.sway / U, velocity.yaw * L / U);
+        let d = -input.rudder;
+
+        let X = u * (p.Xu + p.Xuu * u + p.Xuuu * u * u)
+            + p.Xvv * v * v
+            + p.Xrr * r * r
+            + p.Xrv * r * v
+            + d * (p.Xdd * d + p.Xudd * u * d + p.Xvd * v + p.Xuvd * u * v);
+        let Y = p.Y.at(u, v, r, d);
+        let N = p.N.at(u, v, r, d) - p.N.d * input.disturbance * (U0 / U) * (U0 / U);
+
+        let [[m11, m12], [m21, m22]] = self.mass();
+        let det = m11 * m22 - m12 * m21;
+        let unit = U * U / L;
+        Acceleration {
+            surge: X / (p.m - p.Xudot) * unit,
+            sway: (m22 * Y - m12 * N) / det * unit,
+            yaw: (m11 * N - m21 * Y) / det * unit / L,
+        }
+    }
+}

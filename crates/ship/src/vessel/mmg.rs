@@ -1,0 +1,330 @@
+//! The MMG standard model: hull, propeller and rudder as separate parts (Yasukawa and Yoshimura 2015).
+//!
+//! Every equation is divided by ½ρLd, so forces read as X' U² (m²/s²), the moment as N' U² after a further L, and the
+//! density of the water drops out. In the velocities (u, v, rL):
+//!
+//! (m' + m_x') L u' = X + (m' + m_y') v (rL) + x_G' m' (rL)²
+//! (m' + m_y') L v' + x_G' m' L² r' = Y − (m' + m_x') u (rL)
+//! (I_z' + x_G'² m' + J_z') L² r' + x_G' m' L v' = N − x_G' m' u (rL)
+//!
+//! β = atan(−v/u) and v are taken at midship. The rudder is positive to starboard, as everywhere here. The wake and the
+//! flow straightening switch with the sign of an inflow angle: accelerations are continuous, their slopes are not.
+//!
+//! Source of the model: H. Yasukawa and Y. Yoshimura (2015), Introduction of MMG standard method for ship maneuvering
+//! predictions, Journal of Marine Science and Technology 20, 37–52.
+#![expect(non_snake_case, reason = "U is a speed and u its surge part, XR a force and xR a position")]
+
+mod parameters;
+
+use std::f64::consts::PI;
+
+use thiserror::Error;
+
+pub use self::parameters::{BySign, HullDerivatives, Parameters, Propeller, Rudder, Wake};
+use super::{Acceleration, Hull, SLOWEST, Velocity};
+use crate::dynamics::Input;
+use crate::linear::PrimeSwayYaw;
+
+/// Why parameters do not make a hull.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum MmgError {
+    /// A quantity that has to be a positive number is none.
+    #[error("{symbol} has to be positive, found {value}")]
+    NotPositive {
+        /// Its symbol.
+        symbol: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The inertia in sway and yaw is not positive.
+    #[error("mass and added mass leave no positive inertia in sway and yaw (determinant {det})")]
+    Inertia {
+        /// Determinant of the prime mass matrix.
+        det: f64,
+    },
+    /// Thrust and resistance balance at no advance ratio.
+    #[error("thrust balances the resistance at no advance ratio: k0 = {k0}, R0' = {R0}")]
+    NoBalance {
+        /// Thrust coefficient at J = 0.
+        k0: f64,
+        /// Resistance coefficient.
+        R0: f64,
+    },
+}
+
+/// An MMG hull at constant propeller revolutions, with its steady straight approach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mmg {
+    parameters: Parameters,
+    /// m' = ∇/(½L²d).
+    mass: f64,
+    /// x_G' m'.
+    moment_of_mass: f64,
+    /// Prime mass matrix of sway and yaw: m11, m12 = m21, m22.
+    inertia: [f64; 3],
+    /// A_R/(Ld).
+    rudder_area: f64,
+    /// 2 D_P⁴/(Ld), m²: thrust over ½ρLd is this times n² K_T.
+    thrust: f64,
+    revolutions: f64,
+    approach_speed: f64,
+    /// dN/dδ amidships at approach speed over ½ρL²d, m²/s².
+    rudder_moment: f64,
+}
+
+impl Mmg {
+    /// The hull whose straight approach at `speed` (m/s) is steady; the revolutions follow from that.
+    ///
+    /// Fails for parameters that are not positive where they have to be, or whose thrust cannot balance the resistance.
+    pub fn at_speed(parameters: Parameters, speed: f64) -> Result<Self, MmgError> {
+        positive("approach speed", speed)?;
+        let speed_per_revolution = speed_per_revolution(&parameters)?;
+        Self::new(parameters, speed, speed / speed_per_revolution)
+    }
+
+    /// The hull at these propeller `revolutions` (1/s); the approach speed is the steady one.
+    ///
+    /// Fails as [`at_speed`](Self::at_speed) does.
+    pub fn at_revolutions(parameters: Parameters, revolutions: f64) -> Result<Self, MmgError> {
+        positive("propeller revolutions", revolutions)?;
+        let speed_per_revolution = speed_per_revolution(&parameters)?;
+        Self::new(parameters, speed_per_revolution * revolutions, revolutions)
+    }
+
+    fn new(parameters: Parameters, approach_speed: f64, revolutions: f64) -> Result<Self, MmgError> {
+        let p = &parameters;
+        let (L, d) = (p.Lpp, p.d);
+        for (symbol, value) in
+            [("displaced volume", p.volume), ("kzz", p.kzz), ("AR", p.rudder.AR), ("f_alpha", p.rudder.f_alpha)]
+        {
+            positive(symbol, value)?;
+        }
+        let mass = p.volume / (0.5 * L * L * d);
+        let xG = p.xG / L;
+        let inertia = [mass + p.hull.my, xG * mass, (p.kzz * p.kzz + xG * xG) * mass + p.hull.Jz];
+        let det = inertia[0] * inertia[2] - inertia[1] * inertia[1];
+        if !(det > 0.0 && inertia[0] > 0.0 && mass + p.hull.mx > 0.0) {
+            return Err(MmgError::Inertia { det });
+        }
+        let mut hull = Self {
+            parameters,
+            mass,
+            moment_of_mass: xG * mass,
+            inertia,
+            rudder_area: p.rudder.AR / (L * d),
+            thrust: 2.0 * p.propeller.DP.powi(4) / (L * d),
+            revolutions,
+            approach_speed,
+            rudder_moment: 0.0,
+        };
+        hull.rudder_moment = hull.rudder_slopes()[1] * approach_speed * approach_speed;
+        Ok(hull)
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// Propeller revolutions n, 1/s.
+    pub fn revolutions(&self) -> f64 {
+        self.revolutions
+    }
+
+    /// Longitudinal inflow to the rudder on the straight approach, over U.
+    fn approach_inflow(&self) -> f64 {
+        let uP = self.approach_speed * (1.0 - self.parameters.propeller.wP0);
+        self.rudder_inflow(uP, self.thrust_coefficient(uP)) / self.approach_speed
+    }
+
+    /// dY'/dδ and dN'/dδ at δ = 0 on the straight approach.
+    fn rudder_slopes(&self) -> [f64; 2] {
+        let rudder = &self.parameters.rudder;
+        let slope = self.rudder_area * self.approach_inflow().powi(2) * rudder.f_alpha;
+        [-(1.0 + rudder.aH) * slope, -(rudder.xR + rudder.aH * rudder.xH) * slope]
+    }
+
+    /// The linear part of sway and yaw about the straight approach.
+    ///
+    /// Flow straightening has two slopes at zero angle; the mean of both is taken. The result describes neither side.
+    pub fn linearised(&self) -> PrimeSwayYaw {
+        let (hull, rudder) = (&self.parameters.hull, &self.parameters.rudder);
+        let b = self.rudder_slopes();
+        // α_R = δ + γ_R (v' + ℓ_R' r') U/u_R for small motion.
+        let straightening = rudder.gammaR.mean() / self.approach_inflow();
+        let by_v = b.map(|slope| slope * straightening);
+        let by_r = by_v.map(|slope| slope * rudder.lR);
+        let [m11, m12, m22] = self.inertia;
+        PrimeSwayYaw {
+            M: [[m11, m12], [m12, m22]],
+            N: [
+                [-(hull.Yv + by_v[0]), self.mass + hull.mx - (hull.Yr + by_r[0])],
+                [-(hull.Nv + by_v[1]), self.moment_of_mass - (hull.Nr + by_r[1])],
+            ],
+            b,
+        }
+    }
+
+    /// K_T at the advance speed `uP` (m/s).
+    fn thrust_coefficient(&self, uP: f64) -> f64 {
+        let propeller = &self.parameters.propeller;
+        let J = uP / (self.revolutions * propeller.DP);
+        let [k0, k1, k2] = propeller.k;
+        k0 + J * (k1 + J * k2)
+    }
+
+    /// u_R, m/s: ε u_P √(η {1 + κ [√(1 + 8 K_T/(π J²)) − 1]}² + 1 − η), written so that J = 0 is regular.
+    fn rudder_inflow(&self, uP: f64, KT: f64) -> f64 {
+        let rudder = &self.parameters.rudder;
+        let nD = self.revolutions * self.parameters.propeller.DP;
+        // A windmilling propeller (K_T < 0) can slow the stream to rest, not turn it round.
+        let stream = (uP * uP + 8.0 * KT * nD * nD / PI).max(0.0).sqrt();
+        let behind = uP + rudder.kappa * (stream - uP);
+        rudder.epsilon * (rudder.eta * behind * behind + (1.0 - rudder.eta) * uP * uP).sqrt()
+    }
+
+    /// Wake fraction w_P at the inflow angle β_P.
+    fn wake(&self, betaP: f64) -> f64 {
+        let propeller = &self.parameters.propeller;
+        match propeller.wake {
+            Wake::Exponential { C1, C2 } => {
+                let gain = 1.0 + (1.0 - (-C1 * betaP.abs()).exp()) * (C2.at(betaP) - 1.0);
+                1.0 - (1.0 - propeller.wP0) * gain
+            }
+            Wake::Gaussian => propeller.wP0 * (-4.0 * betaP * betaP).exp(),
+        }
+    }
+}
+
+fn positive(symbol: &'static str, value: f64) -> Result<(), MmgError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(MmgError::NotPositive { symbol, value }) }
+}
+
+/// Steady speed over revolutions, m: the advance ratio at which thrust balances resistance does not depend on n.
+///
+/// R0' (J D/(1 − w))² = (1 − t_P) 2 D⁴/(Ld) (k0 + k1 J + k2 J²), a quadratic in J whose left side grows from zero, so
+/// for falling thrust there is one positive root.
+fn speed_per_revolution(p: &Parameters) -> Result<f64, MmgError> {
+    let propeller = &p.propeller;
+    for (symbol, value) in [
+        ("Lpp", p.Lpp),
+        ("d", p.d),
+        ("DP", propeller.DP),
+        ("R0'", p.hull.R0),
+        ("1 - wP0", 1.0 - propeller.wP0),
+        ("1 - tP", 1.0 - propeller.tP),
+    ] {
+        positive(symbol, value)?;
+    }
+    let [k0, k1, k2] = propeller.k;
+    let pitch = propeller.DP / (1.0 - propeller.wP0);
+    let resistance = p.hull.R0 * pitch * pitch * p.Lpp * p.d / (2.0 * (1.0 - propeller.tP) * propeller.DP.powi(4));
+    // (resistance − k2) J² − k1 J − k0 = 0 in the form that does not cancel for k1 < 0.
+    let quarter = k1 * k1 + 4.0 * (resistance - k2) * k0;
+    let J = 2.0 * k0 / (quarter.sqrt() - k1);
+    if J > 0.0 && J.is_finite() { Ok(J * pitch) } else { Err(MmgError::NoBalance { k0, R0: p.hull.R0 }) }
+}
+
+impl Hull for Mmg {
+    fn length(&self) -> f64 {
+        self.parameters.Lpp
+    }
+
+    fn approach_speed(&self) -> f64 {
+        self.approach_speed
+    }
+
+    /// The equations of the module; the disturbance adds the yaw moment (dN/dδ) δ of the straight approach.
+    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration {
+        let Parameters { Lpp: L, hull, propeller, rudder, .. } = &self.parameters;
+        let Velocity { surge: u, sway: v, .. } = velocity;
+        let rL = velocity.yaw * L;
+        let U = u.hypot(v).max(SLOWEST * self.approach_speed);
+        let (v_, r_) = (v / U, rL / U);
+        let beta = (-v).atan2(u);
+        let U2 = U * U;
+
+        let (vv, vr, rr) = (v_ * v_, v_ * r_, r_ * r_);
+        let XH = U2 * (-hull.R0 + hull.Xvv * vv + hull.Xvr * vr + hull.Xrr * rr + hull.Xvvvv * vv * vv);
+        let YH =
+            U2 * (v_ * (hull.Yv + hull.Yvvv * vv + hull.Yvvr * vr + hull.Yvrr * rr) + r_ * (hull.Yr + hull.Yrrr * rr));
+        let NH =
+            U2 * (v_ * (hull.Nv + hull.Nvvv * vv + hull.Nvvr * vr + hull.Nvrr * rr) + r_ * (hull.Nr + hull.Nrrr * rr));
+
+        let uP = u * (1.0 - self.wake(beta - propeller.xP * r_));
+        let KT = self.thrust_coefficient(uP);
+        let XP = (1.0 - propeller.tP) * self.thrust * self.revolutions * self.revolutions * KT;
+
+        let betaR = beta - rudder.lR * r_;
+        let uR = self.rudder_inflow(uP, KT);
+        let vR = U * rudder.gammaR.at(betaR) * betaR;
+        let alphaR = input.rudder - vR.atan2(uR);
+        let FN = self.rudder_area * (uR * uR + vR * vR) * rudder.f_alpha * alphaR.sin();
+        let (sin, cos) = input.rudder.sin_cos();
+        let XR = -(1.0 - rudder.tR) * FN * sin;
+        let YR = -(1.0 + rudder.aH) * FN * cos;
+        let NR = -(rudder.xR + rudder.aH * rudder.xH) * FN * cos;
+
+        let X = XH + XP + XR + (self.mass + hull.my) * v * rL + self.moment_of_mass * rL * rL;
+        let Y = YH + YR - (self.mass + hull.mx) * u * rL;
+        let N = NH + NR + self.rudder_moment * input.disturbance - self.moment_of_mass * u * rL;
+        let [m11, m12, m22] = self.inertia;
+        let det = m11 * m22 - m12 * m12;
+        Acceleration {
+            surge: X / ((self.mass + hull.mx) * L),
+            sway: (m22 * Y - m12 * N) / (det * L),
+            yaw: (m11 * N - m12 * Y) / (det * L * L),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ships::kvlcc2::FULL_SCALE;
+    use approx::assert_relative_eq;
+
+    /// The textbook form of u_R, which divides by J, in a state where it is defined.
+    #[test]
+    fn rudder_inflow_is_the_published_formula() {
+        let hull = Mmg::at_speed(FULL_SCALE, 8.0).expect("balances");
+        let (propeller, rudder) = (&FULL_SCALE.propeller, &FULL_SCALE.rudder);
+        for uP in [1.0, 3.0, 5.2] {
+            let J = uP / (hull.revolutions() * propeller.DP);
+            let KT = hull.thrust_coefficient(uP);
+            assert_relative_eq!(KT, 0.2931 - 0.2753 * J - 0.1385 * J * J, max_relative = 1e-14);
+            let gain = 1.0 + rudder.kappa * ((1.0 + 8.0 * KT / (PI * J * J)).sqrt() - 1.0);
+            let textbook = rudder.epsilon * uP * (rudder.eta * gain * gain + 1.0 - rudder.eta).sqrt();
+            assert_relative_eq!(hull.rudder_inflow(uP, KT), textbook, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn wake_is_that_of_the_straight_approach_at_zero_angle_and_fades() {
+        let exponential = Mmg::at_speed(FULL_SCALE, 8.0).expect("balances");
+        let mut parameters = FULL_SCALE;
+        parameters.propeller.wake = Wake::Gaussian;
+        let gaussian = Mmg::at_speed(parameters, 8.0).expect("balances");
+        for hull in [exponential, gaussian] {
+            assert_relative_eq!(hull.wake(0.0), 0.35, max_relative = 1e-12);
+            assert!(hull.wake(0.3) < 0.3 && hull.wake(-0.3) < 0.35);
+        }
+        // C2 = 1.6 and 1.1 at large angles: 1 - wP → 1.04 and 0.715.
+        assert_relative_eq!(exponential.wake(50.0), -0.04, epsilon = 1e-12);
+        assert_relative_eq!(exponential.wake(-50.0), 0.285, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn refuses_parameters_that_make_no_ship() {
+        assert_eq!(Mmg::at_speed(FULL_SCALE, 0.0), Err(MmgError::NotPositive { symbol: "approach speed", value: 0.0 }));
+        let mut draughtless = FULL_SCALE;
+        draughtless.d = -1.0;
+        assert_eq!(Mmg::at_revolutions(draughtless, 1.7), Err(MmgError::NotPositive { symbol: "d", value: -1.0 }));
+        let mut thrustless = FULL_SCALE;
+        thrustless.propeller.k = [-0.1, -0.2, -0.1];
+        assert_eq!(Mmg::at_speed(thrustless, 8.0), Err(MmgError::NoBalance { k0: -0.1, R0: 0.022 }));
+        let mut light = FULL_SCALE;
+        light.hull.my = -5.0;
+        assert!(matches!(Mmg::at_speed(light, 8.0), Err(MmgError::Inertia { .. })));
+    }
+}

@@ -1,0 +1,123 @@
+//! Hulls with three degrees of freedom (surge, sway, yaw): a truth that no response model matches exactly.
+//!
+//! A hull gives its accelerations ([`Hull`]); heading, position and the link to [`Dynamics`] are written once here.
+//! [`mmg`] holds hull, propeller and rudder as separate parts, [`abkowitz`] one polynomial for the whole ship. Parameter
+//! sets with their sources are in [`crate::ships`].
+//!
+//! Water is deep and at rest, propeller revolutions are constant, heel is absent. The equations hold for a ship that
+//! moves ahead; near standstill and astern they stay finite and mean nothing (see [`SLOWEST`]).
+
+pub mod abkowitz;
+pub mod mmg;
+
+use crate::dynamics::{Dynamics, Input, Motion};
+
+/// Places in the state vector of every hull.
+pub mod state {
+    /// Heading ψ, rad.
+    pub const HEADING: usize = 0;
+    /// Yaw rate r, rad/s.
+    pub const YAW_RATE: usize = 1;
+    /// Surge velocity u, m/s.
+    pub const SURGE: usize = 2;
+    /// Sway velocity v at midship, to starboard, m/s.
+    pub const SWAY: usize = 3;
+    /// Position of midship towards heading zero (advance of a trial begun at heading zero), m.
+    pub const NORTH: usize = 4;
+    /// Position of midship to starboard of heading zero (transfer), m.
+    pub const EAST: usize = 5;
+    /// Number of states.
+    pub const DIMENSION: usize = 6;
+}
+
+/// Share of the approach speed below which prime quantities are formed with that share instead of the speed.
+///
+/// Prime velocities v/U and r L/U lose their meaning at U → 0, and their powers would overflow. Ships in zig-zag trials
+/// and turning circles keep more than a third of their speed, so trials never see this bound.
+pub const SLOWEST: f64 = 0.1;
+
+/// Velocities in the frame of the ship, at midship.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Velocity {
+    /// Surge velocity u, m/s.
+    pub surge: f64,
+    /// Sway velocity v, to starboard, m/s.
+    pub sway: f64,
+    /// Yaw rate r, rad/s.
+    pub yaw: f64,
+}
+
+/// Rates of change of [`Velocity`], in the rotating frame of the ship.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Acceleration {
+    /// u', m/s².
+    pub surge: f64,
+    /// v', m/s².
+    pub sway: f64,
+    /// r', rad/s².
+    pub yaw: f64,
+}
+
+/// A hull with three degrees of freedom at constant propeller revolutions.
+///
+/// Implementing it makes a [`Dynamics`] with the states of [`state`]:
+/// ψ' = r, x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ.
+pub trait Hull: Send + Sync {
+    /// Length between perpendiculars L, m.
+    fn length(&self) -> f64;
+
+    /// Speed of the steady straight approach, m/s.
+    fn approach_speed(&self) -> f64;
+
+    /// Accelerations at these velocities under this input; finite for finite arguments.
+    fn acceleration(&self, velocity: Velocity, input: &Input) -> Acceleration;
+}
+
+fn velocity(state: &[f64]) -> Velocity {
+    Velocity { surge: state[state::SURGE], sway: state[state::SWAY], yaw: state[state::YAW_RATE] }
+}
+
+impl<H: Hull> Dynamics for H {
+    fn dimension(&self) -> usize {
+        state::DIMENSION
+    }
+
+    /// Straight ahead at approach speed from the origin. A hull with a built-in asymmetry leaves this state by itself.
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        state.fill(0.0);
+        state[state::HEADING] = heading;
+        state[state::YAW_RATE] = yaw_rate;
+        state[state::SURGE] = self.approach_speed();
+    }
+
+    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        let velocity = velocity(state);
+        let acceleration = self.acceleration(velocity, input);
+        let (sin, cos) = state[state::HEADING].sin_cos();
+        rate[state::HEADING] = velocity.yaw;
+        rate[state::YAW_RATE] = acceleration.yaw;
+        rate[state::SURGE] = acceleration.surge;
+        rate[state::SWAY] = acceleration.sway;
+        rate[state::NORTH] = velocity.surge * cos - velocity.sway * sin;
+        rate[state::EAST] = velocity.surge * sin + velocity.sway * cos;
+    }
+
+    fn motion(&self, _t: f64, state: &[f64], input: &Input) -> Motion {
+        let velocity = velocity(state);
+        Motion {
+            heading: state[state::HEADING],
+            yaw_rate: velocity.yaw,
+            yaw_acceleration: self.acceleration(velocity, input).yaw,
+            speed: Some(velocity.surge.hypot(velocity.sway)),
+            sway: Some(velocity.sway),
+        }
+    }
+
+    /// A hundredth of the time the ship needs for its own length, so that a model is stepped as finely as its ship.
+    ///
+    /// After five reversals of a 20° rudder the heading is then within 0.0001° of that of a far smaller step; what is
+    /// left comes from the kinks of an MMG hull.
+    fn largest_step(&self) -> f64 {
+        self.length() / self.approach_speed() / 100.0
+    }
+}

@@ -1,0 +1,159 @@
+//! The command line: what a user may ask for, and which part of the study answers. It knows no hydrodynamics.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::failure::Failure;
+use crate::{check, fit, list, run};
+
+/// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
+#[derive(Debug, Parser)]
+#[command(name = "study", version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Scenario to run: trials, identification, tables, plots
+    #[arg(value_name = "SCENARIO.toml")]
+    scenario: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Options every command understands.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Folder for results [default: results/<scenario name>, or ./<trial name>-<command>]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Seed in place of the scenario's
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+    /// No progress bar and no table; errors and warnings remain
+    #[arg(long)]
+    pub quiet: bool,
+    /// Format of the table on standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// Format of tables on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns
+    Text,
+    /// Markdown
+    Markdown,
+    /// Comma-separated values
+    Csv,
+    /// LaTeX with booktabs
+    Latex,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Identify a record with every (or the named) method: table, plot, fit.json
+    Fit {
+        #[command(flatten)]
+        request: FitRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Resolve scenario files and run nothing
+    Check {
+        /// Scenario files
+        #[arg(required = true, value_name = "SCENARIO.toml")]
+        scenarios: Vec<PathBuf>,
+    },
+    /// List what scenario files can name
+    List {
+        /// What to list
+        what: Listed,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Rebuild tables and plots from the stored rows, no simulation
+    Report {
+        /// Folder of a finished study
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        #[command(flatten)]
+        common: Common,
+    },
+}
+
+/// What `study fit` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct FitRequest {
+    /// Records of one ship, identified together
+    #[arg(required = true, value_name = "TRIAL")]
+    pub trials: Vec<PathBuf>,
+    /// Records on which the identified responses are replayed; only their initial state is fitted
+    #[arg(long, value_name = "TRIAL")]
+    pub validate: Vec<PathBuf>,
+    /// Methods to use [default: all]
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// Description of the columns of the records (a sidecar)
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns: Option<PathBuf>,
+}
+
+/// What can be listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Listed {
+    /// Identification methods
+    Identifiers,
+    /// Effects a first-order response lacks
+    Effects,
+    /// Ships
+    Ships,
+    /// Manoeuvres
+    Manoeuvres,
+    /// Sensor keys
+    Sensors,
+}
+
+/// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match answer(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("{failure}");
+            ExitCode::from(failure.blame.exit_code())
+        }
+    }
+}
+
+fn answer(cli: Cli) -> Result<(), Failure> {
+    match (cli.command, cli.scenario) {
+        (None, Some(scenario)) => {
+            use_threads(&cli.common)?;
+            run::run(&scenario, &cli.common)
+        }
+        (None, None) => Err(Failure::input("no scenario is named; try `study scenarios/yukun.toml` or `study --help`")),
+        (Some(Command::Fit { request, common }), _) => {
+            use_threads(&common)?;
+            fit::run(&request, &common)
+        }
+        (Some(Command::Check { scenarios }), _) => check::run(&scenarios),
+        (Some(Command::List { what, common }), _) => list::run(what, &common),
+        (Some(Command::Report { folder, common }), _) => {
+            use_threads(&common)?;
+            run::report(&folder, &common)
+        }
+    }
+}
+
+fn use_threads(common: &Common) -> Result<(), Failure> {
+    let Some(threads) = common.threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(threads))
+        .build_global()
+        .map_err(|error| Failure::work(format!("failed to start {threads} threads: {error}")))
+}
