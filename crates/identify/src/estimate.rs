@@ -130,6 +130,11 @@ impl Estimate {
 }
 
 impl Covariance {
+    /// K (1/s) and T (s) of a response with the errors of this covariance.
+    pub fn indices(&self, response: &FirstOrder) -> (Quantity, Quantity) {
+        (index_K(response, self), index_T(response, self))
+    }
+
     /// Two-sided 95 % quantile: Student's t for an estimated variance, normal for a known one.
     pub fn quantile95(&self) -> f64 {
         let normal = || Normal::standard().inverse_cdf(0.975);
@@ -182,7 +187,10 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn covariance(sd_a: f64, sd_b: f64) -> Covariance {
-        Covariance { matrix: Matrix3::from_diagonal(&Vector3::new(sd_a * sd_a, sd_b * sd_b, 1e-8)), degrees_of_freedom: None }
+        Covariance {
+            matrix: Matrix3::from_diagonal(&Vector3::new(sd_a * sd_a, sd_b * sd_b, 1e-8)),
+            degrees_of_freedom: None,
+        }
     }
 
     #[test]

@@ -14,15 +14,33 @@
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
 
+mod block_sums;
+pub mod characteristic_points;
 pub mod error;
 pub mod estimate;
+pub mod fourier;
+pub mod fourier_projected;
+pub mod fourier_published;
+mod gaps;
+pub mod integral_least_squares;
+pub mod least_squares;
 pub mod linear;
+pub mod output_error;
+mod profile;
 pub mod registry;
 pub mod replay;
+mod robust;
 pub mod samples;
+pub mod savitzky_golay;
+pub mod settings;
+pub mod srivc;
+#[cfg(test)]
+mod testing;
+mod track;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};
+pub use registry::IdentifierSettings;
 
 use trial::Trial;
 

@@ -55,7 +55,9 @@ impl LeastSquares {
         let residual = &target - &design * &scaled;
         Ok(Self {
             parameters: DVector::from_fn(width, |i, _| scaled[i] / scale[i]),
-            unscaled_covariance: DMatrix::from_fn(width, width, |i, j| scaled_covariance[(i, j)] / (scale[i] * scale[j])),
+            unscaled_covariance: DMatrix::from_fn(width, width, |i, j| {
+                scaled_covariance[(i, j)] / (scale[i] * scale[j])
+            }),
             rss: residual.norm_squared(),
             degrees_of_freedom: (rows - width) as f64,
             condition,

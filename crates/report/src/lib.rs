@@ -1,1 +1,55 @@
-//! Figures.
+//! Tables and journal-grade figures of stored results.
+//!
+//! This crate draws what it is handed and computes no science: every number in a table or a figure comes in as plain
+//! data, in the units a reader sees (degrees, seconds). It knows no ship, no trial and no method beyond its name.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | one drawing function and its data per kind of figure | [`figures`] |
+//! | sizes for screen and print | [`theme`] |
+//! | which method has which colour, marker and dash | [`palette`] |
+//! | SVG and PNG files | [`figure`] |
+//! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
+//! | values with uncertainty, intervals, missing values | [`number`] |
+//!
+//! ```
+//! use report::{Curve, Theme};
+//! use report::figures::{RecordFit, record_fit};
+//!
+//! let record = RecordFit {
+//!     heading: Curve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]),
+//!     rudder: Curve::new([0.0, 1.0, 2.0], [0.0, 5.0, 10.0]),
+//!     ..RecordFit::default()
+//! };
+//! let figure = record_fit(&record, &Theme::screen());
+//! assert!(figure.svg().contains("heading"));
+//! ```
+//!
+//! A figure never fails for its data: an undefined number is left out, and a figure without any data is an empty frame.
+
+pub mod curve;
+pub mod error;
+pub mod figure;
+pub mod figures;
+pub mod number;
+pub mod palette;
+pub mod table;
+pub mod theme;
+
+mod axis;
+mod clip;
+mod dimension;
+mod fonts;
+mod layout;
+mod legend;
+mod panel;
+mod scene;
+mod svg;
+mod ticks;
+
+pub use curve::Curve;
+pub use error::ReportError;
+pub use figure::Figure;
+pub use palette::Origin;
+pub use table::{Alignment, Column, Table};
+pub use theme::Theme;

@@ -1,1 +1,52 @@
-//! Simulation.
+//! Trials at sea in a computer: a vessel in, a record and the truth behind it out.
+//!
+//! A [`Simulation`] is a specification: nothing in it changes while it runs. One call of [`Simulation::run`] with a
+//! [`StreamKey`] makes one trial, bit for bit the same every time it is called. The crate knows nothing of
+//! identification, and nothing that identifies can reach this crate.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | the whole specification, and the result | [`simulation`] |
+//! | what can be steered, and when its closed form is used | [`vessel`] |
+//! | zig-zag, turning circle, pull-out, replay | [`manoeuvre`] |
+//! | who reads the compass and turns the wheel | [`helm`] |
+//! | rate limit, lag, dead time and dead band of the rudder | [`gear`] |
+//! | wind, gusts, squalls, drift, waves | [`disturbance`] |
+//! | noise, quantisation, lag, clocks, drop-outs | [`sensor`] |
+//! | which part of the run is recorded | [`recording`] |
+//! | where random numbers come from | [`stream`] |
+//! | what can go wrong | [`error`] |
+//!
+//! Time is in seconds from the beginning of the run; everything else is in SI units and radians.
+
+mod display;
+mod measure;
+mod propagate;
+mod root;
+mod run;
+#[cfg(test)]
+mod tests;
+mod wave_path;
+mod weather;
+
+pub mod disturbance;
+pub mod error;
+pub mod gear;
+pub mod helm;
+pub mod manoeuvre;
+pub mod recording;
+pub mod sensor;
+pub mod simulation;
+pub mod stream;
+pub mod vessel;
+
+pub use disturbance::Disturbances;
+pub use error::{Expected, SimulateError, SpecificationError};
+pub use gear::SteeringGear;
+pub use helm::Helmsman;
+pub use manoeuvre::{Manoeuvre, Side};
+pub use recording::Recording;
+pub use sensor::Sensors;
+pub use simulation::{Approach, Execute, Simulated, Simulation, Truth};
+pub use stream::{Purpose, StreamKey};
+pub use vessel::{Solver, Vessel};

@@ -16,6 +16,7 @@ pub mod cli;
 pub mod engine;
 pub mod failure;
 pub mod fit;
+pub mod json;
 pub mod list;
 pub mod manifest;
 pub mod present;

@@ -5,12 +5,23 @@
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
+//! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
 //! | IMO criteria | [`imo`] |
 
 pub mod channel;
+pub mod imo;
+pub mod plausibility;
+pub mod reader;
 pub mod record;
+pub mod sidecar;
+pub mod writer;
+pub mod zigzag;
 
 pub use channel::Channel;
+pub use reader::{ReadError, Reading, read, read_with};
 pub use record::{Columns, Noise, Origin, Trial, TrialError};
+pub use sidecar::{Sidecar, SidecarError};
+pub use writer::write_csv;
+pub use zigzag::{ZigZag, ZigZagError};

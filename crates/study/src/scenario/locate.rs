@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// Byte range of the value at a dotted path ("sensor.heading-noise-deg", "identifier.2.label"), or of the nearest key above it that
 /// exists; the whole first line when there is none.
@@ -12,7 +11,7 @@ pub fn span(text: &str, path: &str) -> Range<usize> {
     let Ok(document) = DeTable::parse(text) else { return nowhere };
     let mut place = nowhere;
     let mut table = Some(document.get_ref());
-    let mut array: Option<&[Spanned<DeValue>]> = None;
+    let mut array: Option<&DeArray> = None;
     for part in path.split('.') {
         let value = match (table, array) {
             (Some(table), _) => table.iter().find(|(key, _)| key.get_ref() == part).map(|(key, value)| (key.span(), value)),

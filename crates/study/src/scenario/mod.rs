@@ -1,17 +1,17 @@
 //! Scenario files: one question each, read strictly, resolved completely before anything runs.
 //!
-//! [`wire`] is what a file says, [`sweep`] the design, [`resolve`] the checks, [`Scenario`] what the engine accepts. A
+//! `wire` is what a file says, [`sweep`] the design, `resolve` the checks, [`Scenario`] what the engine accepts. A
 //! value of [`Scenario`] has been checked in every cell of the design.
 
-pub mod locate;
-pub mod resolve;
+mod locate;
+mod resolve;
 pub mod sweep;
-pub mod wire;
+mod wire;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use identify::Identifier;
+use identify::{Identifier, IdentifierSettings};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use ship::FirstOrder;
@@ -27,6 +27,8 @@ pub struct Method {
     pub label: String,
     /// Id of the method.
     pub id: &'static str,
+    /// Its settings.
+    pub settings: IdentifierSettings,
     /// The method with its settings.
     pub identifier: Box<dyn Identifier>,
 }

@@ -47,20 +47,20 @@ impl ResolveError {
 pub fn cell(wire: &ScenarioWire, folder: &Path) -> Result<Cell, ResolveError> {
     let ship = with_effects(ship(&wire.ship)?, &wire.effect)?;
     let simulation = Simulation {
-        manoeuvre: manoeuvre(&wire.manoeuvre, folder)?,
         gear: gear(&wire.steering_gear, &ship),
         helmsman: helmsman(&wire.helmsman),
         approach: Approach {
             heading: from_deg(wire.approach.heading_deg),
             yaw_rate: from_deg(wire.approach.yaw_rate_deg_s),
+            rudder: from_deg(wire.approach.rudder_deg),
             lead_in: wire.approach.lead_in_s,
         },
         recording: recording(&wire.recording)?,
         sensors: sensors(&wire.sensor)?,
         disturbances: disturbances(&wire.disturbance),
-        ..Simulation::new(Vessel::ship(&ship))
+        ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, folder)?)
     };
-    simulation.validate().map_err(|error| specification(&error))?;
+    simulation.validate().map_err(|error| specification(&error, &wire.manoeuvre))?;
     Ok(Cell {
         labels: Vec::new(),
         values: Vec::new(),
@@ -324,7 +324,7 @@ fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, ResolveError> {
         if methods.iter().any(|method| method.label == label) {
             return Err(ResolveError::new(key, format!("two methods are called `{label}`"), "give each its own `label`"));
         }
-        methods.push(Method { label, id: identifier.id(), identifier });
+        methods.push(Method { label, id: identifier.id(), settings: entry.method.clone(), identifier });
     }
     if methods.is_empty() {
         return Err(ResolveError::new("identifier", "no method is named", "add [[identifier]] with `method.output-error = {}`"));
@@ -333,7 +333,7 @@ fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, ResolveError> {
 }
 
 /// Keys of specifications, the keys a scenario has for them, and whether the value is an angle.
-const KEYS: [(&str, &str, bool); 41] = [
+const KEYS: [(&str, &str, bool); 42] = [
     ("zig_zag.rudder", "manoeuvre.zig-zag.rudder-deg", true),
     ("zig_zag.heading", "manoeuvre.zig-zag.heading-deg", true),
     ("zig_zag.executes", "manoeuvre.zig-zag.executes", false),
@@ -353,6 +353,7 @@ const KEYS: [(&str, &str, bool); 41] = [
     ("helmsman.period", "helmsman.reads-display-every-s", false),
     ("helmsman.reaction_time", "helmsman.reaction-time-s", false),
     ("approach.heading", "approach.heading-deg", true),
+    ("approach.rudder", "approach.rudder-deg", true),
     ("approach.yaw_rate", "approach.yaw-rate-deg-s", true),
     ("approach.lead_in", "approach.lead-in-s", false),
     ("recording.period", "recording.sampling-s", false),
@@ -378,9 +379,16 @@ const KEYS: [(&str, &str, bool); 41] = [
 ];
 
 /// A refused specification in the words and units of the scenario.
-fn specification(error: &SpecificationError) -> ResolveError {
+fn specification(error: &SpecificationError, manoeuvre: &ManoeuvreWire) -> ResolveError {
     use simulate::Expected;
-    let Some(&(_, key, angle)) = KEYS.iter().find(|(specification, ..)| *specification == error.key) else {
+    let own_rudder = match manoeuvre {
+        ManoeuvreWire::ZigZag(_) => "zig_zag.rudder",
+        ManoeuvreWire::TurningCircle(_) => "turning_circle.rudder",
+        ManoeuvreWire::PullOut(_) => "pull_out.rudder",
+        ManoeuvreWire::Replay(_) => "replay.duration",
+    };
+    let name = if error.key == "manoeuvre.rudder" { own_rudder } else { error.key };
+    let Some(&(_, key, angle)) = KEYS.iter().find(|(specification, ..)| *specification == name) else {
         return ResolveError::new(error.key, error.to_string(), "mend this value");
     };
     let unit = if angle { 1.0 / DEGREE } else { 1.0 };

@@ -229,6 +229,8 @@ pub struct HelmsmanWire {
 pub struct ApproachWire {
     pub heading_deg: f64,
     pub yaw_rate_deg_s: f64,
+    /// Rudder until the first execute.
+    pub rudder_deg: f64,
     /// Straight run before the first execute.
     pub lead_in_s: f64,
 }

@@ -1,0 +1,226 @@
+//! The traditional analysis of a zig-zag trial by its characteristic points: heading extrema and passages of the base
+//! course, put into the equation of motion integrated once.
+//!
+//! T [r(t) − r(s)] + ψ(t) − ψ(s) = K [∫δ + δ_r (t − s)] from s to t. Between two extrema r = 0 and T drops out, which
+//! leaves K and K δ_r; from an extremum to a passage r is large, which gives T. Peaks are not parabolas and the slope
+//! is taken from few rows, so the method is biased by about half a percent and tires quickly in noise; it is here as
+//! the field's own standard of comparison.
+//!
+//! Source: Nomoto (1960) for the method; the equations are derived anew.
+
+mod classic;
+mod equation_8;
+mod points;
+
+use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+use ship::FirstOrder;
+use ship::angle::from_deg;
+use trial::Trial;
+
+use crate::Identifier;
+use crate::error::IdentifyError;
+use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::samples::Samples;
+use crate::settings::SettingsError;
+use points::{BaseCourse, Points};
+
+/// Which points are used, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variant {
+    /// All extrema, a start at rest and all passages, by least squares.
+    #[default]
+    LeastSquares,
+    /// Three successive extrema and the two passages between them, as in an analysis by hand. Says nothing of its error.
+    ThreePeaks,
+    /// The integrated equation at instants one window apart, with heading and yaw rate from local cubics.
+    #[serde(rename = "equation-8")]
+    Equation8,
+    /// The same equation at the extrema, referred to the first row, as Ge, Hu, Yin and Sun print it but with the sign
+    /// of r(0) mended. There T stands in it with r(0) alone: it cannot be found from a start at rest.
+    #[serde(rename = "equation-8-vertices")]
+    Equation8Vertices,
+}
+
+/// Settings of [`CharacteristicPoints`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct Settings {
+    /// Which points are used, and how.
+    pub variant: Variant,
+    /// Half width of the local fits, s; without it 7 % of half a period (equation 8: 14 %), at least three intervals.
+    pub half_width_s: Option<f64>,
+    /// Base course, deg; without it the mean heading before the first execute.
+    pub base_course_deg: Option<f64>,
+    /// Whether a start at rest counts as an instant with r = 0. It is one only if the ship kept a straight course.
+    pub start_at_rest: bool,
+    /// Rudder bias δ_r, deg, where it is known; without it δ_r is identified.
+    pub rudder_bias_deg: Option<f64>,
+    /// Largest accepted condition number of the equations.
+    pub condition_limit: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            variant: Variant::LeastSquares,
+            half_width_s: None,
+            base_course_deg: None,
+            start_at_rest: true,
+            rudder_bias_deg: None,
+            condition_limit: 1e6,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks the settings and makes the method.
+    ///
+    /// Fails when the half width is not positive, an angle is not finite or the condition limit is not above 1.
+    pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
+        let refused = |key, found: f64, expected| Err(SettingsError { key, found: found.to_string(), expected });
+        if let Some(half_width) = self.half_width_s
+            && !(half_width > 0.0 && half_width.is_finite())
+        {
+            return refused("half-width-s", half_width, "a positive time");
+        }
+        for (key, angle) in [("base-course-deg", self.base_course_deg), ("rudder-bias-deg", self.rudder_bias_deg)] {
+            if let Some(angle) = angle
+                && !angle.is_finite()
+            {
+                return refused(key, angle, "an angle");
+            }
+        }
+        if !(self.condition_limit > 1.0) {
+            return refused("condition-limit", self.condition_limit, "a number above 1");
+        }
+        Ok(CharacteristicPoints { settings: self })
+    }
+}
+
+/// The traditional method in several variants.
+///
+/// The covariance comes from the residuals of few equations, with Student's t for its intervals, and counts no bias.
+/// Diagnostics give K and T of the swings to either side apart, which shows a ship that is not symmetric.
+///
+/// Fails with [`IdentifyError::TooFewPoints`] when the record does not hold three instants with r = 0 and a passage of
+/// the base course, with [`IdentifyError::Singular`] when T or δ_r cannot be told from the chosen points, and with
+/// [`IdentifyError::NotAShip`] when K/T is not positive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CharacteristicPoints {
+    settings: Settings,
+}
+
+impl CharacteristicPoints {
+    /// Half width of the local fits in half periods. A parabola follows a peak over a shorter time than a cubic the
+    /// heading, and only equation (8) suffers when the noise of the yaw rate is large: it is a regressor there.
+    fn width_share(&self) -> f64 {
+        match self.settings.variant {
+            Variant::LeastSquares | Variant::ThreePeaks => 0.07,
+            Variant::Equation8 | Variant::Equation8Vertices => 0.14,
+        }
+    }
+}
+
+/// One trial with its points.
+#[derive(Debug)]
+struct Analysed {
+    samples: Samples,
+    points: Points,
+}
+
+/// What a variant finds, in the parameters of the integrated equation.
+#[derive(Debug)]
+struct Found {
+    /// K (1/s), K δ_r (rad/s), T (s).
+    parameters: [f64; 3],
+    /// Their covariance and degrees of freedom, or why there is none.
+    covariance: Result<(Matrix3<f64>, f64), &'static str>,
+    diagnostics: Vec<(&'static str, f64)>,
+}
+
+impl Identifier for CharacteristicPoints {
+    fn id(&self) -> &'static str {
+        "characteristic-points"
+    }
+
+    fn summary(&self) -> &'static str {
+        "heading extrema and passages of the base course in the once-integrated equation (Nomoto 1960)"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let base = self.settings.base_course_deg.map(from_deg);
+        let analysed: Vec<Analysed> = Samples::of_all(trials, Trial::FEWEST_ROWS)?
+            .into_iter()
+            .map(|samples| {
+                let mut points = Points::find(&samples, base, self.settings.half_width_s, self.width_share());
+                if !self.settings.start_at_rest {
+                    points.forget_rest();
+                }
+                Analysed { samples, points }
+            })
+            .collect();
+        let bias = self.settings.rudder_bias_deg.map(from_deg);
+        let limit = self.settings.condition_limit;
+        let found = match self.settings.variant {
+            Variant::LeastSquares => classic::identify(&analysed, bias, limit, false),
+            Variant::ThreePeaks => classic::identify(&analysed, bias, limit, true),
+            Variant::Equation8 => equation_8::identify_spread(&analysed, bias, limit),
+            Variant::Equation8Vertices => equation_8::identify_at_vertices(&analysed, bias, limit),
+        }?;
+        let [gain, gain_bias, time] = found.parameters;
+        let response = FirstOrder { inverse_T: 1.0 / time, K_over_T: gain / time, rudder_bias: gain_bias / gain };
+        if !(response.K_over_T > 0.0 && response.K_over_T.is_finite()) {
+            return Err(IdentifyError::NotAShip { inverse_time: response.inverse_T, gain: response.K_over_T });
+        }
+        let uncertainty = match found.covariance {
+            Ok((matrix, freedom)) => {
+                let to_base = to_base(found.parameters);
+                Uncertainty::Covariance(Covariance {
+                    matrix: to_base * matrix * to_base.transpose(),
+                    degrees_of_freedom: Some(freedom),
+                })
+            }
+            Err(reason) => Uncertainty::None { reason },
+        };
+        let mut diagnostics = found.diagnostics;
+        let count = |of: fn(&Points) -> usize| analysed.iter().map(|trial| of(&trial.points) as f64).sum();
+        diagnostics.push(("instants_without_yaw_rate", count(|points| points.still.len())));
+        diagnostics.push(("passages_of_base_course", count(|points| points.crossings.len())));
+        diagnostics.push(("half_width_s", analysed[0].points.half_width));
+        Ok(Estimate {
+            response,
+            uncertainty,
+            robust: None,
+            stop: StopReason::Direct,
+            evaluations: 1,
+            diagnostics,
+            warnings: warnings(trials, &analysed),
+        })
+    }
+}
+
+/// Derivative of (1/T, K/T, δ_r) with respect to (K, K δ_r, T).
+fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
+    let square = time * time;
+    Matrix3::new(0.0, 0.0, -1.0 / square, 1.0 / time, 0.0, -gain / square, -gain_bias / (gain * gain), 1.0 / gain, 0.0)
+}
+
+fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<String> {
+    let told = |(trial, analysed): (&Trial, &Analysed)| {
+        let taken = match analysed.points.base_from {
+            BaseCourse::Given | BaseCourse::Approach => return None,
+            BaseCourse::Zero => "heading 0",
+            BaseCourse::Middle => "the middle of its headings",
+        };
+        Some(format!(
+            "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",
+            trial.name()
+        ))
+    };
+    trials.iter().zip(analysed).filter_map(told).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,222 @@
+//! K and δ_r between instants with r = 0, then T from such an instant to a passage of the base course.
+
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
+
+use super::points::{Point, Points};
+use super::{Analysed, Found};
+use crate::error::IdentifyError;
+use crate::linear::LeastSquares;
+
+/// The points one trial contributes.
+struct Used<'a> {
+    still: &'a [Point],
+    crossings: Vec<Point>,
+}
+
+/// From one point to the next: ψ(t) − ψ(s) + T [r(t) − r(s)] = K (rudder + δ_r duration).
+#[derive(Debug, Clone, Copy)]
+struct Interval {
+    duration: f64,
+    rudder: f64,
+    heading: f64,
+    /// r at the end, rad/s.
+    rate: f64,
+}
+
+impl Interval {
+    fn between(from: &Point, to: &Point) -> Self {
+        Self {
+            duration: to.time - from.time,
+            rudder: to.rudder_integral - from.rudder_integral,
+            heading: to.heading - from.heading,
+            rate: to.rate,
+        }
+    }
+
+    /// K (∫δ + δ_r Δt) − Δψ, which is T r.
+    fn rate_moment(&self, gain: &Gain) -> f64 {
+        gain.gain * self.rudder + gain.gain_bias * self.duration - self.heading
+    }
+}
+
+/// K, K δ_r and their covariance.
+#[derive(Debug)]
+struct Gain {
+    gain: f64,
+    gain_bias: f64,
+    /// Covariance of (K, K δ_r) and its degrees of freedom.
+    covariance: Option<(Matrix2<f64>, f64)>,
+    condition: f64,
+}
+
+/// The traditional method on all points, or on the first three peaks of every trial.
+pub(super) fn identify(
+    trials: &[Analysed],
+    bias: Option<f64>,
+    condition_limit: f64,
+    three_peaks: bool,
+) -> Result<Found, IdentifyError> {
+    let used = trials
+        .iter()
+        .map(|trial| if three_peaks { first_three_peaks(&trial.points) } else { Ok(all(&trial.points)) })
+        .collect::<Result<Vec<_>, _>>()?;
+    let swings: Vec<Vec<Interval>> = used
+        .iter()
+        .map(|trial| trial.still.windows(2).map(|pair| Interval::between(&pair[0], &pair[1])).collect())
+        .collect();
+    let rises: Vec<Interval> = used
+        .iter()
+        .flat_map(|trial| trial.crossings.iter().filter_map(|crossing| to_crossing(trial.still, crossing)))
+        .collect();
+    let gain = Gain::of(&swings, bias, condition_limit)?;
+    let flat: Vec<Interval> = swings.into_iter().flatten().collect();
+    let squares: f64 = rises.iter().map(|rise| rise.rate * rise.rate).sum();
+    if rises.is_empty() {
+        return Err(IdentifyError::TooFewPoints { what: "passages of the base course", needed: 1, found: 0 });
+    }
+    // The ratio of sums is steadier than the mean of ratios: it weighs by r².
+    let time = rises.iter().map(|rise| rise.rate_moment(&gain) * rise.rate).sum::<f64>() / squares;
+    Ok(Found {
+        parameters: [gain.gain, gain.gain_bias, time],
+        covariance: covariance(&gain, &rises, time, squares),
+        diagnostics: diagnostics(&flat, &rises, &gain),
+    })
+}
+
+fn all(points: &Points) -> Used<'_> {
+    Used { still: &points.still, crossings: points.crossings.clone() }
+}
+
+fn first_three_peaks(points: &Points) -> Result<Used<'_>, IdentifyError> {
+    let extrema = points.extrema();
+    let still = extrema.get(..3).ok_or(IdentifyError::TooFewPoints {
+        what: "heading extrema",
+        needed: 3,
+        found: extrema.len(),
+    })?;
+    let inside = |crossing: &&Point| crossing.time > still[0].time && crossing.time < still[2].time;
+    Ok(Used { still, crossings: points.crossings.iter().filter(inside).copied().collect() })
+}
+
+/// From the last instant with r = 0 before a passage, or from the first after it where there is none before.
+fn to_crossing(still: &[Point], crossing: &Point) -> Option<Interval> {
+    let after = still.partition_point(|point| point.time < crossing.time);
+    let from = still.get(after.saturating_sub(1))?;
+    Some(Interval::between(from, crossing))
+}
+
+impl Gain {
+    fn of(swings: &[Vec<Interval>], bias: Option<f64>, condition_limit: f64) -> Result<Self, IdentifyError> {
+        let flat = || swings.iter().flatten();
+        let count = flat().count();
+        let needed = if bias.is_some() { 1 } else { 2 };
+        if count < needed {
+            return Err(IdentifyError::TooFewPoints {
+                what: "swings between instants without yaw rate",
+                needed,
+                found: count,
+            });
+        }
+        let rudder: Vec<f64> = flat().map(|swing| swing.rudder + bias.unwrap_or(0.0) * swing.duration).collect();
+        let duration: Vec<f64> = flat().map(|swing| swing.duration).collect();
+        let heading: Vec<f64> = flat().map(|swing| swing.heading).collect();
+        let columns: &[&[f64]] = if bias.is_some() { &[&rudder] } else { &[&rudder, &duration] };
+        let solution = LeastSquares::solve(columns, &heading, condition_limit)?;
+        let gain = solution.parameters[0];
+        let gain_bias = bias.map_or_else(|| solution.parameters[1], |bias| bias * gain);
+        let design = DMatrix::from_fn(count, columns.len(), |row, column| columns[column][row]);
+        let covariance = difference_covariance(&design, &solution, swings).map(|matrix| {
+            let full = match bias {
+                // K δ_r follows K.
+                Some(bias) => {
+                    let along = Vector2::new(1.0, bias);
+                    along * along.transpose() * matrix[(0, 0)]
+                }
+                None => Matrix2::from_fn(|i, j| matrix[(i, j)]),
+            };
+            (full, solution.degrees_of_freedom)
+        });
+        Ok(Self { gain, gain_bias, covariance, condition: solution.condition })
+    }
+}
+
+/// Covariance of the solution when the errors belong to the points, so that successive differences share one:
+/// G Xᵀ Ω X G s² with Ω = tridiag(−1, 2, −1) in every trial and s² = rss / tr(M Ω), M the residual maker.
+fn difference_covariance(
+    design: &DMatrix<f64>,
+    solution: &LeastSquares,
+    swings: &[Vec<Interval>],
+) -> Option<DMatrix<f64>> {
+    if solution.degrees_of_freedom < 1.0 {
+        return None;
+    }
+    let count = design.nrows();
+    let mut omega = DMatrix::from_diagonal(&DVector::from_element(count, 2.0));
+    let mut row = 0;
+    for trial in swings {
+        for k in row + 1..row + trial.len() {
+            (omega[(k, k - 1)], omega[(k - 1, k)]) = (-1.0, -1.0);
+        }
+        row += trial.len();
+    }
+    let inverse = &solution.unscaled_covariance;
+    let spread = design.transpose() * &omega * design;
+    let expected = omega.trace() - (inverse * &spread).trace();
+    (expected > 0.0).then(|| inverse * spread * inverse * (solution.rss / expected))
+}
+
+fn covariance(gain: &Gain, rises: &[Interval], time: f64, squares: f64) -> Result<(Matrix3<f64>, f64), &'static str> {
+    let (of_gain, gain_freedom) = gain.covariance.ok_or("no more swings than unknowns")?;
+    let time_freedom = rises.len() as f64 - 1.0;
+    if time_freedom < 1.0 {
+        return Err("a single passage of the base course");
+    }
+    let scatter: f64 = rises.iter().map(|rise| (rise.rate_moment(gain) - time * rise.rate).powi(2)).sum();
+    // T follows K and K δ_r through the right-hand side.
+    let follows = Vector2::new(
+        rises.iter().map(|rise| rise.rate * rise.rudder).sum::<f64>() / squares,
+        rises.iter().map(|rise| rise.rate * rise.duration).sum::<f64>() / squares,
+    );
+    let shared = of_gain * follows;
+    let own = scatter / time_freedom / squares;
+    let mut matrix = Matrix3::zeros();
+    matrix.fixed_view_mut::<2, 2>(0, 0).copy_from(&of_gain);
+    matrix.fixed_view_mut::<2, 1>(0, 2).copy_from(&shared);
+    matrix.fixed_view_mut::<1, 2>(2, 0).copy_from(&shared.transpose());
+    matrix[(2, 2)] = follows.dot(&shared) + own;
+    Ok((matrix, gain_freedom.min(time_freedom)))
+}
+
+/// K and T of the swings to either side apart, K without the first swing, scatter of T; what does not exist is left out.
+fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &Gain) -> Vec<(&'static str, f64)> {
+    let gain_of = |chosen: &dyn Fn(&Interval) -> bool| {
+        let chosen: Vec<&Interval> = swings.iter().filter(|swing| chosen(swing)).collect();
+        let squares: f64 = chosen.iter().map(|swing| swing.rudder * swing.rudder).sum();
+        let product = |swing: &&Interval| (swing.heading - gain.gain_bias * swing.duration) * swing.rudder;
+        (squares > 0.0).then(|| chosen.iter().map(product).sum::<f64>() / squares)
+    };
+    let time_of = |side: f64| {
+        let chosen = || rises.iter().filter(|rise| rise.rate * side > 0.0);
+        let squares: f64 = chosen().map(|rise| rise.rate * rise.rate).sum();
+        (squares > 0.0).then(|| chosen().map(|rise| rise.rate_moment(gain) * rise.rate).sum::<f64>() / squares)
+    };
+    let each: Vec<f64> = rises.iter().map(|rise| rise.rate_moment(gain) / rise.rate).collect();
+    let range =
+        each.iter().copied().fold(f64::NEG_INFINITY, f64::max) - each.iter().copied().fold(f64::INFINITY, f64::min);
+    let later = swings.get(1..).filter(|later| !later.is_empty()).map(|later| {
+        let squares: f64 = later.iter().map(|swing| swing.rudder * swing.rudder).sum();
+        later.iter().map(|s| (s.heading - gain.gain_bias * s.duration) * s.rudder).sum::<f64>() / squares
+    });
+    [
+        ("condition", Some(gain.condition)),
+        ("K_to_starboard_per_s", gain_of(&|swing| swing.heading > 0.0)),
+        ("K_to_port_per_s", gain_of(&|swing| swing.heading < 0.0)),
+        ("K_without_first_swing_per_s", later),
+        ("T_to_starboard_s", time_of(1.0)),
+        ("T_to_port_s", time_of(-1.0)),
+        ("T_range_s", Some(range)),
+    ]
+    .into_iter()
+    .filter_map(|(name, value)| Some((name, value?)))
+    .collect()
+}

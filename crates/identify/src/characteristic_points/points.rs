@@ -1,0 +1,190 @@
+//! The characteristic points of a zig-zag record: instants with r = 0 (heading extrema and a start at rest) and
+//! instants at which the heading passes the base course, both as the zig-zag analysis of [`trial::zigzag`] finds them,
+//! with the rudder integral up to them and the base course they refer to.
+
+use std::ops::Range;
+
+use trial::zigzag::points::{self, SMALLEST_EXTREMUM};
+
+use crate::samples::Samples;
+use crate::savitzky_golay::local_polynomial;
+
+/// Rudder within this share of its largest angle is amidships; heading within this share of its largest departure is
+/// on course. In a zig-zag the rudder passes amidships only near the reversals, where the heading is far off: both
+/// together are the approach.
+const APPROACH: f64 = 0.2;
+
+/// Moves of the window after which an extremum that will not settle is left where it was found.
+const MOVES: usize = 10;
+
+/// Fewest intervals in half a window.
+const FEWEST_INTERVALS: f64 = 3.0;
+
+/// Where a base course comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BaseCourse {
+    /// The settings.
+    Given,
+    /// The mean heading before the first execute.
+    Approach,
+    /// Nowhere: heading 0 was taken.
+    Zero,
+    /// Nowhere, and 0 is outside the swings: the middle of the headings was taken.
+    Middle,
+}
+
+/// A point of the record. Heading is relative to the base course.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Time, s.
+    pub time: f64,
+    /// Heading, rad.
+    pub heading: f64,
+    /// Yaw rate, rad/s.
+    pub rate: f64,
+    /// ∫δ since the first row, rad s.
+    pub rudder_integral: f64,
+}
+
+/// The characteristic points of one trial.
+#[derive(Debug, Clone)]
+pub struct Points {
+    /// Points with r = 0 in order of time; a start at rest is the first of them.
+    pub still: Vec<Point>,
+    /// Passages of the base course in order of time.
+    pub crossings: Vec<Point>,
+    /// Whether the record starts at rest, so that the first of `still` is the execute and no extremum.
+    pub from_rest: bool,
+    /// Base course, rad.
+    pub base: f64,
+    /// Where it comes from.
+    pub base_from: BaseCourse,
+    /// Half width of the fits, s.
+    pub half_width: f64,
+}
+
+impl Points {
+    /// The heading extrema, without a start at rest.
+    pub fn extrema(&self) -> &[Point] {
+        &self.still[usize::from(self.from_rest)..]
+    }
+
+    /// Leaves a start at rest out of the instants with r = 0.
+    pub fn forget_rest(&mut self) {
+        if std::mem::take(&mut self.from_rest) {
+            self.still.remove(0);
+        }
+    }
+
+    /// Finds the points of a record. `base` (rad) and `half_width` (s) are found in the record when not given, the
+    /// half width as the share `width_share` of half a period.
+    pub fn find(samples: &Samples, base: Option<f64>, half_width: Option<f64>, width_share: f64) -> Self {
+        let time = &samples.time;
+        let (lo, hi) =
+            samples.heading.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
+        let approach = approach(samples, base, (lo, hi));
+        let mean = |rows: Range<usize>| samples.heading[rows.clone()].iter().sum::<f64>() / rows.len() as f64;
+        let (base, base_from) = match (base, &approach) {
+            (Some(base), _) => (base, BaseCourse::Given),
+            (None, Some(rows)) => (mean(rows.clone()), BaseCourse::Approach),
+            // Zero between the quarter points of the headings may well be the base course.
+            (None, None) if (lo + hi).abs() < 0.5 * (hi - lo) => (0.0, BaseCourse::Zero),
+            (None, None) => (0.5 * (lo + hi), BaseCourse::Middle),
+        };
+        let off_course: Vec<f64> = samples.heading.iter().map(|heading| heading - base).collect();
+        let interval = time[time.len() - 1] / (time.len() - 1) as f64;
+        let half_width = half_width
+            .unwrap_or_else(|| (width_share * half_period(time, &off_course)).max(FEWEST_INTERVALS * interval));
+        // Nothing here uses the uncertainty of a single point, so its noise need not be estimated.
+        let fits = |half_width| points::Settings { noise: Some(0.0), ..points::Settings::new(half_width) };
+        let point =
+            |time, heading, rate| Point { time, heading, rate, rudder_integral: rudder_integral(samples, time) };
+        let mut still: Vec<Point> = points::extrema(time, &off_course, &fits(half_width))
+            .into_iter()
+            .map(|extremum| {
+                let (at, heading) = centred(time, &off_course, half_width, extremum.time.value)
+                    .unwrap_or((extremum.time.value, extremum.heading.value));
+                point(at, heading, 0.0)
+            })
+            .collect();
+        let first_extremum = still.first().map_or(f64::INFINITY, |point| point.time);
+        if let Some(rows) = &approach {
+            let last = rows.end - 1;
+            let recent = rows.clone().filter(|&k| time[k] >= time[last] - 2.0 * half_width);
+            let heading = mean(recent.min().unwrap_or(last)..rows.end) - base;
+            still.insert(0, point(time[last], heading, 0.0));
+        }
+        // A window about a passage is not centred on a row: half an interval more gives it as many rows as if it were.
+        let crossings = points::zero_crossings(time, &off_course, &fits(half_width + 0.5 * interval))
+            .into_iter()
+            .map(|crossing| point(crossing.time.value, 0.0, crossing.yaw_rate.value))
+            // Noise on the approach crosses the base course too.
+            .filter(|crossing| approach.is_none() || crossing.time > first_extremum)
+            .collect();
+        Self { still, crossings, from_rest: approach.is_some(), base, base_from, half_width }
+    }
+}
+
+/// Rows before the first execute, rudder amidships and heading on course.
+fn approach(samples: &Samples, base: Option<f64>, (lo, hi): (f64, f64)) -> Option<Range<usize>> {
+    let largest = samples.rudder.iter().fold(0.0_f64, |largest, delta| largest.max(delta.abs()));
+    let end = samples.rudder.iter().position(|delta| delta.abs() > APPROACH * largest)?;
+    let course = samples.heading[..end].iter().sum::<f64>() / end as f64;
+    // A record that starts in the middle of the manoeuvre starts near one end of its headings.
+    let off = (course - base.unwrap_or(0.5 * (lo + hi))).abs();
+    let limit = if base.is_some() { APPROACH } else { 0.5 } * 0.5 * (hi - lo);
+    (end > 0 && off < limit).then_some(0..end)
+}
+
+/// Half a period, s: the mean time between alternate departures from the base course that count as a swing. The
+/// duration of the record with fewer than two of them.
+fn half_period(time: &[f64], off_course: &[f64]) -> f64 {
+    let largest = off_course.iter().fold(0.0_f64, |largest, off| largest.max(off.abs()));
+    let mut side = 0.0;
+    let mut departures = Vec::new();
+    for (&t, off) in time.iter().zip(off_course) {
+        if off.abs() > SMALLEST_EXTREMUM * largest && off.signum() != side {
+            side = off.signum();
+            departures.push(t);
+        }
+    }
+    match departures[..] {
+        // A record that starts in a swing departs before its first row.
+        [_, first, .., last] => (last - first) / (departures.len() - 2) as f64,
+        _ => time[time.len() - 1],
+    }
+}
+
+/// Vertex (s, rad) of the parabola through the rows within `half_width` of itself.
+///
+/// An extremum is first looked for around the largest heading, which noise picks: a window there holds high values on
+/// purpose. Moving the window to its own vertex until it stays there takes this bias away. `None` when it wanders off.
+fn centred(time: &[f64], heading: &[f64], half_width: f64, start: f64) -> Option<(f64, f64)> {
+    let mut vertex = start;
+    for _ in 0..MOVES {
+        // Centred on a row, so that the window does not lose one side of an even record.
+        let next = time.partition_point(|t| *t < vertex).clamp(1, time.len() - 1);
+        let centre = if vertex - time[next - 1] < time[next] - vertex { time[next - 1] } else { time[next] };
+        let reach = half_width * (1.0 + 1e-9);
+        let rows = time.partition_point(|t| *t < centre - reach)..time.partition_point(|t| *t <= centre + reach);
+        let [value, slope, curvature, ..] = local_polynomial(&time[rows.clone()], &heading[rows], centre, 2)?;
+        let shift = -slope / (2.0 * curvature);
+        if value * curvature >= 0.0 || (centre + shift - start).abs() > 2.0 * half_width {
+            return None;
+        }
+        if (centre + shift - vertex).abs() < 1e-6 * half_width {
+            return Some((centre + shift, value + 0.5 * slope * shift));
+        }
+        vertex = centre + shift;
+    }
+    None
+}
+
+/// ∫δ at a time between rows: the parabola with the rudder at the row before and the exact integral at both rows.
+pub fn rudder_integral(samples: &Samples, time: f64) -> f64 {
+    let next = samples.time.partition_point(|t| *t <= time).clamp(1, samples.len() - 1);
+    let (k, h) = (next - 1, samples.time[next] - samples.time[next - 1]);
+    let u = time - samples.time[k];
+    let rest = samples.rudder_integral[next] - samples.rudder_integral[k] - samples.rudder[k] * h;
+    samples.rudder_integral[k] + samples.rudder[k] * u + rest * (u / h) * (u / h)
+}

@@ -1,0 +1,158 @@
+//! A heading record as a Fourier series with a free fundamental: ψ(t) = a₀ + Σ (aₙ cos n w t + bₙ sin n w t), n = 1..N.
+//!
+//! Shared by `fourier-published` and `fourier-projected`, and by figures that show a fit. Because w is free this is a
+//! nonlinear regression, not a Fourier analysis: RSS(w) has many local minima, and the lowest often has a period longer
+//! than the record, large cancelling coefficients and poor derivatives. [`Fundamental`] names the ways to choose.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | choosing w | [`fundamental`] |
+//! | the series on the instants of a record | [`basis`] |
+//! | RSS as a function of w | [`profile`] |
+//! | triples of instants, eq. (10) of the paper | [`triples`] |
+//! | regression on a pair of projected signals | [`regression`] |
+
+pub mod basis;
+pub mod fundamental;
+pub mod profile;
+pub mod regression;
+pub mod triples;
+
+pub use basis::{Basis, Projection};
+pub use fundamental::{Fundamental, StartPoint};
+pub use profile::MOST_HARMONICS;
+
+use crate::error::IdentifyError;
+use crate::estimate::StopReason;
+
+/// Condition number of the basis above which derivatives of the curve are not to be trusted.
+pub const TRUSTED_CONDITION: f64 = 1e4;
+
+/// A fitted Fourier curve of the heading; time runs from the first observed row of the record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FourierFit {
+    /// Fundamental w, rad/s.
+    pub fundamental: f64,
+    /// a₀, rad; not the mean of the record unless it holds whole periods.
+    pub mean: f64,
+    /// aₙ, n = 1..N, rad.
+    pub cosine: Vec<f64>,
+    /// bₙ, n = 1..N, rad.
+    pub sine: Vec<f64>,
+    /// Share of the variance of the heading that the curve carries.
+    pub r_squared: f64,
+    /// Condition number of the basis on the instants of the record (√2 for whole periods).
+    pub condition: f64,
+}
+
+impl FourierFit {
+    /// Heading ψ(t), rad.
+    pub fn heading(&self, t: f64) -> f64 {
+        self.mean + self.sum(t, |_, c, s, a, b| a * c + b * s)
+    }
+
+    /// Yaw rate ψ'(t), rad/s.
+    pub fn yaw_rate(&self, t: f64) -> f64 {
+        self.sum(t, |rate, c, s, a, b| rate * (b * c - a * s))
+    }
+
+    /// Yaw acceleration ψ''(t), rad/s².
+    pub fn yaw_acceleration(&self, t: f64) -> f64 {
+        self.sum(t, |rate, c, s, a, b| -rate * rate * (a * c + b * s))
+    }
+
+    /// Σ of a term of (n w, cos n w t, sin n w t, aₙ, bₙ).
+    fn sum(&self, t: f64, term: impl Fn(f64, f64, f64, f64, f64) -> f64) -> f64 {
+        let (s1, c1) = (self.fundamental * t).sin_cos();
+        let (mut s, mut c) = (s1, c1);
+        let mut total = 0.0;
+        for (n, (a, b)) in self.cosine.iter().zip(&self.sine).enumerate() {
+            total += term((n + 1) as f64 * self.fundamental, c, s, *a, *b);
+            (s, c) = (s * c1 + c * s1, c * c1 - s * s1);
+        }
+        total
+    }
+}
+
+/// A fit with what a method needs beside the curve.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// The curve.
+    pub curve: FourierFit,
+    /// The basis, to project other signals of the same record.
+    pub basis: Basis,
+    /// Coefficients and residual of the heading on the basis.
+    pub projection: Projection,
+    /// Why the search for w stopped.
+    pub stop: StopReason,
+    /// Fundamentals tried.
+    pub evaluations: usize,
+}
+
+/// Fits a heading (rad) given at `time` (s, increasing, from 0) by a series of `harmonics` harmonics.
+///
+/// Fails with [`IdentifyError::TooFewPoints`] when there are not more headings than coefficients or no period can be
+/// seen by a rule that needs one. Settings are expected to be valid ([`Fundamental::check`], 1 ≤ N ≤
+/// [`MOST_HARMONICS`]).
+pub fn fit(
+    time: &[f64],
+    heading: &[f64],
+    harmonics: usize,
+    fundamental: &Fundamental,
+) -> Result<Fitted, IdentifyError> {
+    let (needed, found) = (2 * harmonics + 2, time.len());
+    if found < needed {
+        return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, found });
+    }
+    let choice = fundamental.choose(time, heading, harmonics)?;
+    let basis = Basis::new(time, choice.fundamental, harmonics)?;
+    let projection = basis.project(heading);
+    let curve = basis.curve(&projection);
+    Ok(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations })
+}
+
+/// The less welcome of two reasons to stop.
+pub(crate) fn worse(one: StopReason, other: StopReason) -> StopReason {
+    let rank = |stop| match stop {
+        StopReason::Direct => 0,
+        StopReason::Converged => 1,
+        StopReason::IterationLimit => 2,
+        StopReason::RangeLimit => 3,
+    };
+    if rank(other) > rank(one) { other } else { one }
+}
+
+/// Figures of the fits: w and N of the first trial, R² and condition number of the worst.
+pub(crate) fn diagnostics(fits: &[Fitted]) -> Vec<(&'static str, f64)> {
+    let first = fits.first().map(|fit| &fit.curve);
+    let r_squared = fits.iter().fold(1.0f64, |least, fit| least.min(fit.curve.r_squared));
+    let condition = fits.iter().fold(1.0f64, |most, fit| most.max(fit.curve.condition));
+    let mut all = vec![("fit_r_squared", r_squared), ("basis_condition", condition)];
+    if let Some(curve) = first {
+        all.push(("fundamental_rad_s", curve.fundamental));
+        all.push(("harmonics", curve.cosine.len() as f64));
+    }
+    all
+}
+
+/// What a reader should know of the fits.
+pub(crate) fn warnings(fits: &[Fitted]) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for Fitted { curve, stop, .. } in fits {
+        if *stop == StopReason::RangeLimit {
+            warnings.push(format!(
+                "the best fundamental, {:.5} rad/s, lies at the end of the searched range",
+                curve.fundamental
+            ));
+        }
+        if curve.condition > TRUSTED_CONDITION {
+            warnings.push(format!(
+                "the basis is ill-conditioned (condition number {:.1e}, one period of the series is {:.0} s): its \
+                 coefficients cancel each other and its derivatives are poor near the ends",
+                curve.condition,
+                std::f64::consts::TAU / curve.fundamental
+            ));
+        }
+    }
+    warnings
+}

@@ -1,0 +1,216 @@
+//! K, T and δ_r by least squares on T r' + r = K (δ + δ_r), with r and r' taken from Fourier curves, and the covariance
+//! that white heading noise gives them. It does not fit the curves.
+
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use nalgebra::{DMatrix, Matrix3, RowVector3, Vector3};
+use serde::{Deserialize, Serialize};
+use ship::FirstOrder;
+
+use super::basis::{Basis, Projection};
+use crate::error::IdentifyError;
+use crate::linear::LeastSquares;
+
+/// The side of the equation of motion that the other terms are regressed on.
+///
+/// Noise of a regressor pulls its coefficient towards zero (errors in variables). The noise of r is smaller against
+/// its signal than that of r', by about the highest frequency of the series over that of the zig-zag.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Response {
+    /// r' = −(1/T) r + (K/T) δ + (K/T) δ_r: the less biased of the two.
+    #[default]
+    YawAcceleration,
+    /// r = −T r' + K δ + K δ_r: the equation as the paper writes it.
+    YawRate,
+}
+
+/// Equations of one or several trials, δ_r common to all.
+#[derive(Debug, Clone, Default)]
+pub struct Equations {
+    yaw_acceleration: Vec<f64>,
+    yaw_rate: Vec<f64>,
+    rudder: Vec<f64>,
+    trials: Vec<Block>,
+}
+
+/// What noise on the heading of one trial does to its equations.
+#[derive(Debug, Clone)]
+struct Block {
+    /// Derivative of r and of r' by the coefficients, equations × 2N+1.
+    by_coefficients: [DMatrix<f64>; 2],
+    /// Covariance of the coefficients, (2N+1)².
+    covariance: DMatrix<f64>,
+}
+
+/// The solution of [`Equations`].
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// The response.
+    pub response: FirstOrder,
+    /// Covariance of (1/T, K/T, δ_r) for white heading noise of the variance given with every trial.
+    pub covariance: Matrix3<f64>,
+    /// Condition number of the scaled equations.
+    pub condition: f64,
+}
+
+impl Equations {
+    /// Adds equations at `time` (s) of one trial: r and r' of the heading on `basis`, `rudder` (rad) as given.
+    ///
+    /// `noise_variance`, rad², is that of white noise on the heading.
+    pub fn add(&mut self, basis: &Basis, heading: &Projection, time: &[f64], rudder: &[f64], noise_variance: f64) {
+        let width = 2 * basis.harmonics() + 1;
+        let mut row = vec![0.0; width];
+        let by_coefficients = [1, 2].map(|order| {
+            let mut matrix = DMatrix::zeros(time.len(), width);
+            for (i, t) in time.iter().enumerate() {
+                basis.row(*t, order, &mut row);
+                for (column, value) in row.iter().enumerate() {
+                    matrix[(i, column)] = *value;
+                }
+            }
+            matrix
+        });
+        self.yaw_rate.extend((&by_coefficients[0] * &heading.coefficients).iter());
+        self.yaw_acceleration.extend((&by_coefficients[1] * &heading.coefficients).iter());
+        self.rudder.extend_from_slice(rudder);
+        self.trials.push(Block { by_coefficients, covariance: basis.unscaled_covariance() * noise_variance });
+    }
+
+    /// Number of equations.
+    pub fn len(&self) -> usize {
+        self.rudder.len()
+    }
+
+    /// Whether there are no equations.
+    pub fn is_empty(&self) -> bool {
+        self.rudder.is_empty()
+    }
+
+    /// Solves for the response of the ship, with `response` as the left side.
+    ///
+    /// Fails with [`IdentifyError::Singular`] when the condition number of the scaled equations exceeds
+    /// `condition_limit`, with [`IdentifyError::TooFewPoints`] below three equations, and with
+    /// [`IdentifyError::NotAShip`] when K/T is not positive.
+    pub fn solve(&self, response: Response, condition_limit: f64) -> Result<Solution, IdentifyError> {
+        let one = vec![1.0; self.len()];
+        let (left, right) = self.sides(response);
+        let minus_right: Vec<f64> = right.iter().map(|x| -x).collect();
+        let fit = LeastSquares::solve(&[&minus_right, &self.rudder, &one], left, condition_limit)?;
+        let parameters = Vector3::new(fit.parameters[0], fit.parameters[1], fit.parameters[2]);
+        let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
+        // (1/T, K/T, δ_r) and its derivative by the parameters.
+        let (a, b, to_response) = match response {
+            Response::YawAcceleration => (p, q, [RowVector3::new(1.0, 0.0, 0.0), RowVector3::new(0.0, 1.0, 0.0)]),
+            Response::YawRate => {
+                let by_T = -1.0 / (p * p);
+                (1.0 / p, q / p, [RowVector3::new(by_T, 0.0, 0.0), RowVector3::new(q * by_T, 1.0 / p, 0.0)])
+            }
+        };
+        // Written so that NaN is refused too.
+        if !(b > 0.0 && a.is_finite() && b.is_finite()) {
+            return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
+        }
+        let bias = RowVector3::new(0.0, -s / (q * q), 1.0 / q);
+        let jacobian = Matrix3::from_rows(&[to_response[0], to_response[1], bias]);
+        let inverse = Matrix3::from_fn(|i, j| fit.unscaled_covariance[(i, j)]);
+        let spread = self.spread_of_moments(response, &parameters);
+        let covariance = jacobian * inverse * spread * inverse * jacobian.transpose();
+        Ok(Solution {
+            response: FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: s / q },
+            covariance: 0.5 * (covariance + covariance.transpose()),
+            condition: fit.condition,
+        })
+    }
+
+    /// Left side y and regressor x of y = −p x + q δ + s.
+    fn sides(&self, response: Response) -> (&[f64], &[f64]) {
+        match response {
+            Response::YawAcceleration => (&self.yaw_acceleration, &self.yaw_rate),
+            Response::YawRate => (&self.yaw_rate, &self.yaw_acceleration),
+        }
+    }
+
+    /// Covariance of Zᵀe to first order in the noise of the coefficients, Z = [−x, δ, 1], e = y − Z (p, q, s)ᵀ.
+    ///
+    /// d(Zᵀe) = Zᵀ(dy + p dx) − (eᵀdx, 0, 0)ᵀ: the noise of the equations, and the noise of the regressor against what
+    /// the truncated series leaves of them. dx and dy are linear in the coefficients, whose covariance is σ²(XᵀX)⁻¹.
+    fn spread_of_moments(&self, response: Response, parameters: &Vector3<f64>) -> Matrix3<f64> {
+        let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
+        let (y, x) = self.sides(response);
+        let mut total = Matrix3::zeros();
+        let mut start = 0;
+        for Block { by_coefficients: [rate, acceleration], covariance } in &self.trials {
+            let (dy, dx) = match response {
+                Response::YawAcceleration => (acceleration, rate),
+                Response::YawRate => (rate, acceleration),
+            };
+            let width = dy.ncols();
+            let mut gradient = DMatrix::zeros(3, width);
+            for column in 0..width {
+                let mut sum = Vector3::zeros();
+                for i in 0..dy.nrows() {
+                    let k = start + i;
+                    let left = y[k] + p * x[k] - q * self.rudder[k] - s;
+                    let equation = dy[(i, column)] + p * dx[(i, column)];
+                    sum += Vector3::new(-x[k] * equation - left * dx[(i, column)], self.rudder[k] * equation, equation);
+                }
+                gradient.set_column(column, &sum);
+            }
+            let spread = &gradient * covariance * gradient.transpose();
+            total += Matrix3::from_fn(|i, j| spread[(i, j)]);
+            start += dy.nrows();
+        }
+        total
+    }
+}
+
+/// Variance of white noise in a residual that may also hold something smooth: mean square of every value about the
+/// straight line through its neighbours, per unit variance (Gasser, Sroka and Jennen-Steinmetz 1986).
+///
+/// For even steps it has 18/35 degrees of freedom a value. `time` and `residual` have the same length, at least 3.
+pub fn white_variance(time: &[f64], residual: &[f64]) -> f64 {
+    let mut total = 0.0;
+    for (t, e) in time.windows(3).zip(residual.windows(3)) {
+        let share = (t[1] - t[0]) / (t[2] - t[0]);
+        let gap = (1.0 - share) * e[0] + share * e[2] - e[1];
+        total += gap * gap / ((1.0 - share).powi(2) + share * share + 1.0);
+    }
+    total / (time.len() - 2) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Case, Truth};
+    use approx::assert_relative_eq;
+
+    /// With exact r and r' both forms return the truth; bias included.
+    #[test]
+    fn the_algebra_is_exact() {
+        let case = Case { bias_deg: 1.0, ..Case::default() };
+        let Truth { yaw_rate, yaw_acceleration, rudder, .. } = case.truth();
+        let equations = Equations { yaw_acceleration, yaw_rate, rudder, trials: Vec::new() };
+        for response in [Response::YawAcceleration, Response::YawRate] {
+            let found = equations.solve(response, 1e4).expect("well conditioned").response;
+            assert_relative_eq!(found.K(), case.K, max_relative = 1e-9);
+            assert_relative_eq!(found.T(), case.T, max_relative = 1e-9);
+            assert_relative_eq!(found.rudder_bias, case.ship().rudder_bias, max_relative = 1e-8);
+        }
+    }
+
+    #[test]
+    fn a_smooth_rest_does_not_pass_for_noise() {
+        let quiet = Case::default().trial();
+        let noisy = Case { noise_deg: 0.1, samples: 1201, ..Case::default() };
+        let noise: Vec<f64> =
+            noisy.trial().heading().iter().zip(noisy.truth().heading).map(|(psi, truth)| psi - truth).collect();
+        let smooth: Vec<f64> = (0..1201).map(|i| 0.02 * (0.05 * i as f64).sin()).collect();
+        let both: Vec<f64> = noise.iter().zip(&smooth).map(|(x, y)| x + y).collect();
+        let time: Vec<f64> = (0..1201).map(f64::from).collect();
+        let expected = ship::angle::from_deg(0.1).powi(2);
+        // 18/35 of 1200 degrees of freedom: a standard deviation of 6 %.
+        assert_relative_eq!(white_variance(&time, &both), expected, max_relative = 0.18);
+        assert!(white_variance(quiet.time(), quiet.heading()) < 0.1 * expected);
+    }
+}

@@ -1,0 +1,47 @@
+//! Cutting a record at its gaps. A method that differentiates or integrates the heading must not do so across a long
+//! stretch in which it was not recorded; here it is told where the stretches without a gap are.
+
+use std::ops::Range;
+
+/// Without a setting, a gap is an interval longer than this many mean intervals.
+const GAP_INTERVALS: f64 = 5.0;
+
+/// Longest interval, s, that is not a gap: the setting, or five mean intervals of the record.
+pub fn longest_gap(setting_s: Option<f64>, time: &[f64]) -> f64 {
+    setting_s.unwrap_or_else(|| match time {
+        [first, .., last] => GAP_INTERVALS * (last - first) / (time.len() - 1) as f64,
+        _ => f64::INFINITY,
+    })
+}
+
+/// The ranges of rows between gaps, in order; `time` (s) increases.
+pub fn pieces(time: &[f64], longest_gap: f64) -> impl Iterator<Item = Range<usize>> {
+    let mut from = 0;
+    std::iter::from_fn(move || {
+        let start = from;
+        let rest = time.get(start..).filter(|rest| !rest.is_empty())?;
+        let length = rest.windows(2).position(|pair| pair[1] - pair[0] > longest_gap).map_or(rest.len(), |k| k + 1);
+        from = start + length;
+        Some(start..from)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_is_in_one_piece() {
+        let time = [0.0, 1.0, 2.0, 9.0, 10.0, 30.0];
+        assert_eq!(pieces(&time, 3.0).collect::<Vec<_>>(), [0..3, 3..5, 5..6]);
+        assert_eq!(pieces(&time, 50.0).collect::<Vec<_>>(), [0..6]);
+        assert_eq!(pieces(&[], 3.0).count(), 0);
+    }
+
+    #[test]
+    fn a_gap_is_five_mean_intervals_unless_set() {
+        assert_eq!(longest_gap(None, &[0.0, 0.5, 1.0]), 2.5);
+        assert_eq!(longest_gap(Some(7.0), &[0.0, 0.5, 1.0]), 7.0);
+        assert_eq!(longest_gap(None, &[0.0]), f64::INFINITY);
+    }
+}

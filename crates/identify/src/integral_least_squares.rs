@@ -1,0 +1,297 @@
+//! The equation of motion integrated twice and solved by least squares: no derivative of the heading, no search.
+//!
+//! ψ(t) = c₀ + c₁ t − a ∫ψ + b ∫∫δ + b δ_r t²/2, with a = 1/T and b = K/T. The initial state hides in c₀ and c₁, which
+//! every stretch between gaps has for itself; a, b and b δ_r are common to all stretches of all trials. The method is
+//! nearly as good as output error for white heading noise; a yaw disturbance is outside it. For the iteration that
+//! removes the rest of the loss see the output-error and instrumental-variable methods.
+
+mod noise;
+
+use std::ops::Range;
+
+use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
+use serde::{Deserialize, Serialize};
+use ship::FirstOrder;
+use ship::angle::to_deg;
+use trial::Trial;
+
+use crate::Identifier;
+use crate::error::IdentifyError;
+use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::gaps::{longest_gap, pieces};
+use crate::samples::Samples;
+use crate::settings::SettingsError;
+use noise::Noise;
+
+/// Fewest headings in a stretch between gaps that can say more than its own initial state.
+const FEWEST_IN_PIECE: usize = 4;
+
+/// Shared parameters a, b, b δ_r.
+const SHARED: usize = 3;
+
+/// Their columns and the heading.
+const WIDTH: usize = SHARED + 1;
+
+/// Settings of [`IntegralLeastSquares`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct Settings {
+    /// Longest interval between headings that is integrated across, s; without it five mean intervals of the record.
+    pub longest_gap_s: Option<f64>,
+    /// Largest accepted condition number of the equations (see [`IntegralLeastSquares`]).
+    pub condition_limit: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { longest_gap_s: None, condition_limit: 1e5 }
+    }
+}
+
+impl Settings {
+    /// Checks the settings and makes the method.
+    ///
+    /// Fails when the gap is not positive or the condition limit is not above 1.
+    pub fn build(self) -> Result<IntegralLeastSquares, SettingsError> {
+        if let Some(gap) = self.longest_gap_s
+            && !(gap > 0.0)
+        {
+            return Err(SettingsError { key: "longest-gap-s", found: gap.to_string(), expected: "a positive time" });
+        }
+        if !(self.condition_limit > 1.0) {
+            let found = self.condition_limit.to_string();
+            return Err(SettingsError { key: "condition-limit", found, expected: "a number above 1" });
+        }
+        Ok(IntegralLeastSquares { settings: self })
+    }
+}
+
+/// Least squares on the equation of motion integrated twice.
+///
+/// The rudder integrals are exact for a rudder that is linear between rows, the integral of the heading is that of a
+/// cubic Hermite interpolation. The equations are solved in normal form, with c₀ and c₁ of every stretch projected
+/// out; the condition number is the reciprocal of the smallest singular value of the projected columns, each divided
+/// by its length before the projection.
+///
+/// The covariance is that of white heading noise n seen through the equation, e = n + a ∫n, with the variance of n
+/// estimated from the residual. The robust covariance takes the same equation with the noise that was found, in time
+/// blocks, so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts.
+///
+/// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is
+/// not positive. A negative 1/T is an answer: the ship is course-unstable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IntegralLeastSquares {
+    settings: Settings,
+}
+
+impl Identifier for IntegralLeastSquares {
+    fn id(&self) -> &'static str {
+        "integral-least-squares"
+    }
+
+    fn summary(&self) -> &'static str {
+        "least squares on the equation of motion integrated twice: no derivatives, no search"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let samples = Samples::of_all(trials, Trial::FEWEST_ROWS)?;
+        let mut pieces = self.stretches(&samples)?;
+        let solution = Solution::of(&mut pieces, self.settings.condition_limit)?;
+        let [a, b, beta] = solution.parameters.into();
+        if !(b > 0.0) {
+            return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
+        }
+        let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
+        let noise = Noise::of(&pieces, &solution);
+        // δ_r = (b δ_r)/b.
+        let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
+        let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
+        let uncertainty = match noise.variance {
+            Some(variance) => Uncertainty::Covariance(Covariance {
+                matrix: base(noise.influence * variance),
+                degrees_of_freedom: Some(noise.degrees_of_freedom),
+            }),
+            None => Uncertainty::None { reason: "no more equations than unknowns" },
+        };
+        let robust = noise
+            .blocks
+            .covariance()
+            .map(|(scores, freedom)| Covariance { matrix: base(scores), degrees_of_freedom: Some(freedom) });
+        let mut diagnostics = vec![
+            ("condition", solution.condition),
+            ("equations", pieces.iter().map(|piece| piece.time.len() as f64).sum()),
+            ("stretches_without_gap", pieces.len() as f64),
+        ];
+        diagnostics.extend(noise.variance.map(|variance| ("heading_noise_deg", to_deg(variance.sqrt()))));
+        Ok(Estimate {
+            response,
+            uncertainty,
+            robust,
+            stop: StopReason::Direct,
+            evaluations: 1,
+            diagnostics,
+            warnings: warnings(trials, pieces.len()),
+        })
+    }
+}
+
+impl IntegralLeastSquares {
+    /// The stretches between gaps of all trials that are long enough to be of use.
+    fn stretches<'a>(&self, samples: &'a [Samples]) -> Result<Vec<Piece<'a>>, IdentifyError> {
+        let mut found = Vec::with_capacity(samples.len());
+        for trial in samples {
+            let gap = longest_gap(self.settings.longest_gap_s, &trial.time);
+            let long_enough = |rows: &Range<usize>| rows.len() >= FEWEST_IN_PIECE;
+            found.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| Piece::new(trial, rows)));
+        }
+        let equations: usize = found.iter().map(|piece| piece.time.len()).sum();
+        let needed = SHARED + 2 * found.len().max(1);
+        if equations < needed {
+            return Err(IdentifyError::TooFewPoints {
+                what: "headings in stretches without a gap",
+                needed,
+                found: equations,
+            });
+        }
+        Ok(found)
+    }
+}
+
+fn warnings(trials: &[Trial], pieces: usize) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if pieces > trials.len() {
+        warnings.push(format!(
+            "gaps cut the record into {pieces} stretches, each with an initial state of its own; longest-gap-s moves the limit"
+        ));
+    }
+    for trial in trials.iter().filter(|trial| trial.heading_from_yaw_rate()) {
+        warnings.push(format!(
+            "the heading of {} is the integral of its yaw rate, whose noise is not white as the covariance takes it to be",
+            trial.name()
+        ));
+    }
+    warnings
+}
+
+/// One stretch without a gap: its times and the rows of its equations.
+#[derive(Debug)]
+struct Piece<'a> {
+    time: &'a [f64],
+    /// Row by row the columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
+    rows: Vec<[f64; WIDTH]>,
+}
+
+impl<'a> Piece<'a> {
+    /// Takes the rows of a stretch with origins of its own: what is linear in time belongs to the initial state, so
+    /// that nothing but lost digits depends on them.
+    fn new(samples: &'a Samples, range: Range<usize>) -> Self {
+        let (time, heading) = (&samples.time[range.clone()], &samples.heading[range.clone()]);
+        let once = &samples.rudder_integral[range.clone()];
+        let twice = &samples.rudder_double_integral[range];
+        let (start, middle) = (time[0], 0.5 * (time[0] + time[time.len() - 1]));
+        let mut rows = Vec::with_capacity(time.len());
+        integrate(time, heading, |k, heading_integral| {
+            let s = time[k] - middle;
+            let rudder = twice[k] - twice[0] - once[0] * (time[k] - start);
+            // The integral is that of the heading less its first value.
+            rows.push([-heading_integral, rudder, 0.5 * s * s, heading[k] - heading[0]]);
+        });
+        Self { time, rows }
+    }
+
+    /// Projects c₀ and c₁ out of all columns; adds the squared lengths that the columns had before to `lengths` and
+    /// the cross products they have after to `products`.
+    fn project(&mut self, lengths: &mut Vector3<f64>, products: &mut Matrix4<f64>) {
+        let count = self.rows.len() as f64;
+        let middle = self.time.iter().sum::<f64>() / count;
+        let mut spread = 0.0;
+        let (mut mean, mut slope) = ([0.0; WIDTH], [0.0; WIDTH]);
+        for (t, row) in self.time.iter().zip(&self.rows) {
+            let s = t - middle;
+            spread += s * s;
+            for i in 0..WIDTH {
+                mean[i] += row[i];
+                slope[i] += s * row[i];
+            }
+        }
+        mean = mean.map(|sum| sum / count);
+        slope = slope.map(|sum| sum / spread);
+        let mut sums = [[0.0; WIDTH]; WIDTH];
+        for (t, row) in self.time.iter().zip(&mut self.rows) {
+            for i in 0..WIDTH {
+                row[i] -= mean[i] + slope[i] * (t - middle);
+            }
+            for i in 0..WIDTH {
+                for j in i..WIDTH {
+                    sums[i][j] += row[i] * row[j];
+                }
+            }
+        }
+        for i in 0..SHARED {
+            lengths[i] += sums[i][i] + count * mean[i] * mean[i] + spread * slope[i] * slope[i];
+        }
+        *products += Matrix4::from_fn(|i, j| sums[i.min(j)][i.max(j)]);
+    }
+}
+
+/// Calls `visit(k, ∫(value − value₀))` for every row: cubic Hermite interpolation with three-point slopes.
+///
+/// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24.
+/// `time` and `value` have the same length, at least 3.
+fn integrate(time: &[f64], value: &[f64], mut visit: impl FnMut(usize, f64)) {
+    let last = time.len() - 1;
+    let chord = |k: usize| (value[k + 1] - value[k]) / (time[k + 1] - time[k]);
+    let mut now = chord(0);
+    let mut slope = now + (now - chord(1)) * (time[1] - time[0]) / (time[2] - time[0]);
+    let mut total = 0.0;
+    visit(0, total);
+    for k in 0..last {
+        let h = time[k + 1] - time[k];
+        let (next, next_slope) = if k + 1 < last {
+            let next = chord(k + 1);
+            let h_next = time[k + 2] - time[k + 1];
+            (next, (now * h_next + next * h) / (h + h_next))
+        } else {
+            // The parabola through the last three rows: its chord is the mean of its slopes.
+            (now, 2.0 * now - slope)
+        };
+        total += h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next_slope));
+        visit(k + 1, total);
+        (now, slope) = (next, next_slope);
+    }
+}
+
+/// The least-squares solution and what the noise needs of it.
+#[derive(Debug)]
+struct Solution {
+    /// a, b, b δ_r.
+    parameters: Vector3<f64>,
+    /// (XᵀX)⁻¹ of the projected columns.
+    inverse: Matrix3<f64>,
+    condition: f64,
+}
+
+impl Solution {
+    /// Solves, and leaves the rows of the pieces projected.
+    fn of(pieces: &mut [Piece], condition_limit: f64) -> Result<Self, IdentifyError> {
+        let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
+        for piece in pieces {
+            piece.project(&mut lengths, &mut products);
+        }
+        let scale = lengths.map(|squares: f64| 1.0 / squares.sqrt());
+        let scaled = Matrix3::from_fn(|i, j| products[(i, j)] * scale[i] * scale[j]);
+        let smallest: f64 = SymmetricEigen::new(scaled).eigenvalues.min();
+        let condition = if smallest > 0.0 { 1.0 / smallest.sqrt() } else { f64::INFINITY };
+        let singular = || IdentifyError::Singular { condition, limit: condition_limit };
+        // Written so that a NaN condition is refused too.
+        if !(condition <= condition_limit) {
+            return Err(singular());
+        }
+        let scaled_inverse = scaled.cholesky().ok_or_else(singular)?.inverse();
+        let inverse = Matrix3::from_fn(|i, j| scaled_inverse[(i, j)] * scale[i] * scale[j]);
+        Ok(Self { parameters: inverse * products.fixed_view::<SHARED, 1>(0, SHARED), inverse, condition })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,321 @@
+//! The equation of motion as a regression, r' = −a r + b δ + c, on differentiated heading or on the gyro.
+//!
+//! a = 1/T, b = K/T, c = b δ_r. The textbook method, and a baseline: noise in r, a regressor, biases a towards zero
+//! (errors in variables), smoothing biases it too, and the gyro helps only as far as its noise is small. Methods that
+//! do not differentiate, such as the integral or output-error ones, are better wherever noise can be seen.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+use ship::FirstOrder;
+use trial::Trial;
+
+use crate::Identifier;
+use crate::block_sums::BlockSums;
+use crate::error::IdentifyError;
+use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::gaps::{longest_gap, pieces};
+use crate::linear::LeastSquares as Solution;
+use crate::samples::Samples;
+use crate::savitzky_golay::{COEFFICIENTS, LocalFit, SavitzkyGolay};
+use crate::settings::SettingsError;
+
+/// Bias of 1/T by noise, as a share, from which on a reader is warned.
+const WARN_OF_BIAS: f64 = 0.02;
+
+/// Fewest equations: one more than unknowns.
+const FEWEST_EQUATIONS: usize = 4;
+
+/// What is differentiated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Signal {
+    /// The heading, twice.
+    #[default]
+    Heading,
+    /// The recorded yaw rate, once.
+    YawRate,
+}
+
+/// Settings of [`LeastSquares`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct Settings {
+    /// What is differentiated.
+    pub signal: Signal,
+    /// Local polynomials that smooth before differentiating; without them central differences.
+    pub smoothing: Option<SavitzkyGolay>,
+    /// Whether the rudder passes through the same local polynomials; without effect on central differences.
+    pub smooth_rudder: bool,
+    /// Longest interval between rows that is differentiated across, s; without it five mean intervals of the record.
+    pub longest_gap_s: Option<f64>,
+    /// Largest accepted condition number of the equations.
+    pub condition_limit: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            signal: Signal::Heading,
+            smoothing: None,
+            smooth_rudder: false,
+            longest_gap_s: None,
+            condition_limit: 1e6,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks the settings and makes the method.
+    ///
+    /// Fails when window and order do not go together, the gap is not positive or the condition limit is not above 1.
+    pub fn build(self) -> Result<LeastSquares, SettingsError> {
+        if let Some(smoothing) = &self.smoothing {
+            smoothing.check()?;
+        }
+        if let Some(gap) = self.longest_gap_s
+            && !(gap > 0.0)
+        {
+            return Err(SettingsError { key: "longest-gap-s", found: gap.to_string(), expected: "a positive time" });
+        }
+        if !(self.condition_limit > 1.0) {
+            let found = self.condition_limit.to_string();
+            return Err(SettingsError { key: "condition-limit", found, expected: "a number above 1" });
+        }
+        Ok(LeastSquares { settings: self })
+    }
+}
+
+/// Least squares on r' = −a r + b δ + c.
+///
+/// The covariance is that of white noise in the signal, led through the differentiating filters; its variance is
+/// estimated from the residual. The robust covariance takes the residual in time blocks instead and holds for noise of
+/// any colour. Where noise dominates the differentiated signal (`r_squared` far below 1) both are several times too
+/// large, because errors of r and r' cancel in a way they do not count.
+/// **Neither contains the bias that noise in r causes** (errors in variables); to first order it is the diagnostic
+/// `noise_bias_of_inverse_T_percent`. Smoothing adds a bias of its own, which nothing here shows.
+///
+/// Fails with [`IdentifyError::NoChannel`] when the yaw rate is asked for and not recorded, with
+/// [`IdentifyError::TooFewPoints`] when no window fits between gaps, and with [`IdentifyError::NotAShip`] when K/T is
+/// not positive. A negative 1/T is an answer: the ship is course-unstable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeastSquares {
+    settings: Settings,
+}
+
+/// A stretch of a record without a gap.
+#[derive(Debug)]
+struct Stretch {
+    time: Vec<f64>,
+    /// Rows with an equation.
+    rows: Vec<usize>,
+}
+
+/// The equations of all stretches, column by column.
+#[derive(Debug, Default)]
+struct Equations {
+    /// −r, rad/s.
+    minus_rate: Vec<f64>,
+    /// δ, rad.
+    rudder: Vec<f64>,
+    /// r', rad/s².
+    acceleration: Vec<f64>,
+    stretches: Vec<Stretch>,
+}
+
+/// The way of white noise of unit variance in the signal into the equations.
+#[derive(Debug)]
+struct NoisePath {
+    /// Covariance of Xᵀe.
+    influence: Matrix3<f64>,
+    /// Sum of the variances of e.
+    of_error: f64,
+    /// Sum of the covariances of r and e.
+    of_rate_and_error: f64,
+}
+
+impl Identifier for LeastSquares {
+    fn id(&self) -> &'static str {
+        "least-squares"
+    }
+
+    fn summary(&self) -> &'static str {
+        "regression of the yaw acceleration on yaw rate and rudder, by differentiated heading or gyro"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let equations = self.equations(trials)?;
+        let Equations { minus_rate, rudder, acceleration, .. } = &equations;
+        let ones = vec![1.0; acceleration.len()];
+        let solution = Solution::solve(&[minus_rate, rudder, &ones], acceleration, self.settings.condition_limit)?;
+        let [a, b, c] = [0, 1, 2].map(|i| solution.parameters[i]);
+        if !(b > 0.0) {
+            return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
+        }
+        let unscaled = Matrix3::from_fn(|i, j| solution.unscaled_covariance[(i, j)]);
+        // δ_r = c/b.
+        let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -c / (b * b), 1.0 / b) * unscaled;
+        let base = |scores: Matrix3<f64>| to_base * scores * to_base.transpose();
+        let noise = self.noise_path(&equations, a);
+        let signal_variance = solution.variance().map(|variance| variance * acceleration.len() as f64 / noise.of_error);
+        let uncertainty = match signal_variance {
+            Some(variance) => Uncertainty::Covariance(Covariance {
+                matrix: base(noise.influence * variance),
+                degrees_of_freedom: Some(solution.degrees_of_freedom),
+            }),
+            None => Uncertainty::None { reason: "no more equations than unknowns" },
+        };
+        let robust = equations
+            .scores([a, b, c])
+            .covariance()
+            .map(|(scores, freedom)| Covariance { matrix: base(scores), degrees_of_freedom: Some(freedom) });
+        let mut diagnostics = vec![
+            ("r_squared", 1.0 - solution.rss / total_squares(acceleration)),
+            ("condition", solution.condition),
+            ("equations", acceleration.len() as f64),
+        ];
+        let mut warnings = Vec::new();
+        if let Some(variance) = signal_variance {
+            // Noise n_r in the regressor −r makes E[Xᵀe] = −(cov(n_r, e), 0, 0).
+            let bias = -unscaled[(0, 0)] * noise.of_rate_and_error * variance / a;
+            diagnostics.push(("noise_bias_of_inverse_T_percent", 100.0 * bias));
+            if bias.abs() > WARN_OF_BIAS {
+                warnings.push(format!(
+                    "noise in the differentiated signal biases 1/T by about {:+.0} %, and K with it; the standard \
+                     deviations do not include this",
+                    100.0 * bias
+                ));
+            }
+        }
+        Ok(Estimate {
+            response: FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: c / b },
+            uncertainty,
+            robust,
+            stop: StopReason::Direct,
+            evaluations: 1,
+            diagnostics,
+            warnings,
+        })
+    }
+}
+
+impl LeastSquares {
+    fn polynomial(&self) -> &SavitzkyGolay {
+        self.settings.smoothing.as_ref().unwrap_or(&SavitzkyGolay::CENTRAL_DIFFERENCES)
+    }
+
+    /// Coefficients of the local polynomial that make r and r'.
+    fn rate_and_acceleration(&self) -> [[f64; COEFFICIENTS]; 2] {
+        match self.settings.signal {
+            Signal::Heading => [[0.0, 1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0, 0.0, 0.0]],
+            Signal::YawRate => [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]],
+        }
+    }
+
+    fn equations(&self, trials: &[Trial]) -> Result<Equations, IdentifyError> {
+        let mut equations = Equations::default();
+        // Also refuses what is no manoeuvre.
+        for (trial, samples) in trials.iter().zip(Samples::of_all(trials, Trial::FEWEST_ROWS)?) {
+            match self.settings.signal {
+                Signal::Heading => self.add(&samples.time, &samples.heading, &samples.rudder, &mut equations),
+                Signal::YawRate => {
+                    let rate = trial
+                        .yaw_rate()
+                        .ok_or_else(|| IdentifyError::NoChannel { trial: trial.name().into(), channel: "yaw rate" })?;
+                    let seen = |column: &[f64]| -> Vec<f64> {
+                        column.iter().zip(rate).filter(|(_, r)| r.is_finite()).map(|(&x, _)| x).collect()
+                    };
+                    self.add(&seen(trial.time()), &seen(rate), &seen(trial.rudder()), &mut equations);
+                }
+            }
+        }
+        let found = equations.acceleration.len();
+        if found < FEWEST_EQUATIONS {
+            return Err(IdentifyError::TooFewPoints { what: "windows without a gap", needed: FEWEST_EQUATIONS, found });
+        }
+        Ok(equations)
+    }
+
+    /// Adds an equation for every row with a whole window around it that no gap cuts.
+    fn add(&self, time: &[f64], signal: &[f64], rudder: &[f64], equations: &mut Equations) {
+        let polynomial = self.polynomial();
+        for range in pieces(time, longest_gap(self.settings.longest_gap_s, time)) {
+            let (time, signal, rudder) = (&time[range.clone()], &signal[range.clone()], &rudder[range]);
+            let mut rows = Vec::with_capacity(time.len());
+            for k in 0..time.len() {
+                let Some([value, first, second, ..]) = polynomial.at_row(time, signal, k) else { continue };
+                let rudder = if self.settings.smooth_rudder {
+                    polynomial.at_row(time, rudder, k).map_or(rudder[k], |[value, ..]| value)
+                } else {
+                    rudder[k]
+                };
+                let (rate, acceleration) = match self.settings.signal {
+                    Signal::Heading => (first, 2.0 * second),
+                    Signal::YawRate => (value, first),
+                };
+                equations.minus_rate.push(-rate);
+                equations.rudder.push(rudder);
+                equations.acceleration.push(acceleration);
+                rows.push(k);
+            }
+            equations.stretches.push(Stretch { time: time.to_vec(), rows });
+        }
+    }
+
+    /// Leads unit white noise through the filters into the equation error e = n_r' + a n_r.
+    fn noise_path(&self, equations: &Equations, a: f64) -> NoisePath {
+        let polynomial = self.polynomial();
+        let [rate, acceleration] = self.rate_and_acceleration();
+        let error = std::array::from_fn(|p| acceleration[p] + a * rate[p]);
+        let mut path = NoisePath { influence: Matrix3::zeros(), of_error: 0.0, of_rate_and_error: 0.0 };
+        let mut equation = 0;
+        let mut influence = Vec::new();
+        for stretch in &equations.stretches {
+            influence.clear();
+            influence.resize(stretch.time.len(), Vector3::zeros());
+            for &k in &stretch.rows {
+                let row = equations.row(equation);
+                equation += 1;
+                let Some(window) = polynomial.window(k, stretch.time.len()) else { continue };
+                let Some(fit) = LocalFit::new(&stretch.time[window.clone()], stretch.time[k], polynomial.order) else {
+                    continue;
+                };
+                for ((j, of_error), of_rate) in window.zip(fit.weights(error)).zip(fit.weights(rate)) {
+                    influence[j] += row * of_error;
+                    path.of_error += of_error * of_error;
+                    path.of_rate_and_error += of_rate * of_error;
+                }
+            }
+            path.influence += influence.iter().fold(Matrix3::zeros(), |sum, z| sum + z * z.transpose());
+        }
+        path
+    }
+}
+
+impl Equations {
+    fn row(&self, equation: usize) -> Vector3<f64> {
+        Vector3::new(self.minus_rate[equation], self.rudder[equation], 1.0)
+    }
+
+    /// Block sums of regressors times residual; no block spans a gap.
+    fn scores(&self, [a, b, c]: [f64; 3]) -> BlockSums {
+        let mut sums = BlockSums::new(self.acceleration.len());
+        let mut equation = 0;
+        for stretch in &self.stretches {
+            for _ in &stretch.rows {
+                let row = self.row(equation);
+                sums.add(row * (self.acceleration[equation] - row.dot(&Vector3::new(a, b, c))));
+                equation += 1;
+            }
+            sums.close();
+        }
+        sums
+    }
+}
+
+fn total_squares(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|x| (x - mean) * (x - mean)).sum()
+}
+
+#[cfg(test)]
+mod tests;

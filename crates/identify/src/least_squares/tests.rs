@@ -1,0 +1,197 @@
+//! Truth everywhere: K = 0.1 1/s, T = 16.3 s, unless a test says otherwise.
+
+use approx::assert_abs_diff_eq;
+use ship::angle::{from_deg, to_deg};
+use trial::{Channel, Columns, Origin};
+
+use super::*;
+use crate::testing::{Case, Start, record};
+
+fn smoothed() -> Settings {
+    Settings { smoothing: Some(SavitzkyGolay::default()), ..Settings::default() }
+}
+
+fn gyro() -> Settings {
+    Settings { signal: Signal::YawRate, ..Settings::default() }
+}
+
+fn method(settings: Settings) -> LeastSquares {
+    settings.build().expect("valid settings")
+}
+
+fn identify(settings: Settings, trials: &[Trial]) -> Estimate {
+    method(settings).identify(trials).expect("identifiable")
+}
+
+/// Errors of K and T, %.
+fn errors(estimate: &Estimate) -> [f64; 2] {
+    [100.0 * (estimate.response.K() / 0.1 - 1.0), 100.0 * (estimate.response.T() / 16.3 - 1.0)]
+}
+
+fn figure(estimate: &Estimate, name: &str) -> f64 {
+    estimate.diagnostics.iter().find(|(key, _)| *key == name).expect("present").1
+}
+
+/// A record with a gyro, whose noise is the heading noise of the case per second.
+fn with_gyro(case: &Case) -> Trial {
+    let (truth, noisy) = (case.truth(), case.trial());
+    let noise = noisy.heading().iter().zip(&truth.heading).map(|(seen, psi)| seen - psi);
+    let rate = truth.yaw_rate.iter().zip(noise).map(|(r, n)| r + n).collect();
+    let channels =
+        [(Channel::Heading, truth.heading), (Channel::Rudder, truth.rudder), (Channel::YawRate, rate)].into();
+    let origin = Origin::Simulated { scenario: "gyro".into(), cell: 0, replicate: 0 };
+    Trial::new("gyro", origin, Columns { time: truth.time, channels, unknown: Vec::new() }).expect("valid")
+}
+
+/// Sorted errors of K and T over repeats.
+fn repeats(settings: &Settings, noise_deg: f64, count: u64) -> [Vec<f64>; 2] {
+    let mut found = [Vec::new(), Vec::new()];
+    for seed in 0..count {
+        let trial = Case { noise_deg, seed, ..Case::default() }.trial();
+        errors(&identify(settings.clone(), &[trial])).into_iter().zip(&mut found).for_each(|(e, all)| all.push(e));
+    }
+    found.iter_mut().for_each(|all| all.sort_by(f64::total_cmp));
+    found
+}
+
+/// Reference, median bias (rms) in %, of 100 repeats. Central differences have heavy tails: their rms is compared
+/// where it is small, within 40 %, their median within a third of the rms.
+#[test]
+fn noise_biases_and_scatters_as_in_the_reference() {
+    let table = [
+        (Settings::default(), 0.0, [(-0.06, 0.06), (0.08, 0.08)]),
+        (Settings::default(), 0.1, [(0.9, 2.5), (2.5, 3.5)]),
+        (Settings::default(), 0.5, [(28.0, 36.0), (55.0, 66.0)]),
+        (smoothed(), 0.0, [(0.3, 0.3), (5.3, 5.3)]),
+        (smoothed(), 0.1, [(0.4, 0.4), (5.4, 5.4)]),
+        (smoothed(), 0.5, [(1.7, 2.0), (7.5, 8.1)]),
+        (smoothed(), 1.0, [(5.3, 6.6), (16.0, 18.0)]),
+    ];
+    for (settings, noise_deg, reference) in table {
+        let found = repeats(&settings, noise_deg, if noise_deg == 0.0 { 1 } else { 60 });
+        for (values, (median, rms)) in found.iter().zip(reference) {
+            let own_median = values[values.len() / 2];
+            let own_rms = (values.iter().map(|error| error * error).sum::<f64>() / values.len() as f64).sqrt();
+            let label = format!("{noise_deg} deg, smoothing {}", settings.smoothing.is_some());
+            assert!(
+                (own_median - median).abs() < 0.33 * rms,
+                "{label}: median {own_median:+.2} %, reference {median:+} %"
+            );
+            assert!((own_rms / rms - 1.0).abs() < 0.4, "{label}: rms {own_rms:.2} %, reference {rms} %");
+        }
+    }
+}
+
+/// The bias of 1/T by noise in r is foreseen: median over repeats against the diagnostic.
+#[test]
+fn the_bias_of_noise_is_foreseen() {
+    for noise_deg in [0.2, 0.5, 1.0] {
+        let (mut found, mut foreseen) = (Vec::new(), Vec::new());
+        for seed in 0..60 {
+            let estimate = identify(Settings::default(), &[Case { noise_deg, seed, ..Case::default() }.trial()]);
+            found.push(100.0 * (estimate.response.inverse_T * 16.3 - 1.0));
+            foreseen.push(figure(&estimate, "noise_bias_of_inverse_T_percent"));
+            assert_eq!(estimate.warnings.len(), 1);
+        }
+        found.sort_by(f64::total_cmp);
+        foreseen.sort_by(f64::total_cmp);
+        assert!((found[30] - foreseen[30]).abs() < 4.0, "found {:+.1} %, foreseen {:+.1} %", found[30], foreseen[30]);
+    }
+}
+
+/// A smoother rudder is closer to what the smoothed heading answers to.
+#[test]
+fn smoothing_the_rudder_too_lessens_the_bias() {
+    let trial = [Case::default().trial()];
+    let [_, plain] = errors(&identify(smoothed(), &trial));
+    let [_, both] = errors(&identify(Settings { smooth_rudder: true, ..smoothed() }, &trial));
+    assert!(both.abs() < 0.85 * plain.abs(), "T {plain:+.2} % and {both:+.2} %");
+}
+
+#[test]
+fn the_gyro_gives_the_ship_and_its_scatter() {
+    // r' is a mean over two intervals, (h/T)²/6 of it too flat within a swing and more at the corners of the rudder.
+    let [k, t] = errors(&identify(gyro(), &[with_gyro(&Case::default())]));
+    assert!(k.abs() < 0.1 && t.abs() < 0.4, "K {k:+.3} %, T {t:+.3} %");
+    let (mut squares, mut reported, mut mean) = (0.0, 0.0, 0.0);
+    for seed in 0..200 {
+        let estimate = identify(gyro(), &[with_gyro(&Case { noise_deg: 0.01, seed, ..Case::default() })]);
+        let [k, _] = errors(&estimate);
+        squares += k * k / 200.0;
+        mean += k / 200.0;
+        reported += 1000.0 * estimate.K().sd.expect("sd") / 200.0;
+    }
+    let sd = (squares - mean * mean).sqrt();
+    assert!((reported / sd - 1.0).abs() < 0.2, "reported {reported:.3} %, scatter {sd:.3} %");
+    let error = method(gyro()).identify(&[Case::default().trial()]).expect_err("no gyro");
+    assert_eq!(error, IdentifyError::NoChannel { trial: "zigzag".into(), channel: "yaw rate" });
+}
+
+#[test]
+fn trials_share_the_ship_and_its_bias() {
+    let small = Case { bias_deg: 1.5, ..Case::default() };
+    let large = Case { rudder_deg: -20.0, heading_deg: 20.0, start: Start::Rest, ..small };
+    let both = identify(Settings::default(), &[small.trial(), large.trial()]);
+    assert_abs_diff_eq!(to_deg(both.response.rudder_bias), 1.5, epsilon = 0.01);
+    let [k, t] = errors(&both);
+    assert!(k.abs() < 0.2 && t.abs() < 0.2, "K {k:+.3} %, T {t:+.3} %");
+}
+
+#[test]
+fn a_course_unstable_ship_is_an_answer() {
+    let case = Case { K: -0.05, T: -60.0, rudder_deg: 20.0, heading_deg: 5.0, samples: 401, ..Case::default() };
+    let response = identify(Settings::default(), &[case.trial()]).response;
+    assert_abs_diff_eq!(response.inverse_T * case.T, 1.0, epsilon = 0.02);
+    assert_abs_diff_eq!(response.K() / case.K, 1.0, epsilon = 0.02);
+}
+
+#[test]
+fn uneven_rows_and_missing_headings_do_no_harm() {
+    let case = Case { period_s: 0.25, samples: 1081, ..Case::default() };
+    let trial = case.trial();
+    let keep = |k: usize| !k.is_multiple_of(3) && k % 7 != 2 && !(400..460).contains(&k);
+    let kept = |column: &[f64]| (0..trial.len()).filter(|&k| keep(k)).map(|k| column[k]).collect();
+    let thinned = record("thinned", kept(trial.time()), kept(trial.heading()), kept(trial.rudder()));
+    let heading = (0..trial.len()).map(|k| if keep(k) { trial.heading()[k] } else { f64::NAN }).collect();
+    let hidden = record("hidden", trial.time().to_vec(), heading, trial.rudder().to_vec());
+    // Fifteen rows last up to 7 s here, so some of the bias by smoothing is left.
+    for (settings, limit) in [(Settings::default(), 0.3), (smoothed(), 1.5)] {
+        for trial in [&thinned, &hidden] {
+            let [k, t] = errors(&identify(settings.clone(), std::slice::from_ref(trial)));
+            assert!(k.abs() < limit && t.abs() < limit, "K {k:+.3} %, T {t:+.3} %");
+        }
+    }
+}
+
+#[test]
+fn says_why_it_cannot() {
+    let line: Vec<f64> = (0..100).map(f64::from).collect();
+    let straight = record("straight", line.clone(), vec![0.2; 100], vec![0.0; 100]);
+    assert_eq!(method(Settings::default()).identify(&[straight]).expect_err("straight").kind(), "not-excited");
+    assert_eq!(method(Settings::default()).identify(&[]).expect_err("nothing").kind(), "no-trial");
+    let short = Case { samples: 12, period_s: 4.0, ..Case::default() }.trial();
+    let error = method(smoothed()).identify(&[short]).expect_err("shorter than a window");
+    assert_eq!(error.kind(), "too-few-points");
+    let trial = Case::default().trial();
+    let rudder = trial.rudder().iter().map(|delta| -delta).collect();
+    let flipped = record("flipped", trial.time().to_vec(), trial.heading().to_vec(), rudder);
+    assert_eq!(method(Settings::default()).identify(&[flipped]).expect_err("flipped").kind(), "not-a-ship");
+    let heading = line.iter().map(|t| from_deg(1.0) * t).collect();
+    let held = record("held", line, heading, (0..100).map(|k| if k < 99 { 0.1 } else { 0.2 }).collect());
+    // The rudder moves in the last row only, which has no window.
+    assert_eq!(method(Settings::default()).identify(&[held]).expect_err("held").kind(), "singular");
+}
+
+#[test]
+fn settings_out_of_range_are_named() {
+    let refused = |settings: Settings| settings.build().expect_err("out of range").key;
+    let window = |window_samples, order| Settings {
+        smoothing: Some(SavitzkyGolay { window_samples, order }),
+        ..Settings::default()
+    };
+    assert_eq!(refused(window(14, 3)), "window-samples");
+    assert_eq!(refused(window(3, 3)), "window-samples");
+    assert_eq!(refused(window(15, 1)), "order");
+    assert_eq!(refused(Settings { longest_gap_s: Some(-1.0), ..Settings::default() }), "longest-gap-s");
+    assert_eq!(refused(Settings { condition_limit: 1.0, ..Settings::default() }), "condition-limit");
+}

@@ -1,0 +1,211 @@
+//! Local polynomials by least squares: smoothed values and derivatives of a record, evenly sampled or not. With even
+//! sampling they are the Savitzky-Golay filters. What lies within half a window of an end is left to the caller.
+
+use std::ops::Range;
+
+use nalgebra::{Cholesky, Const, Matrix6, Vector6};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::SettingsError;
+
+/// Highest order of a local polynomial.
+pub const HIGHEST_ORDER: usize = 5;
+
+/// Coefficients of a local polynomial; those above its order are zero.
+pub const COEFFICIENTS: usize = HIGHEST_ORDER + 1;
+
+/// Window and order of the local polynomials.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct SavitzkyGolay {
+    /// Rows in the window, odd.
+    pub window_samples: usize,
+    /// Order of the polynomial, 2 to 5, less than the rows in the window.
+    pub order: usize,
+}
+
+impl Default for SavitzkyGolay {
+    fn default() -> Self {
+        Self { window_samples: 15, order: 3 }
+    }
+}
+
+impl SavitzkyGolay {
+    /// Three rows and a parabola: central differences.
+    pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
+
+    /// Fails when the window is even, the order is outside 2..=5 or the window does not hold order + 1 rows.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        if !(2..=HIGHEST_ORDER).contains(&self.order) {
+            return Err(SettingsError { key: "order", found: self.order.to_string(), expected: "2, 3, 4 or 5" });
+        }
+        if self.window_samples.is_multiple_of(2) || self.window_samples <= self.order {
+            let found = self.window_samples.to_string();
+            return Err(SettingsError { key: "window-samples", found, expected: "an odd number above the order" });
+        }
+        Ok(())
+    }
+
+    /// Rows of the window around row `k`; `None` when it does not fit into `len` rows.
+    pub fn window(&self, k: usize, len: usize) -> Option<Range<usize>> {
+        let half = self.window_samples / 2;
+        let window = k.checked_sub(half)?..(k + half + 1);
+        (window.end <= len).then_some(window)
+    }
+
+    /// Taylor coefficients at row `k` of the polynomial through the window around it.
+    ///
+    /// `None` when the window does not fit into the record or the fit is singular.
+    pub fn at_row(&self, time: &[f64], value: &[f64], k: usize) -> Option<[f64; COEFFICIENTS]> {
+        let window = self.window(k, time.len())?;
+        local_polynomial(&time[window.clone()], &value[window], time[k], self.order)
+    }
+}
+
+/// Coefficients cₚ of Σ cₚ (t − `about`)ᵖ, p ≤ `order`, fitted by least squares to points of equal weight; zero above.
+///
+/// `time` and `value` have the same length; times differ. cₚ has the unit of the value over sᵖ. `None` with no more
+/// points than the order, or when the equations are singular.
+///
+/// Source: Savitzky and Golay (1964), here for any spacing.
+pub fn local_polynomial(time: &[f64], value: &[f64], about: f64, order: usize) -> Option<[f64; COEFFICIENTS]> {
+    let coefficients = LocalFit::new(time, about, order)?.coefficients(value);
+    coefficients.iter().all(|c| c.is_finite()).then_some(coefficients)
+}
+
+/// The linear map from the values of a window to the coefficients of its polynomial.
+#[derive(Debug)]
+pub struct LocalFit<'a> {
+    time: &'a [f64],
+    about: f64,
+    order: usize,
+    /// Largest distance from `about`, s: powers are those of the distance over this.
+    reach: f64,
+    normal: Cholesky<f64, Const<COEFFICIENTS>>,
+}
+
+impl<'a> LocalFit<'a> {
+    /// For the rows at `time` (s), a polynomial of `order` in t − `about`; `None` as for [`local_polynomial`].
+    pub fn new(time: &'a [f64], about: f64, order: usize) -> Option<Self> {
+        if time.len() <= order || order > HIGHEST_ORDER {
+            return None;
+        }
+        let reach = time.iter().fold(0.0_f64, |reach, t| reach.max((t - about).abs()));
+        // Unused orders keep a unit diagonal and a zero right-hand side, so that one size fits all.
+        let mut normal = Matrix6::from_fn(|i, j| if i == j && i > order { 1.0 } else { 0.0 });
+        for t in time {
+            let powers = powers((t - about) / reach, order);
+            // Cholesky reads the lower triangle only.
+            for i in 0..=order {
+                for j in 0..=i {
+                    normal[(i, j)] += powers[i] * powers[j];
+                }
+            }
+        }
+        Some(Self { time, about, order, reach, normal: normal.cholesky()? })
+    }
+
+    /// The coefficients for one value per row.
+    pub fn coefficients(&self, value: &[f64]) -> [f64; COEFFICIENTS] {
+        let right = self
+            .time
+            .iter()
+            .zip(value)
+            .fold(Vector6::zeros(), |right, (t, &y)| right + powers((t - self.about) / self.reach, self.order) * y);
+        self.rescaled(self.normal.solve(&right).into())
+    }
+
+    /// The weight of every row in Σ `functional`ₚ cₚ.
+    pub fn weights(&self, functional: [f64; COEFFICIENTS]) -> impl Iterator<Item = f64> {
+        let scaled = Vector6::from(self.rescaled(functional));
+        let used = Vector6::from_fn(|p, _| if p <= self.order { scaled[p] } else { 0.0 });
+        let solved = self.normal.solve(&used);
+        self.time.iter().map(move |t| solved.dot(&powers((t - self.about) / self.reach, self.order)))
+    }
+
+    /// Divides by powers of the reach: from powers of the scaled distance to powers of seconds.
+    fn rescaled(&self, mut coefficients: [f64; COEFFICIENTS]) -> [f64; COEFFICIENTS] {
+        let mut scale = 1.0;
+        for coefficient in &mut coefficients {
+            *coefficient *= scale;
+            scale /= self.reach;
+        }
+        coefficients
+    }
+}
+
+/// 1, u, … u^`order`, then zeros.
+fn powers(u: f64, order: usize) -> Vector6<f64> {
+    let mut powers = Vector6::zeros();
+    let mut power = 1.0;
+    for p in 0..=order {
+        powers[p] = power;
+        power *= u;
+    }
+    powers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+
+    /// Weights of coefficient `p` in a window of five, by feeding unit impulses.
+    fn weights(order: usize, p: usize) -> Vec<f64> {
+        let time = [0.0, 1.0, 2.0, 3.0, 4.0];
+        let impulse = |k: usize| std::array::from_fn::<f64, 5, _>(|i| if i == k { 1.0 } else { 0.0 });
+        let filter = SavitzkyGolay { window_samples: 5, order };
+        (0..5).map(|k| filter.at_row(&time, &impulse(k), 2).expect("regular")[p]).collect()
+    }
+
+    /// Five-point tables of Savitzky and Golay (1964).
+    #[test]
+    fn weights_are_those_of_the_published_tables() {
+        let tables = [
+            (2, 0, 35.0, [-3.0, 12.0, 17.0, 12.0, -3.0]),
+            (3, 0, 35.0, [-3.0, 12.0, 17.0, 12.0, -3.0]),
+            (2, 1, 10.0, [-2.0, -1.0, 0.0, 1.0, 2.0]),
+            (3, 1, 12.0, [1.0, -8.0, 0.0, 8.0, -1.0]),
+            // The second derivative is twice the coefficient.
+            (2, 2, 14.0, [2.0, -1.0, -2.0, -1.0, 2.0]),
+        ];
+        for (order, p, norm, table) in tables {
+            for (found, expected) in weights(order, p).into_iter().zip(table) {
+                assert_abs_diff_eq!(found, expected / norm, epsilon = 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_polynomial_is_found_again_from_uneven_rows() {
+        let time = [0.0, 0.3, 1.1, 1.2, 2.5, 3.0, 4.4, 4.9];
+        for order in 0..=HIGHEST_ORDER {
+            let truth = [0.3, -1.0, 0.5, 0.2, -0.05, 0.01];
+            let value = time.map(|t| (0..=order).map(|p| truth[p] * f64::powi(t - 2.0, p as i32)).sum::<f64>());
+            let found = local_polynomial(&time, &value, 2.0, order).expect("regular");
+            for p in 0..=HIGHEST_ORDER {
+                assert_abs_diff_eq!(found[p], if p <= order { truth[p] } else { 0.0 }, epsilon = 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn weights_give_what_the_coefficients_give() {
+        let time = [0.0, 0.3, 1.1, 1.2, 2.5, 3.0, 4.4];
+        let value = [1.0, -2.0, 0.5, 0.7, 3.0, -1.0, 0.2];
+        let fit = LocalFit::new(&time, 1.5, 3).expect("regular");
+        let functional = [0.5, -1.0, 2.0, 0.25, 9.0, 9.0];
+        let direct: f64 = fit.coefficients(&value).iter().zip(functional).map(|(c, by)| c * by).sum();
+        let weighted: f64 = fit.weights(functional).zip(value).map(|(w, y)| w * y).sum();
+        assert_abs_diff_eq!(direct, weighted, epsilon = 1e-12);
+    }
+
+    #[test]
+    fn too_few_rows_give_nothing() {
+        assert!(local_polynomial(&[0.0, 1.0], &[0.0, 1.0], 0.5, 2).is_none());
+        assert!(local_polynomial(&[1.0], &[0.0], 1.0, 0).is_none());
+        assert!(SavitzkyGolay::default().at_row(&[0.0; 20], &[0.0; 20], 6).is_none());
+        assert!(SavitzkyGolay { window_samples: 4, order: 2 }.check().is_err());
+        assert!(SavitzkyGolay { window_samples: 5, order: 6 }.check().is_err());
+    }
+}

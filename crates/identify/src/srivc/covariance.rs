@@ -1,0 +1,71 @@
+//! How sure the answer is: the asymptotic covariance of refined instrumental variables for a white residual, and the
+//! sandwich of Newey and West (1987) for a coloured one.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::filter::{Filters, NormalEquations, Point};
+use super::record::Record;
+use crate::robust;
+
+/// Residuals of the simulated heading at the answer, and what they say of its error.
+pub(super) struct Residuals {
+    /// Number of residuals.
+    pub count: usize,
+    /// Residual sum of squares, rad².
+    pub rss: f64,
+    /// Sum of squares of the heading about its mean, trial by trial, rad².
+    pub total: f64,
+    /// Correlation of neighbouring residuals.
+    pub lag1: f64,
+    /// Residuals less unknowns: three shared ones, two by record.
+    pub degrees_of_freedom: f64,
+    /// Covariance of the shared unknowns for a white residual e, σ² (Z̃ᵀZ̃)⁻¹.
+    pub white: Matrix3<f64>,
+    /// The same for a coloured residual, (Z̃ᵀZ̃)⁻¹ Ω (Z̃ᵀZ̃)⁻¹, Ω the long-run covariance of z̃ e.
+    pub robust: Matrix3<f64>,
+}
+
+impl Residuals {
+    /// Runs the answer once more over every record.
+    ///
+    /// `None` when Z̃ᵀZ̃ is singular or nothing is left to estimate a variance from.
+    pub fn new(records: &[Record], point: &Point, blocks: &[NormalEquations]) -> Option<Self> {
+        let count: usize = records.iter().map(|record| record.observed).sum();
+        let degrees_of_freedom = count as f64 - 3.0 - 2.0 * records.len() as f64;
+        if degrees_of_freedom <= 0.0 {
+            return None;
+        }
+        let (mut rss, mut total) = (0.0, 0.0);
+        let mut residuals = Vec::with_capacity(records.len());
+        let mut scores = Vec::with_capacity(records.len());
+        for ((record, block), &start) in records.iter().zip(blocks).zip(&point.starts) {
+            let mut own = Vec::with_capacity(record.observed);
+            let mut own_scores: Vec<[f64; 3]> = Vec::with_capacity(record.observed);
+            let (mut sum, mut squares) = (0.0, 0.0);
+            Filters::run(record, point.shared, start, |row, filters| {
+                let residual = row.heading - filters.motion.heading;
+                let z = filters.instruments();
+                let projected: Vector3<f64> = z.fixed_rows::<3>(0) - block.along * z.fixed_rows::<2>(3);
+                own_scores.push((projected * residual).into());
+                own.push(residual);
+                rss += residual * residual;
+                sum += row.heading;
+                squares += row.heading * row.heading;
+            });
+            total += squares - sum * sum / record.observed as f64;
+            residuals.push(own);
+            scores.push(own_scores);
+        }
+        let inverse = blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>().try_inverse()?;
+        let omega = robust::newey_west(&scores) * (count as f64 / degrees_of_freedom);
+        Some(Self {
+            count,
+            rss,
+            total,
+            lag1: robust::lag1_autocorrelation(residuals.iter().map(Vec::as_slice)),
+            degrees_of_freedom,
+            white: inverse * (rss / degrees_of_freedom),
+            robust: inverse * omega * inverse,
+        })
+    }
+}

@@ -1,0 +1,179 @@
+//! The state-variable filters 1/(s (s + â)) run over a record, and the normal equations they give. One pass, nothing
+//! stored by row; the two unknowns of the initial state of a record are eliminated here.
+
+use nalgebra::{Matrix2, Matrix3, Matrix3x2, SMatrix, SVector, Vector2, Vector3};
+use ship::first_order::{State, TangentTransition};
+
+use super::record::{Record, Row};
+
+/// The unknowns that all records share; linear in the regression but for the filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shared {
+    /// a = 1/T, 1/s.
+    pub a: f64,
+    /// b = K/T, 1/s².
+    pub b: f64,
+    /// b δ_r, rad/s².
+    pub bias: f64,
+}
+
+/// A point of the iteration: the shared unknowns and the state at the first row of each record.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Point {
+    pub shared: Shared,
+    pub starts: Vec<State>,
+}
+
+/// The filters of one record, at one row.
+///
+/// With F = 1/(s (s + â)) and lp = 1/(s + â), the signals are F 1/s = φ₂(t) and its derivative φ₁(t) in `unit`, F δ in
+/// `steered`, lp ψ in `lagged`, all exact for a rudder and a heading that are linear between rows; and the noise-free
+/// heading x of `shared` with ∂x/∂a in `motion` and `sensitivity`. Since (s + a) ∂x/∂a = −(x − x(0)), the sensitivity is
+/// the noise-free twin of −lp (ψ − ψ(0)): the instrument.
+pub(super) struct Filters {
+    shared: Shared,
+    transition: TangentTransition,
+    unit: State,
+    steered: State,
+    lagged: f64,
+    pub motion: State,
+    sensitivity: State,
+}
+
+impl Filters {
+    /// Filters with pole −a of `shared`, before the first row.
+    fn new(shared: Shared, start: State) -> Self {
+        Self {
+            shared,
+            transition: TangentTransition::new(shared.a, 0.0),
+            unit: State::default(),
+            steered: State::default(),
+            lagged: 0.0,
+            motion: start,
+            sensitivity: State::default(),
+        }
+    }
+
+    /// Runs over `record` and calls `visit` at every observed row.
+    #[inline]
+    pub fn run(record: &Record, shared: Shared, start: State, mut visit: impl FnMut(&Row, &Self)) {
+        let mut filters = Self::new(shared, start);
+        let mut before: Option<&Row> = None;
+        for row in &record.rows {
+            if let Some(before) = before {
+                filters.advance(before, row);
+            }
+            if row.observed {
+                visit(row, &filters);
+            }
+            before = Some(row);
+        }
+    }
+
+    /// From the row `before` to `row`.
+    #[inline]
+    fn advance(&mut self, before: &Row, row: &Row) {
+        let h = row.interval;
+        if h != self.transition.value.h {
+            self.transition = TangentTransition::new(self.shared.a, h);
+        }
+        let Shared { b, bias, .. } = self.shared;
+        let exact = &self.transition.value;
+        let rate = 1.0 / h;
+        let slope = (row.rudder - before.rudder) * rate;
+        let lag = State { heading: 0.0, yaw_rate: self.lagged };
+        self.lagged = exact.advance(lag, before.heading, (row.heading - before.heading) * rate).yaw_rate;
+        self.unit = exact.advance(self.unit, 1.0, 0.0);
+        self.steered = exact.advance(self.steered, before.rudder, slope);
+        let force = b * before.rudder + bias;
+        self.sensitivity = self.transition.advance(self.motion, self.sensitivity, force, b * slope);
+        self.motion = exact.advance(self.motion, force, b * slope);
+    }
+
+    /// The instruments of this row: ∂x/∂a, F δ, F 1/s, and the two of the initial state, 1 and φ₁.
+    #[inline]
+    pub fn instruments(&self) -> SVector<f64, 5> {
+        self.with_first(self.sensitivity.heading)
+    }
+
+    /// The same with −lp ψ as measured in place of its noise-free twin: the regressors.
+    #[inline]
+    fn regressors(&self) -> SVector<f64, 5> {
+        self.with_first(-self.lagged)
+    }
+
+    #[inline]
+    fn with_first(&self, first: f64) -> SVector<f64, 5> {
+        SVector::<f64, 5>::new(first, self.steered.heading, self.unit.heading, 1.0, self.unit.yaw_rate)
+    }
+}
+
+/// Which columns stand on the left of the normal equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Left {
+    /// The regressors themselves: least squares.
+    Regressors,
+    /// Noise-free instruments.
+    Instruments,
+}
+
+/// Normal equations of one record, Zᵀ[−lp ψ, F δ, F 1/s, 1, φ₁] θ = Zᵀψ, with the last two unknowns eliminated.
+pub(super) struct NormalEquations {
+    /// Z̃ᵀZ̃ of the shared unknowns, Z̃ being Z less its part along 1 and φ₁.
+    pub instruments: Matrix3<f64>,
+    /// Z̃ᵀX of the shared unknowns.
+    pub regressors: Matrix3<f64>,
+    /// Z̃ᵀψ.
+    pub target: Vector3<f64>,
+    /// Coefficients of Z along 1 and φ₁: Z̃ = Z − P `along`ᵀ, P = [1, φ₁].
+    pub along: Matrix3x2<f64>,
+    /// (PᵀP)⁻¹, PᵀX and Pᵀψ: what gives the initial state once the shared unknowns are known.
+    inner: Matrix2<f64>,
+    inner_regressors: SMatrix<f64, 2, 3>,
+    inner_target: Vector2<f64>,
+}
+
+impl NormalEquations {
+    /// One pass over `record` with the filters of `shared`; `None` when 1 and φ₁ are parallel, as after an overflow.
+    pub fn new(record: &Record, shared: Shared, start: State, left: Left) -> Option<Self> {
+        let mut gram = SMatrix::<f64, 5, 5>::zeros();
+        let mut cross = SMatrix::<f64, 5, 2>::zeros();
+        Filters::run(record, shared, start, |row, filters| {
+            let z = match left {
+                Left::Regressors => filters.regressors(),
+                Left::Instruments => filters.instruments(),
+            };
+            for column in 0..5 {
+                gram.column_mut(column).axpy(z[column], &z, 1.0);
+            }
+            cross.column_mut(0).axpy(-filters.lagged, &z, 1.0);
+            cross.column_mut(1).axpy(row.heading, &z, 1.0);
+        });
+        let outer = gram.fixed_view::<3, 3>(0, 0);
+        let mixed = gram.fixed_view::<3, 2>(0, 3);
+        let inner = gram.fixed_view::<2, 2>(3, 3).try_inverse()?;
+        let along = mixed * inner;
+        let instruments = outer - along * mixed.transpose();
+        let projected = cross.fixed_rows::<3>(0) - along * cross.fixed_rows::<2>(3);
+        let mut regressors = instruments;
+        regressors.set_column(0, &projected.column(0));
+        let mut inner_regressors = mixed.transpose();
+        inner_regressors.set_column(0, &cross.fixed_view::<2, 1>(3, 0));
+        Some(Self {
+            instruments,
+            regressors,
+            target: projected.column(1).into_owned(),
+            along,
+            inner,
+            inner_regressors,
+            inner_target: cross.fixed_view::<2, 1>(3, 1).into_owned(),
+        })
+    }
+
+    /// State at the first row for the solution θ = (a − â, b, b δ_r): the unknowns of 1 and φ₁ are ψ₀ and
+    /// r₀ + (a − â) ψ₀.
+    pub fn start(&self, theta: &Vector3<f64>) -> State {
+        let inner = self.inner * (self.inner_target - self.inner_regressors * theta);
+        State { heading: inner[0], yaw_rate: inner[1] - theta[0] * inner[0] }
+    }
+}

@@ -1,0 +1,229 @@
+//! Simplified refined instrumental variables for continuous time (SRIVC), with rudder bias and initial state.
+//!
+//! The ship is ψ'' + a ψ' = b (δ + δ_r) with a = 1/T, b = K/T, and the heading is read with white noise. Divided by
+//! s (s + â), the equation holds no derivative,
+//!
+//! ψ = −(a − â) lp ψ + b F δ + b δ_r F 1/s + ψ₀ + (r₀ + (a − â) ψ₀) φ₁,  F = 1/(s (s + â)),  lp = 1/(s + â),
+//!
+//! and is linear in its unknowns. lp ψ is noisy, so an instrument takes its place on the left of the normal equations:
+//! the same filter over the heading simulated with the last estimate. Then â becomes the new a, until it stays.
+//!
+//! Three properties follow. At the fixed point lp ψ drops out, so neither its noise nor the straight line
+//! drawn between its samples biases the answer; the instruments are the gradient of the simulated heading, so the answer
+//! is a stationary point of the output error and efficient for white noise. Without noise the equation holds for
+//! any â. And a wrong noise model costs efficiency, not consistency, as long as the noise does not steer.
+//!
+//! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is the
+//! one of motion integrated twice, by least squares. For a < 0 the filters would grow; such a record is run backwards
+//! in time, which turns a into −a and keeps everything else.
+//!
+//! Sources: Young and Jakeman (1980), refined instrumental variables part III; Garnier and Wang (2008), chapter 4;
+//! equivalence to the output error at the fixed point: Pan, González, Welsh and Rojas (2020).
+
+mod covariance;
+mod filter;
+mod record;
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+use ship::FirstOrder;
+use ship::angle::to_deg;
+use ship::first_order::State;
+use trial::Trial;
+
+use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::samples::Samples;
+use crate::settings::SettingsError;
+use crate::{Identifier, IdentifyError};
+use covariance::Residuals;
+use filter::{Left, NormalEquations, Point, Shared};
+use record::Record;
+
+/// Fewest observed headings of a trial: twice the unknowns of a single one.
+const FEWEST_ROWS: usize = 10;
+
+/// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
+const COLOURED: f64 = 0.2;
+
+/// Settings of [`Srivc`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
+pub struct Settings {
+    /// Iterations after the start before the method gives up.
+    pub max_iterations: usize,
+    /// Change of the simulated heading in one iteration at which the method has settled, as a share of the heading that
+    /// the rudder explains. Not of the parameters: a ship with 1/T = 0 and a poorly known K have no scale of their own.
+    pub relative_step: f64,
+    /// Largest accepted condition number of the scaled instruments, initial states eliminated.
+    pub condition_limit: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { max_iterations: 50, relative_step: 1e-9, condition_limit: 1e6 }
+    }
+}
+
+impl Settings {
+    /// Checks the settings.
+    ///
+    /// Fails when there is no iteration to do, the step is not within 1e-12 and 0.1, or the condition limit is not
+    /// above 1.
+    pub fn build(self) -> Result<Srivc, SettingsError> {
+        if self.max_iterations == 0 {
+            return Err(SettingsError::new("max-iterations", self.max_iterations, "at least 1"));
+        }
+        if !(1e-12..=0.1).contains(&self.relative_step) {
+            return Err(SettingsError::new("relative-step", self.relative_step, "a number within 1e-12 and 0.1"));
+        }
+        if !(self.condition_limit.is_finite() && self.condition_limit > 1.0) {
+            return Err(SettingsError::new("condition-limit", self.condition_limit, "a number above 1"));
+        }
+        Ok(Srivc { settings: self })
+    }
+}
+
+/// Simplified refined instrumental variables for continuous time; see the [module](self).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Srivc {
+    settings: Settings,
+}
+
+/// One solution of the normal equations of all records.
+struct Solution {
+    point: Point,
+    condition: f64,
+    blocks: Vec<NormalEquations>,
+}
+
+impl Identifier for Srivc {
+    fn id(&self) -> &'static str {
+        "srivc"
+    }
+
+    fn summary(&self) -> &'static str {
+        "refined instrumental variables for continuous time (Young and Jakeman 1980)"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        // What no method can use is refused in the words that all methods share.
+        Samples::of_all(trials, FEWEST_ROWS)?;
+        let mut records: Vec<Record> = trials.iter().map(Record::new).collect();
+        let mut start = self.integral_least_squares(&records)?;
+        let backwards = start.point.shared.a < 0.0;
+        let mut evaluations = 1;
+        if backwards {
+            records = records.iter().map(Record::reversed).collect();
+            start = self.integral_least_squares(&records)?;
+            evaluations += 1;
+        }
+        let (solution, iterations) = self.iterate(&records, start)?;
+        let Shared { a, b, bias } = solution.point.shared;
+        let sign = if backwards { -1.0 } else { 1.0 };
+        let inverse_time = sign * a;
+        if !(b > 0.0 && b.is_finite() && a.is_finite()) {
+            return Err(IdentifyError::NotAShip { inverse_time, gain: b });
+        }
+        let residuals = Residuals::new(&records, &solution.point, &solution.blocks)
+            .ok_or(IdentifyError::Singular { condition: solution.condition, limit: self.settings.condition_limit })?;
+        // (a, b, b δ_r) of the direction of the filters → (1/T, K/T, δ_r).
+        let jacobian = Matrix3::new(sign, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -bias / (b * b), 1.0 / b);
+        let covariance = |matrix: &Matrix3<f64>| Covariance {
+            matrix: jacobian * matrix * jacobian.transpose(),
+            degrees_of_freedom: Some(residuals.degrees_of_freedom),
+        };
+        let count = residuals.count as f64;
+        let mut warnings = Vec::new();
+        if residuals.lag1.abs() > COLOURED.max(3.0 / count.sqrt()) {
+            warnings.push(format!(
+                "the residual is coloured (lag-1 autocorrelation {:.2}): trust the robust errors, and look for an \
+                 effect the model lacks",
+                residuals.lag1
+            ));
+        }
+        if inverse_time < 0.0 {
+            warnings.push("course-unstable: 1/T is negative, and so are K and T".into());
+        }
+        Ok(Estimate {
+            response: FirstOrder { inverse_T: inverse_time, K_over_T: b, rudder_bias: bias / b },
+            uncertainty: Uncertainty::Covariance(covariance(&residuals.white)),
+            robust: Some(covariance(&residuals.robust)),
+            stop: StopReason::Converged,
+            evaluations: evaluations + iterations + 1,
+            diagnostics: vec![
+                ("iterations", iterations as f64),
+                ("r_squared", 1.0 - residuals.rss / residuals.total),
+                ("condition", solution.condition),
+                ("heading_rmse_deg", to_deg((residuals.rss / count).sqrt())),
+                ("lag1_autocorrelation", residuals.lag1),
+            ],
+            warnings,
+        })
+    }
+}
+
+impl Srivc {
+    /// The start: filters with their pole at 0 and the regressors as instruments.
+    fn integral_least_squares(&self, records: &[Record]) -> Result<Solution, IdentifyError> {
+        let rest =
+            Point { shared: Shared { a: 0.0, b: 0.0, bias: 0.0 }, starts: vec![State::default(); records.len()] };
+        self.solve(records, &rest, Left::Regressors)
+    }
+
+    /// Iterates to the fixed point; also tells the number of iterations.
+    fn iterate(&self, records: &[Record], start: Solution) -> Result<(Solution, usize), IdentifyError> {
+        let mut solution = start;
+        let mut step = f64::INFINITY;
+        for iteration in 1..=self.settings.max_iterations {
+            let last = solution.point.shared;
+            solution = self.solve(records, &solution.point, Left::Instruments)?;
+            let now = solution.point.shared;
+            let gram = solution.blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>();
+            let size = |theta: Vector3<f64>| theta.dot(&(gram * theta)).max(0.0).sqrt();
+            step = size(Vector3::new(now.a - last.a, now.b - last.b, now.bias - last.bias))
+                / size(Vector3::new(0.0, now.b, now.bias));
+            if step <= self.settings.relative_step {
+                return Ok((solution, iteration));
+            }
+        }
+        Err(IdentifyError::NotConverged { iterations: self.settings.max_iterations, step })
+    }
+
+    /// One pass over all records and the solution of their common normal equations.
+    fn solve(&self, records: &[Record], at: &Point, left: Left) -> Result<Solution, IdentifyError> {
+        let limit = self.settings.condition_limit;
+        let singular = |condition| IdentifyError::Singular { condition, limit };
+        let blocks: Option<Vec<NormalEquations>> = records
+            .iter()
+            .zip(&at.starts)
+            .map(|(record, &start)| NormalEquations::new(record, at.shared, start, left))
+            .collect();
+        let blocks = blocks.ok_or_else(|| singular(f64::INFINITY))?;
+        let sum = |part: fn(&NormalEquations) -> Matrix3<f64>| blocks.iter().map(part).sum::<Matrix3<f64>>();
+        let gram = sum(|block| block.instruments);
+        let scale = Vector3::from_fn(|i, _| 1.0 / gram[(i, i)].sqrt());
+        let scaled = |matrix: Matrix3<f64>| Matrix3::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+        let correlation = scaled(gram);
+        // Filters that overflowed, or a column of zeros; the search for eigenvalues would not end.
+        if correlation.iter().any(|value| !value.is_finite()) {
+            return Err(singular(f64::INFINITY));
+        }
+        let spread = correlation.symmetric_eigenvalues();
+        let condition = (spread.max() / spread.min()).sqrt();
+        // NaN: the smallest eigenvalue is negative by rounding.
+        if condition.is_nan() || condition > limit {
+            return Err(singular(if condition.is_nan() { f64::INFINITY } else { condition }));
+        }
+        let target: Vector3<f64> = blocks.iter().map(|block| block.target).sum();
+        let theta = scaled(sum(|block| block.regressors))
+            .lu()
+            .solve(&target.component_mul(&scale))
+            .ok_or_else(|| singular(f64::INFINITY))?
+            .component_mul(&scale);
+        let shared = Shared { a: at.shared.a + theta[0], b: theta[1], bias: theta[2] };
+        let starts = blocks.iter().map(|block| block.start(&theta)).collect();
+        Ok(Solution { point: Point { shared, starts }, condition, blocks })
+    }
+}

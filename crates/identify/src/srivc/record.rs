@@ -1,0 +1,112 @@
+//! A trial as the filters of this method want it: rows to step over, with their intervals; in either direction of time.
+
+use trial::Trial;
+
+/// Intervals closer than this share are one interval: rows at 0.1 s differ in the last bits of their time, and
+/// filter coefficients are made anew for every interval that differs.
+const SAME_INTERVAL: f64 = 1e-9;
+
+/// One row of a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Row {
+    /// Time since the row before, s; unused in the first row.
+    pub interval: f64,
+    /// Rudder δ, rad.
+    pub rudder: f64,
+    /// Heading from the first row, rad; interpolated where it was not observed.
+    pub heading: f64,
+    /// Whether the heading was observed.
+    pub observed: bool,
+}
+
+/// The rows of a trial between its first and last observed heading, those without a heading included: they hold
+/// corners of the rudder.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Record {
+    /// The rows, in the order in which the filters run.
+    pub rows: Vec<Row>,
+    /// Number of observed headings.
+    pub observed: usize,
+    /// Length, s.
+    pub duration: f64,
+}
+
+impl Record {
+    /// Rows of `trial`, with time running forwards. A missing heading is joined linearly between its neighbours; it
+    /// steers the iteration but carries no weight in the answer.
+    pub fn new(trial: &Trial) -> Self {
+        let (time, rudder, heading) = (trial.time(), trial.rudder(), trial.heading());
+        let mut rows: Vec<Row> = Vec::with_capacity(trial.len());
+        let (mut first, mut last) = (0, 0);
+        let mut observed = 0;
+        let mut interval = 0.0;
+        for row in trial.observed_rows() {
+            if observed == 0 {
+                (first, last) = (row, row);
+            }
+            let (from, to) = (heading[last], heading[row]);
+            for next in rows.len() + first..=row {
+                let share = if row == last { 1.0 } else { (time[next] - time[last]) / (time[row] - time[last]) };
+                let elapsed = time[next] - time[next.saturating_sub(1).max(first)];
+                if (elapsed - interval).abs() > SAME_INTERVAL * interval {
+                    interval = elapsed;
+                }
+                rows.push(Row {
+                    interval,
+                    rudder: rudder[next],
+                    heading: from + share * (to - from) - heading[first],
+                    observed: next == row,
+                });
+            }
+            last = row;
+            observed += 1;
+        }
+        Self { rows, observed, duration: time[last] - time[first] }
+    }
+
+    /// The same record with time running backwards: ψ'' + a ψ' = b (δ + δ_r) keeps b and δ_r and turns a into −a.
+    pub fn reversed(&self) -> Self {
+        // The interval before a row is the one after it in the new order.
+        let intervals = std::iter::once(0.0).chain(self.rows[1..].iter().rev().map(|row| row.interval));
+        let rows = self.rows.iter().rev().zip(intervals).map(|(row, interval)| Row { interval, ..*row }).collect();
+        Self { rows, ..*self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::record;
+    use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn rows_without_a_heading_keep_their_rudder_and_ends_are_cut() {
+        let mut heading: Vec<f64> = (0..12).map(|row| 0.01 * f64::from(row)).collect();
+        for row in [0, 5, 6, 11] {
+            heading[row] = f64::NAN;
+        }
+        let time: Vec<f64> = (0..12).map(|row| 7.0 + 0.1 * f64::from(row)).collect();
+        let rudder = (0..12).map(|row| 0.1 * f64::from(row)).collect();
+        let record = Record::new(&record("gaps", time, heading, rudder));
+        assert_eq!((record.rows.len(), record.observed), (10, 8));
+        assert_abs_diff_eq!(record.duration, 0.9, epsilon = 1e-12);
+        for (index, row) in record.rows.iter().enumerate() {
+            assert_abs_diff_eq!(row.rudder, 0.1 * (index + 1) as f64, epsilon = 1e-12);
+            assert_abs_diff_eq!(row.heading, 0.01 * index as f64, epsilon = 1e-12);
+            assert_eq!(row.observed, ![4, 5].contains(&index));
+        }
+        // Equal but for rounding: one interval.
+        assert!(record.rows[2..].iter().all(|row| row.interval == record.rows[1].interval));
+    }
+
+    #[test]
+    fn reversing_twice_gives_the_record_back() {
+        let time = vec![0.0, 1.0, 1.5, 3.0, 4.0, 6.0, 6.5, 7.0, 9.0];
+        let heading = (0..9).map(|row| 0.02 * f64::from(row)).collect();
+        let rudder = (0..9).map(|row| 0.1 * f64::from(row % 3)).collect();
+        let record = Record::new(&record("uneven", time, heading, rudder));
+        let reversed = record.reversed();
+        assert_eq!(reversed.rows[1].interval, 2.0);
+        assert_eq!(reversed.reversed(), record);
+    }
+}

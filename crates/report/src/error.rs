@@ -1,0 +1,53 @@
+//! What can go wrong while a figure becomes a file. Drawing itself never fails: undefined numbers are left out.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why a figure could not be made or written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The width of a printed figure is outside what a page can carry.
+    #[error("a figure {width_mm} mm wide cannot be drawn: the width must lie between {min_mm} and {max_mm} mm")]
+    Width {
+        /// The width asked for, mm.
+        width_mm: f64,
+        /// Smallest width, mm.
+        min_mm: f64,
+        /// Largest width, mm.
+        max_mm: f64,
+    },
+    /// The resolution of a printed figure is outside the accepted range.
+    #[error("{dpi} dots per inch is not usable: the resolution must lie between {min} and {max} dpi")]
+    Resolution {
+        /// The resolution asked for, dots per inch.
+        dpi: f64,
+        /// Lowest resolution, dots per inch.
+        min: f64,
+        /// Highest resolution, dots per inch.
+        max: f64,
+    },
+    /// The drawing needs more pixels than an image may have.
+    #[error("an image of {width_px} x {height_px} pixels is too large; draw it narrower or at fewer dpi")]
+    TooLarge {
+        /// Width in pixels.
+        width_px: u32,
+        /// Height in pixels.
+        height_px: u32,
+    },
+    /// The drawing could not be turned into pixels.
+    #[error("failed to rasterise the figure")]
+    Raster(#[from] resvg::usvg::Error),
+    /// The pixels could not be packed into a PNG.
+    #[error("failed to encode the PNG")]
+    Png(#[from] png::EncodingError),
+    /// A file or folder could not be written.
+    #[error("failed to write {}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+}

@@ -1,0 +1,57 @@
+//! One file per kind of figure: the data it shows, as plain numbers in display units, and the function that draws it.
+//! What they share is here: axis titles, and axes that cover a set of curves.
+
+mod curve_fit;
+mod derivatives;
+mod error_curves;
+mod intervals;
+mod record_fit;
+mod replays;
+mod zigzag_trial;
+
+pub use curve_fit::{CurveFit, curve_fit};
+pub use derivatives::{Derivatives, MotionCurves, derivatives};
+pub use error_curves::{ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
+pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
+pub use record_fit::{Fit, RecordFit, record_fit};
+pub use replays::{Replay, Replays, replays};
+pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial, zigzag_trial};
+
+use crate::axis::Axis;
+use crate::curve::Curve;
+use crate::layout::Side;
+use crate::palette::INK;
+use crate::panel::Panel;
+use crate::scene::{Layer, Scene, Stroke, symbol};
+use crate::theme::Theme;
+use crate::ticks::Steps;
+
+/// Free space above and below the data, as a share of its range.
+const PAD: f64 = 0.08;
+
+fn heading_title() -> String {
+    format!("heading {} [°]", symbol("ψ"))
+}
+
+fn rudder_title() -> String {
+    format!("rudder {} [°]", symbol("δ"))
+}
+
+/// The time axis of everything in `curves`, without free space at the ends.
+fn time_side<'a>(curves: impl IntoIterator<Item = &'a Curve>) -> Side {
+    let axis = Axis::covering(curves.into_iter().flat_map(|c| c.finite().map(|(x, _)| x)), 0.0, Steps::Time);
+    Side::new(axis, format!("time {} [s]", symbol("t")))
+}
+
+/// An axis in degrees around everything in `curves`.
+fn angle_side<'a>(curves: impl IntoIterator<Item = &'a Curve>, title: String) -> Side {
+    Side::new(Axis::covering(curves.into_iter().flat_map(|c| c.finite().map(|(_, y)| y)), PAD, Steps::Angle), title)
+}
+
+/// The line a residual scatters about.
+fn zero_line(panel: &Panel, scene: &mut Scene, theme: &Theme) {
+    panel.horizontal(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
+}
+
+#[cfg(test)]
+mod tests;

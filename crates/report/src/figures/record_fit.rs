@@ -1,0 +1,72 @@
+//! A measured record with the fits to it: heading, residual, rudder. For the record itself with its characteristic
+//! quantities see [`zigzag_trial`](super::zigzag_trial()).
+
+use serde::{Deserialize, Serialize};
+
+use super::{angle_side, heading_title, rudder_title, time_side, zero_line};
+use crate::curve::Curve;
+use crate::figure::Figure;
+use crate::layout::{Grid, Sheet};
+use crate::legend::{Entry, Sample, stroke_of};
+use crate::number;
+use crate::palette::{Origin, RECORD, RUDDER};
+use crate::scene::Stroke;
+use crate::theme::Theme;
+
+/// One fit to the record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// Who fitted; decides how the fit looks.
+    pub origin: Origin,
+    /// Heading of the fit, degrees over seconds.
+    pub heading: Curve,
+    /// Recorded minus fitted heading, degrees over seconds.
+    pub residual: Curve,
+    /// Root mean square of the residual, degrees.
+    pub rms_deg: Option<f64>,
+}
+
+/// What [`record_fit`] draws.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct RecordFit {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// Recorded heading, degrees over seconds.
+    pub heading: Curve,
+    /// Recorded rudder angle, degrees over seconds.
+    pub rudder: Curve,
+    /// The fits, drawn in this order.
+    pub fits: Vec<Fit>,
+}
+
+/// Draws heading with fits, residuals and rudder over one time axis.
+pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
+    let mut sheet = Sheet::new(theme, data.title.as_deref());
+    let mut entries = vec![Entry::new(Sample::Dots(RECORD), "recorded heading")];
+    entries.extend(data.fits.iter().map(|fit| {
+        let rms = fit.rms_deg.map_or_else(String::new, |rms| format!(", rms {}°", number::significant(rms, 2)));
+        Entry { label: format!("{}{rms}", fit.origin.label()), ..Entry::line_of(&fit.origin, theme) }
+    }));
+    entries.push(Entry::new(Sample::Line(Stroke::solid(RUDDER, theme.line)), "recorded rudder"));
+    sheet.legend(&entries);
+    let headings = || data.fits.iter().map(|f| &f.heading).chain([&data.heading]);
+    let residuals = || data.fits.iter().map(|f| &f.residual);
+    let rows = vec![
+        (angle_side(headings(), heading_title()), theme.tall(0.28)),
+        (angle_side(residuals(), "residual [°]".into()), theme.tall(0.14)),
+        (angle_side([&data.rudder], rudder_title()), theme.tall(0.12)),
+    ];
+    let panels = sheet.grid(Grid::stack(time_side(headings().chain(residuals()).chain([&data.rudder])), rows));
+    let [upper, middle, lower] = &panels[..] else { return sheet.finish() };
+
+    upper.dots(&mut sheet.scene, data.heading.finite(), 1.5 * theme.dot, RECORD);
+    zero_line(middle, &mut sheet.scene, theme);
+    for fit in &data.fits {
+        let stroke = stroke_of(&fit.origin, theme);
+        upper.line(&mut sheet.scene, fit.heading.pairs(), stroke);
+        middle.line(&mut sheet.scene, fit.residual.pairs(), Stroke { width: 0.8 * stroke.width, ..stroke });
+    }
+    zero_line(lower, &mut sheet.scene, theme);
+    lower.line(&mut sheet.scene, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line));
+    sheet.finish()
+}

@@ -1,0 +1,256 @@
+//! A zig-zag trial with its characteristic quantities drawn in, as in the textbook figure: heading over rudder, the
+//! executes, overshoot angles, initial turning time, times to check yaw and the period. All quantities are handed in;
+//! nothing is searched for in the curves.
+
+use serde::{Deserialize, Serialize};
+
+use super::{heading_title, rudder_title, time_side};
+use crate::axis::{self, Axis};
+use crate::clip::Rect;
+use crate::curve::Curve;
+use crate::dimension::Dimensions;
+use crate::figure::Figure;
+use crate::layout::{Grid, Sheet, Side};
+use crate::legend::{Entry, Sample, stroke_of};
+use crate::number;
+use crate::palette::{DIMENSION, DOTTED, HEADING, INK, Look, Marker, Origin, RECORD, RUDDER, SOLID};
+use crate::panel::Panel;
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text, symbol};
+use crate::theme::Theme;
+use crate::ticks::Steps;
+
+/// A point of the heading curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Time, s.
+    pub t_s: f64,
+    /// Heading, degrees.
+    pub heading_deg: f64,
+}
+
+/// A stretch of time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Span {
+    /// Begin, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+}
+
+impl Span {
+    fn text(&self) -> String {
+        format!("{} s", number::fixed(self.to_s - self.from_s, 1))
+    }
+}
+
+/// How far the heading runs on after the rudder is reversed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Overshoot {
+    /// Where the counter rudder is ordered.
+    pub execute: Mark,
+    /// Where the heading turns back.
+    pub extremum: Mark,
+    /// The overshoot angle, degrees, positive to either side.
+    pub angle_deg: f64,
+}
+
+/// What [`zigzag_trial`] draws.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ZigzagTrial {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// Heading, degrees over seconds.
+    pub heading: Curve,
+    /// Whether the heading is drawn as separate points (noisy or widely spaced) and not as a line.
+    pub heading_as_points: bool,
+    /// Rudder angle, degrees over seconds.
+    pub rudder: Curve,
+    /// Noise-free heading, degrees over seconds.
+    pub truth: Option<Curve>,
+    /// The executes: every order that puts the rudder over.
+    pub executes: Vec<Mark>,
+    /// The overshoots in order.
+    pub overshoots: Vec<Overshoot>,
+    /// Initial turning time: from the first execute to the second.
+    pub initial_turning: Option<Span>,
+    /// Times to check yaw: from an execute of counter rudder to the extremum that follows.
+    pub check_yaw: Vec<Span>,
+    /// A full period of the manoeuvre.
+    pub period: Option<Span>,
+}
+
+const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
+const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
+
+/// Draws a zig-zag trial: heading with its dimension lines above, rudder below.
+pub fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
+    let mut sheet = Sheet::new(theme, data.title.as_deref());
+    sheet.legend(&entries(data, theme));
+    let height = theme.tall(0.36);
+    let curves = [&data.heading, &data.rudder].into_iter().chain(&data.truth);
+    let rudder = Axis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, Steps::Angle);
+    let rows = vec![(heading_side(data, height, theme), height), (Side::new(rudder, rudder_title()), theme.tall(0.13))];
+    let panels = sheet.grid(Grid::stack(time_side(curves), rows));
+    let [upper, lower] = &panels[..] else { return sheet.finish() };
+
+    for panel in &panels {
+        let stroke = Stroke::solid(RECORD, theme.thin).dashed(DOTTED);
+        for execute in &data.executes {
+            panel.vertical(&mut sheet.scene, Layer::Grid, execute.t_s, stroke);
+        }
+    }
+    if data.heading_as_points {
+        upper.dots(&mut sheet.scene, data.heading.finite(), theme.dot, RECORD);
+    } else {
+        upper.line(&mut sheet.scene, data.heading.pairs(), Stroke::solid(HEADING, theme.line));
+    }
+    if let Some(truth) = &data.truth {
+        upper.line(&mut sheet.scene, truth.pairs(), stroke_of(&Origin::Truth, theme));
+    }
+    lower.line(&mut sheet.scene, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line));
+    let values = annotate(data, upper, &mut sheet.scene, theme);
+    for execute in &data.executes {
+        upper.marker(&mut sheet.scene, (execute.t_s, execute.heading_deg), theme.marker, &EXECUTE);
+    }
+    if let Some(text) = explanation(data, values) {
+        sheet.note(&text);
+    }
+    sheet.finish()
+}
+
+fn entries(data: &ZigzagTrial, theme: &Theme) -> Vec<Entry> {
+    let mut entries = vec![if data.heading_as_points {
+        Entry::new(Sample::Dots(RECORD), format!("recorded heading {}", symbol("ψ")))
+    } else {
+        Entry::new(Sample::Line(Stroke::solid(HEADING, theme.line)), format!("heading {}", symbol("ψ")))
+    }];
+    if data.truth.is_some() {
+        entries.push(Entry::line_of(&Origin::Truth, theme));
+    }
+    entries.push(Entry::new(Sample::Line(Stroke::solid(RUDDER, theme.line)), format!("rudder {}", symbol("δ"))));
+    if !data.executes.is_empty() {
+        entries.push(Entry::new(Sample::Marker(EXECUTE), "execute"));
+    }
+    if !data.overshoots.is_empty() {
+        entries.push(Entry::new(Sample::Marker(EXTREMUM), "heading extremum"));
+    }
+    entries
+}
+
+/// Height of the strip that holds a row of dimension lines, points.
+fn strip(theme: &Theme) -> f64 {
+    2.3 * theme.small_font
+}
+
+fn has_times(data: &ZigzagTrial) -> bool {
+    data.initial_turning.is_some() || !data.check_yaw.is_empty()
+}
+
+/// The heading axis, with room above and below the curve for overshoot angles and dimension lines.
+fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> Side {
+    let marks = data.overshoots.iter().flat_map(|o| [o.extremum.heading_deg, o.execute.heading_deg]);
+    let curves = [&data.heading].into_iter().chain(&data.truth).flat_map(|c| c.finite().map(|(_, y)| y));
+    let (lo, hi) = axis::range(curves.chain(marks)).unwrap_or((-1.0, 1.0));
+    let (lo, hi) = if hi > lo { (lo, hi) } else { (lo - 1.0, hi + 1.0) };
+    let label = if data.overshoots.is_empty() { 0.6 } else { 2.0 } * theme.small_font;
+    let above = label + if data.period.is_some() { strip(theme) } else { 0.0 };
+    let below = label + if has_times(data) { strip(theme) } else { 0.0 };
+    let per_point = (hi - lo) / (height - above - below).max(0.3 * height);
+    Side::new(Axis::linear(lo - below * per_point, hi + above * per_point, Steps::Angle), heading_title())
+}
+
+/// Draws overshoots, times and period. Returns the times in words when they did not fit at their lines.
+fn annotate(data: &ZigzagTrial, panel: &Panel, scene: &mut Scene, theme: &Theme) -> Option<String> {
+    let size = theme.small_font;
+    let mut draw = Dimensions { scene, theme: *theme };
+    for (i, overshoot) in data.overshoots.iter().enumerate() {
+        overshoot_angle(&mut draw, panel, i + 1, overshoot);
+    }
+    if let Some(period) = &data.period {
+        let y = panel.rect.y + 0.75 * strip(theme);
+        if let Some((from, to)) = time_line(&mut draw, panel, data, period, y) {
+            let text = format!("period {}", period.text());
+            draw.label(((from + to) / 2.0, y - 0.35 * size), Anchor::Middle, &text);
+        }
+    }
+    let y = panel.rect.bottom() - 0.45 * size;
+    let mut labels = Vec::new();
+    let initial = data.initial_turning.iter().map(|span| (symbol("tₐ"), span));
+    let checks = data.check_yaw.iter().enumerate().map(|(i, span)| (symbol(&format!("tₛ{}", subscript(i + 1))), span));
+    for (name, span) in initial.chain(checks) {
+        if let Some((from, to)) = time_line(&mut draw, panel, data, span, y) {
+            labels.push(((from + to) / 2.0, name, span.text()));
+        }
+    }
+    labels.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let base = y - 0.4 * size;
+    let full = |(x, name, value): &(f64, String, String)| {
+        Text::new(format!("{name} = {value}"), size).anchor(Anchor::Middle).bounds((*x, base))
+    };
+    let boxes: Vec<Rect> = labels.iter().map(full).collect();
+    let fits = boxes.windows(2).all(|b| b[0].right() + 0.3 * size < b[1].x)
+        && boxes.iter().all(|b| b.x > panel.rect.x && b.right() < panel.rect.right());
+    for (x, name, value) in &labels {
+        let text = if fits { format!("{name} = {value}") } else { name.clone() };
+        draw.label((*x, base), Anchor::Middle, &text);
+    }
+    let listed: Vec<String> = labels.iter().map(|(_, name, value)| format!("{name} = {value}")).collect();
+    // No-break spaces, so that the note is never broken between a symbol and its value.
+    let listed: Vec<String> = listed.iter().map(|text| text.replace(' ', "\u{a0}")).collect();
+    (!fits).then(|| listed.join(", "))
+}
+
+/// Vertical dimension line from the heading of the execute to the extremum, with its angle beyond the curve.
+fn overshoot_angle(draw: &mut Dimensions<'_>, panel: &Panel, number: usize, overshoot: &Overshoot) {
+    let (execute, extremum) = (overshoot.execute, overshoot.extremum);
+    let Some(peak) = panel.inside((extremum.t_s, extremum.heading_deg)) else { return };
+    let Some(start) = panel.inside((execute.t_s, execute.heading_deg)) else { return };
+    let foot = (peak.0, start.1);
+    draw.extension(start, (foot.0 + 0.4 * draw.theme.small_font, foot.1));
+    draw.between(foot, peak);
+    draw.scene.marker(Layer::Data, peak, 0.85 * draw.theme.marker, &EXTREMUM);
+    let name = symbol(&format!("ψ{}", subscript(number)));
+    let text = format!("{name} = {}°", number::fixed(overshoot.angle_deg, 1));
+    let size = draw.theme.small_font;
+    let beyond = if peak.1 <= foot.1 { -0.65 * size } else { 1.4 * size };
+    let half = Text::new(text.as_str(), size).width() / 2.0 + 0.3 * size;
+    let x = peak.0.clamp(panel.rect.x + half, (panel.rect.right() - half).max(panel.rect.x + half));
+    draw.label((x, peak.1 + beyond), Anchor::Middle, &text);
+}
+
+/// Horizontal dimension line of a span, with lines to the curve where one of the marked points stands at its end.
+fn time_line(draw: &mut Dimensions<'_>, panel: &Panel, data: &ZigzagTrial, span: &Span, y: f64) -> Option<(f64, f64)> {
+    let inside = |t: f64| panel.across(t).filter(|x| panel.rect.contains((*x, y)));
+    let (from, to) = (inside(span.from_s)?, inside(span.to_s)?);
+    let marks = data.executes.iter().chain(data.overshoots.iter().flat_map(|o| [&o.execute, &o.extremum]));
+    for (t, x) in [(span.from_s, from), (span.to_s, to)] {
+        let at_mark = marks.clone().find(|m| (m.t_s - t).abs() < 1e-9 * t.abs().max(1.0));
+        let foot = at_mark.and_then(|m| panel.up(m.heading_deg)).unwrap_or(y);
+        draw.extension((x, foot), (x, y));
+    }
+    draw.between((from, y), (to, y));
+    Some((from, to))
+}
+
+fn explanation(data: &ZigzagTrial, values: Option<String>) -> Option<String> {
+    let mut parts = Vec::new();
+    if !data.overshoots.is_empty() {
+        parts.push(format!("{} overshoot angles", symbol(&format!("ψ{}…", subscript(1)))));
+    }
+    if data.initial_turning.is_some() {
+        parts.push(format!("{} initial turning time", symbol("tₐ")));
+    }
+    if !data.check_yaw.is_empty() {
+        parts.push(format!("{} times to check yaw", symbol("tₛ")));
+    }
+    if parts.is_empty() {
+        return None;
+    }
+    let meaning = format!("{}.", parts.join(", "));
+    Some(values.map_or(meaning.clone(), |values| format!("{meaning} {values}.")))
+}
+
+fn subscript(number: usize) -> String {
+    let digit = |c: char| char::from_u32('₀' as u32 + c as u32 - '0' as u32).expect("₀ to ₉ are consecutive");
+    number.to_string().chars().map(digit).collect()
+}

@@ -1,0 +1,348 @@
+//! Where things go on the page: title, legend, panels and notes from top to bottom, margins as wide as their labels.
+//! Panels of one column share the horizontal axis, panels of one row the vertical one; their frames, ticks and titles
+//! are drawn here, the data by the figures.
+
+use crate::axis::{Axis, Ticks};
+use crate::clip::Rect;
+use crate::figure::Figure;
+use crate::legend::{self, Entry};
+use crate::palette::{GRID, INK, PAPER};
+use crate::panel::Panel;
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::svg;
+use crate::theme::Theme;
+
+/// Line spacing, in font sizes.
+const LEADING: f64 = 1.35;
+
+/// One side of a grid of panels: a column with its horizontal axis or a row with its vertical one.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Side {
+    pub axis: Axis,
+    pub title: String,
+}
+
+impl Side {
+    pub(crate) fn new(axis: Axis, title: impl Into<String>) -> Self {
+        Self { axis, title: title.into() }
+    }
+}
+
+/// Panels in rows and columns.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Grid {
+    pub columns: Vec<Side>,
+    /// Rows with their heights in points.
+    pub rows: Vec<(Side, f64)>,
+    /// Line above each panel, row by row; empty when there is none.
+    pub heads: Vec<Option<Entry>>,
+    /// Number of panels, when the last row is not full.
+    pub panels: Option<usize>,
+    /// Title of all vertical axes together, for rows too low to have one each.
+    pub shared_title: Option<String>,
+    /// Left margin, points, when it has to agree with another grid.
+    pub left: Option<f64>,
+}
+
+impl Grid {
+    /// Full rows without heads.
+    pub(crate) fn new(columns: Vec<Side>, rows: Vec<(Side, f64)>) -> Self {
+        Self { columns, rows, heads: Vec::new(), panels: None, shared_title: None, left: None }
+    }
+
+    /// Panels above each other over one horizontal axis.
+    pub(crate) fn stack(x: Side, rows: Vec<(Side, f64)>) -> Self {
+        Self::new(vec![x], rows)
+    }
+
+    fn panel_count(&self) -> usize {
+        let all = self.rows.len() * self.columns.len();
+        self.panels.map_or(all, |n| n.min(all))
+    }
+
+    fn has_heads(&self, row: usize) -> bool {
+        let columns = self.columns.len();
+        self.heads.iter().skip(row * columns).take(columns).any(Option::is_some)
+    }
+}
+
+/// A figure in the making, filled from top to bottom.
+#[derive(Debug, Clone)]
+pub(crate) struct Sheet {
+    pub theme: Theme,
+    pub scene: Scene,
+    y: f64,
+}
+
+impl Sheet {
+    pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Self {
+        let mut sheet = Self { theme: *theme, scene: Scene::default(), y: 0.5 * theme.small_font };
+        if let Some(title) = title {
+            let size = theme.title_font;
+            for line in wrap(title, size, true, theme.width - 2.0 * theme.small_font) {
+                sheet.y += 1.2 * size;
+                let text = Text { bold: true, ..Text::new(line, size).anchor(Anchor::Middle) };
+                sheet.scene.text(Layer::Note, (theme.width / 2.0, sheet.y), text);
+            }
+            sheet.y += 0.35 * size;
+        }
+        sheet
+    }
+
+    /// The key, centred above what follows.
+    pub(crate) fn legend(&mut self, entries: &[Entry]) {
+        if entries.is_empty() {
+            return;
+        }
+        let theme = self.theme;
+        let margin = theme.small_font;
+        let starts = legend::columns(entries, theme.width - 2.0 * margin, &theme);
+        let last = starts.len() - 1;
+        let used =
+            entries.chunks(starts.len()).filter_map(|row| row.get(last)).map(|e| e.width(&theme)).fold(0.0, f64::max)
+                + starts[last];
+        let left = ((theme.width - used) / 2.0).max(margin);
+        for row in entries.chunks(starts.len()) {
+            self.y += LEADING * theme.small_font;
+            for (entry, start) in row.iter().zip(&starts) {
+                entry.draw(&mut self.scene, (left + start, self.y), &theme);
+            }
+        }
+        self.y += 0.7 * theme.small_font;
+    }
+
+    /// A remark under what was drawn so far, wrapped to the width of the page.
+    pub(crate) fn note(&mut self, text: &str) {
+        let theme = self.theme;
+        let margin = theme.small_font;
+        for line in wrap(text, theme.small_font, false, theme.width - 2.0 * margin) {
+            self.y += LEADING * theme.small_font;
+            self.scene.text(Layer::Note, (margin, self.y), Text::new(line, theme.small_font));
+        }
+        self.y += 0.2 * theme.small_font;
+    }
+
+    /// Margin that the labels and titles of the rows need, points.
+    pub(crate) fn left_margin(&self, grid: &Grid) -> f64 {
+        let theme = &self.theme;
+        let widths = grid.rows.iter().map(|(side, height)| label_width(&self.row_ticks(side, *height), theme));
+        let lines = grid.rows.iter().map(|(side, height)| self.row_title(side, *height).len()).max().unwrap_or(0);
+        let lines = lines.max(usize::from(grid.shared_title.is_some()));
+        let titles = if lines == 0 { 0.0 } else { (lines as f64 * 1.2 + 0.5) * theme.label_font };
+        0.5 * theme.small_font + titles + widths.fold(0.0, f64::max) + self.tick_length() + 0.4 * theme.tick_font
+    }
+
+    fn row_ticks(&self, side: &Side, height: f64) -> Ticks {
+        side.axis.ticks(((height / (1.7 * self.theme.tick_font)) as usize).max(2))
+    }
+
+    fn row_title(&self, side: &Side, height: f64) -> Vec<String> {
+        wrap(&side.title, self.theme.label_font, false, 1.1 * height)
+    }
+
+    fn tick_length(&self) -> f64 {
+        0.32 * self.theme.tick_font
+    }
+
+    /// Draws the frames and returns the panels, row by row.
+    pub(crate) fn grid(&mut self, grid: Grid) -> Vec<Panel> {
+        let theme = self.theme;
+        let count = grid.columns.len().max(1);
+        let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
+        let right = 1.6 * theme.tick_font;
+        let gap = 2.6 * theme.tick_font;
+        let width = ((theme.width - left - right - gap * (count - 1) as f64) / count as f64).max(theme.tick_font);
+        let total = grid.panel_count();
+        let mut panels = Vec::with_capacity(total);
+        let mut lowest = self.y;
+        for (row, (side, height)) in grid.rows.iter().enumerate() {
+            if grid.has_heads(row) {
+                self.y += 1.5 * theme.small_font;
+            }
+            let ticks = self.row_ticks(side, *height);
+            for (column, across) in grid.columns.iter().enumerate() {
+                let index = row * count + column;
+                if index >= total {
+                    break;
+                }
+                let rect = Rect { x: left + column as f64 * (width + gap), y: self.y, w: width, h: *height };
+                if let Some(head) = grid.heads.get(index).and_then(Option::as_ref) {
+                    head.draw(&mut self.scene, (rect.x, rect.y - 0.45 * theme.small_font), &theme);
+                }
+                let marks = fitting_ticks(&across.axis, width, &theme);
+                self.frame(&rect, &marks, &ticks);
+                self.axis_breaks(&rect, across, side);
+                if column == 0 {
+                    self.vertical_labels(&rect, &ticks, side);
+                }
+                if index + count >= total {
+                    lowest = lowest.max(self.horizontal_labels(&rect, &marks, across));
+                }
+                panels.push(Panel { rect, x: across.axis.clone(), y: side.axis.clone() });
+            }
+            self.y += height + 0.75 * theme.tick_font;
+        }
+        if let (Some(title), Some(first), Some(last)) = (&grid.shared_title, panels.first(), panels.last()) {
+            self.vertical_title([title.clone()], (first.rect.y + last.rect.bottom()) / 2.0);
+        }
+        self.y = lowest;
+        panels
+    }
+
+    fn frame(&mut self, rect: &Rect, x: &Ticks, y: &Ticks) {
+        let stroke = Stroke::solid(INK, self.theme.thin);
+        let grid = Stroke::solid(GRID, 0.8 * self.theme.thin);
+        let (long, short) = (self.tick_length(), 0.55 * self.tick_length());
+        let across = |f: f64| rect.x + f * rect.w;
+        let up = |f: f64| rect.bottom() - f * rect.h;
+        for (f, _) in &x.major {
+            self.scene.line(Layer::Grid, [(across(*f), rect.y), (across(*f), rect.bottom())], grid);
+        }
+        for (f, _) in &y.major {
+            self.scene.line(Layer::Grid, [(rect.x, up(*f)), (rect.right(), up(*f))], grid);
+        }
+        let ends = |ticks: &Ticks| -> Vec<(f64, f64)> {
+            let minor = ticks.minor.iter().map(|f| (*f, short));
+            ticks.major.iter().map(|(f, _)| (*f, long)).chain(minor).collect()
+        };
+        for (f, length) in ends(x) {
+            self.scene.line(Layer::Frame, [(across(f), rect.bottom()), (across(f), rect.bottom() + length)], stroke);
+        }
+        for (f, length) in ends(y) {
+            self.scene.line(Layer::Frame, [(rect.x - length, up(f)), (rect.x, up(f))], stroke);
+        }
+        let (l, t, r, b) = (rect.x, rect.y, rect.right(), rect.bottom());
+        // The first corner is repeated and passed, so that it gets a join like the others.
+        self.scene.line(Layer::Frame, [(l, t), (r, t), (r, b), (l, b), (l, t), (r, t)], stroke);
+    }
+
+    /// Two short slanted lines on the frame where a logarithmic axis jumps to zero.
+    fn axis_breaks(&mut self, rect: &Rect, x: &Side, y: &Side) {
+        let size = 0.45 * self.theme.tick_font;
+        let mut mark = |centre: (f64, f64), along: (f64, f64)| {
+            let side = |s: f64| (centre.0 + s * along.0, centre.1 + s * along.1);
+            let slant = |(cx, cy): (f64, f64)| {
+                // Perpendicular to the axis, leaning along it.
+                let (dx, dy) = (along.1.abs() + 0.4 * along.0.abs(), along.0.abs() + 0.4 * along.1.abs());
+                [(cx - size * dx, cy + size * dy), (cx + size * dx, cy - size * dy)]
+            };
+            let (a, b) = (side(-0.35 * size), side(0.35 * size));
+            let (sa, sb) = (slant(a), slant(b));
+            self.scene.fill(Layer::Frame, [sa[0], sa[1], sb[1], sb[0]], PAPER, 1.0);
+            self.scene.line(Layer::Frame, sa, Stroke::solid(INK, self.theme.thin));
+            self.scene.line(Layer::Frame, sb, Stroke::solid(INK, self.theme.thin));
+        };
+        if let Some(f) = x.axis.break_at() {
+            mark((rect.x + f * rect.w, rect.bottom()), (1.0, 0.0));
+        }
+        if let Some(f) = y.axis.break_at() {
+            mark((rect.x, rect.bottom() - f * rect.h), (0.0, 1.0));
+        }
+    }
+
+    fn vertical_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &Side) {
+        let theme = self.theme;
+        let end = rect.x - self.tick_length() - 0.3 * theme.tick_font;
+        for (f, label) in &ticks.major {
+            let text = Text::new(label.as_str(), theme.tick_font).anchor(Anchor::End);
+            let y = rect.bottom() - f * rect.h + text.centring();
+            self.scene.text(Layer::Frame, (end, y), text);
+        }
+        self.vertical_title(self.row_title(side, rect.h), rect.y + rect.h / 2.0);
+    }
+
+    fn vertical_title(&mut self, lines: impl IntoIterator<Item = String>, middle: f64) {
+        let theme = self.theme;
+        for (i, line) in lines.into_iter().enumerate() {
+            let x = 0.5 * theme.small_font + (0.85 + 1.2 * i as f64) * theme.label_font;
+            let text = Text { turned: true, ..Text::new(line, theme.label_font).anchor(Anchor::Middle) };
+            self.scene.text(Layer::Frame, (x, middle), text);
+        }
+    }
+
+    /// Labels and title under a panel; returns where they end.
+    fn horizontal_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &Side) -> f64 {
+        let theme = self.theme;
+        let base = rect.bottom() + self.tick_length() + 1.05 * theme.tick_font;
+        for (f, label) in &ticks.major {
+            let text = Text::new(label.as_str(), theme.tick_font).anchor(Anchor::Middle);
+            self.scene.text(Layer::Frame, (rect.x + f * rect.w, base), text);
+        }
+        let mut y = base + 0.25 * theme.label_font;
+        for line in wrap(&side.title, theme.label_font, false, rect.w + theme.label_font) {
+            y += 1.2 * theme.label_font;
+            let text = Text::new(line, theme.label_font).anchor(Anchor::Middle);
+            self.scene.text(Layer::Frame, (rect.x + rect.w / 2.0, y), text);
+        }
+        y + 0.8 * theme.label_font
+    }
+
+    /// The finished figure.
+    pub(crate) fn finish(self) -> Figure {
+        let height = self.y + 0.3 * self.theme.small_font;
+        let svg = svg::render(&self.scene, self.theme.width, height);
+        Figure::new(svg, self.theme.width, height, self.theme.dpi)
+    }
+}
+
+/// As many ticks as their labels leave room for.
+fn fitting_ticks(axis: &Axis, width: f64, theme: &Theme) -> Ticks {
+    let gap = 1.0 * theme.tick_font;
+    let fits = |ticks: &Ticks| {
+        ticks.major.windows(2).all(|pair| {
+            let half = |label: &str| Text::new(label, theme.tick_font).width() / 2.0;
+            (pair[1].0 - pair[0].0).abs() * width >= half(&pair[0].1) + half(&pair[1].1) + gap
+        })
+    };
+    (2..=10).rev().map(|count| axis.ticks(count)).find(fits).unwrap_or_else(|| axis.ticks(1))
+}
+
+fn label_width(ticks: &Ticks, theme: &Theme) -> f64 {
+    ticks.major.iter().map(|(_, label)| Text::new(label.as_str(), theme.tick_font).width()).fold(0.0, f64::max)
+}
+
+/// Splits a text at (breaking) spaces into lines of at most `width` points; a single longer word stays whole.
+pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    // Not at every white space: a no-break space keeps a symbol and its value together.
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match longer.filter(|line| crate::fonts::width(line, size, bold) <= width) {
+            Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ticks::Steps;
+
+    #[test]
+    fn panels_share_edges_and_stay_on_the_page() {
+        let theme = Theme::paper(85.0, 300.0).unwrap();
+        let mut sheet = Sheet::new(&theme, Some("title"));
+        let side = |hi: f64| Side::new(Axis::linear(0.0, hi, Steps::Decimal), "quantity [unit]");
+        let rows = vec![(side(1e5), 60.0), (side(0.001), 40.0)];
+        let panels = sheet.grid(Grid { panels: Some(3), ..Grid::new(vec![side(1.0), side(2.0)], rows) });
+        assert_eq!(panels.len(), 3);
+        assert_eq!(panels[0].rect.x, panels[2].rect.x);
+        assert_eq!(panels[0].rect.y, panels[1].rect.y);
+        assert!(panels.iter().all(|p| p.rect.x > 0.0 && p.rect.right() < theme.width));
+        let figure = sheet.finish();
+        assert!(figure.size().1 > panels[2].rect.bottom());
+        assert_eq!(
+            figure.svg().matches(">\nquantity [unit]").count() + figure.svg().matches(">\nquantity\n").count(),
+            4
+        );
+    }
+
+    #[test]
+    fn text_wraps_at_spaces_only() {
+        assert_eq!(wrap("one two three", 10.0, false, 45.0), ["one two", "three"]);
+        assert_eq!(wrap("indivisible", 10.0, false, 5.0), ["indivisible"]);
+        assert!(wrap("  ", 10.0, false, 5.0).is_empty());
+    }
+}

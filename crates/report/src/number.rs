@@ -1,0 +1,141 @@
+//! Numbers as a reader of tables and axes wants them: a true minus sign, as many digits as the uncertainty supports, a
+//! dash for what is not defined. All functions are pure; none rounds a value that is used again.
+
+/// What stands for a value that is not defined.
+pub const MISSING: &str = "–";
+
+/// Smallest and largest magnitude written without a power of ten.
+const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
+
+/// More decimals than this say nothing about a double.
+const MAX_DECIMALS: i32 = 15;
+
+/// `value` with `decimals` decimals, a true minus sign and no negative zero; [`MISSING`] when it is not finite.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return MISSING.into();
+    }
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| matches!(b, b'0' | b'.')) => rest.into(),
+        Some(rest) => format!("−{rest}"),
+        None => text,
+    }
+}
+
+/// `value` with `digits` significant digits; a power of ten outside 1e-4 to 1e6.
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return MISSING.into();
+    }
+    let digits = digits.max(1);
+    if value == 0.0 || PLAIN.contains(&value.abs()) {
+        return fixed(value, decimals_for(value, digits));
+    }
+    let text = format!("{:.*e}", digits - 1, value);
+    let (mantissa, exponent) = text.split_once('e').expect("the exponent format always has an e");
+    let exponent: i32 = exponent.parse().expect("the exponent format ends in an integer");
+    format!("{}×{}", mantissa.replace('-', "−"), power_of_ten(exponent))
+}
+
+/// `0.1003 ± 0.0007`: the uncertainty with one significant digit (two when it starts with 1 or 2 or would round up to 10,
+/// where a single digit says too little), the value to the same decimal.
+///
+/// Without a usable uncertainty the value stands alone with five significant digits.
+pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
+    match sd.filter(|sd| sd.is_finite() && *sd > 0.0) {
+        Some(sd) if value.is_finite() => {
+            let decimals = decimals_of_uncertainty(sd);
+            format!("{} ± {}", fixed(value, decimals), fixed(sd, decimals))
+        }
+        _ => significant(value, 5),
+    }
+}
+
+/// `[0.0989, 0.1017]`: both ends to the decimal their distance supports; [`MISSING`] when there is none.
+pub fn interval(bounds: Option<[f64; 2]>) -> String {
+    match bounds {
+        Some([lo, hi]) if lo.is_finite() && hi.is_finite() => {
+            // An interval of 95 % is about four standard deviations wide.
+            let sd = (hi - lo).abs() / 4.0;
+            let decimals = if sd > 0.0 { decimals_of_uncertainty(sd) } else { decimals_for(lo, 5) };
+            format!("[{}, {}]", fixed(lo, decimals), fixed(hi, decimals))
+        }
+        _ => MISSING.into(),
+    }
+}
+
+/// `value` to `decimals` places, or [`MISSING`].
+pub fn optional(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| MISSING.into(), |v| fixed(v, decimals))
+}
+
+/// `10⁻³` for −3.
+pub fn power_of_ten(exponent: i32) -> String {
+    let superscript = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).expect("⁰ and ⁴ to ⁹ are consecutive"),
+    };
+    let digits: String = exponent.to_string().chars().map(superscript).collect();
+    format!("10{digits}")
+}
+
+/// Decimals that show `digits` significant digits of `value`.
+fn decimals_for(value: f64, digits: usize) -> usize {
+    if value == 0.0 {
+        return 0;
+    }
+    let exponent = exponent(value, digits);
+    (digits as i32 - 1 - exponent).clamp(0, MAX_DECIMALS) as usize
+}
+
+/// Decimals that show an uncertainty with one digit, or two when that digit would be a 1 or a 2.
+fn decimals_of_uncertainty(sd: f64) -> usize {
+    let leading = sd / 10f64.powi(exponent(sd, 2));
+    decimals_for(sd, if (2.95..9.5).contains(&leading) { 1 } else { 2 })
+}
+
+/// Power of ten of the leading digit after rounding to `digits`, so that 0.0999 with two digits counts as 0.10.
+fn exponent(value: f64, digits: usize) -> i32 {
+    let text = format!("{:.*e}", digits - 1, value);
+    text.split_once('e').and_then(|(_, e)| e.parse().ok()).expect("the exponent format ends in an integer")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_follow_the_uncertainty() {
+        assert_eq!(with_uncertainty(0.100_312, Some(0.000_71)), "0.1003 ± 0.0007");
+        assert_eq!(with_uncertainty(18.0321, Some(0.234)), "18.03 ± 0.23");
+        assert_eq!(with_uncertainty(-0.5, Some(0.099)), "−0.500 ± 0.099");
+        assert_eq!(with_uncertainty(1234.5, Some(56.0)), "1234 ± 56");
+        assert_eq!(with_uncertainty(0.1003, None), "0.10030");
+        assert_eq!(with_uncertainty(0.1003, Some(0.0)), "0.10030");
+        assert_eq!(with_uncertainty(f64::NAN, Some(1.0)), "–");
+    }
+
+    #[test]
+    fn intervals_and_missing() {
+        assert_eq!(interval(Some([0.098_91, 0.101_69])), "[0.0989, 0.1017]");
+        assert_eq!(interval(Some([1.0, 1.0])), "[1.0000, 1.0000]");
+        assert_eq!(interval(None), "–");
+        assert_eq!(interval(Some([f64::NAN, 1.0])), "–");
+        assert_eq!(optional(None, 2), "–");
+        assert_eq!(optional(Some(-1.005), 1), "−1.0");
+    }
+
+    #[test]
+    fn no_negative_zero_and_powers_of_ten() {
+        assert_eq!(fixed(-0.001, 2), "0.00");
+        assert_eq!(significant(-1.234e-7, 3), "−1.23×10⁻⁷");
+        assert_eq!(significant(0.0, 3), "0");
+        assert_eq!(significant(12_345.0, 3), "12345");
+        assert_eq!(power_of_ten(-10), "10⁻¹⁰");
+        assert_eq!(power_of_ten(456), "10⁴⁵⁶");
+    }
+}

@@ -1,0 +1,169 @@
+//! Who is drawn how: one colour, marker and dash for every identification method, the record, the truth and the bound,
+//! the same in every figure. The colours are those of Okabe & Ito (2008), "Color universal design", told apart with any
+//! common colour blindness; their yellow, too pale on paper, is replaced by a wine red. Marker and dash repeat the
+//! distinction for prints in grey.
+
+use plotters::style::RGBColor;
+use serde::{Deserialize, Serialize};
+
+/// Whom a curve or a value comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Origin {
+    /// The measured (or simulated and noisy) record.
+    Record,
+    /// The noise-free truth of a simulation.
+    Truth,
+    /// A value printed in the literature.
+    Published,
+    /// The Cramér–Rao bound.
+    Bound,
+    /// An identification method, by its id.
+    Method(String),
+}
+
+impl Origin {
+    /// The name in a legend.
+    pub fn label(&self) -> &str {
+        match self {
+            Self::Record => "record",
+            Self::Truth => "truth",
+            Self::Published => "published",
+            Self::Bound => "Cramér–Rao bound",
+            Self::Method(id) => id,
+        }
+    }
+
+    /// How it is drawn.
+    pub fn look(&self) -> Look {
+        match self {
+            Self::Record => Look::new(RECORD, Marker::Circle, SOLID),
+            Self::Truth => Look::new(INK, Marker::Circle, SOLID),
+            Self::Published => Look::new(RECORD, Marker::Cross, DASHED),
+            Self::Bound => Look::new(INK, Marker::Plus, DOTTED),
+            Self::Method(id) => method_look(id),
+        }
+    }
+}
+
+/// Lengths of dash and gap, in line widths; empty is a solid line.
+pub type Dash = &'static [f64];
+
+/// A solid line.
+pub const SOLID: Dash = &[];
+/// A dashed line.
+pub const DASHED: Dash = &[5.0, 2.5];
+/// A dotted line.
+pub const DOTTED: Dash = &[1.4, 1.8];
+/// A dash-dotted line.
+pub const DASH_DOT: Dash = &[6.0, 2.0, 1.4, 2.0];
+const LONG_DASH: Dash = &[10.0, 2.5];
+const DASH_DOT_DOT: Dash = &[6.0, 1.8, 1.4, 1.8, 1.4, 1.8];
+const SHORT_DASH: Dash = &[3.0, 1.6];
+
+/// Text, frames and the truth.
+pub const INK: RGBColor = RGBColor(0x11, 0x11, 0x11);
+/// The record.
+pub const RECORD: RGBColor = RGBColor(0x77, 0x77, 0x77);
+/// Grid lines.
+pub const GRID: RGBColor = RGBColor(0xE2, 0xE2, 0xE2);
+/// Background.
+pub const PAPER: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
+/// The heading in a figure without methods.
+pub const HEADING: RGBColor = RGBColor(0x00, 0x72, 0xB2);
+/// The rudder.
+pub const RUDDER: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
+/// Dimension lines and their numbers.
+pub const DIMENSION: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
+
+/// Shape of a marker.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Marker {
+    /// ●
+    Circle,
+    /// ■
+    Square,
+    /// ▲
+    Up,
+    /// ▼
+    Down,
+    /// ◆
+    Diamond,
+    /// +
+    Plus,
+    /// ×
+    Cross,
+}
+
+/// How one origin is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Colour of line and marker.
+    pub colour: RGBColor,
+    /// Shape at the data points.
+    pub marker: Marker,
+    /// Pattern of the line.
+    pub dash: Dash,
+    /// Whether the marker is an outline only.
+    pub hollow: bool,
+}
+
+impl Look {
+    const fn new(colour: RGBColor, marker: Marker, dash: Dash) -> Self {
+        Self { colour, marker, dash, hollow: false }
+    }
+}
+
+const METHODS: [(&str, Look); 7] = [
+    ("fourier-published", Look::new(RGBColor(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
+    ("fourier-projected", Look::new(RGBColor(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
+    ("characteristic-points", Look::new(RGBColor(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
+    ("least-squares", Look::new(RGBColor(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
+    ("integral-least-squares", Look::new(RGBColor(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
+    ("output-error", Look::new(RGBColor(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
+    ("srivc", Look::new(RGBColor(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
+];
+
+/// The ids that have a look of their own, in the order figures list them.
+pub fn method_ids() -> impl Iterator<Item = &'static str> {
+    METHODS.iter().map(|(id, _)| *id)
+}
+
+/// A method outside the list keeps its look through all figures too: its name picks colour, marker and dash, and the
+/// hollow marker keeps it apart from the known methods.
+fn method_look(id: &str) -> Look {
+    if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
+        return *look;
+    }
+    // FNV-1a, because the standard hasher does not promise the same value in the next release.
+    let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    let filled = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
+    let pick = |shift: u32, n: usize| (hash >> shift) as usize % n;
+    Look {
+        colour: METHODS[pick(0, METHODS.len())].1.colour,
+        marker: filled[pick(16, filled.len())],
+        dash: METHODS[pick(32, METHODS.len())].1.dash,
+        hollow: true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn methods_differ_in_colour_marker_and_dash() {
+        for (i, (_, a)) in METHODS.iter().enumerate() {
+            for (_, b) in &METHODS[i + 1..] {
+                assert!(a.colour != b.colour && a.marker != b.marker && a.dash != b.dash);
+            }
+        }
+    }
+
+    #[test]
+    fn unknown_method_has_a_stable_hollow_look() {
+        let look = Origin::Method("ridge".into()).look();
+        assert_eq!(look, Origin::Method("ridge".into()).look());
+        assert!(look.hollow);
+    }
+}

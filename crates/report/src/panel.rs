@@ -1,0 +1,118 @@
+//! One pair of axes on the page: where a value lies, and the things every figure draws there. Everything is cut at the
+//! frame; undefined values are left out.
+
+use plotters::style::RGBColor;
+
+use crate::axis::Axis;
+use crate::clip::{self, Place, Rect};
+use crate::palette::Look;
+use crate::scene::{Layer, Scene, Stroke};
+
+/// Finest detail along a line, points: a dense record is thinned to this.
+const FINEST: f64 = 0.2;
+
+/// A rectangle with two axes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Panel {
+    pub rect: Rect,
+    pub x: Axis,
+    pub y: Axis,
+}
+
+impl Panel {
+    /// Horizontal place of a value.
+    pub(crate) fn across(&self, x: f64) -> Option<f64> {
+        Some(self.rect.x + self.x.fraction(x)? * self.rect.w)
+    }
+
+    /// Vertical place of a value.
+    pub(crate) fn up(&self, y: f64) -> Option<f64> {
+        Some(self.rect.bottom() - self.y.fraction(y)? * self.rect.h)
+    }
+
+    /// Place of a pair of values, also outside the frame.
+    pub(crate) fn place(&self, (x, y): (f64, f64)) -> Option<Place> {
+        Some((self.across(x)?, self.up(y)?))
+    }
+
+    /// Place of a pair of values inside the frame.
+    pub(crate) fn inside(&self, pair: (f64, f64)) -> Option<Place> {
+        self.place(pair).filter(|place| self.rect.contains(*place))
+    }
+
+    /// A line through `pairs`, broken at gaps.
+    pub(crate) fn line(&self, scene: &mut Scene, pairs: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) {
+        for part in clip::clip(pairs.into_iter().map(|pair| self.place(pair)), &self.rect) {
+            scene.line(Layer::Data, clip::thin(part, FINEST), stroke);
+        }
+    }
+
+    /// Dots; points that would land on the same spot are drawn once.
+    pub(crate) fn dots(
+        &self,
+        scene: &mut Scene,
+        pairs: impl IntoIterator<Item = (f64, f64)>,
+        radius: f64,
+        colour: RGBColor,
+    ) {
+        let mut last: Option<Place> = None;
+        for place in pairs.into_iter().filter_map(|pair| self.inside(pair)) {
+            let is_new = last.is_none_or(|(x, y)| (place.0 - x).hypot(place.1 - y) > FINEST);
+            if is_new {
+                scene.disc(Layer::Data, place, radius, colour, 1.0);
+                last = Some(place);
+            }
+        }
+    }
+
+    /// A marker at one pair.
+    pub(crate) fn marker(&self, scene: &mut Scene, pair: (f64, f64), radius: f64, look: &Look) {
+        if let Some(place) = self.inside(pair) {
+            scene.marker(Layer::Data, place, radius, look);
+        }
+    }
+
+    /// A line from bottom to top.
+    pub(crate) fn vertical(&self, scene: &mut Scene, layer: Layer, x: f64, stroke: Stroke) {
+        if let Some(x) = self.across(x).filter(|x| self.rect.contains((*x, self.rect.y))) {
+            scene.line(layer, [(x, self.rect.y), (x, self.rect.bottom())], stroke);
+        }
+    }
+
+    /// A line from left to right.
+    pub(crate) fn horizontal(&self, scene: &mut Scene, layer: Layer, y: f64, stroke: Stroke) {
+        if let Some(y) = self.up(y).filter(|y| self.rect.contains((self.rect.x, *y))) {
+            scene.line(layer, [(self.rect.x, y), (self.rect.right(), y)], stroke);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::palette::INK;
+    use crate::ticks::Steps;
+
+    fn panel() -> Panel {
+        Panel {
+            rect: Rect { x: 10.0, y: 20.0, w: 100.0, h: 50.0 },
+            x: Axis::linear(0.0, 10.0, Steps::Decimal),
+            y: Axis::linear(-1.0, 1.0, Steps::Decimal),
+        }
+    }
+
+    #[test]
+    fn places_and_cuts() {
+        let panel = panel();
+        assert_eq!(panel.place((5.0, 0.0)), Some((60.0, 45.0)));
+        assert_eq!(panel.inside((5.0, 1.5)), None);
+        assert_eq!(panel.place((f64::NAN, 0.0)), None);
+    }
+
+    #[test]
+    fn dense_points_are_drawn_once() {
+        let mut scene = Scene::default();
+        panel().dots(&mut scene, (0..1000).map(|i| (5.0 + 1e-6 * f64::from(i), 0.0)), 1.0, INK);
+        assert_eq!(scene.shapes().len(), 1);
+    }
+}

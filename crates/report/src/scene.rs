@@ -1,0 +1,247 @@
+//! A drawing as a list of shapes in points on the page. Figures fill a scene; [`crate::svg`] writes it out. The list in
+//! between is what lets a frame be drawn after the data it encloses, and what keeps undefined coordinates out.
+
+use plotters::style::RGBColor;
+
+use crate::clip::{Place, Rect};
+use crate::fonts;
+use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
+
+/// Opens italic type inside a text (a character of the private-use area; [`crate::svg`] turns it into markup).
+const ITALIC_ON: char = '\u{e000}';
+/// Ends italic type.
+const ITALIC_OFF: char = '\u{e001}';
+
+/// Whether a character is one of the two marks around italic type.
+pub(crate) fn is_markup(c: char) -> bool {
+    c == ITALIC_ON || c == ITALIC_OFF
+}
+
+/// A quantity symbol, set in italic as ISO 80000-1 wants it.
+pub(crate) fn symbol(text: &str) -> String {
+    format!("{ITALIC_ON}{text}{ITALIC_OFF}")
+}
+
+/// Splits a text into runs of upright and italic type.
+pub(crate) fn runs(text: &str) -> Vec<(bool, &str)> {
+    let mut italic = false;
+    let mut runs = Vec::new();
+    for piece in text.split_inclusive(is_markup) {
+        let visible = piece.trim_end_matches(is_markup);
+        if !visible.is_empty() {
+            runs.push((italic, visible));
+        }
+        italic = piece.ends_with(ITALIC_ON);
+    }
+    runs
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stroke {
+    pub colour: RGBColor,
+    pub opacity: f64,
+    /// Points.
+    pub width: f64,
+    /// In widths of the line.
+    pub dash: Dash,
+}
+
+impl Stroke {
+    pub(crate) fn solid(colour: RGBColor, width: f64) -> Self {
+        Self { colour, opacity: 1.0, width, dash: SOLID }
+    }
+
+    pub(crate) fn dashed(self, dash: Dash) -> Self {
+        Self { dash, ..self }
+    }
+}
+
+/// Which end of a text stands at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A line of text; `place` is on the base line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Text {
+    pub text: String,
+    pub size: f64,
+    pub colour: RGBColor,
+    pub bold: bool,
+    pub anchor: Anchor,
+    /// Turned a quarter to the left, as the title of a vertical axis.
+    pub turned: bool,
+}
+
+impl Text {
+    pub(crate) fn new(text: impl Into<String>, size: f64) -> Self {
+        Self { text: text.into(), size, colour: INK, bold: false, anchor: Anchor::Start, turned: false }
+    }
+
+    pub(crate) fn anchor(self, anchor: Anchor) -> Self {
+        Self { anchor, ..self }
+    }
+
+    pub(crate) fn colour(self, colour: RGBColor) -> Self {
+        Self { colour, ..self }
+    }
+
+    pub(crate) fn width(&self) -> f64 {
+        fonts::width(&self.text, self.size, self.bold)
+    }
+
+    /// From the middle of a capital letter down to the base line.
+    pub(crate) fn centring(&self) -> f64 {
+        0.36 * self.size
+    }
+
+    /// The box around an unturned text at `place`.
+    pub(crate) fn bounds(&self, (x, y): Place) -> Rect {
+        let w = self.width();
+        let left = match self.anchor {
+            Anchor::Start => x,
+            Anchor::Middle => x - w / 2.0,
+            Anchor::End => x - w,
+        };
+        Rect { x: left, y: y - 0.8 * self.size, w, h: 1.02 * self.size }
+    }
+}
+
+/// What is drawn over what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Layer {
+    Grid,
+    Data,
+    Frame,
+    Note,
+}
+
+/// One thing to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Shape {
+    Line { points: Vec<Place>, stroke: Stroke },
+    Fill { points: Vec<Place>, colour: RGBColor, opacity: f64 },
+    Disc { centre: Place, radius: f64, colour: RGBColor, opacity: f64 },
+    Text { place: Place, text: Text },
+}
+
+/// The shapes of one figure.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Scene {
+    shapes: Vec<(Layer, Shape)>,
+}
+
+impl Scene {
+    /// The shapes from the bottom layer to the top, each layer in the order of drawing.
+    pub(crate) fn shapes(&self) -> Vec<&Shape> {
+        let mut order: Vec<&(Layer, Shape)> = self.shapes.iter().collect();
+        order.sort_by_key(|(layer, _)| *layer);
+        order.into_iter().map(|(_, shape)| shape).collect()
+    }
+
+    pub(crate) fn line(&mut self, layer: Layer, points: impl Into<Vec<Place>>, stroke: Stroke) {
+        let points = points.into();
+        if points.len() > 1 && finite(&points) {
+            self.shapes.push((layer, Shape::Line { points, stroke }));
+        }
+    }
+
+    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: RGBColor, opacity: f64) {
+        let points = points.into();
+        if points.len() > 2 && finite(&points) {
+            self.shapes.push((layer, Shape::Fill { points, colour, opacity }));
+        }
+    }
+
+    pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: RGBColor, opacity: f64) {
+        if finite(&[centre]) {
+            self.shapes.push((layer, Shape::Disc { centre, radius, colour, opacity }));
+        }
+    }
+
+    pub(crate) fn text(&mut self, layer: Layer, place: Place, text: Text) {
+        if finite(&[place]) && !text.text.trim().is_empty() {
+            self.shapes.push((layer, Shape::Text { place, text }));
+        }
+    }
+
+    /// A text on a white ground, for places where lines run underneath.
+    pub(crate) fn text_on_ground(&mut self, layer: Layer, place: Place, text: Text) {
+        let Rect { x, y, w, h } = text.bounds(place);
+        let margin = 0.12 * text.size;
+        let (left, right) = (x - margin, x + w + margin);
+        self.fill(layer, [(left, y), (right, y), (right, y + h), (left, y + h)], PAPER, 0.85);
+        self.text(layer, place, text);
+    }
+
+    /// A marker of `radius` points, with a white edge that keeps it apart from lines and neighbours.
+    pub(crate) fn marker(&mut self, layer: Layer, (x, y): Place, radius: f64, look: &Look) {
+        let edge = 0.25 * radius;
+        let at = |scale: f64, corners: &[(f64, f64)]| -> Vec<Place> {
+            corners.iter().map(|(dx, dy)| (x + dx * scale * radius, y + dy * scale * radius)).collect()
+        };
+        let strokes: &[[(f64, f64); 2]] = match look.marker {
+            Marker::Plus => &[[(-1.1, 0.0), (1.1, 0.0)], [(0.0, -1.1), (0.0, 1.1)]],
+            Marker::Cross => &[[(-0.9, -0.9), (0.9, 0.9)], [(-0.9, 0.9), (0.9, -0.9)]],
+            _ => &[],
+        };
+        for ends in strokes {
+            self.line(layer, at(1.15, ends), Stroke::solid(PAPER, 0.55 * radius + 2.0 * edge));
+        }
+        for ends in strokes {
+            self.line(layer, at(1.0, ends), Stroke::solid(look.colour, 0.55 * radius));
+        }
+        let corners: &[(f64, f64)] = match look.marker {
+            Marker::Square => &[(-0.85, -0.85), (0.85, -0.85), (0.85, 0.85), (-0.85, 0.85)],
+            Marker::Up => &[(0.0, -1.15), (1.05, 0.75), (-1.05, 0.75)],
+            Marker::Down => &[(0.0, 1.15), (1.05, -0.75), (-1.05, -0.75)],
+            Marker::Diamond => &[(0.0, -1.2), (1.0, 0.0), (0.0, 1.2), (-1.0, 0.0)],
+            Marker::Circle | Marker::Plus | Marker::Cross => &[],
+        };
+        if look.marker == Marker::Circle {
+            self.disc(layer, (x, y), radius + edge, PAPER, 1.0);
+            self.disc(layer, (x, y), radius, look.colour, 1.0);
+            if look.hollow {
+                self.disc(layer, (x, y), 0.55 * radius, PAPER, 1.0);
+            }
+        } else if !corners.is_empty() {
+            self.fill(layer, at(1.0 + edge / radius, corners), PAPER, 1.0);
+            self.fill(layer, at(1.0, corners), look.colour, 1.0);
+            if look.hollow {
+                self.fill(layer, at(0.5, corners), PAPER, 1.0);
+            }
+        }
+    }
+}
+
+fn finite(points: &[Place]) -> bool {
+    points.iter().all(|(x, y)| x.is_finite() && y.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn undefined_coordinates_never_enter() {
+        let mut scene = Scene::default();
+        scene.line(Layer::Data, [(0.0, f64::NAN), (1.0, 1.0)], Stroke::solid(INK, 1.0));
+        scene.disc(Layer::Data, (f64::INFINITY, 0.0), 1.0, INK, 1.0);
+        scene.text(Layer::Data, (0.0, f64::NAN), Text::new("a", 8.0));
+        assert!(scene.shapes().is_empty());
+    }
+
+    #[test]
+    fn layers_are_sorted_and_italics_split() {
+        let mut scene = Scene::default();
+        scene.text(Layer::Note, (0.0, 0.0), Text::new("b", 8.0));
+        scene.disc(Layer::Grid, (0.0, 0.0), 1.0, INK, 1.0);
+        assert!(matches!(scene.shapes()[0], Shape::Disc { .. }));
+        assert_eq!(runs(&format!("rate {} [°/s]", symbol("r"))), [(false, "rate "), (true, "r"), (false, " [°/s]")]);
+        assert_eq!(runs("\u{e001}a\u{e000}"), [(false, "a")]);
+    }
+}

@@ -1,0 +1,36 @@
+//! A table in Markdown (the GitHub flavour).
+
+use super::{Alignment, Table, width};
+
+pub(super) fn render(table: &Table) -> String {
+    // Escaping comes before padding, so that the columns of the source line up too.
+    let escaped = Table {
+        title: None,
+        columns: table
+            .columns
+            .iter()
+            .map(|c| super::Column { heading: escape(&c.heading), unit: c.unit.as_deref().map(escape), ..c.clone() })
+            .collect(),
+        rows: table.rows.iter().map(|r| r.iter().map(|c| c.as_deref().map(escape)).collect()).collect(),
+    };
+    let mut out = table.title.as_ref().map_or_else(String::new, |title| format!("**{}**\n\n", escape(title)));
+    for (i, line) in escaped.padded().iter().enumerate() {
+        out.push_str(&format!("| {} |\n", line.join(" | ")));
+        if i == 0 {
+            let rules: Vec<String> = line
+                .iter()
+                .zip(&table.columns)
+                .map(|(cell, column)| {
+                    let dashes = "-".repeat(width::columns(cell).max(2) - 1);
+                    if column.alignment == Alignment::Left { format!("-{dashes}") } else { format!("{dashes}:") }
+                })
+                .collect();
+            out.push_str(&format!("| {} |\n", rules.join(" | ")));
+        }
+    }
+    out
+}
+
+fn escape(text: &str) -> String {
+    text.replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r'], " ").replace('*', "\\*").replace('_', "\\_")
+}

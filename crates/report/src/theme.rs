@@ -1,0 +1,109 @@
+//! Sizes of a figure: everything is in points (1/72 inch) on the finished page, so one theme decides whether a figure
+//! can be read. Colours are in [`crate::palette`]; where things go is decided in the layout.
+
+use crate::error::ReportError;
+
+const POINTS_PER_MM: f64 = 72.0 / 25.4;
+/// Width of a journal column, mm: the narrowest place a figure is usually printed in.
+const COLUMN_MM: f64 = 85.0;
+/// Width of a full page of text, mm.
+const PAGE_MM: f64 = 180.0;
+const WIDTH_MM: [f64; 2] = [60.0, 400.0];
+const DPI: [f64; 2] = [72.0, 1200.0];
+
+/// Sizes of a figure, in points on the finished page.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Theme {
+    pub(crate) width: f64,
+    pub(crate) dpi: f64,
+    /// Numbers at the ticks.
+    pub(crate) tick_font: f64,
+    /// Axis titles.
+    pub(crate) label_font: f64,
+    /// Legends, annotations and notes.
+    pub(crate) small_font: f64,
+    /// Title above the figure.
+    pub(crate) title_font: f64,
+    /// Curves.
+    pub(crate) line: f64,
+    /// Frames, ticks, dimension lines.
+    pub(crate) thin: f64,
+    /// Radius of a marker.
+    pub(crate) marker: f64,
+    /// Radius of a measured point.
+    pub(crate) dot: f64,
+}
+
+impl Theme {
+    /// For a screen or a report page: 675 points (900 CSS pixels) wide, 192 dpi, so 1800 pixels across.
+    pub fn screen() -> Self {
+        Self {
+            width: 675.0,
+            dpi: 192.0,
+            tick_font: 10.5,
+            label_font: 12.0,
+            small_font: 10.5,
+            title_font: 13.0,
+            line: 1.35,
+            thin: 0.75,
+            marker: 3.0,
+            dot: 1.4,
+        }
+    }
+
+    /// For print at `width_mm` and `dpi`: type of 6.5 to 8 points whatever the width, as journals ask for.
+    ///
+    /// Fails outside 60–400 mm and 72–1200 dpi.
+    pub fn paper(width_mm: f64, dpi: f64) -> Result<Self, ReportError> {
+        let inside = |v: f64, [lo, hi]: [f64; 2]| v >= lo && v <= hi;
+        if !inside(width_mm, WIDTH_MM) {
+            return Err(ReportError::Width { width_mm, min_mm: WIDTH_MM[0], max_mm: WIDTH_MM[1] });
+        }
+        if !inside(dpi, DPI) {
+            return Err(ReportError::Resolution { dpi, min: DPI[0], max: DPI[1] });
+        }
+        let share = ((width_mm - COLUMN_MM) / (PAGE_MM - COLUMN_MM)).clamp(0.0, 1.0);
+        Ok(Self {
+            width: width_mm * POINTS_PER_MM,
+            dpi,
+            tick_font: 6.6 + share * 0.9,
+            label_font: 7.4 + share * 1.1,
+            small_font: 6.6 + share * 0.9,
+            title_font: 8.0 + share * 1.5,
+            line: 0.9 + share * 0.2,
+            thin: 0.5 + share * 0.1,
+            marker: 1.9 + share * 0.4,
+            dot: 0.9 + share * 0.2,
+        })
+    }
+
+    /// Height of a panel, points: `share` of the width, more in a narrow figure whose type is large beside its width.
+    pub(crate) fn tall(&self, share: f64) -> f64 {
+        share * self.width * if self.is_narrow() { 1.45 } else { 1.0 }
+    }
+
+    /// Whether the figure is so narrow that side-by-side arrangements have to be stacked.
+    pub(crate) fn is_narrow(&self) -> bool {
+        self.width / self.tick_font < 45.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn type_can_be_read_in_a_journal_column() {
+        let theme = Theme::paper(85.0, 600.0).unwrap();
+        assert!(theme.tick_font >= 6.5 && theme.small_font >= 6.5);
+        assert!((theme.width - 240.94).abs() < 0.01);
+        assert!(theme.is_narrow() && !Theme::screen().is_narrow());
+    }
+
+    #[test]
+    fn refuses_what_no_page_carries() {
+        assert!(matches!(Theme::paper(10.0, 300.0), Err(ReportError::Width { .. })));
+        assert!(matches!(Theme::paper(f64::NAN, 300.0), Err(ReportError::Width { .. })));
+        assert!(matches!(Theme::paper(85.0, 1e6), Err(ReportError::Resolution { .. })));
+    }
+}

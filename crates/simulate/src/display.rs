@@ -1,0 +1,69 @@
+//! The heading display in front of the helmsman during one run: the measured heading at its own instants, and a log of
+//! what was read, because a row of the record that falls on a reading holds the very same number.
+
+use rand::rngs::ChaCha8Rng;
+
+use crate::sensor::{HeadingSensor, quantise};
+use crate::stream::{Purpose, StreamKey, normal};
+use crate::wave_path::Waves;
+
+/// A reading this far (rad) short of the heading asked for has reached it: a multiple of the quantum may lie a rounding
+/// error below.
+const READING_TOLERANCE: f64 = 1e-9;
+
+/// One reading of the display.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reading {
+    /// Time, s.
+    pub time: f64,
+    /// Heading read, rad.
+    pub heading: f64,
+}
+
+/// The display in one run.
+#[derive(Debug)]
+pub(crate) struct Display {
+    period: f64,
+    next: u64,
+    base: f64,
+    sensor: HeadingSensor,
+    waves: Waves,
+    rng: ChaCha8Rng,
+    log: Vec<Reading>,
+}
+
+impl Display {
+    /// A display that is renewed every `period` s; the base course is what it shows, without noise, at `heading`.
+    pub fn new(period: f64, sensor: HeadingSensor, waves: Waves, key: &StreamKey, heading: f64) -> Self {
+        let base = quantise(heading + sensor.bias, sensor.quantum);
+        Self { period, next: 0, base, sensor, waves, rng: key.rng(Purpose::Display), log: Vec::with_capacity(1024) }
+    }
+
+    /// Passes over the readings before `t` (s): nobody looked.
+    pub fn skip_to(&mut self, t: f64) {
+        while self.next_time() < t {
+            self.next += 1;
+        }
+    }
+
+    /// Time of the next reading, s.
+    pub fn next_time(&self) -> f64 {
+        self.next as f64 * self.period
+    }
+
+    /// Reads the display at its next time, when the compass stands at `gyro` (rad): whether `side` · deviation ≥ `angle`.
+    pub fn read(&mut self, gyro: f64, side: f64, angle: f64) -> bool {
+        let time = self.next_time();
+        self.next += 1;
+        let [wave, _] = self.waves.at(time);
+        let noise = self.sensor.noise * normal(&mut self.rng);
+        let heading = quantise(gyro + wave + self.sensor.bias + noise, self.sensor.quantum);
+        self.log.push(Reading { time, heading });
+        side * (heading - self.base) >= angle - READING_TOLERANCE
+    }
+
+    /// What was read, in the order of time.
+    pub fn into_log(self) -> Vec<Reading> {
+        self.log
+    }
+}

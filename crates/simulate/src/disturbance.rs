@@ -1,0 +1,124 @@
+//! What the sea does to the ship, as a specification. Every moment is given as the rudder angle (rad) that has the same
+//! yaw moment at approach speed; waves are a heading that is seen on top of the response. The paths of one run are drawn
+//! in `weather` and `wave_path`, on grids that depend on nothing but this specification.
+
+use ship::narrow_band::NarrowBand;
+
+use crate::error::{self, Checked};
+
+/// A stationary first-order Gauss–Markov process: g' = −g/τ + white noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaussMarkov {
+    /// Standard deviation, in the unit of what it is added to.
+    pub sd: f64,
+    /// Correlation time τ, s.
+    pub correlation_time: f64,
+}
+
+/// A steady wind whose yaw moment depends on heading: w sin 2(ψ_w − ψ) (1 + g).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wind {
+    /// Largest moment w as equivalent rudder angle, rad.
+    pub moment: f64,
+    /// Direction ψ_w the true wind comes from, rad, clockwise from north.
+    pub from: f64,
+    /// True wind speed, m/s, where the record shall have wind channels; `None` leaves them out.
+    pub speed: Option<f64>,
+    /// Gusting g of the moment, dimensionless; the speed follows as the square root of 1 + g.
+    pub gusting: Option<GaussMarkov>,
+}
+
+/// A moment that is present for a part of the run only, with smooth (raised-cosine) edges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Squall {
+    /// Beginning, s from the beginning of the run.
+    pub start: f64,
+    /// Length, edges included, s.
+    pub duration: f64,
+    /// Length of each edge, s, at most half the duration.
+    pub edge: f64,
+    /// Moment between the edges as equivalent rudder angle, rad.
+    pub moment: f64,
+}
+
+/// Everything that acts on the ship beside its rudder; the default is a calm.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Disturbances {
+    /// Steady or gusting wind.
+    pub wind: Option<Wind>,
+    /// Gusts that act as a moment of their own, whatever the heading, rad.
+    pub gusts: Option<GaussMarkov>,
+    /// Linear trend of the moment from the beginning of the run, rad/s.
+    pub drift: f64,
+    /// A squall.
+    pub squall: Option<Squall>,
+    /// Random walk of the moment from 0: its standard deviation after one second, rad/√s.
+    pub random_walk: f64,
+    /// Narrow-band yaw from waves, added to the heading and yaw rate that are seen.
+    pub waves: Option<NarrowBand>,
+}
+
+impl Disturbances {
+    /// Whether a moment acts that depends on time alone.
+    pub(crate) fn has_moment_of_time(&self) -> bool {
+        self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0
+    }
+
+    /// Checks every value; fails with the first one that makes no sense.
+    pub fn validate(&self) -> Checked {
+        if let Some(wind) = &self.wind {
+            error::finite("disturbances.wind.moment", wind.moment)?;
+            error::finite("disturbances.wind.from", wind.from)?;
+            if let Some(speed) = wind.speed {
+                error::not_negative("disturbances.wind.speed", speed)?;
+            }
+            if let Some(gusting) = &wind.gusting {
+                error::not_negative("disturbances.wind.gusting.sd", gusting.sd)?;
+                error::positive("disturbances.wind.gusting.correlation_time", gusting.correlation_time)?;
+            }
+        }
+        if let Some(gusts) = &self.gusts {
+            error::not_negative("disturbances.gusts.sd", gusts.sd)?;
+            error::positive("disturbances.gusts.correlation_time", gusts.correlation_time)?;
+        }
+        error::finite("disturbances.drift", self.drift)?;
+        if let Some(squall) = &self.squall {
+            error::not_negative("disturbances.squall.start", squall.start)?;
+            error::positive("disturbances.squall.duration", squall.duration)?;
+            error::between("disturbances.squall.edge", squall.edge, 0.0, 0.5 * squall.duration)?;
+            error::finite("disturbances.squall.moment", squall.moment)?;
+        }
+        error::not_negative("disturbances.random_walk", self.random_walk)?;
+        if let Some(waves) = &self.waves {
+            error::not_negative("disturbances.waves.sd", waves.sd)?;
+            error::positive("disturbances.waves.frequency", waves.frequency)?;
+            error::between("disturbances.waves.damping", waves.damping, 0.0, LARGEST_DAMPING)?;
+        }
+        Ok(())
+    }
+}
+
+/// Relative damping up to which [`NarrowBand`] is an oscillator; at 1 its damped frequency is zero.
+const LARGEST_DAMPING: f64 = 0.999;
+
+impl Squall {
+    /// Moment at time `t`, rad: 0 outside, raised cosine over the edges.
+    pub fn moment(&self, t: f64) -> f64 {
+        let inside = (t - self.start).min(self.start + self.duration - t);
+        if inside <= 0.0 {
+            0.0
+        } else if inside < self.edge {
+            0.5 * self.moment * (1.0 - (std::f64::consts::PI * inside / self.edge).cos())
+        } else {
+            self.moment
+        }
+    }
+}
+
+impl Wind {
+    /// Yaw moment as equivalent rudder angle, rad, at heading `heading` (rad) and gust factor `gust` = 1 + g.
+    #[inline]
+    pub fn yaw_moment(&self, heading: f64, gust: f64) -> f64 {
+        self.moment * gust * (2.0 * (self.from - heading)).sin()
+    }
+}

@@ -1,0 +1,264 @@
+//! The steering gear: how the rudder follows an order. For a constant order the path of the rudder is known in closed
+//! form, so it is kept as a list of segments with exact ends, never integrated. What the gear is ordered to do is decided
+//! in [`crate::helm`].
+
+use ship::Polyline;
+
+use crate::error::{self, Checked};
+
+/// A steering gear with optional rate limit, lag, dead time, dead band and stops.
+///
+/// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, where δ_c is the order one dead time ago, held within the
+/// stops; the pump stands still as soon as the error is inside the dead band. Rate in rad/s (infinite: the rudder jumps),
+/// lag and dead time in s, angles in rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteeringGear {
+    /// Largest rudder rate, rad/s; infinite for none.
+    pub rate: f64,
+    /// Time constant of the first-order approach to the order, s; 0 for none.
+    pub lag: f64,
+    /// Time from order to first movement, s.
+    pub dead_time: f64,
+    /// Error at which the pump stops, and below which it does not start, rad.
+    pub dead_band: f64,
+    /// Largest rudder angle to either side, rad; infinite for none.
+    pub maximum: f64,
+}
+
+impl Default for SteeringGear {
+    /// A gear that does at once what it is told.
+    fn default() -> Self {
+        Self { rate: f64::INFINITY, lag: 0.0, dead_time: 0.0, dead_band: 0.0, maximum: f64::INFINITY }
+    }
+}
+
+/// How the rudder moves within one [`Segment`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// It stands still.
+    Hold,
+    /// It moves at a constant rate, rad/s.
+    Ramp {
+        /// Rate with its sign, rad/s.
+        rate: f64,
+    },
+    /// It approaches `target` as target + (angle − target) exp(−(t − start)/lag).
+    Exponential {
+        /// Angle approached, rad.
+        target: f64,
+        /// Time constant, s.
+        lag: f64,
+    },
+}
+
+/// A piece of the path of the rudder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Beginning, s; −∞ for the segment before everything.
+    pub start: f64,
+    /// End, s; +∞ for the last one.
+    pub end: f64,
+    /// Rudder angle at the beginning, rad.
+    pub angle: f64,
+    /// Movement from there.
+    pub shape: Shape,
+}
+
+impl Segment {
+    /// Rudder angle, rad, at time `t`, s; also valid just outside the segment, as its smooth continuation.
+    #[inline]
+    pub fn at(&self, t: f64) -> f64 {
+        match self.shape {
+            Shape::Hold => self.angle,
+            Shape::Ramp { rate } => self.angle + rate * (t - self.start),
+            Shape::Exponential { target, lag } => target + (self.angle - target) * (-(t - self.start) / lag).exp(),
+        }
+    }
+}
+
+impl SteeringGear {
+    /// A gear with a rate limit, rad/s, and nothing else.
+    pub fn with_rate(rate: f64) -> Self {
+        Self { rate, ..Self::default() }
+    }
+
+    /// Checks every value; fails with the first one that makes no sense.
+    pub fn validate(&self) -> Checked {
+        error::positive_or_infinite("gear.rate", self.rate)?;
+        error::not_negative("gear.lag", self.lag)?;
+        error::not_negative("gear.dead_time", self.dead_time)?;
+        error::not_negative("gear.dead_band", self.dead_band)?;
+        error::positive_or_infinite("gear.maximum", self.maximum)
+    }
+
+    /// Appends the answer to an order that arrives at `start` with the rudder at `from`; the last segment has no end.
+    fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<Segment>) {
+        let target = order.clamp(-self.maximum, self.maximum);
+        let side = (target - from).signum();
+        let mut t = start;
+        let mut angle = from;
+        // Error that is left of the order: first the rate limits, then the lag, then the pump stops.
+        let mut left = (target - from).abs();
+        if left > self.dead_band {
+            // Not the product alone: an infinite rate without lag gives ∞·0.
+            let knee = if self.lag > 0.0 { self.rate * self.lag } else { 0.0 };
+            let until = knee.max(self.dead_band);
+            if left > until {
+                if self.rate.is_finite() {
+                    let end = t + (left - until) / self.rate;
+                    path.push(Segment { start: t, end, angle, shape: Shape::Ramp { rate: side * self.rate } });
+                    t = end;
+                }
+                (left, angle) = (until, target - side * until);
+            }
+            if self.lag > 0.0 && left > self.dead_band {
+                let end =
+                    if self.dead_band > 0.0 { t + self.lag * (left / self.dead_band).ln() } else { f64::INFINITY };
+                path.push(Segment { start: t, end, angle, shape: Shape::Exponential { target, lag: self.lag } });
+                (t, angle) = (end, target - side * self.dead_band);
+            }
+        }
+        if t.is_finite() {
+            path.push(Segment { start: t, end: f64::INFINITY, angle, shape: Shape::Hold });
+        }
+    }
+}
+
+/// The path of a rudder: segments without gaps from −∞ to +∞.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RudderPath {
+    segments: Vec<Segment>,
+}
+
+impl RudderPath {
+    /// A rudder that stands at `angle` (rad) until it is ordered to move.
+    pub fn standing(angle: f64) -> Self {
+        let mut segments = Vec::with_capacity(64);
+        segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, shape: Shape::Hold });
+        Self { segments }
+    }
+
+    /// A rudder that stands at `angle` (rad) until `start` (s) and then follows `signal`, whose first point is put there.
+    pub fn following(angle: f64, start: f64, signal: &Polyline) -> Self {
+        let (times, values) = (signal.times(), signal.values());
+        let shift = start - times[0];
+        let mut path = Self { segments: Vec::with_capacity(times.len() + 1) };
+        path.segments.push(Segment { start: f64::NEG_INFINITY, end: start, angle, shape: Shape::Hold });
+        for (t, delta) in times.windows(2).zip(values.windows(2)) {
+            let shape = Shape::Ramp { rate: (delta[1] - delta[0]) / (t[1] - t[0]) };
+            path.segments.push(Segment { start: t[0] + shift, end: t[1] + shift, angle: delta[0], shape });
+        }
+        let last = times.len() - 1;
+        let (start, angle) = (times[last] + shift, values[last]);
+        path.segments.push(Segment { start, end: f64::INFINITY, angle, shape: Shape::Hold });
+        path
+    }
+
+    /// Gives `order` (rad) at time `t` (s): the path changes from one dead time later on.
+    ///
+    /// Orders have to come in the order of time.
+    pub fn order(&mut self, t: f64, order: f64, gear: &SteeringGear) {
+        let arrival = t + gear.dead_time;
+        let from = self.at(arrival);
+        while self.segments.len() > 1 && self.segments[self.segments.len() - 1].start >= arrival {
+            self.segments.pop();
+        }
+        if let Some(last) = self.segments.last_mut() {
+            last.end = arrival;
+        }
+        gear.respond(arrival, from, order, &mut self.segments);
+    }
+
+    /// The segments in the order of time.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Rudder angle at time `t`, rad; at a jump the angle after it.
+    pub fn at(&self, t: f64) -> f64 {
+        let after = self.segments.partition_point(|segment| segment.start <= t);
+        self.segments[after.saturating_sub(1)].at(t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+
+    const DEGREE: f64 = ship::angle::DEGREE;
+
+    fn answer(gear: &SteeringGear, from: f64, order: f64) -> RudderPath {
+        let mut path = RudderPath::standing(from);
+        path.order(10.0, order, gear);
+        path
+    }
+
+    #[test]
+    fn without_limits_the_rudder_jumps() {
+        let path = answer(&SteeringGear::default(), 0.1, -0.2);
+        assert_eq!((path.at(9.999), path.at(10.0), path.at(50.0)), (0.1, -0.2, -0.2));
+    }
+
+    #[test]
+    fn a_rate_limit_ramps_and_then_holds_exactly() {
+        let path = answer(&SteeringGear::with_rate(2.5 * DEGREE), 10.0 * DEGREE, -10.0 * DEGREE);
+        let shapes: Vec<Shape> = path.segments().iter().map(|segment| segment.shape).collect();
+        assert_eq!(shapes, [Shape::Hold, Shape::Ramp { rate: -2.5 * DEGREE }, Shape::Hold]);
+        assert_eq!(path.segments()[2].start, 18.0);
+        assert_relative_eq!(path.at(12.0), 5.0 * DEGREE, max_relative = 1e-12);
+        assert_eq!(path.at(30.0), -10.0 * DEGREE);
+    }
+
+    #[test]
+    fn rate_lag_dead_time_and_dead_band_follow_one_another() {
+        let gear = SteeringGear { rate: 0.05, lag: 2.0, dead_time: 1.5, dead_band: 0.01, maximum: f64::INFINITY };
+        let path = answer(&gear, 0.0, 0.4);
+        let starts: Vec<f64> = path.segments()[1..].iter().map(|segment| segment.start).collect();
+        // Ramp until the error is rate·lag = 0.1 (6 s), then lag·ln(0.1/0.01) until it is the dead band.
+        assert_abs_diff_eq!(starts[0], 11.5);
+        assert_abs_diff_eq!(starts[1], 17.5, epsilon = 1e-12);
+        assert_abs_diff_eq!(starts[2], 17.5 + 2.0 * 10.0_f64.ln(), epsilon = 1e-12);
+        assert_abs_diff_eq!(path.at(100.0), 0.39, epsilon = 1e-15);
+        // The path has no jumps, and where ramp meets exponential no corner.
+        for pair in path.segments().windows(2) {
+            assert_abs_diff_eq!(pair[0].at(pair[0].end), pair[1].angle, epsilon = 1e-15);
+        }
+        let h = 1e-6;
+        let slopes = [17.5 - h, 17.5 + h].map(|t| (path.at(t + 0.5 * h) - path.at(t - 0.5 * h)) / h);
+        assert_relative_eq!(slopes[0], slopes[1], max_relative = 1e-5);
+    }
+
+    /// δ' = clamp((δ_c − δ)/lag, ±rate), in small steps.
+    #[test]
+    fn segments_are_the_solution_of_the_equation() {
+        let gear = SteeringGear { rate: 0.08, lag: 1.0, ..SteeringGear::default() };
+        let path = answer(&gear, 0.3, -0.1);
+        let (mut delta, h) = (0.3, 1e-4);
+        for step in 0..100_000 {
+            let t = 10.0 + f64::from(step) * h;
+            assert_abs_diff_eq!(path.at(t), delta, epsilon = 2e-5);
+            delta += h * ((-0.1 - delta) / gear.lag).clamp(-gear.rate, gear.rate);
+        }
+    }
+
+    #[test]
+    fn a_new_order_takes_over_where_the_rudder_is() {
+        let gear = SteeringGear { rate: 0.1, dead_time: 1.0, ..SteeringGear::default() };
+        let mut path = answer(&gear, 0.0, 0.5);
+        path.order(12.0, -0.5, &gear);
+        assert_abs_diff_eq!(path.at(13.0), 0.2, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.at(14.0), 0.1, epsilon = 1e-15);
+        // An order given while another is on its way does not overtake it.
+        path.order(12.5, 0.5, &gear);
+        assert_abs_diff_eq!(path.at(13.5), 0.15, epsilon = 1e-15);
+        assert_abs_diff_eq!(path.at(17.0), 0.5, epsilon = 1e-15);
+    }
+
+    #[test]
+    fn stops_and_dead_band_hold_the_rudder() {
+        let gear = SteeringGear { rate: 0.1, dead_band: 0.02, maximum: 0.6, ..SteeringGear::default() };
+        assert_abs_diff_eq!(answer(&gear, 0.0, 0.9).at(100.0), 0.58, epsilon = 1e-15);
+        assert_eq!(answer(&gear, 0.3, 0.31).at(100.0), 0.3);
+    }
+}

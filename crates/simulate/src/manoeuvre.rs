@@ -1,0 +1,148 @@
+//! Manoeuvres as specifications: what is ordered when. A specification does not change; what happens during one run is
+//! kept by the [`crate::helm::Helm`] made from it. Angles in rad, times in s, counted from the first execute.
+//!
+//! Source of the manoeuvres and their words: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials.
+
+use ship::Polyline;
+
+use crate::error::{self, Checked};
+
+/// A side of the ship.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Side {
+    /// Right, seen forward: positive rudder, growing heading.
+    #[default]
+    Starboard,
+    /// Left, seen forward.
+    Port,
+}
+
+impl Side {
+    /// +1 for starboard, −1 for port.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Starboard => 1.0,
+            Self::Port => -1.0,
+        }
+    }
+}
+
+/// What ends a zig-zag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ZigZagEnd {
+    /// The moment of the n-th execute, counted from 1; n executes show n − 2 whole overshoots.
+    Executes(usize),
+    /// A time after the first execute, s.
+    Duration(f64),
+    /// The last row of the record, which then needs a duration of its own.
+    Record,
+}
+
+/// What ends a turning circle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TurnEnd {
+    /// A time after the execute, s.
+    Duration(f64),
+    /// A change of heading in the direction of the turn, rad.
+    HeadingChange(f64),
+}
+
+/// A zig-zag: the rudder is reversed whenever the heading deviates by `heading` from the base course.
+///
+/// The base course is the heading at the beginning of the run. A 10/20 zig-zag has rudder 10° and heading 20°.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ZigZag {
+    /// Rudder angle δ, rad, positive whatever the side.
+    pub rudder: f64,
+    /// Heading deviation ψ at which the rudder is reversed, rad, positive.
+    pub heading: f64,
+    /// Side of the first execute.
+    pub first: Side,
+    /// What ends the manoeuvre.
+    pub end: ZigZagEnd,
+}
+
+/// A turning circle: one order, held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurningCircle {
+    /// Rudder angle, rad, positive whatever the side.
+    pub rudder: f64,
+    /// Side of the turn.
+    pub side: Side,
+    /// What ends the manoeuvre.
+    pub end: TurnEnd,
+}
+
+/// A pull-out: a turn, then rudder amidships, to see whether the yaw rate dies out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PullOut {
+    /// Rudder angle, rad, positive whatever the side.
+    pub rudder: f64,
+    /// Side of the turn.
+    pub side: Side,
+    /// Time the rudder is held, s.
+    pub hold: f64,
+    /// Time from the order amidships to the end, s.
+    pub duration: f64,
+}
+
+/// What the ship is asked to do.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Manoeuvre {
+    /// Zig-zag.
+    ZigZag(ZigZag),
+    /// Turning circle.
+    TurningCircle(TurningCircle),
+    /// Pull-out.
+    PullOut(PullOut),
+    /// A recorded rudder, followed as it is: no helmsman, no steering gear. Its first point is put at the first execute.
+    Replay(Polyline),
+}
+
+impl Manoeuvre {
+    /// A zig-zag with starboard first.
+    pub fn zig_zag(rudder: f64, heading: f64, end: ZigZagEnd) -> Self {
+        Self::ZigZag(ZigZag { rudder, heading, first: Side::Starboard, end })
+    }
+
+    /// Largest rudder angle asked for, rad.
+    pub fn largest_rudder(&self) -> f64 {
+        match self {
+            Self::ZigZag(ZigZag { rudder, .. })
+            | Self::TurningCircle(TurningCircle { rudder, .. })
+            | Self::PullOut(PullOut { rudder, .. }) => *rudder,
+            Self::Replay(signal) => signal.values().iter().fold(0.0, |largest, delta| largest.max(delta.abs())),
+        }
+    }
+
+    /// Checks every value; fails with the first one that makes no sense.
+    pub fn validate(&self) -> Checked {
+        match self {
+            Self::ZigZag(zig_zag) => {
+                error::positive("zig_zag.rudder", zig_zag.rudder)?;
+                error::positive("zig_zag.heading", zig_zag.heading)?;
+                match zig_zag.end {
+                    ZigZagEnd::Executes(count) => error::positive("zig_zag.executes", count as f64),
+                    ZigZagEnd::Duration(duration) => error::positive("zig_zag.duration", duration),
+                    ZigZagEnd::Record => Ok(()),
+                }
+            }
+            Self::TurningCircle(turn) => {
+                error::positive("turning_circle.rudder", turn.rudder)?;
+                match turn.end {
+                    TurnEnd::Duration(duration) => error::positive("turning_circle.duration", duration),
+                    TurnEnd::HeadingChange(angle) => error::positive("turning_circle.heading_change", angle),
+                }
+            }
+            Self::PullOut(pull_out) => {
+                error::positive("pull_out.rudder", pull_out.rudder)?;
+                error::positive("pull_out.hold", pull_out.hold)?;
+                error::positive("pull_out.duration", pull_out.duration)
+            }
+            Self::Replay(signal) => {
+                let times = signal.times();
+                error::positive("replay.duration", times[times.len() - 1] - times[0])
+            }
+        }
+    }
+}

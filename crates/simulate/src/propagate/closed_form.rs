@@ -1,0 +1,114 @@
+//! A first-order ship under a rudder and a moment that are linear in time: every step is exact, however long.
+
+use ship::first_order::{State, Transition};
+use ship::{FirstOrder, Motion};
+
+use super::{Propagator, Sample, acting};
+use crate::gear::{RudderPath, Segment, Shape};
+use crate::weather::{GRID, Weather};
+
+/// Longest step, s, and longest step in units of |T|: a course-unstable ship must be caught before it overflows.
+const LONGEST_STEP: f64 = 60.0;
+const LONGEST_SHARE_OF_T: f64 = 30.0;
+
+/// Steps closer together than this, s, are the same step: rows at k·period differ by rounding only, and a heading that is
+/// wrong by 1e-12 s of yaw rate is right to the last bit but a few.
+const SAME_STEP: f64 = 1e-12;
+
+/// Closed-form motion of a first-order ship.
+#[derive(Debug)]
+pub(crate) struct ClosedForm {
+    ship: FirstOrder,
+    weather: Weather,
+    time: f64,
+    state: State,
+    candidate: State,
+    cursor: usize,
+    longest: f64,
+    /// Transitions over the two steps that come again and again: a row and a cell of the weather.
+    usual: [Transition; 2],
+}
+
+impl ClosedForm {
+    /// The ship at time 0; `period` is the step most often asked for, s.
+    pub fn new(ship: FirstOrder, weather: Weather, state: State, period: f64) -> Self {
+        let longest = LONGEST_STEP.min(LONGEST_SHARE_OF_T / ship.inverse_T.abs());
+        let usual = [period, GRID].map(|h| Transition::new(ship.inverse_T, h));
+        Self { ship, weather, time: 0.0, state, candidate: state, cursor: 0, longest, usual }
+    }
+
+    fn transition(&self, h: f64) -> Transition {
+        for usual in self.usual {
+            if (usual.h - h).abs() < SAME_STEP {
+                return usual;
+            }
+        }
+        Transition::new(self.ship.inverse_T, h)
+    }
+
+    /// Steering term b (δ + δ_r + disturbance) now (rad/s²) and its slope (rad/s³).
+    fn steering(&self, segment: &Segment) -> (f64, f64) {
+        let slope = match segment.shape {
+            Shape::Ramp { rate } => rate,
+            // An exponential never gets here: a gear with a lag is integrated.
+            Shape::Hold | Shape::Exponential { .. } => 0.0,
+        };
+        let cell = self.weather.cell();
+        let rudder = segment.at(self.time) + self.ship.rudder_bias + cell.moment(self.time);
+        (self.ship.K_over_T * rudder, self.ship.K_over_T * (slope + cell.moment_slope()))
+    }
+}
+
+impl Propagator for ClosedForm {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn state(&self) -> State {
+        self.state
+    }
+
+    fn stride(&mut self, path: &RudderPath, until: f64) -> f64 {
+        while self.weather.cell().end <= self.time {
+            self.weather.enter_next();
+        }
+        let segment = acting(path, &mut self.cursor, self.time, 0.0);
+        let to = until.min(segment.end).min(self.weather.cell().end).min(self.time + self.longest);
+        let (u0, slope) = self.steering(segment);
+        if slope == 0.0 {
+            return to;
+        }
+        // r' = e^(−at) r'₀ + slope φ₁(t) vanishes at most once; the step ends there, so that r is monotone within it.
+        let a = self.ship.inverse_T;
+        let ratio = -(u0 - a * self.state.yaw_rate) / slope;
+        let turn = if (a * ratio).abs() < 1e-8 { ratio } else { (a * ratio).ln_1p() / a };
+        // A step that has just ended there sees its own rounding.
+        if turn > 1e-9 && self.time + turn < to { self.time + turn } else { to }
+    }
+
+    fn probe(&mut self, path: &RudderPath, h: f64) -> State {
+        let (u0, slope) = self.steering(&path.segments()[self.cursor]);
+        self.candidate = self.transition(h).advance(self.state, u0, slope);
+        self.candidate
+    }
+
+    fn commit(&mut self, _path: &RudderPath, to: f64) {
+        self.state = self.candidate;
+        self.time = to;
+    }
+
+    fn sample(&mut self, path: &RudderPath) -> Sample {
+        let segment = acting(path, &mut self.cursor, self.time, 0.0);
+        let (u0, _) = self.steering(segment);
+        let State { heading, yaw_rate } = self.state;
+        let yaw_acceleration = u0 - self.ship.inverse_T * yaw_rate;
+        let cell = self.weather.cell();
+        Sample {
+            time: self.time,
+            motion: Motion { heading, yaw_rate, yaw_acceleration, speed: None, sway: None },
+            gyro: heading,
+            disturbance: cell.moment(self.time),
+            gust: cell.gust(self.time),
+        }
+    }
+}

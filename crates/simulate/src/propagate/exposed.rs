@@ -1,0 +1,77 @@
+//! A ship exposed to the wind and fitted with a gyrocompass: what depends on heading is added to the right-hand side.
+
+use ship::{Dynamics, Input, Motion};
+
+use crate::disturbance::Wind;
+use crate::weather::{Cell, Weather};
+
+/// A ship with the weather of one run acting on it and the lag of its gyrocompass as the last state.
+#[derive(Debug)]
+pub(super) struct Exposed<'a, D: ?Sized> {
+    ship: &'a D,
+    wind: Option<Wind>,
+    /// Time constant of the gyrocompass, s; 0 for none.
+    gyro_lag: f64,
+    /// The weather; its cell changes between steps only.
+    pub weather: Weather,
+}
+
+impl<'a, D: Dynamics + ?Sized> Exposed<'a, D> {
+    pub fn new(ship: &'a D, wind: Option<Wind>, gyro_lag: f64, weather: Weather) -> Self {
+        Self { ship, wind, gyro_lag, weather }
+    }
+
+    /// Total disturbance as equivalent rudder angle, rad.
+    pub fn disturbance(&self, t: f64, heading: f64) -> f64 {
+        let cell: &Cell = self.weather.cell();
+        cell.moment(t) + self.wind.map_or(0.0, |wind| wind.yaw_moment(heading, cell.gust(t)))
+    }
+
+    /// Heading the gyrocompass shows, rad.
+    pub fn gyro(&self, state: &[f64]) -> f64 {
+        if self.gyro_lag > 0.0 { state[self.ship.dimension()] } else { state[0] }
+    }
+
+    fn acting(&self, t: f64, state: &[f64], input: &Input) -> Input {
+        Input { disturbance: self.disturbance(t, state[0]), ..*input }
+    }
+}
+
+impl<D: Dynamics + ?Sized> Dynamics for Exposed<'_, D> {
+    fn dimension(&self) -> usize {
+        self.ship.dimension() + usize::from(self.gyro_lag > 0.0)
+    }
+
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        let (ship, gyro) = state.split_at_mut(self.ship.dimension());
+        self.ship.approach(heading, yaw_rate, ship);
+        // A lagging compass trails a steady turn by τ r.
+        gyro.fill(heading - self.gyro_lag * yaw_rate);
+    }
+
+    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        let states = self.ship.dimension();
+        self.ship.rates(t, &state[..states], &self.acting(t, state, input), &mut rate[..states]);
+        if self.gyro_lag > 0.0 {
+            rate[states] = (state[0] - state[states]) / self.gyro_lag;
+        }
+    }
+
+    fn settle(&self, t: f64, state: &mut [f64], input: &Input) {
+        let acting = self.acting(t, state, input);
+        self.ship.settle(t, &mut state[..self.ship.dimension()], &acting);
+    }
+
+    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+        self.ship.motion(t, &state[..self.ship.dimension()], &self.acting(t, state, input))
+    }
+
+    fn dead_time(&self) -> f64 {
+        self.ship.dead_time()
+    }
+
+    fn largest_step(&self) -> f64 {
+        // Stability of the compass state is no accuracy: a quarter of its time constant keeps both.
+        if self.gyro_lag > 0.0 { self.ship.largest_step().min(0.25 * self.gyro_lag) } else { self.ship.largest_step() }
+    }
+}

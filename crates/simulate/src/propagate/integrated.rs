@@ -1,0 +1,93 @@
+//! Any ship, by Runge–Kutta steps that end at every corner of the acting rudder and of the weather.
+
+use ship::first_order::State;
+use ship::integrate::RungeKutta4;
+use ship::{Dynamics, Input};
+
+use super::exposed::Exposed;
+use super::{Propagator, Sample, acting};
+use crate::disturbance::Wind;
+use crate::gear::{RudderPath, Segment};
+use crate::weather::Weather;
+
+/// Integrated motion of any ship.
+pub(crate) struct Integrated<'a, D: ?Sized> {
+    ship: Exposed<'a, D>,
+    solver: RungeKutta4,
+    time: f64,
+    state: Vec<f64>,
+    candidate: Vec<f64>,
+    cursor: usize,
+    step: f64,
+}
+
+/// What acts at `t` within `segment`, taken as its smooth continuation at both ends.
+fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
+    Input { rudder: segment.at(t - dead_time), ..Input::default() }
+}
+
+impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
+    /// The ship at time 0 on its approach; `step` is the largest step, s, where it is not left to the ship.
+    pub fn new(
+        ship: &'a D,
+        wind: Option<Wind>,
+        gyro_lag: f64,
+        weather: Weather,
+        approach: State,
+        step: Option<f64>,
+    ) -> Self {
+        let ship = Exposed::new(ship, wind, gyro_lag, weather);
+        let dimension = ship.dimension();
+        let mut state = vec![0.0; dimension];
+        ship.approach(approach.heading, approach.yaw_rate, &mut state);
+        let step = step.unwrap_or_else(|| ship.largest_step());
+        let candidate = state.clone();
+        Self { ship, solver: RungeKutta4::new(dimension), time: 0.0, state, candidate, cursor: 0, step }
+    }
+}
+
+impl<D: Dynamics + ?Sized> Propagator for Integrated<'_, D> {
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn state(&self) -> State {
+        State { heading: self.state[0], yaw_rate: self.state[1] }
+    }
+
+    fn stride(&mut self, path: &RudderPath, until: f64) -> f64 {
+        while self.ship.weather.cell().end <= self.time {
+            self.ship.weather.enter_next();
+        }
+        let dead_time = self.ship.dead_time();
+        let segment = acting(path, &mut self.cursor, self.time, dead_time);
+        until.min(segment.end + dead_time).min(self.ship.weather.cell().end).min(self.time + self.step)
+    }
+
+    fn probe(&mut self, path: &RudderPath, h: f64) -> State {
+        let segment = &path.segments()[self.cursor];
+        let dead_time = self.ship.dead_time();
+        self.candidate.copy_from_slice(&self.state);
+        self.solver.step(&self.ship, self.time, h, &mut self.candidate, |t| input(segment, dead_time, t));
+        State { heading: self.candidate[0], yaw_rate: self.candidate[1] }
+    }
+
+    fn commit(&mut self, path: &RudderPath, to: f64) {
+        std::mem::swap(&mut self.state, &mut self.candidate);
+        self.time = to;
+        let segment = &path.segments()[self.cursor];
+        self.ship.settle(to, &mut self.state, &input(segment, self.ship.dead_time(), to));
+    }
+
+    fn sample(&mut self, path: &RudderPath) -> Sample {
+        let dead_time = self.ship.dead_time();
+        let segment = acting(path, &mut self.cursor, self.time, dead_time);
+        Sample {
+            time: self.time,
+            motion: self.ship.motion(self.time, &self.state, &input(segment, dead_time, self.time)),
+            gyro: self.ship.gyro(&self.state),
+            disturbance: self.ship.disturbance(self.time, self.state[0]),
+            gust: self.ship.weather.cell().gust(self.time),
+        }
+    }
+}

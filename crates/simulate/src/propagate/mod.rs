@@ -1,0 +1,102 @@
+//! Moving the ship through time: the interface that both ways share, and the search for a heading inside a step.
+//!
+//! A propagator offers steps that are smooth: none crosses a corner of the rudder or of the weather, so an event is
+//! located by shortening the one step in which it lies. It knows nothing of helms and records.
+
+mod closed_form;
+mod exposed;
+mod integrated;
+
+pub(crate) use closed_form::ClosedForm;
+pub(crate) use integrated::Integrated;
+
+use ship::Motion;
+use ship::first_order::State;
+
+use crate::gear::{RudderPath, Segment};
+use crate::root;
+
+/// Everything that can be recorded at one instant, before any instrument.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sample {
+    /// Time, s.
+    pub time: f64,
+    /// Motion of the ship, without waves.
+    pub motion: Motion,
+    /// Heading after the lag of the gyrocompass, rad.
+    pub gyro: f64,
+    /// Total disturbance as equivalent rudder angle, rad.
+    pub disturbance: f64,
+    /// Factor 1 + g on the moment of the wind.
+    pub gust: f64,
+}
+
+/// A ship on its way through one run.
+pub(crate) trait Propagator {
+    /// Time, s.
+    fn time(&self) -> f64;
+
+    /// Heading and yaw rate now.
+    fn state(&self) -> State;
+
+    /// End of the next smooth step, at most `until`; later than now.
+    fn stride(&mut self, path: &RudderPath, until: f64) -> f64;
+
+    /// Heading and yaw rate `h` seconds from now, without going there; within the last stride.
+    fn probe(&mut self, path: &RudderPath, h: f64) -> State;
+
+    /// Goes where the last probe looked; that time is called `to`.
+    fn commit(&mut self, path: &RudderPath, to: f64);
+
+    /// What can be recorded now.
+    fn sample(&mut self, path: &RudderPath) -> Sample;
+}
+
+/// The segment that acts at time `t` behind a dead time, found by moving `cursor` forward.
+pub(crate) fn acting<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_time: f64) -> &'a Segment {
+    let segments = path.segments();
+    // The same sum as the end of a stride, so that a stride can never have no length.
+    while segments[*cursor].end + dead_time <= t {
+        *cursor += 1;
+    }
+    &segments[*cursor]
+}
+
+/// A heading that is waited for: `side` · (ψ − base) ≥ `angle`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Crossing {
+    /// Base course, rad.
+    pub base: f64,
+    /// +1 to starboard, −1 to port.
+    pub side: f64,
+    /// Deviation, rad.
+    pub angle: f64,
+}
+
+/// Width, s, of the bracket at which an event counts as located.
+const EVENT_TOLERANCE: f64 = 1e-13;
+
+impl Crossing {
+    /// How far the heading is beyond the deviation waited for, rad.
+    pub fn excess(&self, heading: f64) -> f64 {
+        self.side * (heading - self.base) - self.angle
+    }
+
+    /// Time from the beginning of a step to the first crossing in it, s.
+    ///
+    /// The step leads from `from`, which has not crossed, to `end` in `h` seconds, and the yaw rate is monotone in it: so
+    /// the heading has at most one extremum, which is looked for when the yaw rate changes sign.
+    pub fn locate(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
+        let before = (0.0, self.excess(from.heading));
+        let mut after = (h, self.excess(end.heading));
+        if after.1 < 0.0 && self.side * from.yaw_rate > 0.0 && self.side * end.yaw_rate < 0.0 {
+            let rate = |h| probe(h).yaw_rate;
+            let peak = root::bracketed(rate, (0.0, from.yaw_rate), (h, end.yaw_rate), EVENT_TOLERANCE);
+            after = (peak, self.excess(probe(peak).heading));
+        }
+        if after.1 < 0.0 {
+            return None;
+        }
+        Some(root::bracketed(|h| self.excess(probe(h).heading), before, after, EVENT_TOLERANCE))
+    }
+}

@@ -1,0 +1,193 @@
+//! One run: the loop in which helm, steering gear and ship meet. It moves from event to event (an execute, a row, a
+//! reading of the display) and never rounds one to a step. What is recorded is asked for from outside, so a run can be
+//! taken to an execute first and recorded from there.
+
+use crate::display::{Display, Reading};
+use crate::error::SimulateError;
+use crate::gear::{RudderPath, SteeringGear};
+use crate::helm::{Cue, Helm};
+use crate::propagate::{Crossing, Propagator, Sample};
+use crate::simulation::Execute;
+
+/// Heading, rad, beyond which a run has diverged: a hundred turns.
+const TOO_FAR: f64 = 100.0 * std::f64::consts::TAU;
+
+/// Time, s, by which the end of a manoeuvre is generous, so that a row at k·period is not lost to rounding.
+const END_TOLERANCE: f64 = 1e-9;
+
+/// How far a run has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Progress {
+    /// The time asked for.
+    Reached,
+    /// An execute, which is the last in the list.
+    Executed,
+    /// The end of the manoeuvre.
+    Over,
+}
+
+/// The state of one run.
+#[derive(Debug)]
+pub(crate) struct Run<'a, P> {
+    propagator: P,
+    path: RudderPath,
+    gear: &'a SteeringGear,
+    helm: Helm<'a>,
+    display: Option<Display>,
+    base: f64,
+    executes: Vec<Execute>,
+    longest_wait: f64,
+}
+
+/// What is left of a run: the way of the rudder, the executes, and what the helmsman read.
+#[derive(Debug)]
+pub(crate) struct Wake {
+    pub path: RudderPath,
+    pub executes: Vec<Execute>,
+    pub readings: Vec<Reading>,
+}
+
+impl<'a, P: Propagator> Run<'a, P> {
+    /// A run at its beginning; the base course is the heading of the propagator.
+    pub fn new(
+        propagator: P,
+        path: RudderPath,
+        gear: &'a SteeringGear,
+        helm: Helm<'a>,
+        display: Option<Display>,
+        longest_wait: f64,
+    ) -> Self {
+        let base = propagator.state().heading;
+        Self { propagator, path, gear, helm, display, base, executes: Vec::with_capacity(16), longest_wait }
+    }
+
+    /// Time, s.
+    pub fn time(&self) -> f64 {
+        self.propagator.time()
+    }
+
+    /// Goes on to the `number`-th execute (from 1) and returns its time, s.
+    ///
+    /// Fails when the run is over before.
+    pub fn reach_execute(&mut self, number: usize) -> Result<f64, SimulateError> {
+        while self.executes.len() < number {
+            if self.advance(f64::INFINITY)? == Progress::Over {
+                return Err(SimulateError::NoSuchExecute { execute: number, made: self.executes.len() });
+            }
+        }
+        Ok(self.executes[number - 1].time)
+    }
+
+    /// Goes on to `until` (s), to the next execute or to the end of the manoeuvre, whichever is first.
+    ///
+    /// At the time of an execute the order has been given.
+    pub fn advance(&mut self, until: f64) -> Result<Progress, SimulateError> {
+        loop {
+            let end = self.helm.end() + END_TOLERANCE;
+            let deadline = self.executes.last().map_or(0.0, |execute| execute.time) + self.longest_wait;
+            let cue = self.helm.cue();
+            let mut to = until.min(end);
+            let mut watch = None;
+            match cue {
+                Cue::At(time) => to = to.min(time),
+                Cue::Deviation { side, angle } => {
+                    to = to.min(deadline);
+                    match &mut self.display {
+                        Some(display) => {
+                            display.skip_to(self.propagator.time());
+                            to = to.min(display.next_time());
+                        }
+                        None => watch = Some(Crossing { base: self.base, side, angle }),
+                    }
+                }
+                Cue::Nothing => {}
+            }
+            if to == f64::INFINITY {
+                return Ok(Progress::Over);
+            }
+            let crossed = self.travel(to, watch)?;
+            let t = self.propagator.time();
+            let noticed = match cue {
+                Cue::At(time) => t >= time,
+                Cue::Deviation { side, angle } => match &mut self.display {
+                    Some(display) if t >= display.next_time() => {
+                        display.read(self.propagator.sample(&self.path).gyro, side, angle)
+                    }
+                    Some(_) => false,
+                    None => crossed,
+                },
+                Cue::Nothing => false,
+            };
+            if noticed {
+                if let Some(order) = self.helm.act(t) {
+                    self.execute(t, order);
+                    return Ok(Progress::Executed);
+                }
+            } else if t >= until {
+                return Ok(Progress::Reached);
+            } else if t >= end {
+                return Ok(Progress::Over);
+            } else if let Cue::Deviation { angle, .. } = cue
+                && t >= deadline
+            {
+                let execute = self.executes.len();
+                return Err(SimulateError::NeverReached { execute, angle, waited: self.longest_wait });
+            }
+        }
+    }
+
+    /// What can be recorded now.
+    pub fn sample(&mut self) -> Sample {
+        self.propagator.sample(&self.path)
+    }
+
+    /// Ends the run.
+    pub fn finish(self) -> Wake {
+        let readings = self.display.map(Display::into_log).unwrap_or_default();
+        Wake { path: self.path, executes: self.executes, readings }
+    }
+
+    fn execute(&mut self, time: f64, order: f64) {
+        let state = self.propagator.state();
+        self.path.order(time, order, self.gear);
+        self.executes.push(Execute { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
+    }
+
+    /// Moves the ship to `to`, or to the crossing if it is earlier: whether it is.
+    fn travel(&mut self, to: f64, watch: Option<Crossing>) -> Result<bool, SimulateError> {
+        let (ship, path) = (&mut self.propagator, &self.path);
+        while ship.time() < to {
+            let from = ship.state();
+            if watch.is_some_and(|watch| watch.excess(from.heading) >= 0.0) {
+                return Ok(true);
+            }
+            let (t, target) = (ship.time(), ship.stride(path, to));
+            let h = target - t;
+            let end = ship.probe(path, h);
+            let sane = end.yaw_rate.is_finite() && (end.heading - self.base).abs() < TOO_FAR;
+            if !sane {
+                return Err(SimulateError::Diverged { time: target, heading: end.heading, yaw_rate: end.yaw_rate });
+            }
+            let Some(watch) = watch else {
+                ship.commit(path, target);
+                continue;
+            };
+            let mut probed = h;
+            let event = watch.locate(from, end, h, |h| {
+                probed = h;
+                ship.probe(path, h)
+            });
+            // A commit goes where the last probe looked.
+            let stop = event.unwrap_or(h);
+            if probed != stop {
+                ship.probe(path, stop);
+            }
+            if event.is_some() {
+                ship.commit(path, if stop < h { t + stop } else { target });
+                return Ok(true);
+            }
+            ship.commit(path, target);
+        }
+        Ok(false)
+    }
+}

@@ -1,0 +1,144 @@
+//! Instruments as a specification: what the record gets wrong. The default is perfect in everything. How a specification
+//! turns truth into a record is in `measure`; what the helmsman sees is in `display`.
+//!
+//! Order of events in the heading channel: lag of the gyrocompass, waves, bias, white noise, quantisation. Clocks: row k
+//! carries the nominal stamp t_k; the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything else
+//! that moves) at t_k + j_k − `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact instant
+//! differs only in the sign of j.
+
+use trial::Noise;
+
+use crate::error::{self, Checked};
+
+/// The gyrocompass.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct HeadingSensor {
+    /// Standard deviation of white noise, rad.
+    pub noise: f64,
+    /// Quantum of the reading, rad; 0 for none.
+    pub quantum: f64,
+    /// Follow-up lag τ: τ ψ_g' + ψ_g = ψ, s; 0 for none.
+    pub lag: f64,
+    /// Constant error, rad.
+    pub bias: f64,
+}
+
+/// The rate-of-turn indicator.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct YawRateSensor {
+    /// Standard deviation of white noise, rad/s.
+    pub noise: f64,
+    /// Constant error, rad/s.
+    pub bias: f64,
+    /// Scale error e: the sensor reads (1 + e) r.
+    pub scale_error: f64,
+}
+
+/// The rudder feedback.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RudderSensor {
+    /// Standard deviation of white noise, rad.
+    pub noise: f64,
+    /// Quantum of the reading, rad; 0 for none.
+    pub quantum: f64,
+}
+
+/// The clock of the recorder.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Clock {
+    /// Standard deviation of the true sampling instant about its stamp, s; cut at 0.45 periods, so rows keep their order.
+    pub jitter: f64,
+    /// Time by which the heading (and yaw rate, speed, wind) in a row is older than the rudder in it, s; negative when it
+    /// is the rudder that is late.
+    pub heading_delay: f64,
+}
+
+/// What a lost row loses.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Loses {
+    /// The heading (NaN in the record); the other channels stay.
+    #[default]
+    Heading,
+    /// The whole row.
+    Row,
+}
+
+/// Losses that come in runs of rows: a two-state Markov chain.
+///
+/// Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bursts {
+    /// Probability per good row that a burst begins with the next one.
+    pub probability: f64,
+    /// Mean length of a burst, rows, at least 1.
+    pub mean_rows: f64,
+}
+
+/// Rows that are lost.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DropOut {
+    /// Probability that a single row is lost, independently of the others.
+    pub probability: f64,
+    /// Losses in runs of rows.
+    pub bursts: Option<Bursts>,
+    /// What a lost row loses.
+    pub loses: Loses,
+}
+
+/// All instruments of a trial; the default is perfect and has no rate-of-turn indicator.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sensors {
+    /// The gyrocompass.
+    pub heading: HeadingSensor,
+    /// The rate-of-turn indicator, where there is one.
+    pub yaw_rate: Option<YawRateSensor>,
+    /// The rudder feedback.
+    pub rudder: RudderSensor,
+    /// The clock of the recorder.
+    pub clock: Clock,
+    /// Rows that are lost.
+    pub drop_out: DropOut,
+}
+
+/// The multiple of `quantum` that is nearest to `value`; the value itself without a quantum.
+pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
+    if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
+}
+
+impl Sensors {
+    /// Checks every value; fails with the first one that makes no sense.
+    pub fn validate(&self) -> Checked {
+        error::not_negative("sensors.heading.noise", self.heading.noise)?;
+        error::not_negative("sensors.heading.quantum", self.heading.quantum)?;
+        error::not_negative("sensors.heading.lag", self.heading.lag)?;
+        error::finite("sensors.heading.bias", self.heading.bias)?;
+        if let Some(yaw_rate) = &self.yaw_rate {
+            error::not_negative("sensors.yaw_rate.noise", yaw_rate.noise)?;
+            error::finite("sensors.yaw_rate.bias", yaw_rate.bias)?;
+            error::finite("sensors.yaw_rate.scale_error", yaw_rate.scale_error)?;
+        }
+        error::not_negative("sensors.rudder.noise", self.rudder.noise)?;
+        error::not_negative("sensors.rudder.quantum", self.rudder.quantum)?;
+        error::not_negative("sensors.clock.jitter", self.clock.jitter)?;
+        error::finite("sensors.clock.heading_delay", self.clock.heading_delay)?;
+        error::between("sensors.drop_out.probability", self.drop_out.probability, 0.0, 1.0)?;
+        if let Some(bursts) = &self.drop_out.bursts {
+            error::between("sensors.drop_out.bursts.probability", bursts.probability, 0.0, 1.0)?;
+            error::between("sensors.drop_out.bursts.mean_rows", bursts.mean_rows, 1.0, 1e9)?;
+        }
+        Ok(())
+    }
+
+    /// The noise such instruments declare: white noise and quantisation (q/√12) together; `None` where there is neither.
+    pub fn declared_noise(&self) -> Noise {
+        let total = |noise: f64, quantum: f64| {
+            let sd = noise.hypot(quantum / 12.0_f64.sqrt());
+            (sd > 0.0).then_some(sd)
+        };
+        Noise {
+            heading: total(self.heading.noise, self.heading.quantum),
+            yaw_rate: self.yaw_rate.and_then(|sensor| total(sensor.noise, 0.0)),
+            rudder: total(self.rudder.noise, self.rudder.quantum),
+        }
+    }
+}

@@ -1,0 +1,291 @@
+//! The whole specification of a simulated trial, and what one run of it gives: the record, as instruments wrote it, and
+//! the truth behind it, which only the judge of an identification may see.
+
+use ship::FirstOrder;
+use ship::first_order::State;
+use trial::{Origin, Trial};
+
+use crate::display::Display;
+use crate::disturbance::Disturbances;
+use crate::error::{self, Expected, SimulateError, SpecificationError};
+use crate::gear::{RudderPath, SteeringGear};
+use crate::helm::{Helm, Helmsman, Watches};
+use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
+use crate::measure::{self, Scene};
+use crate::propagate::{ClosedForm, Integrated, Propagator, Sample};
+use crate::recording::{Recording, Start, Tap};
+use crate::run::{Progress, Run};
+use crate::sensor::Sensors;
+use crate::stream::StreamKey;
+use crate::vessel::{Solver, Vessel};
+use crate::wave_path::Waves;
+use crate::weather::Weather;
+
+/// How the ship comes to the first execute.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Approach {
+    /// Heading at the beginning of the run, rad: the base course.
+    pub heading: f64,
+    /// Yaw rate at the beginning of the run, rad/s.
+    pub yaw_rate: f64,
+    /// Rudder angle until the first execute, rad: the neutral rudder where the ship needs one to go straight.
+    pub rudder: f64,
+    /// Time from the beginning of the run to the first execute, s.
+    pub lead_in: f64,
+}
+
+/// The specification of a simulated trial.
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    /// Name of the scenario, carried into the origin of the record.
+    pub scenario: String,
+    /// What is steered.
+    pub vessel: Vessel,
+    /// How it comes to the first execute.
+    pub approach: Approach,
+    /// What it is asked to do.
+    pub manoeuvre: Manoeuvre,
+    /// Who asks.
+    pub helmsman: Helmsman,
+    /// What moves the rudder.
+    pub gear: SteeringGear,
+    /// What else acts.
+    pub disturbances: Disturbances,
+    /// What is seen of it.
+    pub sensors: Sensors,
+    /// Which part is written down.
+    pub recording: Recording,
+    /// How the motion is computed.
+    pub solver: Solver,
+    /// Longest time to wait for a heading after an execute, s; a ship that does not reach it then is an error.
+    pub longest_wait: f64,
+}
+
+/// An order of the helm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Execute {
+    /// Time the order is given, s.
+    pub time: f64,
+    /// True heading then, rad.
+    pub heading: f64,
+    /// True yaw rate then, rad/s.
+    pub yaw_rate: f64,
+    /// Rudder ordered, rad.
+    pub order: f64,
+}
+
+/// What really happened, at the stamps of the rows of the record. Waves are not part of it: they are a heading that is
+/// seen, not a response.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Truth {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Heading, rad.
+    pub heading: Vec<f64>,
+    /// Yaw rate, rad/s.
+    pub yaw_rate: Vec<f64>,
+    /// Yaw acceleration, rad/s².
+    pub yaw_acceleration: Vec<f64>,
+    /// Rudder angle, rad, before any dead time of the ship.
+    pub rudder: Vec<f64>,
+    /// Total disturbance as equivalent rudder angle, rad.
+    pub disturbance: Vec<f64>,
+    /// Speed through the water, m/s, where the ship has one.
+    pub speed: Option<Vec<f64>>,
+    /// Every order from the beginning of the run to the end of the record, also those before its first row.
+    pub executes: Vec<Execute>,
+}
+
+/// What one run gives.
+#[derive(Debug, Clone)]
+pub struct Simulated {
+    /// The record, as instruments wrote it.
+    pub trial: Trial,
+    /// What really happened.
+    pub truth: Truth,
+}
+
+/// Default of [`Simulation::longest_wait`], s: no ship of the registry needs ten minutes for one leg of a zig-zag.
+const LONGEST_WAIT: f64 = 3600.0;
+
+impl Simulation {
+    /// A trial in a calm, with a perfect helmsman, gear and instruments, recorded whole once a second.
+    pub fn new(vessel: Vessel, manoeuvre: Manoeuvre) -> Self {
+        Self {
+            scenario: String::from("simulation"),
+            vessel,
+            approach: Approach::default(),
+            manoeuvre,
+            helmsman: Helmsman::default(),
+            gear: SteeringGear::default(),
+            disturbances: Disturbances::default(),
+            sensors: Sensors::default(),
+            recording: Recording::default(),
+            solver: Solver::default(),
+            longest_wait: LONGEST_WAIT,
+        }
+    }
+
+    /// Checks the whole specification; fails with the first value that makes no sense.
+    pub fn validate(&self) -> Result<(), SpecificationError> {
+        self.manoeuvre.validate()?;
+        self.helmsman.validate()?;
+        self.gear.validate()?;
+        self.disturbances.validate()?;
+        self.sensors.validate()?;
+        self.recording.validate()?;
+        error::finite("approach.heading", self.approach.heading)?;
+        error::finite("approach.yaw_rate", self.approach.yaw_rate)?;
+        error::finite("approach.rudder", self.approach.rudder)?;
+        error::not_negative("approach.lead_in", self.approach.lead_in)?;
+        error::positive("longest_wait", self.longest_wait)?;
+        if let Solver::RungeKutta(step) = self.solver {
+            error::positive("solver.step", step)?;
+        }
+        error::at_most("approach.rudder", self.approach.rudder.abs(), self.gear.maximum)?;
+        if !matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
+            error::at_most("manoeuvre.rudder", self.manoeuvre.largest_rudder(), self.gear.maximum)?;
+        }
+        // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
+        error::not_negative("vessel.dead_time", self.vessel.dynamics().dead_time())?;
+        match (&self.manoeuvre, self.recording.duration) {
+            (Manoeuvre::ZigZag(zig_zag), None) if zig_zag.end == ZigZagEnd::Record => {
+                Err(SpecificationError { key: "recording.duration", value: f64::NAN, expected: Expected::Duration })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Makes the one trial that belongs to `key`.
+    ///
+    /// Fails when the specification makes no sense, the motion diverges, a heading is never reached, the record would
+    /// start at an execute that is never made, or its rows are too few for a [`Trial`].
+    pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
+        self.validate()?;
+        let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
+        let weather = || Weather::new(&self.disturbances, key);
+        match self.closed_form() {
+            Some(ship) => self.drive(key, || ClosedForm::new(ship, weather(), approach, self.recording.period)),
+            None => {
+                let step = match self.solver {
+                    Solver::Automatic => None,
+                    Solver::RungeKutta(step) => Some(step),
+                };
+                let (wind, lag) = (self.disturbances.wind, self.sensors.heading.lag);
+                self.drive(key, || Integrated::new(self.vessel.dynamics(), wind, lag, weather(), approach, step))
+            }
+        }
+    }
+
+    /// The ship, if its whole run has a closed form.
+    fn closed_form(&self) -> Option<FirstOrder> {
+        let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay(_));
+        let moment_is_linear = self.disturbances.wind.is_none_or(|wind| wind.moment == 0.0);
+        let exact = rudder_is_linear && moment_is_linear && self.sensors.heading.lag == 0.0;
+        self.vessel.closed_form().filter(|_| exact && self.solver == Solver::Automatic)
+    }
+
+    fn begin<P: Propagator>(&self, key: &StreamKey, propagator: P) -> Run<'_, P> {
+        let Approach { heading, rudder, lead_in, .. } = self.approach;
+        let path = match &self.manoeuvre {
+            Manoeuvre::Replay(signal) => RudderPath::following(rudder, lead_in, signal),
+            _ => RudderPath::standing(rudder),
+        };
+        let helm = Helm::new(&self.manoeuvre, &self.helmsman, lead_in);
+        let display = match self.helmsman.watches {
+            Watches::TrueHeading => None,
+            Watches::Display { period } => {
+                let waves = Waves::new(&self.disturbances, &self.vessel, key);
+                Some(Display::new(period, self.sensors.heading, waves, key, heading))
+            }
+        };
+        Run::new(propagator, path, &self.gear, helm, display, self.longest_wait)
+    }
+
+    fn drive<P: Propagator>(&self, key: &StreamKey, propagator: impl Fn() -> P) -> Result<Simulated, SimulateError> {
+        let mut run = self.begin(key, propagator());
+        let start = match self.recording.start {
+            Start::Run => 0.0,
+            Start::Execute { number, offset } => run.reach_execute(number)? + offset,
+        };
+        let clock = &self.sensors.clock;
+        let mut rows = Tap::rows(start, &self.recording);
+        let mut instruments = Tap::instruments(start, &self.recording, clock, key);
+        if instruments.as_ref().is_some_and(|tap| tap.next() < run.time()) {
+            // The first row holds a heading from before the execute it is tied to: now that its time is known, again.
+            run = self.begin(key, propagator());
+        }
+        loop {
+            let next = instruments.as_ref().map_or(rows.next(), |tap| tap.next().min(rows.next()));
+            if next == f64::INFINITY {
+                break;
+            }
+            match run.advance(next)? {
+                Progress::Executed => {}
+                Progress::Over => break,
+                Progress::Reached => {
+                    let sample = run.sample();
+                    rows.take(&sample);
+                    if let Some(tap) = &mut instruments {
+                        tap.take(&sample);
+                    }
+                }
+            }
+        }
+        let wake = run.finish();
+        self.write(key, rows, instruments, &wake)
+    }
+
+    fn write(
+        &self,
+        key: &StreamKey,
+        mut rows: Tap,
+        mut instruments: Option<Tap>,
+        wake: &crate::run::Wake,
+    ) -> Result<Simulated, SimulateError> {
+        if let Some(tap) = &mut instruments {
+            // Cut to the shorter one: with a delay, the end of the manoeuvre parts them.
+            let count = rows.samples.len().min(tap.samples.len());
+            rows.samples.truncate(count);
+            tap.samples.truncate(count);
+        }
+        let stamps: Vec<f64> = rows.samples.iter().map(|sample| sample.time).collect();
+        let scene = Scene {
+            stamps: &stamps,
+            samples: instruments.as_ref().map_or(&rows.samples, |tap| &tap.samples),
+            jitter: instruments.as_ref().map_or(&[], |tap| &tap.jitter),
+            wake,
+            first_order: (!matches!(self.manoeuvre, Manoeuvre::Replay(_))).then_some(self.approach.rudder),
+            wind: self.disturbances.wind,
+            particulars: self.vessel.particulars(),
+        };
+        let waves = Waves::new(&self.disturbances, &self.vessel, key);
+        let written = measure::write(&self.sensors, &scene, waves, key);
+        let mut samples = rows.samples;
+        if let Some(kept) = &written.kept {
+            measure::keep(&mut samples, kept);
+        }
+        let StreamKey { cell, replicate, .. } = *key;
+        let origin = Origin::Simulated { scenario: self.scenario.clone(), cell, replicate };
+        let name = format!("{}-{cell}-{replicate}", self.scenario);
+        let mut trial = Trial::new(name, origin, written.columns)?.with_noise(self.sensors.declared_noise());
+        if let Some(particulars) = self.vessel.particulars() {
+            trial = trial.with_particulars(particulars);
+        }
+        Ok(Simulated { trial, truth: truth(&samples, wake) })
+    }
+}
+
+fn truth(samples: &[Sample], wake: &crate::run::Wake) -> Truth {
+    let column = |value: fn(&Sample) -> f64| samples.iter().map(value).collect();
+    Truth {
+        time: column(|sample| sample.time),
+        heading: column(|sample| sample.motion.heading),
+        yaw_rate: column(|sample| sample.motion.yaw_rate),
+        yaw_acceleration: column(|sample| sample.motion.yaw_acceleration),
+        rudder: samples.iter().map(|sample| wake.path.at(sample.time)).collect(),
+        disturbance: column(|sample| sample.disturbance),
+        speed: samples.iter().map(|sample| sample.motion.speed).collect(),
+        executes: wake.executes.clone(),
+    }
+}

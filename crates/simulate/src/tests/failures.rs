@@ -1,0 +1,87 @@
+//! Every way to fail, with its numbers.
+
+use ship::FirstOrder;
+use ship::angle::from_deg;
+
+use super::{KEY, zig_zag};
+use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
+use crate::recording::Start;
+use crate::{Expected, SimulateError, Simulation, Vessel};
+
+fn failure(simulation: &Simulation) -> SimulateError {
+    simulation.run(&KEY).expect_err("this must fail")
+}
+
+fn refused(change: impl FnOnce(&mut Simulation)) -> (&'static str, Expected) {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
+    change(&mut simulation);
+    match failure(&simulation) {
+        SimulateError::Specification(error) => (error.key, error.expected),
+        other => panic!("expected a refusal, found {other}"),
+    }
+}
+
+#[test]
+fn a_specification_that_makes_no_sense_is_refused_by_name() {
+    assert_eq!(refused(|s| s.gear.rate = -0.1), ("gear.rate", Expected::PositiveOrInfinite));
+    assert_eq!(refused(|s| s.gear.rate = f64::NAN), ("gear.rate", Expected::PositiveOrInfinite));
+    assert_eq!(refused(|s| s.gear.lag = f64::NAN), ("gear.lag", Expected::NotNegative));
+    assert_eq!(refused(|s| s.recording.period = 0.0), ("recording.period", Expected::Positive));
+    let limit = from_deg(8.0);
+    assert_eq!(refused(|s| s.gear.maximum = limit), ("manoeuvre.rudder", Expected::AtMost(limit)));
+    assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration", Expected::Duration));
+    assert_eq!(refused(|s| s.approach.heading = f64::INFINITY), ("approach.heading", Expected::Finite));
+    assert_eq!(refused(|s| s.sensors.heading.noise = -1.0), ("sensors.heading.noise", Expected::NotNegative));
+    assert_eq!(
+        refused(|s| s.sensors.drop_out.probability = 1.5),
+        ("sensors.drop_out.probability", Expected::Between(0.0, 1.0))
+    );
+    assert_eq!(refused(|s| s.disturbances.random_walk = f64::NAN).0, "disturbances.random_walk");
+}
+
+#[test]
+fn a_message_says_what_was_found_and_what_was_expected() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
+    simulation.recording.period = 0.0;
+    let message = failure(&simulation).to_string();
+    assert_eq!(message, "recording.period is 0, expected a finite number above 0");
+}
+
+#[test]
+fn an_unstable_ship_that_runs_away_is_an_error() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 4000.0);
+    simulation.vessel = Vessel::first_order(FirstOrder { inverse_T: -0.05, K_over_T: 6e-3, rudder_bias: 0.0 });
+    let turn = TurningCircle { rudder: 0.1, side: Side::Starboard, end: TurnEnd::Duration(4000.0) };
+    simulation.manoeuvre = Manoeuvre::TurningCircle(turn);
+    match failure(&simulation) {
+        SimulateError::Diverged { time, .. } => assert!(time > 100.0 && time < 400.0, "{time}"),
+        other => panic!("expected divergence, found {other}"),
+    }
+}
+
+#[test]
+fn a_heading_that_is_never_reached_is_an_error() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 3000.0);
+    // A bias that outweighs the port rudder: the ship can only turn to starboard.
+    simulation.vessel = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, from_deg(10.2)));
+    simulation.longest_wait = 500.0;
+    match failure(&simulation) {
+        SimulateError::NeverReached { execute, waited, .. } => assert_eq!((execute, waited), (2, 500.0)),
+        other => panic!("expected to wait in vain, found {other}"),
+    }
+}
+
+#[test]
+fn a_record_that_starts_at_no_execute_is_an_error() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
+    let angle = from_deg(10.0);
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Executes(3));
+    simulation.recording.start = Start::Execute { number: 5, offset: 0.0 };
+    assert_eq!(failure(&simulation), SimulateError::NoSuchExecute { execute: 5, made: 3 });
+}
+
+#[test]
+fn a_record_with_too_few_rows_is_an_error() {
+    let simulation = zig_zag(10.0, 10.0, 2.5, 3.0);
+    assert!(matches!(failure(&simulation), SimulateError::Record(_)));
+}

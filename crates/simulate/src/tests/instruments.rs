@@ -1,0 +1,255 @@
+//! Every instrument does what its specification says, at a fixed key and within its own sampling error.
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use ship::Particulars;
+use ship::angle::{from_deg, to_deg};
+use trial::Channel;
+
+use super::{KEY, zig_zag};
+use crate::disturbance::Wind;
+use crate::helm::Watches;
+use crate::recording::Start;
+use crate::sensor::{Bursts, Loses, YawRateSensor};
+use crate::{Simulated, Simulation};
+
+const ROWS: f64 = 2001.0;
+
+fn long() -> Simulation {
+    zig_zag(10.0, 10.0, 2.5, ROWS - 1.0)
+}
+
+fn run(simulation: &Simulation) -> Simulated {
+    simulation.run(&KEY).expect("a zig-zag of a stable ship")
+}
+
+/// Mean and standard deviation of the differences.
+fn statistics(found: &[f64], truth: &[f64]) -> (f64, f64) {
+    assert_eq!(found.len(), truth.len());
+    let count = found.len() as f64;
+    let mean = found.iter().zip(truth).map(|(x, y)| x - y).sum::<f64>() / count;
+    let square = found.iter().zip(truth).map(|(x, y)| (x - y - mean).powi(2)).sum::<f64>();
+    (mean, (square / (count - 1.0)).sqrt())
+}
+
+/// Three standard errors of an sd estimated from all rows, relative.
+fn sd_tolerance() -> f64 {
+    3.0 / (2.0 * ROWS).sqrt()
+}
+
+#[test]
+fn heading_noise_bias_and_its_declaration() {
+    let mut simulation = long();
+    let (noise, bias) = (from_deg(0.3), from_deg(1.0));
+    simulation.sensors.heading.noise = noise;
+    simulation.sensors.heading.bias = bias;
+    let Simulated { trial, truth } = run(&simulation);
+    let (mean, sd) = statistics(trial.heading(), &truth.heading);
+    assert_relative_eq!(sd, noise, max_relative = sd_tolerance());
+    assert_abs_diff_eq!(mean, bias, epsilon = 3.0 * noise / ROWS.sqrt());
+    assert_eq!(trial.noise().heading, Some(noise));
+    assert_eq!(trial.noise().rudder, None);
+    assert_eq!(trial.rudder(), truth.rudder);
+}
+
+#[test]
+fn quantisation_is_uniform_and_declared_so() {
+    let mut simulation = long();
+    let quantum = from_deg(0.5);
+    simulation.sensors.heading.quantum = quantum;
+    simulation.sensors.rudder.quantum = from_deg(1.0);
+    let Simulated { trial, truth } = run(&simulation);
+    let (_, sd) = statistics(trial.heading(), &truth.heading);
+    let uniform = quantum / 12.0_f64.sqrt();
+    // Not independent draws but samples of a periodic motion: the sd is met within five per cent.
+    assert_relative_eq!(sd, uniform, max_relative = 0.05);
+    assert_relative_eq!(trial.noise().heading.expect("declared"), uniform, max_relative = 1e-12);
+    for (psi, delta) in trial.heading().iter().zip(trial.rudder()) {
+        assert_abs_diff_eq!(to_deg(*psi) * 2.0, (to_deg(*psi) * 2.0).round(), epsilon = 1e-9);
+        assert_abs_diff_eq!(to_deg(*delta), to_deg(*delta).round(), epsilon = 1e-9);
+    }
+}
+
+#[test]
+fn the_yaw_rate_sensor_scales_shifts_and_adds_noise() {
+    let mut simulation = long();
+    let sensor = YawRateSensor { noise: from_deg(0.05), bias: from_deg(0.02), scale_error: 0.05 };
+    assert!(run(&simulation).trial.yaw_rate().is_none());
+    simulation.sensors.yaw_rate = Some(sensor);
+    let Simulated { trial, truth } = run(&simulation);
+    let scaled: Vec<f64> = truth.yaw_rate.iter().map(|r| 1.05 * r).collect();
+    let (mean, sd) = statistics(trial.yaw_rate().expect("there is a sensor"), &scaled);
+    assert_relative_eq!(sd, sensor.noise, max_relative = sd_tolerance());
+    assert_abs_diff_eq!(mean, sensor.bias, epsilon = 3.0 * sensor.noise / ROWS.sqrt());
+}
+
+#[test]
+fn rudder_noise_has_its_sd_and_the_order_has_none() {
+    let mut simulation = long();
+    simulation.sensors.rudder.noise = from_deg(0.4);
+    let Simulated { trial, truth } = run(&simulation);
+    let (_, sd) = statistics(trial.rudder(), &truth.rudder);
+    assert_relative_eq!(sd, from_deg(0.4), max_relative = sd_tolerance());
+    let order = trial.channel(Channel::RudderOrder).expect("a helmsman gives orders");
+    assert!(order.iter().all(|delta| (to_deg(delta.abs()) - 10.0).abs() < 1e-12));
+    assert_eq!(order[0], from_deg(10.0));
+}
+
+/// A lag τ in a motion slow against τ: ψ_g(t) ≈ ψ(t − τ), and the error ψ_g − ψ obeys its own equation.
+#[test]
+fn gyro_lag_trails_the_heading() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 270.0);
+    let lag = 0.8;
+    simulation.sensors.heading.lag = lag;
+    simulation.recording.period = 0.05;
+    let Simulated { trial, truth } = run(&simulation);
+    let trail: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(gyro, psi)| gyro - psi).collect();
+    for row in 20..trail.len() - 1 {
+        let slope = (trail[row + 1] - trail[row - 1]) / 0.1;
+        assert_abs_diff_eq!(slope, -truth.yaw_rate[row] - trail[row] / lag, epsilon = 3e-6);
+    }
+    let exact = run(&zig_zag(10.0, 10.0, 2.5, 270.0)).truth;
+    assert_abs_diff_eq!(exact.executes[3].time, truth.executes[3].time, epsilon = 1e-8);
+}
+
+#[test]
+fn a_delayed_heading_is_the_heading_of_then() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
+    simulation.recording.start = Start::Execute { number: 2, offset: 0.0 };
+    let prompt = run(&simulation);
+    simulation.sensors.clock.heading_delay = 2.0;
+    let late = run(&simulation);
+    // The delay is a whole number of rows; the first two rows look back before the execute.
+    assert_eq!(late.trial.time(), prompt.trial.time());
+    assert_eq!(late.trial.rudder(), prompt.trial.rudder());
+    for row in 2..late.trial.len() {
+        assert_abs_diff_eq!(late.trial.heading()[row], prompt.trial.heading()[row - 2], epsilon = 1e-12);
+        assert_abs_diff_eq!(late.truth.heading[row], prompt.truth.heading[row], epsilon = 1e-12);
+    }
+    assert!(late.trial.heading()[0] < prompt.trial.heading()[0] - from_deg(1.0));
+    simulation.sensors.clock.heading_delay = -2.0;
+    let early = run(&simulation);
+    for row in 0..early.trial.len() - 2 {
+        assert_abs_diff_eq!(early.trial.heading()[row], prompt.trial.heading()[row + 2], epsilon = 1e-12);
+    }
+}
+
+#[test]
+fn jitter_moves_heading_and_rudder_by_the_same_instants() {
+    let mut simulation = zig_zag(20.0, 20.0, 2.5, 400.0);
+    let jitter = 0.2;
+    simulation.sensors.clock.jitter = jitter;
+    let Simulated { trial, truth } = run(&simulation);
+    // Δψ = r j + r' j²/2, so that j can be read back where the ship turns.
+    let (mut instants, mut agreeing) = (Vec::new(), 0);
+    for row in 1..trial.len() {
+        if truth.yaw_rate[row].abs() > from_deg(1.2) {
+            let moved = (trial.heading()[row] - truth.heading[row]) / truth.yaw_rate[row];
+            instants.push(moved);
+            let ramp = (trial.rudder()[row] - truth.rudder[row]) / from_deg(2.5);
+            if ramp.abs() > 1e-6 && (ramp.abs() - moved.abs()).abs() < 0.03 {
+                agreeing += 1;
+            }
+        }
+    }
+    let zeros = vec![0.0; instants.len()];
+    let (mean, sd) = statistics(&instants, &zeros);
+    let count = instants.len() as f64;
+    // The cut at 0.45 s (2.25 sd) takes 3 % off the sd.
+    assert_relative_eq!(sd, 0.97 * jitter, max_relative = 3.0 / (2.0 * count).sqrt());
+    assert_abs_diff_eq!(mean, 0.0, epsilon = 3.0 * jitter / count.sqrt());
+    assert!(agreeing >= 10, "{agreeing}");
+    assert_eq!(trial.time(), truth.time);
+}
+
+#[test]
+fn lost_headings_are_nan_and_lost_rows_are_gone() {
+    let mut simulation = long();
+    simulation.sensors.drop_out.probability = 0.2;
+    let headings = run(&simulation);
+    let lost = headings.trial.heading().iter().filter(|psi| psi.is_nan()).count() as f64;
+    let tolerance = 3.0 * (0.2 * 0.8 * ROWS).sqrt();
+    assert_abs_diff_eq!(lost, 0.2 * ROWS, epsilon = tolerance);
+    assert!(headings.truth.heading.iter().all(|psi| psi.is_finite()));
+
+    simulation.sensors.drop_out.loses = Loses::Row;
+    simulation.sensors.drop_out.bursts = Some(Bursts { probability: 0.01, mean_rows: 5.0 });
+    let rows = run(&simulation);
+    assert!(rows.trial.len() < headings.trial.len() - lost as usize);
+    assert_eq!(rows.trial.time(), rows.truth.time);
+    assert_eq!(rows.trial.heading(), rows.truth.heading);
+}
+
+#[test]
+fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 600.0);
+    simulation.helmsman.watches = Watches::Display { period: 1.0 };
+    simulation.sensors.heading.noise = from_deg(0.5);
+    simulation.sensors.heading.quantum = from_deg(0.1);
+    let Simulated { trial, truth } = run(&simulation);
+    let mut off = 0;
+    for execute in &truth.executes[1..] {
+        assert_eq!(execute.time, execute.time.round());
+        let row = execute.time as usize;
+        // The reading at the execute has reached the heading asked for, the one before has not.
+        let side = -execute.order.signum();
+        assert!(to_deg(side * trial.heading()[row]) >= 10.0 - 1e-6);
+        assert!(to_deg(side * trial.heading()[row - 1]) < 10.0);
+        off += usize::from((to_deg(side * execute.heading) - 10.0).abs() > 0.05);
+    }
+    // What he sees is not what is: noise and sampling move the executes.
+    assert!(off >= 4, "{off}");
+
+    simulation.helmsman.reaction_time = 0.6;
+    let slow = run(&simulation).truth;
+    for execute in &slow.executes[1..] {
+        assert_abs_diff_eq!(execute.time - execute.time.floor(), 0.6, epsilon = 1e-9);
+    }
+}
+
+#[test]
+fn without_noise_a_display_only_delays_to_the_next_reading() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
+    let exact = run(&simulation).truth.executes[1].time;
+    simulation.helmsman.watches = Watches::Display { period: 0.5 };
+    let read = run(&simulation).truth.executes[1].time;
+    assert_eq!(read, (exact / 0.5).ceil() * 0.5);
+}
+
+#[test]
+fn waves_are_seen_but_do_not_steer() {
+    let mut simulation = long();
+    let calm = run(&simulation).truth;
+    let sd = from_deg(0.6);
+    simulation.disturbances.waves = Some(ship::narrow_band::NarrowBand { sd, frequency: 0.8, damping: 0.2 });
+    simulation.sensors.yaw_rate = Some(YawRateSensor::default());
+    let Simulated { trial, truth } = run(&simulation);
+    assert_eq!(truth.heading, calm.heading);
+    let (_, heading) = statistics(trial.heading(), &truth.heading);
+    let (_, rate) = statistics(trial.yaw_rate().expect("there is a sensor"), &truth.yaw_rate);
+    // Correlated over about 1/(ζω₀) = 6 s: some 2000/6 independent squares.
+    let tolerance = 3.0 / (2.0 * ROWS / 6.0).sqrt();
+    assert_relative_eq!(heading, sd, max_relative = tolerance);
+    assert_relative_eq!(rate, 0.8 * sd, max_relative = tolerance);
+}
+
+#[test]
+fn wind_acts_by_heading_and_is_recorded() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 200.0);
+    let wind = Wind { moment: from_deg(1.0), from: from_deg(60.0), speed: Some(10.0), gusting: None };
+    simulation.disturbances.wind = Some(wind);
+    simulation.vessel = simulation.vessel.with_particulars(Particulars { length: 105.0, speed: 8.0 });
+    let Simulated { trial, truth } = run(&simulation);
+    for (psi, moment) in truth.heading.iter().zip(&truth.disturbance) {
+        assert_abs_diff_eq!(*moment, wind.moment * (2.0 * (wind.from - psi)).sin(), epsilon = 1e-15);
+    }
+    // r' + a r = b (δ + moment), row by row.
+    let ship = super::training_ship();
+    for row in 0..trial.len() {
+        let steering = truth.rudder[row] + truth.disturbance[row];
+        let expected = ship.K_over_T * steering - ship.inverse_T * truth.yaw_rate[row];
+        assert_abs_diff_eq!(truth.yaw_acceleration[row], expected, epsilon = 1e-15);
+    }
+    let from = trial.channel(Channel::WindRelativeFrom).expect("speed of wind and ship are known");
+    assert!(from.iter().all(|from| (0.0..from_deg(60.0)).contains(from)));
+    assert_eq!(trial.channel(Channel::WindTrueSpeed).expect("recorded")[5], 10.0);
+}

@@ -1,0 +1,298 @@
+//! What must not matter, and what must: solver, step, side, repetition, sources of noise.
+
+use approx::assert_abs_diff_eq;
+use std::sync::Arc;
+
+use ship::angle::{from_deg, to_deg};
+use ship::{Dynamics, FirstOrder, Input, Motion, Polyline};
+
+use super::{KEY, training_ship, zig_zag};
+use crate::disturbance::{GaussMarkov, Squall, Wind};
+use crate::helm::Watches;
+use crate::manoeuvre::{Manoeuvre, PullOut, Side, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
+use crate::recording::Start;
+use crate::sensor::YawRateSensor;
+use crate::vessel::Solver;
+use crate::{Simulation, StreamKey, Truth, Vessel};
+
+/// A ship with cubic damping and a rudder that acts late, for which nothing has a closed form.
+struct Cubic {
+    base: FirstOrder,
+    n3: f64,
+    dead_time: f64,
+}
+
+impl Dynamics for Cubic {
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        state.copy_from_slice(&[heading, yaw_rate]);
+    }
+
+    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        let (a, r) = (self.base.inverse_T, state[1]);
+        let steering = input.rudder + input.disturbance + self.base.rudder_bias;
+        rate[0] = r;
+        rate[1] = -a * (r + self.n3 * r * r * r) + self.base.K_over_T * steering;
+    }
+
+    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+        let mut rate = [0.0; 2];
+        self.rates(t, state, input, &mut rate);
+        let speed = Some(7.0 - 1e3 * state[1] * state[1]);
+        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration: rate[1], speed, sway: None }
+    }
+
+    fn dead_time(&self) -> f64 {
+        self.dead_time
+    }
+}
+
+fn cubic(dead_time: f64) -> Vessel {
+    Vessel::hull(Arc::new(Cubic { base: training_ship(), n3: 2000.0, dead_time }))
+}
+
+fn truth(simulation: &Simulation) -> Truth {
+    simulation.run(&KEY).expect("a run of a stable ship").truth
+}
+
+fn assert_same(left: &Truth, right: &Truth, tolerance: f64) {
+    assert_eq!(left.executes.len(), right.executes.len());
+    for (left, right) in left.executes.iter().zip(&right.executes) {
+        assert_abs_diff_eq!(left.time, right.time, epsilon = tolerance);
+        assert_abs_diff_eq!(left.yaw_rate, right.yaw_rate, epsilon = tolerance);
+    }
+    let columns = |truth: &Truth| {
+        [&truth.heading, &truth.yaw_rate, &truth.yaw_acceleration, &truth.rudder].map(|column| column.clone())
+    };
+    for (left, right) in columns(left).iter().zip(columns(right)) {
+        assert_eq!(left.len(), right.len());
+        for (left, right) in left.iter().zip(right) {
+            assert_abs_diff_eq!(*left, right, epsilon = tolerance);
+        }
+    }
+}
+
+/// Manoeuvres of every kind, with disturbances that leave the closed form in force.
+fn variety() -> Vec<Simulation> {
+    let mut list = Vec::new();
+    for (delta_deg, psi_deg, rate) in [(10.0, 10.0, 2.32), (20.0, 20.0, 3.0), (10.0, 20.0, 2.5), (5.0, 1.0, 4.0)] {
+        list.push(zig_zag(delta_deg, psi_deg, rate, 270.0));
+    }
+    let mut anchored = list[0].clone();
+    anchored.recording.start = Start::Execute { number: 2, offset: 1.2 };
+    anchored.approach.lead_in = 7.3;
+    anchored.approach.heading = 1.0;
+    anchored.gear.dead_time = 0.7;
+    anchored.gear.dead_band = from_deg(0.3);
+    list.push(anchored.clone());
+    anchored.disturbances.drift = from_deg(0.004);
+    anchored.disturbances.random_walk = from_deg(0.05);
+    anchored.disturbances.gusts = Some(GaussMarkov { sd: from_deg(0.3), correlation_time: 10.0 });
+    anchored.disturbances.squall = Some(Squall { start: 90.0, duration: 40.0, edge: 10.0, moment: from_deg(2.0) });
+    anchored.helmsman.reaction_time = 0.4;
+    list.push(anchored);
+    let mut turn = list[0].clone();
+    let rudder = from_deg(35.0);
+    turn.manoeuvre =
+        Manoeuvre::TurningCircle(TurningCircle { rudder, side: Side::Port, end: TurnEnd::HeadingChange(9.0) });
+    turn.recording.duration = None;
+    list.push(turn.clone());
+    turn.manoeuvre = Manoeuvre::PullOut(PullOut { rudder, side: Side::Starboard, hold: 80.5, duration: 60.0 });
+    list.push(turn.clone());
+    let recorded = Polyline::new(vec![100.0, 103.0, 120.0, 125.5, 180.0], vec![0.0, 0.2, 0.2, -0.3, 0.1]);
+    turn.manoeuvre = Manoeuvre::Replay(recorded.expect("increasing times"));
+    list.push(turn);
+    list
+}
+
+#[test]
+fn closed_form_and_runge_kutta_agree_to_1e_9() {
+    for simulation in variety() {
+        let exact = truth(&simulation);
+        // The steps that leave the truncation error of order four below the bound.
+        let integrated = truth(&Simulation { solver: Solver::RungeKutta(0.05), ..simulation });
+        assert_same(&exact, &integrated, 1e-9);
+    }
+}
+
+#[test]
+fn port_first_is_the_exact_mirror() {
+    for vessel in [Vessel::first_order(training_ship()), cubic(0.4)] {
+        let mut starboard = zig_zag(15.0, 10.0, 2.5, 300.0);
+        starboard.vessel = vessel;
+        starboard.gear.lag = 0.5;
+        let mut port = starboard.clone();
+        let (rudder, heading) = (from_deg(15.0), from_deg(10.0));
+        port.manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first: Side::Port, end: ZigZagEnd::Record });
+        let (starboard, port) = (truth(&starboard), truth(&port));
+        for (right, left) in starboard.heading.iter().zip(&port.heading) {
+            assert_eq!(*right, -left);
+        }
+        for (right, left) in starboard.executes.iter().zip(&port.executes) {
+            assert_eq!((right.time, right.order), (left.time, -left.order));
+        }
+    }
+}
+
+#[test]
+fn runge_kutta_is_of_order_four_and_events_with_it() {
+    let with = |step| {
+        let mut simulation = zig_zag(20.0, 20.0, 2.32, 200.0);
+        simulation.vessel = cubic(0.6);
+        // Rows coarser than the step, or the rows would set the step.
+        simulation.recording.period = 20.0;
+        truth(&Simulation { solver: Solver::RungeKutta(step), ..simulation })
+    };
+    let exact = with(0.02);
+    let error = |step| {
+        let rough = with(step);
+        // The first crossing: later ones also carry the steps that were cut at earlier events.
+        let event = (rough.executes[1].time - exact.executes[1].time).abs();
+        let heading = (rough.heading[10] - exact.heading[10]).abs();
+        (event, heading)
+    };
+    // Half the step, a sixteenth of the error.
+    for step in [0.5, 0.25] {
+        let (coarse, fine) = (error(step), error(0.5 * step));
+        assert!((14.0..18.0).contains(&(coarse.0 / fine.0)), "events {coarse:?} {fine:?}");
+        assert!((14.0..20.0).contains(&(coarse.1 / fine.1)), "heading {coarse:?} {fine:?}");
+    }
+}
+
+#[test]
+fn events_do_not_depend_on_step_or_sampling() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 280.0);
+    let exact = truth(&simulation);
+    simulation.recording.period = 0.37;
+    let other = truth(&simulation);
+    for (left, right) in exact.executes.iter().zip(&other.executes) {
+        assert_abs_diff_eq!(left.time, right.time, epsilon = 1e-11);
+        assert_abs_diff_eq!(to_deg(left.heading.abs()), if left.time > 0.0 { 10.0 } else { 0.0 }, epsilon = 1e-11);
+    }
+    simulation.vessel = cubic(0.0);
+    let [coarse, fine] = [0.1, 0.03].map(|step| {
+        let solver = Solver::RungeKutta(step);
+        truth(&Simulation { solver, ..simulation.clone() })
+    });
+    for (left, right) in coarse.executes.iter().zip(&fine.executes) {
+        assert_abs_diff_eq!(left.time, right.time, epsilon = 1e-7);
+    }
+}
+
+#[test]
+fn a_late_rudder_is_the_same_motion_with_a_late_gear() {
+    let mut late_ship = zig_zag(10.0, 10.0, 2.5, 200.0);
+    late_ship.vessel = cubic(1.3);
+    let mut late_gear = late_ship.clone();
+    late_gear.vessel = cubic(0.0);
+    late_gear.gear.dead_time = 1.3;
+    let (ship, gear) = (truth(&late_ship), truth(&late_gear));
+    for (left, right) in ship.heading.iter().zip(&gear.heading) {
+        assert_abs_diff_eq!(*left, *right, epsilon = 1e-9);
+    }
+    assert!(ship.rudder.iter().zip(&gear.rudder).any(|(left, right)| (left - right).abs() > 0.01));
+}
+
+#[test]
+fn the_record_starts_after_the_execute_and_has_its_rows() {
+    let mut simulation = zig_zag(10.0, 20.0, 2.5, 270.0);
+    simulation.recording.start = Start::Execute { number: 2, offset: 1.2 };
+    let simulated = simulation.run(&KEY).expect("a zig-zag");
+    assert_eq!(simulated.trial.len(), 271);
+    assert_abs_diff_eq!(simulated.trial.time()[0], 36.31 + 1.2, epsilon = 0.01);
+    assert_eq!(simulated.trial.heading(), simulated.truth.heading);
+    assert_eq!(simulated.trial.rudder(), simulated.truth.rudder);
+    // +10 deg less 1.2 s at 2.5 deg/s.
+    assert_abs_diff_eq!(to_deg(simulated.trial.rudder()[0]), 7.0, epsilon = 1e-9);
+    assert_eq!(simulated.truth.speed, None);
+    assert!(simulated.trial.noise().heading.is_none());
+}
+
+#[test]
+fn zig_zag_ends_at_its_execute_or_its_duration() {
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 1.0);
+    simulation.recording.duration = None;
+    simulation.approach.lead_in = 10.0;
+    let angle = from_deg(10.0);
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Executes(4));
+    let by_executes = truth(&simulation);
+    assert_eq!(by_executes.executes.len(), 4);
+    assert_eq!(by_executes.time.last().copied(), Some(147.0));
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Duration(200.0));
+    let by_duration = truth(&simulation);
+    assert_eq!(by_duration.time.last().copied(), Some(210.0));
+    assert_eq!(by_duration.executes[0].time, 10.0);
+    assert_eq!(by_duration.heading[10], 0.0);
+}
+
+#[test]
+fn a_turning_circle_ends_at_its_heading_and_a_pull_out_comes_to_rest() {
+    let list = variety();
+    let turn = truth(&list[6]);
+    let last = turn.heading[turn.heading.len() - 1];
+    assert!(last > -9.0 && last < -9.0 + 0.07, "{last}");
+    let pull_out = truth(&list[7]);
+    assert_eq!(pull_out.executes.len(), 2);
+    assert_eq!(pull_out.executes[1].time, 80.5);
+    assert_eq!(pull_out.executes[1].order, 0.0);
+    // 60 s are 3.7 time constants, less the time the rudder needs.
+    let last = pull_out.yaw_rate.len() - 1;
+    assert!(pull_out.yaw_rate[last] < 0.1 * pull_out.yaw_rate[80]);
+}
+
+/// Everything that is random at once.
+fn noisy() -> Simulation {
+    let mut simulation = variety().swap_remove(5);
+    simulation.disturbances.wind = Some(Wind {
+        moment: from_deg(1.0),
+        from: 1.0,
+        speed: Some(12.0),
+        gusting: Some(GaussMarkov { sd: 0.2, correlation_time: 8.0 }),
+    });
+    simulation.disturbances.waves =
+        Some(ship::narrow_band::NarrowBand { sd: from_deg(0.3), frequency: 0.7, damping: 0.1 });
+    simulation.sensors.heading.noise = from_deg(0.2);
+    simulation.sensors.heading.quantum = from_deg(0.1);
+    simulation.sensors.yaw_rate = Some(YawRateSensor { noise: 1e-3, ..YawRateSensor::default() });
+    simulation.sensors.rudder.noise = from_deg(0.2);
+    simulation.sensors.clock.jitter = 0.1;
+    simulation.sensors.drop_out.probability = 0.05;
+    simulation.helmsman.watches = Watches::Display { period: 1.0 };
+    simulation
+}
+
+#[test]
+fn the_same_key_gives_the_same_bits() {
+    let simulation = noisy();
+    let bits = |key: &StreamKey| {
+        let simulated = simulation.run(key).expect("a noisy zig-zag");
+        let trial = simulated.trial;
+        let channels = trial.channels().flat_map(|(_, values)| values.iter().map(|x| x.to_bits()));
+        channels.chain(trial.rudder().iter().map(|x| x.to_bits())).collect::<Vec<u64>>()
+    };
+    assert_eq!(bits(&KEY), bits(&KEY));
+    for other in [StreamKey { seed: 21, ..KEY }, StreamKey { cell: 4, ..KEY }, StreamKey { replicate: 8, ..KEY }] {
+        assert_ne!(bits(&KEY), bits(&other));
+    }
+}
+
+#[test]
+fn a_new_source_of_noise_leaves_the_others_as_they_were() {
+    let mut few = zig_zag(10.0, 10.0, 2.5, 100.0);
+    few.sensors.heading.noise = from_deg(0.3);
+    let mut many = few.clone();
+    many.sensors.rudder.noise = from_deg(0.2);
+    many.sensors.yaw_rate = Some(YawRateSensor { noise: 1e-3, ..YawRateSensor::default() });
+    many.sensors.drop_out.probability = 0.1;
+    let (few, many) = (few.run(&KEY).expect("a zig-zag").trial, many.run(&KEY).expect("a zig-zag").trial);
+    let mut kept = 0;
+    for (left, right) in few.heading().iter().zip(many.heading()).filter(|(_, right)| right.is_finite()) {
+        assert_eq!(left, right);
+        kept += 1;
+    }
+    assert!(kept > 70 && kept < 101);
+    assert_ne!(few.rudder(), many.rudder());
+}

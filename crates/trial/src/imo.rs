@@ -1,0 +1,206 @@
+//! Manoeuvrability criteria of IMO resolution MSC.137(76), adopted 4 December 2002, against a zig-zag record. It holds
+//! the limits of the turning circle too, for whoever measures one; it measures nothing itself.
+//!
+//! The criteria are for ships of 100 m and above (chemical and gas carriers of any length) at full load and even keel,
+//! in deep unrestricted water and calm weather, at the test speed: at least 90 % of the speed at 85 % of the maximum
+//! engine output. A record does not show whether that was so. L and V have to be of the same scale as the record.
+
+use ship::Particulars;
+use ship::angle::to_deg;
+
+use crate::zigzag::{Pair, Quantity, ZigZag};
+
+/// Largest advance of a turning circle, ship lengths.
+pub const ADVANCE_LENGTHS: f64 = 4.5;
+/// Largest tactical diameter of a turning circle, ship lengths.
+pub const TACTICAL_DIAMETER_LENGTHS: f64 = 5.0;
+/// Longest way for a change of heading by 10 degrees with 10 degrees of rudder, ship lengths.
+pub const INITIAL_TURNING_LENGTHS: f64 = 2.5;
+/// Largest first overshoot of the 20/20 zig-zag, degrees.
+pub const FIRST_OVERSHOOT_20_20_DEG: f64 = 25.0;
+
+/// Largest first overshoot of the 10/10 zig-zag, degrees.
+///
+/// 10 for L/V < 10 s, 20 for L/V ≥ 30 s, else 5 + L/(2V). Source: MSC.137(76), 5.3.3.1.
+pub fn first_overshoot_10_10_limit_deg(particulars: Particulars) -> f64 {
+    between(particulars, 10.0, 20.0, |seconds| 5.0 + 0.5 * seconds)
+}
+
+/// Largest second overshoot of the 10/10 zig-zag, degrees.
+///
+/// 25 for L/V < 10 s, 40 for L/V ≥ 30 s, else 17.5 + 0.75 L/V. Source: MSC.137(76), 5.3.3.2.
+pub fn second_overshoot_10_10_limit_deg(particulars: Particulars) -> f64 {
+    between(particulars, 25.0, 40.0, |seconds| 17.5 + 0.75 * seconds)
+}
+
+fn between(Particulars { length, speed }: Particulars, short: f64, long: f64, line: impl Fn(f64) -> f64) -> f64 {
+    let seconds = length / speed;
+    if seconds < 10.0 {
+        short
+    } else if seconds < 30.0 {
+        line(seconds)
+    } else {
+        long
+    }
+}
+
+/// Unit of a criterion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Degrees.
+    Degrees,
+    /// Ship lengths L.
+    ShipLengths,
+}
+
+impl Unit {
+    /// The unit as it is written after a number.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Degrees => "deg",
+            Self::ShipLengths => "L",
+        }
+    }
+}
+
+/// Whether a criterion is met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The measured value does not exceed the limit.
+    Pass,
+    /// The measured value exceeds the limit.
+    Fail,
+    /// The record does not measure this quantity.
+    NotMeasured,
+}
+
+/// One criterion with what was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Criterion {
+    /// What is limited.
+    pub name: &'static str,
+    /// The measured value, in `unit`; its uncertainty is for the reader, the verdict goes by the value.
+    pub measured: Option<Quantity>,
+    /// The largest value allowed, in `unit`.
+    pub limit: f64,
+    /// Unit of value and limit.
+    pub unit: Unit,
+    /// Whether the criterion is met.
+    pub verdict: Verdict,
+}
+
+impl Criterion {
+    /// Compares a value with its limit, both in `unit`.
+    pub fn new(name: &'static str, measured: Option<Quantity>, limit: f64, unit: Unit) -> Self {
+        let verdict = match measured {
+            None => Verdict::NotMeasured,
+            Some(quantity) if quantity.value <= limit => Verdict::Pass,
+            Some(_) => Verdict::Fail,
+        };
+        Self { name, measured, limit, unit, verdict }
+    }
+}
+
+/// The criteria of a turning circle, from its advance and tactical diameter in metres.
+pub fn turning_circle(advance: Option<f64>, tactical_diameter: Option<f64>, length: f64) -> [Criterion; 2] {
+    let lengths = |metres: Option<f64>| metres.map(|metres| Quantity { value: metres / length, sd: None });
+    [
+        Criterion::new("advance", lengths(advance), ADVANCE_LENGTHS, Unit::ShipLengths),
+        Criterion::new("tactical diameter", lengths(tactical_diameter), TACTICAL_DIAMETER_LENGTHS, Unit::ShipLengths),
+    ]
+}
+
+/// The criteria a zig-zag can measure, with the values this one does: overshoots and initial turning of a 10/10, the
+/// first overshoot of a 20/20, nothing for other pairs or for a record that begins within the trial.
+///
+/// The way of the initial turning is the integral of the recorded speed, or V t_a where the speed was not recorded;
+/// the latter is slightly long, because a ship loses speed as it begins to turn.
+pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
+    let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));
+    let overshoot = |angle_deg: f64, n: usize| {
+        let angle = zigzag.nth_overshoot(n).filter(|_| is_pair(angle_deg))?.angle;
+        Some(Quantity { value: to_deg(angle.value), sd: angle.sd.map(to_deg) })
+    };
+    let initial_turning = zigzag.initial_turning_time.filter(|_| is_pair(10.0)).map(|time| {
+        let Particulars { length, speed } = particulars;
+        let way = zigzag.initial_turning_distance.unwrap_or(speed * time.value);
+        Quantity { value: way / length, sd: time.sd.map(|sd| sd * speed / length) }
+    });
+    vec![
+        Criterion::new(
+            "10/10 first overshoot",
+            overshoot(10.0, 1),
+            first_overshoot_10_10_limit_deg(particulars),
+            Unit::Degrees,
+        ),
+        Criterion::new(
+            "10/10 second overshoot",
+            overshoot(10.0, 2),
+            second_overshoot_10_10_limit_deg(particulars),
+            Unit::Degrees,
+        ),
+        Criterion::new("20/20 first overshoot", overshoot(20.0, 1), FIRST_OVERSHOOT_20_20_DEG, Unit::Degrees),
+        Criterion::new("initial turning", initial_turning, INITIAL_TURNING_LENGTHS, Unit::ShipLengths),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::zigzag::simulator::{Plant, trial};
+    use approx::assert_relative_eq;
+
+    /// Length and speed of the training ship YUKUN as commonly quoted (no primary source seen): L/V = 12.2 s.
+    const YUKUN: Particulars = Particulars { length: 105.0, speed: 8.59 };
+
+    fn of_seconds(seconds: f64) -> Particulars {
+        Particulars { length: seconds * 8.0, speed: 8.0 }
+    }
+
+    #[test]
+    fn limits_are_those_of_the_resolution() {
+        assert_relative_eq!(first_overshoot_10_10_limit_deg(YUKUN), 11.1, epsilon = 0.02);
+        assert_relative_eq!(second_overshoot_10_10_limit_deg(YUKUN), 26.7, epsilon = 0.04);
+        for (seconds, first, second) in
+            [(9.9, 10.0, 25.0), (10.0, 10.0, 25.0), (20.0, 15.0, 32.5), (30.0, 20.0, 40.0), (60.0, 20.0, 40.0)]
+        {
+            assert_relative_eq!(first_overshoot_10_10_limit_deg(of_seconds(seconds)), first);
+            assert_relative_eq!(second_overshoot_10_10_limit_deg(of_seconds(seconds)), second);
+        }
+    }
+
+    fn table(delta_deg: f64, psi_deg: f64) -> Vec<Criterion> {
+        let (time, heading, rudder) = Plant::new(delta_deg, psi_deg, 2.5).record(300.0, 1.0);
+        criteria(&ZigZag::of(&trial(time, heading, rudder)).expect("a zig-zag"), YUKUN)
+    }
+
+    fn values(table: &[Criterion]) -> Vec<Option<f64>> {
+        table.iter().map(|criterion| criterion.measured.map(|quantity| quantity.value)).collect()
+    }
+
+    /// Simulated YUKUN: 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), 1.97 L, by an independent simulation.
+    #[test]
+    fn each_pair_measures_its_own_criteria() {
+        let ten = table(10.0, 10.0);
+        let measured = values(&ten);
+        assert_relative_eq!(measured[0].expect("10/10"), 6.35, epsilon = 0.02);
+        assert_relative_eq!(measured[1].expect("10/10"), 8.07, epsilon = 0.02);
+        assert_eq!(measured[2], None);
+        assert_relative_eq!(measured[3].expect("10/10"), 1.97, epsilon = 0.01);
+        let verdicts: Vec<Verdict> = ten.iter().map(|criterion| criterion.verdict).collect();
+        assert_eq!(verdicts, [Verdict::Pass, Verdict::Pass, Verdict::NotMeasured, Verdict::Pass]);
+
+        let twenty = values(&table(20.0, 20.0));
+        assert_eq!((twenty[0], twenty[1], twenty[3]), (None, None, None));
+        assert_relative_eq!(twenty[2].expect("20/20"), 18.81, epsilon = 0.02);
+
+        assert_eq!(values(&table(10.0, 20.0)), [None; 4]);
+    }
+
+    #[test]
+    fn a_value_above_its_limit_fails() {
+        let verdicts = turning_circle(Some(400.0), Some(600.0), 100.0).map(|criterion| criterion.verdict);
+        assert_eq!(verdicts, [Verdict::Pass, Verdict::Fail]);
+        assert_eq!(turning_circle(None, None, 100.0)[0].verdict, Verdict::NotMeasured);
+    }
+}

@@ -1,0 +1,322 @@
+//! What is checked before a record is believed: does anything move, are the units those the column names say, do rudder,
+//! heading and yaw rate have the same sign. The checks use ratios that hold for ships of every size; they do not judge
+//! whether a trial was well executed, nor how good its sensors are.
+//!
+//! An error is raised where a record can hardly be right, and says how to mend it. Where a record is only unusual there is a
+//! warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
+
+mod regression;
+
+use ship::angle::to_deg;
+use thiserror::Error;
+
+use crate::record::Trial;
+use regression::{Slope, rudder_on_heading, yaw_rate_on_heading};
+
+/// Why a record is not believed. Angles in degrees, for people.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Implausible {
+    /// Neither heading nor rudder changes.
+    #[error(
+        "nothing moves: the heading changes by {heading_deg:.4}° and the rudder by {rudder_deg:.4}°; expected a manoeuvre, \
+         check that the right columns and the right part of the record are used"
+    )]
+    NothingMoves {
+        /// Range of the heading, deg.
+        heading_deg: f64,
+        /// Range of the rudder, deg.
+        rudder_deg: f64,
+    },
+    /// The rudder moves and the heading does not.
+    #[error(
+        "the heading stays within {heading_deg:.4}° while the rudder moves through {rudder_deg:.1}°; expected the heading to \
+         answer, check that the heading sensor was recorded and the right column is used"
+    )]
+    HeadingConstant {
+        /// Range of the heading, deg.
+        heading_deg: f64,
+        /// Range of the rudder, deg.
+        rudder_deg: f64,
+    },
+    /// Degrees under a name that says radians.
+    #[error(
+        "the rudder reaches {largest_deg:.0}°, expected less than 92°: it looks like degrees under a name that says radians; \
+         name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml"
+    )]
+    RudderInDegrees {
+        /// Largest rudder angle as read, deg.
+        largest_deg: f64,
+    },
+    /// Radians under a name that says degrees.
+    #[error(
+        "the rudder never exceeds {largest_deg:.3}° while the heading moves through {heading_deg:.0}°: it looks like radians \
+         under a name that says degrees; name the column rudder_rad, or write `is = \"rudder_rad\"` for it in a sidecar \
+         NAME.trial.toml"
+    )]
+    RudderInRadians {
+        /// Largest rudder angle as read, deg.
+        largest_deg: f64,
+        /// Range of the heading, deg.
+        heading_deg: f64,
+    },
+    /// Degrees under a name that says radians.
+    #[error(
+        "the heading moves through {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like degrees \
+         under a name that says radians; name the column heading_deg, or write `is = \"heading_deg\"` for it in a sidecar \
+         NAME.trial.toml"
+    )]
+    HeadingInDegrees {
+        /// Range of the heading as read, deg.
+        heading_deg: f64,
+        /// Range of the rudder, deg.
+        rudder_deg: f64,
+    },
+    /// Radians under a name that says degrees.
+    #[error(
+        "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
+         radians under a name that says degrees; name the column heading_rad, or write `is = \"heading_rad\"` for it in a \
+         sidecar NAME.trial.toml (if it is right, write `plausibility = false` under [check] there)"
+    )]
+    HeadingInRadians {
+        /// Range of the heading as read, deg.
+        heading_deg: f64,
+        /// Range of the rudder, deg.
+        rudder_deg: f64,
+    },
+    /// Heading and integrated yaw rate differ by the factor between two units.
+    #[error(
+        "the heading changes {ratio:.3} times as much as the integral of the yaw rate, expected 1: one of the two has the wrong \
+         unit in its name (degrees for radians are a factor 57.3, minutes for seconds 60); correct the name, or write \
+         `is = \"yaw_rate_rad_s\"` (yaw_rate_deg_s, yaw_rate_deg_min, heading_rad, heading_deg) for the column in a sidecar \
+         NAME.trial.toml"
+    )]
+    YawRateUnit {
+        /// Heading per integrated yaw rate.
+        ratio: f64,
+    },
+    /// Heading and integrated yaw rate have opposite signs.
+    #[error(
+        "heading and yaw rate have opposite signs: the heading changes {ratio:.3} times as much as the integral of the yaw \
+         rate, expected 1; both are positive to starboard (clockwise), write `flip = true` for the {culprit} column in a \
+         sidecar NAME.trial.toml"
+    )]
+    YawRateSign {
+        /// Heading per integrated yaw rate.
+        ratio: f64,
+        /// The one of the two that disagrees with the rudder.
+        culprit: &'static str,
+    },
+    /// The ship turns away from its rudder.
+    #[error(
+        "the rudder sign looks flipped: the ship turns to port under positive rudder (K/T = {gain:.2e} 1/s², and the rudder \
+         explains {share_percent:.0} % of the heading that way); positive rudder has to turn it to starboard, write `flip = \
+         true` for the rudder column in a sidecar NAME.trial.toml, [[column]] with `name = \"rudder_deg\"` or what the column \
+         is called (the heading, if that grows to port)"
+    )]
+    RudderFlipped {
+        /// b = K/T as read, 1/s².
+        gain: f64,
+        /// Share of the heading the rudder explains, %.
+        share_percent: f64,
+    },
+}
+
+/// Ranges below this are the resolution of an instrument, not a movement, deg.
+const STILL_DEG: f64 = 0.01;
+
+/// A rudder that moves at least this far can be held against the heading, deg. The smallest amplitude in use is 5° (10° range).
+const MOVED_DEG: f64 = 4.0;
+
+/// A heading that moves less says nothing about the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and more.
+const ANSWERED_DEG: f64 = 1.0;
+
+/// More reversals than any manoeuvre has: a dither, a pseudo-random sequence or an autopilot in waves.
+const REVERSALS_OF_A_DITHER: usize = 24;
+
+/// Share of the heading a flipped rudder has to explain. The zig-zags of KVLCC2 and Esso Osaka reach 0.82 to 0.99 with the
+/// right sign (SIMMAN 2008; Wakita et al. 2022, in wind); a turning circle 0.59.
+const DECISIVE_SHARE: f64 = 0.7;
+
+/// Share from which on a flipped rudder is worth a warning.
+const NOTABLE_SHARE: f64 = 0.4;
+
+/// Checks a record; returns warnings.
+///
+/// Fails with [`Implausible`] when nothing moves, a unit is off by the factor between degrees and radians, or rudder,
+/// heading and yaw rate contradict each other in sign. The sign of the rudder is that of b = K/T in
+/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice).
+pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
+    let mut warnings = Vec::new();
+    ranges(trial, &mut warnings)?;
+    let response = rudder_on_heading(trial);
+    yaw_rate(trial, response, &mut warnings)?;
+    rudder_sign(trial, response, &mut warnings)?;
+    gaps(trial, &mut warnings);
+    Ok(warnings)
+}
+
+/// Largest minus smallest finite value, deg.
+fn range_deg(values: &[f64]) -> f64 {
+    let (low, high) = values
+        .iter()
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    if low <= high { to_deg(high - low) } else { 0.0 }
+}
+
+/// How often the rudder goes from one side of its range to the other, by more than half of it.
+fn reversals(rudder: &[f64]) -> usize {
+    let low = rudder.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = rudder.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));
+    let mut side = 0.0;
+    let mut count = 0;
+    for delta in rudder.iter().map(|delta| delta - middle).filter(|delta| delta.abs() > quarter) {
+        if delta.signum() != side {
+            count += usize::from(side != 0.0);
+            side = delta.signum();
+        }
+    }
+    count
+}
+
+/// Whether the heading steps by 2π under its own unit: 6.28 "degrees" between one row and the next.
+fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
+    let mut last = f64::NAN;
+    let (mut wraps, mut others) = (0, 0);
+    for &psi in heading.iter().filter(|psi| psi.is_finite()) {
+        let step_deg = to_deg(psi - last).abs();
+        wraps += usize::from((step_deg - std::f64::consts::TAU).abs() < 0.2);
+        others += usize::from((1.0..=std::f64::consts::TAU - 0.2).contains(&step_deg));
+        last = psi;
+    }
+    wraps > 0 && others == 0
+}
+
+/// Does anything move, and do heading and rudder move by comparable amounts?
+fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+    let (heading_deg, rudder_deg) = (range_deg(trial.heading()), range_deg(trial.rudder()));
+    let largest_deg = to_deg(trial.rudder().iter().fold(0.0, |largest: f64, delta| largest.max(delta.abs())));
+    if heading_deg < STILL_DEG && rudder_deg < STILL_DEG {
+        return Err(Implausible::NothingMoves { heading_deg, rudder_deg });
+    }
+    // 1.6 rad: no rudder goes beyond 90°.
+    if largest_deg > 92.0 {
+        return Err(Implausible::RudderInDegrees { largest_deg });
+    }
+    if heading_deg < STILL_DEG && rudder_deg >= 1.0 {
+        return Err(Implausible::HeadingConstant { heading_deg, rudder_deg });
+    }
+    if rudder_deg < STILL_DEG {
+        warnings.push(format!(
+            "the rudder stays at {largest_deg:.2}°, so this record alone does not show the response to it"
+        ));
+        return Ok(());
+    }
+    let ratio = heading_deg / rudder_deg;
+    // 40° are 0.70 rad. In a zig-zag the heading moves 0.9 to 3 times as far as the rudder, in a turning circle up to about
+    // 20 times; radians for degrees make that 50 and more.
+    if largest_deg < 0.72 {
+        if heading_deg > 1.0 && ratio > 20.0 {
+            return Err(Implausible::RudderInRadians { largest_deg, heading_deg });
+        }
+        warnings.push(format!(
+            "the rudder never exceeds {largest_deg:.3}°; if all angles are in radians, name the columns rudder_rad and heading_rad"
+        ));
+        return Ok(());
+    }
+    let reversals = reversals(trial.rudder());
+    if ratio > if reversals >= 2 { 40.0 } else { 500.0 } {
+        return Err(Implausible::HeadingInDegrees { heading_deg, rudder_deg });
+    }
+    let in_radians = Implausible::HeadingInRadians { heading_deg, rudder_deg };
+    if rudder_deg >= MOVED_DEG && heading_deg <= 13.0 && wraps_at_two_pi_degrees(trial.heading()) {
+        return Err(in_radians);
+    }
+    if rudder_deg >= MOVED_DEG && ratio < 0.05 {
+        if reversals <= REVERSALS_OF_A_DITHER {
+            return Err(in_radians);
+        }
+        warnings.push(in_radians.to_string());
+    }
+    Ok(())
+}
+
+/// Does the yaw rate belong to the heading?
+fn yaw_rate(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+    let Some(slope) = yaw_rate_on_heading(trial).filter(|_| range_deg(trial.heading()) > STILL_DEG) else {
+        return Ok(());
+    };
+    let ratio = slope.value;
+    if slope.share < 0.9 {
+        if slope.share < 0.5 {
+            let percent = 100.0 * slope.share;
+            warnings
+                .push(format!("the yaw rate explains only {percent:.0} % of the change of heading; check that column"));
+        }
+        return Ok(());
+    }
+    if (40.0..=75.0).contains(&ratio.abs()) || (40.0..=75.0).contains(&ratio.abs().recip()) {
+        return Err(Implausible::YawRateUnit { ratio });
+    }
+    if ratio < 0.0 {
+        let heading_follows_rudder = response.is_none_or(|response| response.value > 0.0);
+        let culprit = if heading_follows_rudder { "yaw-rate" } else { "heading" };
+        return Err(Implausible::YawRateSign { ratio, culprit });
+    }
+    if !(0.8..=1.25).contains(&ratio) {
+        warnings.push(format!(
+            "the heading changes {ratio:.2} times as much as the integral of the yaw rate; check the calibration of both"
+        ));
+    }
+    Ok(())
+}
+
+/// Does the ship turn to the side of its rudder?
+fn rudder_sign(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String>) -> Result<(), Implausible> {
+    let moved = range_deg(trial.rudder()) >= MOVED_DEG && range_deg(trial.heading()) >= ANSWERED_DEG;
+    let Some(slope) = response.filter(|_| moved) else { return Ok(()) };
+    if slope.value < 0.0 {
+        let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent: 100.0 * slope.share };
+        if slope.share >= DECISIVE_SHARE {
+            return Err(flipped);
+        }
+        if slope.share >= NOTABLE_SHARE {
+            warnings.push(flipped.to_string());
+        }
+    } else if let Some(particulars) = trial.particulars().filter(|_| slope.share >= DECISIVE_SHARE) {
+        // K'/T' = (K/T)(L/U)² is 0.3 to 1.5 for merchant ships.
+        let prime = slope.value * (particulars.length / particulars.speed).powi(2);
+        if !(0.02..=30.0).contains(&prime) {
+            warnings.push(format!(
+                "K'/T' is {prime:.2e} with the declared length and speed, ships have 0.3 to 1.5; check length, speed and the units \
+                 of rudder and heading"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Names gaps in time that are long against the sampling.
+fn gaps(trial: &Trial, warnings: &mut Vec<String>) {
+    let period = trial.sampling_period();
+    let steps = trial.time().windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
+    let mut longest = (0.0, 0.0);
+    let mut count = 0;
+    for (begin, step) in steps.filter(|(_, step)| *step > 10.0 * period) {
+        count += 1;
+        if step > longest.1 {
+            longest = (begin, step);
+        }
+    }
+    if count > 0 {
+        let (begin, step) = longest;
+        warnings.push(format!(
+            "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s",
+            if count == 1 { "gap" } else { "gaps" }
+        ));
+    }
+}
+
+#[cfg(test)]
+mod tests;

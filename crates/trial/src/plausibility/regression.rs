@@ -1,0 +1,139 @@
+//! The two small regressions behind the checks of signs and units. Both work on integrals of what was recorded, so that
+//! noise is smoothed and no derivative is taken.
+
+use crate::record::Trial;
+
+/// Most rows that enter a regression; longer records are thinned after they were integrated.
+const ROWS: usize = 2000;
+
+/// One signal explained by another after the same nuisance signals were taken out of both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Slope {
+    /// Change of the one per change of the other.
+    pub value: f64,
+    /// Share of the remaining sum of squares it explains, 0 to 1.
+    pub share: f64,
+}
+
+/// b = K/T (1/s²) of the first-order response by regression on integrals.
+///
+/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate and
+/// rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
+pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
+    let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
+    let (mut once, mut twice, mut heading) = (0.0, 0.0, 0.0);
+    let mut last: Option<usize> = None;
+    let mut rows = Vec::new();
+    for i in 0..time.len() {
+        if i > 0 {
+            // Exact for a rudder that is linear between rows.
+            let h = time[i] - time[i - 1];
+            twice += h * once + h * h * (2.0 * delta[i - 1] + delta[i]) / 6.0;
+            once += 0.5 * h * (delta[i - 1] + delta[i]);
+        }
+        if psi[i].is_finite() {
+            if let Some(last) = last {
+                heading += 0.5 * (time[i] - time[last]) * (psi[i] + psi[last]);
+            }
+            last = Some(i);
+            let t = time[i] - time[0];
+            rows.push([1.0, t, t * t, heading, twice, psi[i]]);
+        }
+    }
+    partial_slope(thin(&rows))
+}
+
+/// Slope of the heading on the integral of the yaw rate: 1 where both agree in unit and sign.
+///
+/// ψ = c₀ + c₁ t + s ∫r, so that a bias of the rate does no harm. `None` as above, or without a yaw rate of its own.
+pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<Slope> {
+    if trial.heading_from_yaw_rate() {
+        return None;
+    }
+    let (time, psi, rate) = (trial.time(), trial.heading(), trial.yaw_rate()?);
+    let mut integral = 0.0;
+    let mut last: Option<usize> = None;
+    let mut rows = Vec::new();
+    for i in (0..time.len()).filter(|&i| rate[i].is_finite()) {
+        if let Some(last) = last {
+            integral += 0.5 * (time[i] - time[last]) * (rate[i] + rate[last]);
+        }
+        last = Some(i);
+        if psi[i].is_finite() {
+            rows.push([1.0, time[i] - time[0], integral, psi[i]]);
+        }
+    }
+    partial_slope(thin(&rows))
+}
+
+fn thin<const N: usize>(rows: &[[f64; N]]) -> Vec<[f64; N]> {
+    rows.iter().step_by(rows.len() / ROWS + 1).copied().collect()
+}
+
+/// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933).
+///
+/// Orthogonalisation by Gram and Schmidt, twice over: powers of time are nearly collinear, and one pass leaves errors of the
+/// size of the condition number.
+fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<Slope> {
+    let mut columns: Vec<Vec<f64>> = (0..N).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
+    let before: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+    if rows.len() <= N || !before.iter().all(|norm| norm.is_finite()) {
+        return None;
+    }
+    for (column, &norm) in before.iter().enumerate().skip(1) {
+        let (done, rest) = columns.split_at_mut(column);
+        for _ in 0..2 {
+            for basis in done.iter().take(N - 2) {
+                let square = dot(basis, basis);
+                if square > 0.0 {
+                    let share = dot(basis, &rest[0]) / square;
+                    rest[0].iter_mut().zip(basis).for_each(|(value, basis)| *value -= share * basis);
+                }
+            }
+        }
+        // A column that the earlier ones span leaves rounding only, which must not pass for a direction.
+        if column < N - 2 && dot(&rest[0], &rest[0]).sqrt() <= 1e-12 * norm {
+            rest[0].fill(0.0);
+        }
+    }
+    let (x, y) = (&columns[N - 2], &columns[N - 1]);
+    let (xx, yy, xy) = (dot(x, x), dot(y, y), dot(x, y));
+    let noticeable = |square: f64, before: f64| square.sqrt() > 1e-9 * before;
+    (noticeable(xx, before[N - 2]) && noticeable(yy, before[N - 1]))
+        .then(|| Slope { value: xy / xx, share: xy * xy / (xx * yy) })
+        .filter(|slope| slope.value.is_finite() && slope.share.is_finite())
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_is_found_beside_nuisance_signals() {
+        let rows: Vec<[f64; 4]> = (0..50)
+            .map(|i| {
+                let t = f64::from(i);
+                let x = (0.3 * t).sin();
+                [1.0, t, x, 7.0 - 0.2 * t - 2.5 * x]
+            })
+            .collect();
+        let slope = partial_slope(rows).expect("the signals are rich");
+        approx::assert_relative_eq!(slope.value, -2.5, max_relative = 1e-12);
+        approx::assert_relative_eq!(slope.share, 1.0, max_relative = 1e-12);
+    }
+
+    #[test]
+    fn nothing_is_claimed_where_nothing_is_left() {
+        let collinear: Vec<[f64; 4]> =
+            (0..50).map(|i| [1.0, f64::from(i), 3.0 - f64::from(i), f64::from(i % 7)]).collect();
+        assert_eq!(partial_slope(collinear), None);
+        assert_eq!(partial_slope(vec![[1.0, 0.0, 1.0, 1.0]; 3]), None);
+        let overflow: Vec<[f64; 4]> =
+            (0..50).map(|i| [1.0, f64::from(i), 1e200 * f64::from(i % 3), f64::from(i % 7)]).collect();
+        assert_eq!(partial_slope(overflow), None);
+    }
+}

@@ -1,0 +1,171 @@
+//! Every check on records made for it: the right record passes, the wrong one is named.
+
+use std::collections::BTreeMap;
+
+use proptest::prelude::*;
+use ship::angle::from_deg;
+
+use super::*;
+use crate::channel::Channel;
+use crate::record::{Columns, Origin};
+
+/// Rudder and heading of a ship with K, T (s), 10 Hz, by small Euler steps; `steer` gives the rudder from time, heading, rate.
+fn sail(gain: f64, lag: f64, duration: f64, mut steer: impl FnMut(f64, f64, f64) -> (f64, f64)) -> Columns {
+    let (mut psi, mut r) = (0.0, 0.0);
+    let h = 0.01;
+    let mut columns = Columns::default();
+    let (mut rudder, mut heading, mut rate) = (Vec::new(), Vec::new(), Vec::new());
+    for step in 0..(duration / h) as usize {
+        let t = step as f64 * h;
+        let (delta, disturbance) = steer(t, psi, r);
+        if step.is_multiple_of(10) {
+            columns.time.push(t);
+            rudder.push(delta);
+            heading.push(psi);
+            rate.push(r);
+        }
+        r += h * (gain * delta + disturbance - r) / lag;
+        psi += h * r;
+    }
+    columns.channels =
+        BTreeMap::from([(Channel::Rudder, rudder), (Channel::Heading, heading), (Channel::YawRate, rate)]);
+    columns
+}
+
+fn zig_zag(delta_deg: f64, psi_deg: f64, gain: f64, lag: f64) -> Columns {
+    let mut delta = from_deg(delta_deg);
+    let limit = from_deg(psi_deg);
+    sail(gain, lag, 25.0 * lag, move |_, psi, _| {
+        if psi * delta > 0.0 && psi.abs() > limit {
+            delta = -delta;
+        }
+        (delta, 0.0)
+    })
+}
+
+fn scaled(mut columns: Columns, channel: Channel, factor: f64) -> Columns {
+    for value in columns.channels.get_mut(&channel).expect("made by sail") {
+        *value *= factor;
+    }
+    columns
+}
+
+fn verdict(columns: Columns) -> Result<Vec<String>, Implausible> {
+    let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
+    check(&Trial::new("record", origin, columns).expect("the columns make a record"))
+}
+
+const PER_DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+#[test]
+fn zig_zags_of_ships_of_every_size_pass_and_every_wrong_unit_and_sign_is_named() {
+    for (gain, lag) in [(0.1, 16.3), (0.357, 23.3), (0.05, 140.0), (0.5, 1.5)] {
+        for (delta_deg, psi_deg) in [(10.0, 10.0), (20.0, 20.0), (10.0, 20.0), (5.0, 1.0), (35.0, 10.0)] {
+            let made = || zig_zag(delta_deg, psi_deg, gain, lag);
+            let context = format!("{delta_deg}/{psi_deg}, K {gain} T {lag}");
+            assert_eq!(verdict(made()), Ok(vec![]), "{context}");
+            let flipped = verdict(scaled(made(), Channel::Rudder, -1.0));
+            assert!(matches!(flipped, Err(Implausible::RudderFlipped { .. })), "{context} {flipped:?}");
+            let rate = verdict(scaled(made(), Channel::YawRate, -1.0));
+            assert!(matches!(rate, Err(Implausible::YawRateSign { culprit: "yaw-rate", .. })), "{context} {rate:?}");
+            let heading = verdict(scaled(made(), Channel::Heading, -1.0));
+            assert!(
+                matches!(heading, Err(Implausible::YawRateSign { culprit: "heading", .. })),
+                "{context} {heading:?}"
+            );
+            let rate = verdict(scaled(made(), Channel::YawRate, PER_DEGREE));
+            assert!(matches!(rate, Err(Implausible::YawRateUnit { .. })), "{context} {rate:?}");
+            let rate = verdict(scaled(made(), Channel::YawRate, 60.0));
+            assert!(matches!(rate, Err(Implausible::YawRateUnit { .. })), "{context} {rate:?}");
+            let rudder = verdict(scaled(made(), Channel::Rudder, PER_DEGREE));
+            assert!(matches!(rudder, Err(Implausible::RudderInRadians { .. })), "{context} {rudder:?}");
+            let rudder = verdict(scaled(made(), Channel::Rudder, 1.0 / PER_DEGREE));
+            assert!(matches!(rudder, Err(Implausible::RudderInDegrees { .. })), "{context} {rudder:?}");
+            let heading = verdict(scaled(made(), Channel::Heading, PER_DEGREE));
+            assert!(
+                matches!(heading, Err(Implausible::HeadingInRadians { .. } | Implausible::YawRateUnit { .. })),
+                "{context} {heading:?}"
+            );
+            let heading = verdict(scaled(made(), Channel::Heading, 1.0 / PER_DEGREE));
+            assert!(
+                matches!(heading, Err(Implausible::HeadingInDegrees { .. } | Implausible::YawRateUnit { .. })),
+                "{context} {heading:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_record_without_movement_is_refused() {
+    let still = sail(0.1, 16.0, 100.0, |_, _, _| (0.02, 0.0));
+    let frozen = scaled(still, Channel::Heading, 0.0);
+    assert!(matches!(verdict(frozen), Err(Implausible::NothingMoves { .. })));
+    let frozen = scaled(zig_zag(10.0, 10.0, 0.1, 16.0), Channel::Heading, 0.0);
+    assert!(matches!(verdict(frozen), Err(Implausible::HeadingConstant { .. })));
+    let pull_out = sail(0.1, 16.0, 100.0, |t, _, _| (0.0, if t < 20.0 { 0.01 } else { 0.0 }));
+    let warnings = verdict(pull_out).expect("a ship may turn without its rudder");
+    assert!(warnings[0].contains("the rudder stays at"), "{warnings:?}");
+}
+
+#[test]
+fn a_turning_circle_a_dither_and_course_keeping_in_wind_are_not_refused() {
+    let circle = sail(0.1, 16.0, 900.0, |t, _, _| (if t < 30.0 { 0.0 } else { from_deg(-35.0) }, 0.0));
+    assert_eq!(verdict(circle), Ok(vec![]));
+    let dither = sail(0.1, 16.0, 300.0, |t, _, _| (from_deg(10.0) * (1.5 * t).sin(), 0.0));
+    let warnings = verdict(dither).expect("a dither moves the heading little");
+    assert!(warnings.iter().any(|warning| warning.contains("radians")), "{warnings:?}");
+    // The rudder answers the heading: gusts of many periods, a helmsman with counter-rudder.
+    for gust in [0.5, 1.0, 2.0] {
+        for (p, d) in [(1.0, 0.0), (1.0, 10.0), (3.0, 20.0), (0.5, 30.0)] {
+            let keeping = sail(0.1, 16.0, 600.0, |t, psi, r| {
+                let phases = [0.11, 0.23, 0.037, 0.061, 0.31, 0.017, 0.43];
+                let wind: f64 = phases.iter().map(|w| (w * gust * t + 40.0 * w).sin()).sum();
+                (-p * psi - d * r, 0.004 * wind)
+            });
+            assert!(verdict(keeping.clone()).is_ok(), "gust {gust} p {p} d {d}: {:?}", verdict(keeping));
+        }
+    }
+}
+
+#[test]
+fn headings_that_wrap_at_two_pi_under_a_degree_name_are_named() {
+    let mut columns = zig_zag(10.0, 10.0, 0.1, 16.0);
+    columns.channels.remove(&Channel::YawRate);
+    for psi in columns.channels.get_mut(&Channel::Heading).expect("made by sail") {
+        *psi = psi.rem_euclid(std::f64::consts::TAU) * PER_DEGREE;
+    }
+    assert!(matches!(verdict(columns), Err(Implausible::HeadingInRadians { .. })));
+}
+
+#[test]
+fn gaps_and_odd_particulars_are_remarked() {
+    let mut columns = zig_zag(10.0, 10.0, 0.1, 16.0);
+    for values in std::iter::once(&mut columns.time).chain(columns.channels.values_mut()) {
+        values.drain(500..560);
+    }
+    let warnings = verdict(columns).expect("a gap is no fault");
+    assert!(warnings[0].starts_with("1 gap ") && warnings[0].contains("6.1 s, begins at 49.9 s"), "{warnings:?}");
+    let origin = Origin::Simulated { scenario: "plausibility".to_owned(), cell: 0, replicate: 0 };
+    let trial = Trial::new("record", origin, zig_zag(10.0, 10.0, 0.1, 16.0)).expect("complete");
+    let trial = trial.with_particulars(ship::Particulars { length: 10_500.0, speed: 8.6 });
+    assert!(check(&trial).expect("particulars are no fault")[0].contains("K'/T'"));
+}
+
+proptest! {
+    #[test]
+    fn no_finite_record_makes_the_checks_panic(
+        rows in proptest::collection::vec((any::<f64>(), any::<f64>(), any::<f64>()), 8..60),
+    ) {
+        let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
+        let columns = Columns {
+            time: (0..rows.len()).map(|row| row as f64).collect(),
+            channels: BTreeMap::from([
+                (Channel::Rudder, rows.iter().map(|row| finite(row.0)).collect()),
+                (Channel::Heading, rows.iter().map(|row| finite(row.1)).collect()),
+                (Channel::YawRate, rows.iter().map(|row| row.2).collect()),
+            ]),
+            unknown: Vec::new(),
+        };
+        let _ = verdict(columns);
+    }
+}

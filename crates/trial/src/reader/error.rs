@@ -1,0 +1,274 @@
+//! What can be wrong with a file: one message each, with the place, the value found, what was expected and what to do.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::channel::Channel;
+use crate::plausibility::Implausible;
+use crate::record::TrialError;
+use crate::sidecar::SidecarError;
+
+/// Why a file did not become a record.
+#[derive(Debug, Error)]
+pub enum ReadError {
+    /// The file itself is at fault.
+    #[error("{}: {problem}", file.display())]
+    Table {
+        /// The file as the caller named it.
+        file: PathBuf,
+        /// What is wrong with it.
+        problem: Problem,
+    },
+    /// The sidecar that describes the file is at fault.
+    #[error(transparent)]
+    Sidecar(#[from] SidecarError),
+}
+
+impl ReadError {
+    pub(crate) fn table(file: &Path, problem: Problem) -> Self {
+        ReadError::Table { file: file.to_path_buf(), problem }
+    }
+}
+
+/// What is wrong with a table. Lines count from 1 as editors do.
+#[derive(Debug, Error)]
+pub enum Problem {
+    /// There is no such file.
+    #[error("there is no such file; check its name and folder")]
+    NotFound,
+    /// A directory was named.
+    #[error("this is a directory; name one trial file in it")]
+    Directory,
+    /// A sidecar was named in place of its table.
+    #[error("this file describes a table and is none; name the table that lies beside it")]
+    IsSidecar,
+    /// The system refused to give the bytes.
+    #[error("cannot be read: {0}; check the rights of the file and the disk")]
+    Io(std::io::Error),
+    /// Nothing in it.
+    #[error("the file is empty; expected a header line such as `t_s,heading_deg,rudder_deg` and rows of numbers")]
+    Empty,
+    /// Bytes that no text has.
+    #[error("line {line} holds a zero byte, so this is not a text table; export it as CSV")]
+    Binary {
+        /// Line with the byte.
+        line: usize,
+    },
+    /// UTF-16, as some spreadsheets write "Unicode text".
+    #[error("line 1 starts with the mark of UTF-16 text; save the file as CSV in UTF-8")]
+    Utf16,
+    /// Not UTF-8.
+    #[error(
+        "line {line} holds the byte 0x{byte:02x}, which is not UTF-8; save the file as UTF-8, or write `encoding = \
+         \"windows-1252\"` under [table] in a sidecar NAME.trial.toml"
+    )]
+    NotUtf8 {
+        /// Line with the byte.
+        line: usize,
+        /// The byte.
+        byte: u8,
+    },
+    /// A line that no table has.
+    #[error(
+        "line {line} is longer than {longest} bytes, so this is not a table with one row per line; export it as CSV"
+    )]
+    LongLine {
+        /// The line.
+        line: usize,
+        /// Longest line that is read, bytes.
+        longest: usize,
+    },
+    /// Numbers where names were expected.
+    #[error(
+        "line {line} holds numbers ({found}) where a header was expected; add a header such as \
+         `t_s,heading_deg,rudder_deg`, or describe the columns in a sidecar NAME.trial.toml (`header = false` under \
+         [table], one [[column]] with `index` and `is` each)"
+    )]
+    NoHeader {
+        /// The line.
+        line: usize,
+        /// Its begin.
+        found: String,
+    },
+    /// A needed column is not there.
+    #[error(
+        "line {line}: no column holds the {wanted}; expected {accepted}, found {}; rename the column, or say which it is in \
+         a sidecar NAME.trial.toml ([[column]] with `name` and `is`)",
+        listed(found)
+    )]
+    NoColumn {
+        /// Line of the header.
+        line: usize,
+        /// The quantity that is missing.
+        wanted: &'static str,
+        /// Names it may have.
+        accepted: String,
+        /// Names of the columns found.
+        found: Vec<String>,
+    },
+    /// Two columns for one quantity.
+    #[error(
+        "line {line}: the columns `{first}` and `{second}` both hold the {quantity}; remove one, or write `ignore = true` for \
+         it in a sidecar NAME.trial.toml"
+    )]
+    Duplicate {
+        /// Line of the header.
+        line: usize,
+        /// What both hold.
+        quantity: &'static str,
+        /// Name of the earlier column.
+        first: String,
+        /// Name of the later column.
+        second: String,
+    },
+    /// A header without rows, or nothing but comments.
+    #[error("there is no row of numbers after line {line}; expected a header and at least {needed} rows below it")]
+    NoRows {
+        /// Line of the header, or the last line.
+        line: usize,
+        /// Rows a record needs.
+        needed: usize,
+    },
+    /// A cell that should be a number.
+    #[error(
+        "line {line}, column `{column}`: found `{value}`, expected a number (or an empty cell or NaN where nothing was \
+         recorded); correct the cell"
+    )]
+    NotANumber {
+        /// Line of the cell.
+        line: usize,
+        /// Name of its column.
+        column: String,
+        /// What it holds, shortened.
+        value: String,
+    },
+    /// A row that does not fit the header.
+    #[error(
+        "line {line} has {found} cells, expected {expected} as in the first line of the table; correct the row, or the \
+         separator in a sidecar NAME.trial.toml"
+    )]
+    Cells {
+        /// The line.
+        line: usize,
+        /// Cells found.
+        found: usize,
+        /// Cells expected.
+        expected: usize,
+    },
+    /// Time goes back.
+    #[error(
+        "line {line}: time runs backwards, {found} s after {before} s; sort or cut the file, or rebuild time from its step with \
+         `time-step-s` under [table] in a sidecar NAME.trial.toml"
+    )]
+    TimeBackwards {
+        /// The line.
+        line: usize,
+        /// Time of the row before, s.
+        before: f64,
+        /// Time found, s.
+        found: f64,
+    },
+    /// Time stands still while other values change.
+    #[error(
+        "line {line}: time {time} s is there twice with different values; if it was printed with too few digits, rebuild it \
+         with `time-step-s` under [table] in a sidecar NAME.trial.toml"
+    )]
+    TimeRepeats {
+        /// The line of the second row.
+        line: usize,
+        /// The time of both, s.
+        time: f64,
+    },
+    /// A needed column without a value.
+    #[error(
+        "the column `{column}` has no value in any row used; expected the {quantity}, check that the sensor was recorded"
+    )]
+    AllMissing {
+        /// Name of the column.
+        column: String,
+        /// What it should hold.
+        quantity: &'static str,
+    },
+    /// The part of the record asked for holds nothing.
+    #[error(
+        "no row lies between {from_s} s and {until_s} s, the rows lie between {first_s} s and {last_s} s; correct `from-s` and \
+         `until-s` under [part] in the sidecar"
+    )]
+    EmptyPart {
+        /// Begin of the part, s.
+        from_s: f64,
+        /// End of the part, s.
+        until_s: f64,
+        /// First time in the file, s.
+        first_s: f64,
+        /// Last time in the file, s.
+        last_s: f64,
+    },
+    /// Too few usable rows.
+    #[error(
+        "{found} of {rows} rows have time, heading (or yaw rate) and rudder, a record needs at least {needed}; fill in the \
+         missing values or use a longer part"
+    )]
+    TooShort {
+        /// Rows needed.
+        needed: usize,
+        /// Rows found.
+        found: usize,
+        /// Rows in the file.
+        rows: usize,
+    },
+    /// More rows than a record may have.
+    #[error(
+        "more than {limit} rows{}, a record may have {limit} with {columns} columns; thin it with `every = {every}` under \
+         [part] in a sidecar NAME.trial.toml, or use a part of it with `from-s` and `until-s`",
+        estimated(*estimate)
+    )]
+    TooManyRows {
+        /// Rows a record with this many columns may have.
+        limit: usize,
+        /// Columns of the table.
+        columns: usize,
+        /// Rows in the whole file, estimated from its size where that is known.
+        estimate: Option<u64>,
+        /// Thinning that makes the file fit.
+        every: u64,
+    },
+    /// The record contradicts itself.
+    #[error(transparent)]
+    Implausible(#[from] Implausible),
+    /// The columns do not make a record.
+    #[error(transparent)]
+    Record(#[from] TrialError),
+}
+
+impl Problem {
+    pub(crate) fn no_column(line: usize, channels: &[Channel], wanted: &'static str, found: &[String]) -> Self {
+        let accepted: Vec<String> = channels.iter().map(|channel| channel.accepted_names()).collect();
+        Problem::NoColumn { line, wanted, accepted: accepted.join(" or "), found: found.to_vec() }
+    }
+}
+
+/// The names in backquotes, the first thirty of them.
+pub(crate) fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 30;
+    let mut text = names.iter().take(SHOWN).map(|name| format!("`{}`", shortened(name))).collect::<Vec<_>>().join(", ");
+    if names.len() > SHOWN {
+        text.push_str(&format!(" and {} more", names.len() - SHOWN));
+    }
+    text
+}
+
+/// At most forty characters of a text, without control characters, for messages.
+pub(crate) fn shortened(text: &str) -> String {
+    const SHOWN: usize = 40;
+    let mut short: String = text.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.chars().nth(SHOWN).is_some() {
+        short.push('…');
+    }
+    short
+}
+
+fn estimated(rows: Option<u64>) -> String {
+    rows.map_or_else(String::new, |rows| format!(" (about {rows} by the size of the file)"))
+}

@@ -1,0 +1,166 @@
+//! The lines of a file: bytes are hashed, checked to be text, cut at line ends and decoded, one line in memory at a time.
+
+use std::io::{BufRead, BufReader, Read};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+use super::error::Problem;
+
+/// Longest line that is taken for one of a table, bytes.
+pub const LONGEST_LINE: usize = 1 << 20;
+
+/// How bytes stand for characters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+pub enum Encoding {
+    /// UTF-8, and so ASCII.
+    #[default]
+    #[serde(rename = "utf-8")]
+    Utf8,
+    /// Windows code page 1252, the western European default of old Windows programs.
+    #[serde(rename = "windows-1252")]
+    Windows1252,
+}
+
+/// Characters of the bytes 0x80 to 0x9F in code page 1252; all other bytes are Latin-1. The five bytes the page leaves
+/// open stand for the control character of the same number (Unicode, Inc., CP1252 table; WHATWG encoding standard).
+const WINDOWS_1252: [char; 32] = [
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}', '\u{90}', '‘', '’',
+    '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+];
+
+fn windows_1252(byte: u8) -> char {
+    match byte {
+        0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
+        _ => char::from(byte),
+    }
+}
+
+/// The lines of a file, one after the other.
+pub struct Lines<R> {
+    input: BufReader<R>,
+    encoding: Encoding,
+    hasher: Sha256,
+    bytes: Vec<u8>,
+    text: String,
+    number: usize,
+    consumed: u64,
+}
+
+impl<R: Read> Lines<R> {
+    /// Lines of `input` in `encoding`.
+    pub fn new(input: R, encoding: Encoding) -> Self {
+        Self {
+            input: BufReader::with_capacity(1 << 16, input),
+            encoding,
+            hasher: Sha256::new(),
+            bytes: Vec::new(),
+            text: String::new(),
+            number: 0,
+            consumed: 0,
+        }
+    }
+
+    /// Number of the line read last, from 1; 0 before the first.
+    pub fn number(&self) -> usize {
+        self.number
+    }
+
+    /// Bytes read so far.
+    pub fn consumed(&self) -> u64 {
+        self.consumed
+    }
+
+    /// Reads past one line without decoding it; `false` at the end of the file.
+    pub fn skip(&mut self) -> Result<bool, Problem> {
+        self.bytes.clear();
+        let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
+        let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::Io)?;
+        if length == 0 {
+            return Ok(false);
+        }
+        self.number += 1;
+        self.consumed += length as u64;
+        self.hasher.update(&self.bytes);
+        if self.number == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
+            return Err(Problem::Utf16);
+        }
+        if self.bytes.contains(&0) {
+            return Err(Problem::Binary { line: self.number });
+        }
+        if length > LONGEST_LINE {
+            return Err(Problem::LongLine { line: self.number, longest: LONGEST_LINE });
+        }
+        if self.number == 1 && self.bytes.starts_with(&[0xef, 0xbb, 0xbf]) {
+            self.bytes.drain(..3);
+        }
+        while self.bytes.last().is_some_and(|&byte| byte == b'\n' || byte == b'\r') {
+            self.bytes.pop();
+        }
+        Ok(true)
+    }
+
+    /// The next line without its end; `None` at the end of the file.
+    pub fn next_line(&mut self) -> Result<Option<&str>, Problem> {
+        if !self.skip()? {
+            return Ok(None);
+        }
+        match self.encoding {
+            Encoding::Utf8 => match std::str::from_utf8(&self.bytes) {
+                Ok(text) => Ok(Some(text)),
+                Err(error) => {
+                    let byte = self.bytes[error.valid_up_to()];
+                    Err(Problem::NotUtf8 { line: self.number, byte })
+                }
+            },
+            Encoding::Windows1252 => {
+                self.text.clear();
+                self.text.extend(self.bytes.iter().map(|&byte| windows_1252(byte)));
+                Ok(Some(&self.text))
+            }
+        }
+    }
+
+    /// SHA-256 of all bytes read, hexadecimal.
+    pub fn sha256(self) -> String {
+        self.hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn line_ends_byte_order_mark_and_hash() {
+        let mut lines = Lines::new(&b"\xef\xbb\xbfa\r\nb\n\nc"[..], Encoding::Utf8);
+        assert_eq!(lines.next_line().expect("text"), Some("a"));
+        assert_eq!(lines.next_line().expect("text"), Some("b"));
+        assert_eq!(lines.next_line().expect("text"), Some(""));
+        assert_eq!(lines.next_line().expect("text"), Some("c"));
+        assert_eq!(lines.next_line().expect("text"), None);
+        assert_eq!((lines.number(), lines.consumed()), (4, 10));
+        // The digest of "abc" is the first example of FIPS 180-2, appendix B.1.
+        let mut lines = Lines::new(&b"abc"[..], Encoding::Utf8);
+        lines.next_line().expect("text");
+        assert_eq!(lines.sha256(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn windows_1252_is_decoded_and_utf8_is_strict() {
+        let mut lines = Lines::new(&b"Z20\xb0 \x80\x9f"[..], Encoding::Windows1252);
+        assert_eq!(lines.next_line().expect("text"), Some("Z20° €Ÿ"));
+        let mut lines = Lines::new(&b"ok\nZ20\xb0\n"[..], Encoding::Utf8);
+        lines.next_line().expect("text");
+        assert!(matches!(lines.next_line(), Err(Problem::NotUtf8 { line: 2, byte: 0xb0 })));
+    }
+
+    #[test]
+    fn a_line_without_end_is_refused_before_it_fills_the_memory() {
+        let mut lines = Lines::new(std::io::repeat(b'7'), Encoding::Utf8);
+        assert!(matches!(lines.next_line(), Err(Problem::LongLine { line: 1, .. })));
+        let mut lines = Lines::new(&b"a\nb\0c\n"[..], Encoding::Utf8);
+        lines.next_line().expect("text");
+        assert!(matches!(lines.next_line(), Err(Problem::Binary { line: 2 })));
+    }
+}

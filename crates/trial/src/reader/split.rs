@@ -1,0 +1,194 @@
+//! One line of a table into its cells: the separators, how the separator of a file is recognised, and what counts as a
+//! number. It knows nothing of channels.
+
+use std::ops::Range;
+
+use serde::Deserialize;
+
+/// What stands between two cells of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Separator {
+    /// A tab; two in a row enclose an empty cell.
+    Tab,
+    /// A semicolon.
+    Semicolon,
+    /// A comma.
+    Comma,
+    /// Any run of blanks and tabs; empty cells cannot be written.
+    Blank,
+}
+
+impl Separator {
+    /// All separators, the one hardest to meet by accident first.
+    pub const ALL: [Separator; 4] = [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Blank];
+
+    fn is(self, character: char) -> bool {
+        match self {
+            Separator::Tab => character == '\t',
+            Separator::Semicolon => character == ';',
+            Separator::Comma => character == ',',
+            Separator::Blank => character.is_whitespace(),
+        }
+    }
+
+    /// Puts the byte ranges of the cells of `line` into `cells`, without blanks and quotes around them.
+    ///
+    /// A cell in double quotes may hold the separator; a doubled quote inside stays doubled (see `unquoted`).
+    pub fn split(self, line: &str, cells: &mut Vec<Range<usize>>) {
+        cells.clear();
+        let mut start = 0;
+        loop {
+            let rest = &line[start..];
+            let blanks = rest.len()
+                - rest
+                    .trim_start_matches(|c: char| c.is_whitespace() && (self == Separator::Blank || !self.is(c)))
+                    .len();
+            let begin = start + blanks;
+            if self == Separator::Blank && begin == line.len() {
+                return;
+            }
+            let quoted = line[begin..].starts_with('"').then(|| closing_quote(&line[begin + 1..])).flatten();
+            let search = quoted.map_or(begin, |length| begin + 1 + length + 1);
+            let end = line[search..].find(|c| self.is(c)).map(|at| search + at);
+            let stop = end.unwrap_or(line.len());
+            match quoted {
+                Some(length) => cells.push(begin + 1..begin + 1 + length),
+                None => cells.push(begin..begin.max(begin + line[begin..stop].trim_end().len())),
+            }
+            let Some(end) = end else { return };
+            start = end + line[end..].chars().next().map_or(1, char::len_utf8);
+        }
+    }
+}
+
+/// Length of the text before the quote that ends a quoted cell; doubled quotes do not end it.
+fn closing_quote(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    while at < bytes.len() {
+        if bytes[at] == b'"' {
+            if bytes.get(at + 1) != Some(&b'"') {
+                return Some(at);
+            }
+            at += 1;
+        }
+        at += 1;
+    }
+    None
+}
+
+/// The text of a cell that stood in quotes, with doubled quotes made single.
+pub fn unquoted(cell: &str) -> String {
+    cell.replace("\"\"", "\"")
+}
+
+/// The separator whose cells make most sense: the highest `score`, and the earlier of [`Separator::ALL`] on a tie.
+///
+/// Where nothing scores, the first separator that occurs in the line at all.
+pub fn recognise(line: &str, score: impl Fn(&[&str]) -> usize) -> Separator {
+    let mut ranges = Vec::new();
+    let mut best = (0, 0, Separator::Blank);
+    for separator in Separator::ALL {
+        separator.split(line, &mut ranges);
+        let cells: Vec<&str> = ranges.iter().map(|range| &line[range.clone()]).collect();
+        let several = usize::from(cells.len() > 1);
+        let candidate = (score(&cells), several, separator);
+        if (candidate.0, candidate.1) > (best.0, best.1) {
+            best = candidate;
+        }
+    }
+    best.2
+}
+
+/// What a cell holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cell {
+    /// A finite number.
+    Number(f64),
+    /// A finite number written with a decimal comma.
+    CommaNumber(f64),
+    /// Nothing, or one of the usual words for nothing.
+    Missing,
+    /// Anything else.
+    Text,
+}
+
+/// Reads a cell; a decimal comma is understood unless commas separate the cells.
+///
+/// Missing are the empty cell, `NaN`, `NA`, `N/A`, `null`, `none` and `-`, in any case. `inf` is text: no instrument
+/// shows it. Exponents may be written with `D` (Fortran).
+pub fn cell(text: &str, separator: Separator) -> Cell {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => return Cell::Number(value),
+        Ok(value) if value.is_nan() => return Cell::Missing,
+        Ok(_) => return Cell::Text,
+        Err(_) => {}
+    }
+    const NOTHING: [&str; 6] = ["", "na", "n/a", "null", "none", "-"];
+    if NOTHING.iter().any(|word| text.eq_ignore_ascii_case(word)) {
+        return Cell::Missing;
+    }
+    // Only digits, signs, one mark and an exponent: a word like "nand" must not become a number by replacing letters.
+    if text.len() > 40 || !text.bytes().all(|byte| byte.is_ascii_digit() || b"+-.,eEdD".contains(&byte)) {
+        return Cell::Text;
+    }
+    let has_comma = text.contains(',');
+    if has_comma && (separator == Separator::Comma || text.contains('.')) {
+        return Cell::Text;
+    }
+    match text.replace(',', ".").replace(['d', 'D'], "e").parse::<f64>() {
+        Ok(value) if value.is_finite() && has_comma => Cell::CommaNumber(value),
+        Ok(value) if value.is_finite() => Cell::Number(value),
+        _ => Cell::Text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cells(line: &str, separator: Separator) -> Vec<&str> {
+        let mut ranges = Vec::new();
+        separator.split(line, &mut ranges);
+        ranges.into_iter().map(|range| &line[range]).collect()
+    }
+
+    #[test]
+    fn lines_are_split_at_every_separator() {
+        assert_eq!(cells("a, b ,,\"c, d\",", Separator::Comma), ["a", "b", "", "c, d", ""]);
+        assert_eq!(cells("1;2,5; 3", Separator::Semicolon), ["1", "2,5", "3"]);
+        assert_eq!(cells("1\t\t 3\t", Separator::Tab), ["1", "", "3", ""]);
+        assert_eq!(cells("  1  2\t3 ", Separator::Blank), ["1", "2", "3"]);
+        assert_eq!(cells("\"say \"\"hi\"\"\",2", Separator::Comma), ["say \"\"hi\"\"", "2"]);
+        assert_eq!(cells("\"never closed,2", Separator::Comma), ["\"never closed", "2"]);
+        assert_eq!(cells("", Separator::Comma), [""]);
+        assert!(cells("   ", Separator::Blank).is_empty());
+    }
+
+    #[test]
+    fn the_separator_with_the_most_known_names_wins() {
+        let known = |cells: &[&str]| cells.iter().filter(|cell| cell.starts_with("k_")).count();
+        assert_eq!(recognise("k_a [x, y];k_b", known), Separator::Semicolon);
+        assert_eq!(recognise("k_a,k_b,other name", known), Separator::Comma);
+        assert_eq!(recognise("k_a k_b", known), Separator::Blank);
+        assert_eq!(recognise("k_a\tk_b", known), Separator::Tab);
+        assert_eq!(recognise("nothing,known", known), Separator::Comma);
+    }
+
+    #[test]
+    fn numbers_missing_values_and_text_are_told_apart() {
+        assert_eq!(cell("-1.5e2", Separator::Comma), Cell::Number(-150.0));
+        assert_eq!(cell(".000000000", Separator::Blank), Cell::Number(0.0));
+        assert_eq!(cell("1.5D+02", Separator::Blank), Cell::Number(150.0));
+        assert_eq!(cell("1,5", Separator::Semicolon), Cell::CommaNumber(1.5));
+        assert_eq!(cell("1,5", Separator::Comma), Cell::Text);
+        assert_eq!(cell("1.234,5", Separator::Semicolon), Cell::Text);
+        for missing in ["", "NaN", "nan", "NA", "n/a", "-", "NULL"] {
+            assert_eq!(cell(missing, Separator::Comma), Cell::Missing, "{missing}");
+        }
+        for text in ["inf", "-Infinity", "1e999", "abc", "12:30:05", "****", "d", "ed", "1 2"] {
+            assert_eq!(cell(text, Separator::Blank), Cell::Text, "{text}");
+        }
+    }
+}

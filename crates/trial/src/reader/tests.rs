@@ -1,0 +1,525 @@
+//! What the reader accepts, and one message for each thing it does not.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use approx::assert_abs_diff_eq;
+use proptest::prelude::*;
+use ship::angle::{from_deg, to_deg};
+
+use super::*;
+use crate::sidecar::SidecarProblem;
+
+/// Time, heading and rudder (s, deg, deg) of a plausible 10/10 zig-zag, one row a second, headings wrapped to 0..360.
+fn rows() -> Vec<[f64; 3]> {
+    let (mut psi, mut r, mut delta) = (350.0_f64, 0.0, 10.0);
+    (0..240)
+        .map(|t| {
+            let row = [f64::from(t), psi.rem_euclid(360.0), delta];
+            for _ in 0..20 {
+                r += 0.05 * (0.1 * delta - r) / 16.0;
+                psi += 0.05 * r;
+            }
+            if (psi - 350.0) * delta > 0.0 && (psi - 350.0).abs() > 10.0 {
+                delta = -delta;
+            }
+            row
+        })
+        .collect()
+}
+
+fn table(header: &str, separator: &str) -> String {
+    let mut text = format!("{header}\n");
+    for [t, psi, delta] in rows() {
+        writeln!(text, "{t}{separator}{psi}{separator}{delta}").expect("a string takes all text");
+    }
+    text
+}
+
+fn simple() -> String {
+    table("t_s,heading_deg,rudder_deg", ",")
+}
+
+fn parse_with(bytes: impl AsRef<[u8]>, sidecar: &str) -> Result<Reading, ReadError> {
+    let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
+    read_bytes(Path::new("run.csv"), bytes.as_ref(), None, Some(&sidecar))
+}
+
+fn parse(bytes: impl AsRef<[u8]>) -> Result<Reading, ReadError> {
+    read_bytes(Path::new("run.csv"), bytes.as_ref(), None, None)
+}
+
+/// The problem with a table, after its message was seen to name the file and hold `parts`.
+fn problem(bytes: impl AsRef<[u8]>, parts: &[&str]) -> Problem {
+    complaint(parse(bytes), parts)
+}
+
+fn complaint(result: Result<Reading, ReadError>, parts: &[&str]) -> Problem {
+    let error = result.expect_err("the table is wrong");
+    let message = error.to_string();
+    assert!(message.starts_with("run.csv: "), "{message}");
+    for part in parts {
+        assert!(message.contains(part), "`{part}` is not in: {message}");
+    }
+    let ReadError::Table { problem, .. } = error else { panic!("{message}") };
+    problem
+}
+
+#[test]
+fn every_separator_line_end_and_mark_gives_the_same_record() {
+    let reference = parse(simple()).expect("the plainest table");
+    assert_eq!(reference.warnings, [""; 0]);
+    assert_eq!(reference.trial.len(), 240);
+    assert_eq!(reference.trial.name(), "run");
+    let variants = [
+        table("t_s;heading_deg;rudder_deg", ";"),
+        table("t_s\theading_deg\trudder_deg", "\t"),
+        table("  t_s   heading_deg rudder_deg", "   "),
+        simple().replace('\n', "\r\n"),
+        format!("\u{feff}{}", simple()),
+        format!("# a remark, with commas\n\n{}# the end\n\n", simple()),
+        simple().replacen("t_s,heading_deg,rudder_deg", "\"T_s\", Heading_deg ,\"rudder_deg\"", 1),
+        table("# t_s heading_deg rudder_deg", " "),
+        simple().trim_end().to_owned(),
+    ];
+    for text in variants {
+        let reading = parse(&text).unwrap_or_else(|error| panic!("{error}\n{}", &text[..60]));
+        assert_eq!(reading.warnings, [""; 0], "{}", &text[..60]);
+        assert_eq!(reading.trial.time(), reference.trial.time());
+        assert_eq!(reading.trial.heading(), reference.trial.heading());
+        assert_eq!(reading.trial.rudder(), reference.trial.rudder());
+    }
+    let commas = parse(table("t_s;heading_deg;rudder_deg", ";").replace('.', ",")).expect("decimal commas");
+    assert_eq!(commas.trial.heading(), reference.trial.heading());
+    assert!(commas.warnings[0].contains("decimal comma"), "{:?}", commas.warnings);
+}
+
+#[test]
+fn a_heading_that_wraps_is_continuous_and_the_hash_is_that_of_the_bytes() {
+    let reading = parse(simple()).expect("a plain table");
+    let steps = reading.trial.heading().windows(2).map(|pair| to_deg(pair[1] - pair[0]).abs());
+    assert!(steps.fold(0.0, f64::max) < 1.5);
+    let Origin::Measured { file, sha256 } = reading.trial.origin() else { panic!("it was read from a file") };
+    assert_eq!(file, "run.csv");
+    use sha2::{Digest, Sha256};
+    let digest: String = Sha256::digest(simple()).iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(*sha256, digest);
+}
+
+#[test]
+fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
+    let mut text = String::from("t_s,heading_deg,rudder_deg,remark,load_t,roll_deg\n");
+    for (row, [t, psi, delta]) in rows().into_iter().enumerate() {
+        let (time, heading, rudder) = (t.to_string(), psi.to_string(), delta.to_string());
+        let (time, heading, rudder) = match row {
+            20 => ("", heading.as_str(), rudder.as_str()),
+            30 | 31 => (time.as_str(), heading.as_str(), "NaN"),
+            40 => (time.as_str(), "", rudder.as_str()),
+            _ => (time.as_str(), heading.as_str(), rudder.as_str()),
+        };
+        let load = if row == 50 { "heavy" } else { "12.5" };
+        writeln!(text, "{time},{heading},{rudder},calm sea,{load},").expect("a string takes all text");
+        if row == 60 {
+            writeln!(text, "{time},{heading},{rudder},calm sea,{load},").expect("a string takes all text");
+            text.push_str("60.5,0.0,10.0\n");
+        }
+    }
+    let Reading { trial, warnings } = parse(text).expect("missing values are no fault");
+    assert_eq!(trial.len(), 240 - 3 + 1);
+    assert_eq!(trial.heading().iter().filter(|psi| psi.is_nan()).count(), 1);
+    assert!(trial.heading()[37].is_nan());
+    assert_eq!(trial.unknown().len(), 1, "{:?}", trial.unknown().first());
+    assert_eq!(trial.unknown()[0].0, "load_t");
+    assert_eq!(trial.unknown()[0].1[0], 12.5);
+    assert_eq!(trial.channel(Channel::Roll), None);
+    let has = |part: &str| warnings.iter().any(|warning| warning.contains(part));
+    assert!(has("1 row without time"), "{warnings:?}");
+    assert!(has("2 rows without rudder angle"), "{warnings:?}");
+    assert!(has("1 row left out as exact copies"), "{warnings:?}");
+    assert!(has("1 row with fewer cells"), "{warnings:?}");
+    assert!(has("`remark` holds text in 241 rows"), "{warnings:?}");
+    assert!(has("`load_t` holds text in 1 rows"), "{warnings:?}");
+    assert!(has("`roll_deg` has no value"), "{warnings:?}");
+}
+
+#[test]
+fn the_order_and_the_yaw_rate_stand_in_with_a_warning() {
+    let Reading { trial, warnings } =
+        parse(table("t_s,heading_deg,rudder_order_deg", ",")).expect("the order stands for the rudder");
+    assert_eq!(trial.rudder()[0], from_deg(10.0));
+    assert_eq!(trial.channel(Channel::RudderOrder), Some(trial.rudder()));
+    assert!(warnings[0].contains("`rudder_order_deg` stands for it"), "{warnings:?}");
+
+    let mut text = String::from("t_s yaw_rate_deg_s rudder_deg\n");
+    let rows = rows();
+    for pair in rows.windows(2) {
+        let rate = (pair[1][1] - pair[0][1] + 180.0).rem_euclid(360.0) - 180.0;
+        writeln!(text, "{} {rate} {}", pair[0][0], pair[0][2]).expect("a string takes all text");
+    }
+    let Reading { trial, warnings } = parse(&text).expect("the yaw rate stands for the heading");
+    assert!(trial.heading_from_yaw_rate());
+    assert!(warnings[0].contains("integral of the yaw rate"), "{warnings:?}");
+    let text = text.replacen("yaw_rate_deg_s rudder_deg", "yaw_rate_deg_s rudder_deg heading_deg", 1);
+    let text = text.lines().enumerate().map(|(i, l)| if i == 0 { format!("{l}\n") } else { format!("{l} nan\n") });
+    let Reading { trial, warnings } =
+        parse(text.collect::<String>()).expect("an empty heading column is as good as none");
+    assert!(trial.heading_from_yaw_rate());
+    assert!(warnings.iter().any(|warning| warning.contains("`heading_deg` has no value")), "{warnings:?}");
+}
+
+#[test]
+fn files_that_are_no_tables_are_named() {
+    assert!(matches!(problem("", &["is empty"]), Problem::Empty));
+    assert!(matches!(problem("# only\n# remarks\n", &["after line 2"]), Problem::NoRows { .. }));
+    assert!(matches!(problem("t_s,heading_deg,rudder_deg\n", &["after line 1"]), Problem::NoRows { .. }));
+    assert!(matches!(problem(b"\x89PNG\r\n\x1a\n\0\0", &["line 1", "0x89"]), Problem::NotUtf8 { .. }));
+    assert!(matches!(problem(b"PK\x03\x04\0\0", &["line 1", "zero byte"]), Problem::Binary { line: 1 }));
+    assert!(matches!(problem(b"\xff\xfet\0_\0s\0", &["UTF-16"]), Problem::Utf16));
+    let latin = [simple().as_bytes(), b"# 20\xb0\n"].concat();
+    assert!(matches!(
+        problem(latin, &["line 242", "0xb0", "windows-1252"]),
+        Problem::NotUtf8 { line: 242, byte: 0xb0 }
+    ));
+    let headless = simple().lines().skip(1).collect::<Vec<_>>().join("\n");
+    assert!(matches!(problem(headless, &["line 1", "0,350,10", "header = false"]), Problem::NoHeader { .. }));
+    assert!(matches!(problem("hello\nworld\n", &["line 1", "rudder_deg", "`hello`"]), Problem::NoColumn { .. }));
+}
+
+#[test]
+fn missing_and_doubled_columns_are_named_with_what_was_found() {
+    let found =
+        problem(table("t_s,heading_deg,helm", ","), &["line 1", "rudder angle", "rudder_deg or rudder_rad", "`helm`"]);
+    assert!(matches!(found, Problem::NoColumn { line: 1, .. }));
+    problem(table("t_s,course,rudder_deg", ","), &["heading_deg", "yaw_rate_deg_s", "`course`", "sidecar"]);
+    problem(table("time,heading_deg,rudder_deg", ","), &["no column holds the time", "t_s", "`time`", "time-step-s"]);
+    let doubled = "t_s,heading_deg,heading_rad,rudder_deg\n0,1,2,3\n";
+    assert!(matches!(problem(doubled, &["`heading_deg`", "`heading_rad`", "ignore"]), Problem::Duplicate { .. }));
+}
+
+#[test]
+fn wrong_cells_and_times_are_named_with_their_line() {
+    let broken = |line: usize, row: &str| {
+        let mut lines: Vec<String> = simple().lines().map(str::to_owned).collect();
+        lines[line - 1] = row.to_owned();
+        lines.join("\n")
+    };
+    let found = problem(broken(12, "10,35o.2,10"), &["line 12", "`heading_deg`", "`35o.2`", "expected a number"]);
+    assert!(matches!(found, Problem::NotANumber { line: 12, .. }));
+    problem(broken(12, "10,inf,10"), &["line 12", "`inf`"]);
+    problem(broken(3, "1e999,1,1"), &["line 3", "`t_s`", "`1e999`"]);
+    assert!(matches!(problem(broken(12, "10,1,2,3"), &["line 12 has 4 cells, expected 3"]), Problem::Cells { .. }));
+    problem(table("t_s heading_deg rudder_deg", " ").replacen("\n3 ", "\n", 1), &["line 5 has 2 cells, expected 3"]);
+    let found = problem(broken(12, "3.5,1,10"), &["line 12", "3.5 s after 9 s", "time-step-s"]);
+    assert!(matches!(found, Problem::TimeBackwards { line: 12, .. }));
+    let found = problem(broken(12, "9,1,10"), &["line 12", "time 9 s is there twice"]);
+    assert!(matches!(found, Problem::TimeRepeats { line: 12, .. }));
+}
+
+#[test]
+fn records_with_too_little_in_them_are_refused() {
+    let few: String = simple().lines().take(7).map(|line| format!("{line}\n")).collect();
+    let found = problem(few, &["6 of 6 rows", "at least 8"]);
+    assert!(matches!(found, Problem::TooShort { found: 6, needed: 8, rows: 6 }));
+    let all_missing = |place: usize| {
+        let text = simple();
+        let lines = text.lines().skip(1).map(|line| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            cells[place] = "nan";
+            cells.join(",") + "\n"
+        });
+        format!("t_s,heading_deg,rudder_deg\n{}", lines.collect::<String>())
+    };
+    for (place, name) in [(0, "`t_s`"), (1, "`heading_deg`"), (2, "`rudder_deg`")] {
+        assert!(matches!(problem(all_missing(place), &[name, "no value"]), Problem::AllMissing { .. }));
+    }
+    let flipped =
+        simple().lines().map(|line| line.rsplit_once(',').map_or("", |cells| cells.0).to_owned()).collect::<Vec<_>>();
+    let rows = rows();
+    let flipped: String = flipped
+        .iter()
+        .enumerate()
+        .map(|(i, line)| if i == 0 { format!("{line},rudder_deg\n") } else { format!("{line},{}\n", -rows[i - 1][2]) })
+        .collect();
+    let found = problem(&flipped, &["rudder sign looks flipped", "flip = true"]);
+    assert!(matches!(found, Problem::Implausible(plausibility::Implausible::RudderFlipped { .. })));
+    // What the message says mends it.
+    let mended = parse_with(&flipped, "[[column]]\nname = \"rudder_deg\"\nflip = true\n").expect("flipped back");
+    assert_eq!(mended.warnings, [""; 0]);
+    let believed = parse_with(&flipped, "[check]\nplausibility = false\n").expect("the check is off");
+    assert!(believed.warnings[0].contains("looks flipped"), "{:?}", believed.warnings);
+}
+
+/// A table of ten million rows that exists only while it is read.
+struct Endless {
+    row: u64,
+    line: Vec<u8>,
+    given: usize,
+    total: u64,
+}
+
+impl Read for Endless {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.given == self.line.len() {
+            if self.row == 10_000_000 {
+                return Ok(0);
+            }
+            self.line.clear();
+            use std::io::Write as _;
+            if self.row == 0 {
+                writeln!(self.line, "t_s,heading_deg,rudder_deg")?;
+            }
+            writeln!(self.line, "{:09},12.5,10.0", self.row)?;
+            self.row += 1;
+            self.given = 0;
+        }
+        let length = buffer.len().min(self.line.len() - self.given);
+        buffer[..length].copy_from_slice(&self.line[self.given..self.given + length]);
+        self.given += length;
+        self.total += length as u64;
+        Ok(length)
+    }
+}
+
+#[test]
+fn ten_million_rows_are_refused_before_they_are_read() {
+    let size = 27 + 10_000_000 * 20;
+    let mut endless = Endless { row: 0, line: Vec::new(), given: 0, total: 0 };
+    let result = read_bytes(Path::new("run.csv"), &mut endless, Some(size), None);
+    let found = complaint(result, &["more than 2000000 rows", "about 10000000", "every = 6", "from-s"]);
+    assert!(matches!(
+        found,
+        Problem::TooManyRows { limit: MAX_ROWS, columns: 3, estimate: Some(10_000_000), every: 6 }
+    ));
+    assert!(endless.total < size / 4, "{} of {size} bytes were read", endless.total);
+    let wide = (0..100_000).map(|column| format!("c{column}")).collect::<Vec<_>>().join(",");
+    let row = "1,".repeat(100_000);
+    let mut text = format!("t_s,heading_deg,rudder_deg,{wide}\n");
+    for time in 0..503 {
+        writeln!(text, "{time},2,3,{}", &row[..row.len() - 1]).expect("a string takes all text");
+    }
+    assert!(matches!(problem(text, &["more than 499 rows"]), Problem::TooManyRows { limit: 499, .. }));
+}
+
+#[test]
+fn paths_that_lead_to_no_table_are_named() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let message = |path: &Path| read(path).expect_err("there is no table").to_string();
+    assert!(message(&folder.path().join("none.csv")).contains("none.csv: there is no such file"));
+    assert!(message(folder.path()).contains("this is a directory"));
+    let path = folder.path().join("run.csv");
+    let sidecar = Sidecar::beside(&path);
+    std::fs::write(&path, simple()).expect("the folder is writable");
+    std::fs::write(&sidecar, "[table]\nskip-lines = true\n").expect("the folder is writable");
+    let text = message(&path);
+    assert!(text.contains("run.trial.toml: line 2: ") && text.contains("expected usize"), "{text}");
+    assert!(message(&sidecar).contains("describes a table"));
+    std::fs::write(&sidecar, "[part]\nfrom-s = 10\nuntil-s = 200\nevery = 2\n").expect("the folder is writable");
+    let trial = read(&path).expect("the sidecar beside the table is found").trial;
+    assert_eq!((trial.len(), trial.time()[0], trial.time()[1]), (96, 10.0, 12.0));
+    assert_eq!(read_with(&path, None).expect("the sidecar is left aside").trial.len(), 240);
+    assert!(matches!(read_with(&path, Some(Path::new("none.trial.toml"))), Err(ReadError::Sidecar(_))));
+}
+
+#[test]
+fn a_sidecar_that_does_not_fit_its_table_is_named_with_its_line() {
+    let fault = |sidecar: &str, line: usize, part: &str| {
+        let error = parse_with(simple(), sidecar).expect_err(sidecar);
+        let message = error.to_string();
+        assert!(message.starts_with(&format!("run.trial.toml: line {line}: ")) && message.contains(part), "{message}");
+        let ReadError::Sidecar(error) = error else { panic!("{message}") };
+        error.problem
+    };
+    let found = fault("[[column]]\nname = \"helm\"\nis = \"rudder_deg\"\n", 1, "`t_s`, `heading_deg`, `rudder_deg`");
+    assert!(matches!(found, SidecarProblem::NameNotFound { .. }));
+    let found = fault("\n[[column]]\nindex = 4\nis = \"roll_deg\"\n", 2, "no column 4; run.csv has 3 columns");
+    assert!(matches!(found, SidecarProblem::IndexBeyond { .. }));
+    let twice = "[[column]]\nindex = 1\nis = \"t_s\"\n[[column]]\nname = \"t_s\"\nis = \"t_min\"\n";
+    assert!(matches!(fault(twice, 4, "described twice"), SidecarProblem::DescribedTwice { .. }));
+    let headless = "[table]\nheader = false\nskip-lines = 1\n[[column]]\nindex = 3\nflip = true\n";
+    assert!(matches!(fault(headless, 4, "`column_3`"), SidecarProblem::NameSaysNothing { .. }));
+    let outside = parse_with(simple(), "[part]\nfrom-s = 1000\n");
+    assert!(matches!(complaint(outside, &["between 0 s and 239 s"]), Problem::EmptyPart { .. }));
+    let beyond = parse_with(simple(), "[table]\nskip-lines = 1000\n");
+    assert!(matches!(complaint(beyond, &["after line 241"]), Problem::NoRows { .. }));
+}
+
+#[test]
+fn a_table_without_header_is_described_by_index() {
+    let text: String = simple().lines().skip(1).map(|line| format!("{line},7\n")).collect();
+    let sidecar = "[table]\nheader = false\ntime-step-s = 0.5\n[[column]]\nindex = 1\nis = \"t_s\"\n[[column]]\nindex = 2\n\
+                   is = \"heading_deg\"\n[[column]]\nindex = 3\nis = \"rudder_deg\"\n[ship]\nlength-m = 105\nspeed-kn = 16.7\n\
+                   [noise]\nheading-deg = 0.1\n";
+    let trial = parse_with(text, sidecar).expect("every column is described").trial;
+    assert_eq!(trial.time()[..3], [0.0, 0.5, 1.0]);
+    assert_eq!(trial.unknown(), [("column_4".to_owned(), vec![7.0; 240])]);
+    assert_eq!(trial.particulars().map(|particulars| particulars.length), Some(105.0));
+    assert_eq!(trial.noise().heading, Some(from_deg(0.1)));
+}
+
+/// Folder of the measured trials, where it is there.
+fn data() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("TRIAL_DATA").map_or(beside, PathBuf::from);
+    if !folder.is_dir() {
+        println!("skipped: no measured trials in {}", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+fn measured_sidecar(stem: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/measured").join(format!("{stem}.trial.toml"))
+}
+
+/// Largest difference of a channel of `raw` from `tidy` at the times of `tidy` that lie in `raw`, and how many were compared.
+fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> (f64, usize) {
+    let (mut largest, mut compared) = (0.0_f64, 0);
+    let (found, expected) = (raw.channel(channel).expect("described"), tidy.channel(channel).expect("a column"));
+    // Headings may differ by whole turns.
+    let whole = |angle: f64| {
+        if channel == Channel::Heading { (angle / std::f64::consts::TAU).round() * std::f64::consts::TAU } else { 0.0 }
+    };
+    for (row, &time) in tidy.time().iter().enumerate() {
+        let after = raw.time().partition_point(|&t| t < time - tolerance_s);
+        if after < raw.len() && (raw.time()[after] - time).abs() <= tolerance_s {
+            let error = found[after] - expected[row];
+            largest = largest.max((error - whole(error)).abs());
+            compared += 1;
+        }
+    }
+    (largest, compared)
+}
+
+#[test]
+fn raw_files_agree_with_their_tidy_twins() {
+    let Some(data) = data() else { return };
+    // Tidy values are rounded to five digits after the point, half a unit is 5e-6 (deg, deg/s, m, 1/s). The rebuilt times of
+    // MARIN differ by at most 1 ms, from the digits of the step.
+    let rounding = from_deg(5.1e-6);
+    let cases = [
+        ("HSVA_CPMC_KVLCC2_Z_20_10_S", "dat", "kvlcc2_hsva/zigzag_20_10_s.csv", 1901),
+        ("MARIN_FREE_KVLCC2_zz_20_m", "dat", "kvlcc2_marin/zigzag_20.csv", 1121),
+        ("esso_osaka_zigzag_31-Jul-2020_13_57_45", "csv", "esso_osaka/zigzag_13_57_45.csv", 817),
+    ];
+    for (stem, extension, twin, rows) in cases {
+        let raw = read_with(&data.join("raw").join(format!("{stem}.{extension}")), Some(&measured_sidecar(stem)));
+        let raw = raw.unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(raw.warnings, [""; 0], "{stem}");
+        let tidy = read(&data.join(twin)).unwrap_or_else(|error| panic!("{error}")).trial;
+        for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::North, Channel::PropellerRate] {
+            let (error, compared) = difference(&raw.trial, &tidy, channel, 1e-3);
+            let allowed =
+                if channel == Channel::North || channel == Channel::PropellerRate { 5.1e-6 } else { rounding };
+            assert!(error <= allowed, "{stem} {channel:?}: {error:e}");
+            assert_eq!(compared, rows, "{stem} {channel:?}");
+        }
+        assert!(raw.trial.particulars().is_some());
+    }
+    let stem = "esso_osaka_zigzag_31-Jul-2020_13_57_45";
+    let raw =
+        read_with(&data.join(format!("raw/{stem}.csv")), Some(&measured_sidecar(stem))).expect("read above").trial;
+    let tidy = read(&data.join("esso_osaka/zigzag_13_57_45.csv")).expect("read above").trial;
+    for channel in
+        [Channel::Speed, Channel::Sway, Channel::WindRelativeSpeed, Channel::WindRelativeFrom, Channel::WindTrueFrom]
+    {
+        let (error, _) = difference(&raw, &tidy, channel, 1e-6);
+        assert!(error < 5.1e-6, "{channel:?}: {error:e}");
+    }
+}
+
+#[test]
+fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
+    let Some(data) = data() else { return };
+    let mut zig_zags = 0;
+    for folder in ["kvlcc2_hsva", "kvlcc2_marin", "esso_osaka"] {
+        for entry in std::fs::read_dir(data.join(folder)).expect("the folder of measured trials is complete") {
+            let path = entry.expect("a readable folder").path();
+            let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("plain names").to_owned();
+            let Reading { trial, warnings } = read(&path).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(warnings, [""; 0], "{stem}");
+            let own = if folder == "esso_osaka" { stem.as_str() } else { folder };
+            let described = read_with(&path, Some(&measured_sidecar(own))).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(described.warnings, [""; 0], "{stem}");
+            assert!(described.trial.particulars().is_some());
+
+            let changed = |channel: Channel, factor: f64| {
+                let mut channels: std::collections::BTreeMap<_, _> =
+                    trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
+                channels.insert(Channel::Rudder, trial.rudder().to_vec());
+                channels.get_mut(&channel).expect("every set has it").iter_mut().for_each(|value| *value *= factor);
+                let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+                plausibility::check(&Trial::new(stem.clone(), trial.origin().clone(), columns).expect("complete"))
+            };
+            let flipped = changed(Channel::Rudder, -1.0);
+            if stem.starts_with("zigzag") {
+                zig_zags += 1;
+                assert!(matches!(flipped, Err(plausibility::Implausible::RudderFlipped { .. })), "{stem} {flipped:?}");
+            } else {
+                assert!(flipped.expect("a turning circle alone is no proof")[0].contains("looks flipped"), "{stem}");
+            }
+            for (channel, factor) in [
+                (Channel::YawRate, -1.0),
+                (Channel::YawRate, 57.3),
+                (Channel::YawRate, 1.0 / 57.3),
+                (Channel::Rudder, 57.3),
+                (Channel::Rudder, 1.0 / 57.3),
+                (Channel::Heading, -1.0),
+                (Channel::Heading, 57.3),
+                (Channel::Heading, 1.0 / 57.3),
+            ] {
+                assert!(changed(channel, factor).is_err(), "{stem} {channel:?} times {factor} passes");
+            }
+        }
+    }
+    assert_eq!(zig_zags, 13);
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_bytes_never_panic(bytes in proptest::collection::vec(any::<u8>(), 0..600)) {
+        let _ = parse(&bytes);
+        let _ = parse_with(&bytes, "[table]\nheader = false\nencoding = \"windows-1252\"\n");
+    }
+
+    #[test]
+    fn arbitrary_cells_never_panic(
+        cells in proptest::collection::vec("[-+0-9.eEdD,;\t \"#a-z]{0,12}", 0..120),
+        separator in "[,;\t ]",
+    ) {
+        let mut text = ["t_s", "heading_deg", "rudder_deg", "yaw_rate_deg_s"].join(&separator) + "\n";
+        for row in cells.chunks(4) {
+            text.push_str(&row.join(&separator));
+            text.push('\n');
+        }
+        let _ = parse(&text);
+        let _ = parse_with(&text, "[table]\ntime-step-s = 0.1\n[part]\nevery = 2\n[check]\nplausibility = false\n");
+    }
+
+    #[test]
+    fn arbitrary_sidecars_never_panic(text in "[a-z\\[\\]=\"0-9.\n -]{0,200}") {
+        let _ = Sidecar::parse(&text, Path::new("run.trial.toml"));
+    }
+
+    #[test]
+    fn arbitrary_numbers_never_panic(rows in proptest::collection::vec((any::<f64>(), any::<f64>()), 0..40)) {
+        let mut text = String::from("t_s,heading_deg,rudder_deg\n");
+        for (row, (psi, delta)) in rows.iter().enumerate() {
+            writeln!(text, "{row},{psi},{delta}").expect("a string takes all text");
+        }
+        if let Ok(reading) = parse(&text) {
+            prop_assert!(reading.trial.rudder().iter().all(|delta| delta.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn speed_comes_from_surge_and_sway_where_it_was_not_recorded() {
+    let text: String = simple()
+        .lines()
+        .enumerate()
+        .map(|(row, line)| format!("{line},{}\n", if row == 0 { "surge_kn,sway_m_s" } else { "3.0,2.0" }))
+        .collect();
+    let trial = parse(text).expect("complete").trial;
+    let speed = trial.channel(Channel::Speed).expect("surge and sway are there");
+    assert_abs_diff_eq!(speed[5], (3.0 * ship::angle::KNOT).hypot(2.0), epsilon = 1e-15);
+}

@@ -1,0 +1,486 @@
+//! The sidecar: a small TOML file that tells how a table that does not follow the naming contract is to be read. It
+//! describes; reading is done in [`crate::reader`].
+//!
+//! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
+//! All keys, none of which is required:
+//!
+//! ```toml
+//! [table]
+//! skip-lines = 4              # lines before the header, or before the rows when there is none; not even decoded
+//! separator = "blank"         # "comma", "semicolon", "tab" or "blank"; recognised when absent
+//! encoding = "windows-1252"   # or "utf-8", the default
+//! header = false              # whether a line with names comes before the rows; default true
+//! time-step-s = 0.1           # row i (from 0, empty lines not counted) is at i times this; a time column is ignored
+//!
+//! [part]                      # which rows are used
+//! from-s = 20.0               # first time, on the clock of the record (the rebuilt one with time-step-s)
+//! until-s = 110.0             # last time
+//! every = 4                   # first row of the part and every 4th after it that has time and rudder
+//!
+//! [[column]]                  # one for each column that needs words; the others keep the meaning of their names
+//! index = 4                   # which: counted from 1 ...
+//! name = "psi [rad]"          # ... or by its name in the header (one of the two)
+//! is = "heading_rad"          # a column name of the contract; default: the own name
+//! flip = true                 # change the sign
+//! ignore = true               # leave the column out (stands alone)
+//!
+//! [ship]                      # both or none
+//! length-m = 7.0
+//! speed-m-s = 1.18            # or speed-kn
+//!
+//! [noise]                     # declared standard deviations of the sensors
+//! heading-deg = 0.1
+//! yaw-rate-deg-s = 0.05
+//! rudder-deg = 0.1
+//!
+//! [check]
+//! plausibility = false        # what looks implausible becomes a warning in place of an error
+//! ```
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use ship::Particulars;
+use ship::angle::{KNOT, from_deg};
+use thiserror::Error;
+use toml::Spanned;
+
+use crate::channel::{Channel, Unit, column, time_column};
+use crate::reader::{Encoding, Separator};
+use crate::record::Noise;
+
+/// What is wrong with a sidecar, and where.
+#[derive(Debug, Error)]
+#[error("{}:{} {problem}", file.display(), line.map_or_else(String::new, |line| format!(" line {line}:")))]
+pub struct SidecarError {
+    /// The sidecar.
+    pub file: PathBuf,
+    /// Line, from 1, where one is known.
+    pub line: Option<usize>,
+    /// What is wrong there.
+    pub problem: SidecarProblem,
+}
+
+/// What is wrong with a sidecar.
+#[derive(Debug, Error)]
+pub enum SidecarProblem {
+    /// The file cannot be read.
+    #[error("the sidecar cannot be read: {0}; check its name and rights")]
+    Io(std::io::Error),
+    /// Not TOML, or a key or value that is not known.
+    #[error("{message}")]
+    Syntax {
+        /// What the TOML reader says.
+        message: String,
+    },
+    /// `is` names no quantity.
+    #[error(
+        "`is = \"{found}\"` is no known column name; expected quantity_unit such as t_s, heading_deg, heading_rad, rudder_deg, \
+         yaw_rate_deg_s, speed_m_s or speed_kn"
+    )]
+    UnknownQuantity {
+        /// The value of `is`.
+        found: String,
+    },
+    /// A column that is not pointed at, or twice.
+    #[error("a [[column]] needs either `index` (from 1) or `name`, this one has {found}; keep one")]
+    Which {
+        /// What it has.
+        found: &'static str,
+    },
+    /// A column that says nothing.
+    #[error("this [[column]] says nothing; add `is`, `flip = true` or `ignore = true`")]
+    Idle,
+    /// `ignore` beside other keys.
+    #[error(
+        "`ignore = true` leaves the column out, so `is` and `flip` beside it mean nothing; remove one or the other"
+    )]
+    IgnoredAndUsed,
+    /// A name, but the table has no header.
+    #[error("`name` needs a header and [table] says `header = false`; use `index`")]
+    NameWithoutHeader,
+    /// The name is not in the header.
+    #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::reader::listed(found))]
+    NameNotFound {
+        /// The name asked for.
+        name: String,
+        /// The table.
+        table: PathBuf,
+        /// Names in the header.
+        found: Vec<String>,
+    },
+    /// The index is larger than the number of columns.
+    #[error("there is no column {index}; {} has {columns} columns", table.display())]
+    IndexBeyond {
+        /// The index asked for, from 1.
+        index: usize,
+        /// The table.
+        table: PathBuf,
+        /// Number of columns found.
+        columns: usize,
+    },
+    /// Two entries for one column.
+    #[error("the column `{name}` is described twice; keep one [[column]] for it")]
+    DescribedTwice {
+        /// Name of the column.
+        name: String,
+    },
+    /// The column keeps its own name, which says nothing.
+    #[error("the name `{name}` of this column is not a known one; add `is` to say what it holds")]
+    NameSaysNothing {
+        /// Name of the column.
+        name: String,
+    },
+    /// A number that has to be positive.
+    #[error("`{key}` is {found}, expected a finite number above zero")]
+    NotPositive {
+        /// The key.
+        key: &'static str,
+        /// Value found.
+        found: f64,
+    },
+    /// A part that ends before it begins, or whose bounds are not numbers.
+    #[error("the part from {from_s} s until {until_s} s holds nothing; expected numbers with `from-s` below `until-s`")]
+    Part {
+        /// `from-s`, s.
+        from_s: f64,
+        /// `until-s`, s.
+        until_s: f64,
+    },
+    /// Length or speed alone, or two speeds.
+    #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
+    Ship,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Wire {
+    #[serde(default)]
+    table: WireTable,
+    #[serde(default)]
+    part: WirePart,
+    #[serde(default)]
+    column: Vec<Spanned<WireColumn>>,
+    ship: Option<Spanned<WireShip>>,
+    #[serde(default)]
+    noise: WireNoise,
+    #[serde(default)]
+    check: WireCheck,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct WireTable {
+    #[serde(default)]
+    skip_lines: usize,
+    separator: Option<Separator>,
+    #[serde(default)]
+    encoding: Encoding,
+    header: Option<bool>,
+    time_step_s: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct WirePart {
+    from_s: Option<Spanned<f64>>,
+    until_s: Option<Spanned<f64>>,
+    every: Option<Spanned<usize>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct WireColumn {
+    index: Option<usize>,
+    name: Option<String>,
+    is: Option<Spanned<String>>,
+    #[serde(default)]
+    flip: bool,
+    #[serde(default)]
+    ignore: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct WireShip {
+    length_m: Option<Spanned<f64>>,
+    speed_m_s: Option<Spanned<f64>>,
+    speed_kn: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct WireNoise {
+    heading_deg: Option<Spanned<f64>>,
+    yaw_rate_deg_s: Option<Spanned<f64>>,
+    rudder_deg: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct WireCheck {
+    plausibility: Option<bool>,
+}
+
+/// Which column of a table is meant.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Which {
+    /// By place, from 0.
+    Place(usize),
+    /// By its name in the header.
+    Name(String),
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    Time(Unit),
+    Channel(Channel, Unit),
+}
+
+impl Quantity {
+    /// What a column name of the contract stands for.
+    pub(crate) fn of(name: &str) -> Option<Self> {
+        time_column(name)
+            .map(Quantity::Time)
+            .or_else(|| column(name).map(|(channel, unit)| Self::Channel(channel, unit)))
+    }
+}
+
+/// One `[[column]]`, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Described {
+    pub(crate) line: usize,
+    pub(crate) which: Which,
+    pub(crate) quantity: Option<Quantity>,
+    pub(crate) flip: bool,
+    pub(crate) ignore: bool,
+}
+
+/// A sidecar that was read and checked as far as it can be without its table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sidecar {
+    pub(crate) file: PathBuf,
+    pub(crate) skip_lines: usize,
+    pub(crate) separator: Option<Separator>,
+    pub(crate) encoding: Encoding,
+    pub(crate) header: bool,
+    pub(crate) time_step: Option<f64>,
+    pub(crate) from: f64,
+    pub(crate) until: f64,
+    pub(crate) every: usize,
+    pub(crate) columns: Vec<Described>,
+    pub(crate) particulars: Option<Particulars>,
+    pub(crate) noise: Noise,
+    pub(crate) plausibility: bool,
+}
+
+impl Sidecar {
+    /// Where the sidecar of a table is looked for: `NAME.trial.toml` beside `NAME.*`.
+    pub fn beside(table: &Path) -> PathBuf {
+        table.with_extension("trial.toml")
+    }
+
+    /// Reads and checks a sidecar.
+    ///
+    /// Fails when the file cannot be read, and as [`parse`](Self::parse) does.
+    pub fn load(file: &Path) -> Result<Self, SidecarError> {
+        let text = std::fs::read_to_string(file).map_err(|error| SidecarError {
+            file: file.to_path_buf(),
+            line: None,
+            problem: SidecarProblem::Io(error),
+        })?;
+        Self::parse(&text, file)
+    }
+
+    /// Checks the text of a sidecar; `file` is its name in messages.
+    ///
+    /// Fails on text that is not TOML, keys and quantities that are not known, and numbers outside their range; the
+    /// error points to the line.
+    pub fn parse(text: &str, file: &Path) -> Result<Self, SidecarError> {
+        resolve(text, file).map_err(|(span, problem)| SidecarError {
+            file: file.to_path_buf(),
+            line: span.map(|span| line_of(text, span.start)),
+            problem,
+        })
+    }
+
+    pub(crate) fn error(&self, line: usize, problem: SidecarProblem) -> SidecarError {
+        SidecarError { file: self.file.clone(), line: Some(line), problem }
+    }
+
+    /// Length and approach speed of the ship, where the sidecar declares them.
+    pub fn particulars(&self) -> Option<Particulars> {
+        self.particulars
+    }
+
+    /// Sensor noise the sidecar declares.
+    pub fn noise(&self) -> Noise {
+        self.noise
+    }
+}
+
+/// Line, from 1, of a byte of the text.
+fn line_of(text: &str, byte: usize) -> usize {
+    1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
+}
+
+type Fault = (Option<Range<usize>>, SidecarProblem);
+
+fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
+    let wire: Wire = toml::from_str(text)
+        .map_err(|error| (error.span(), SidecarProblem::Syntax { message: error.message().to_owned() }))?;
+    let header = wire.table.header.unwrap_or(true);
+    let columns = wire.column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
+    let (from, until) = part(&wire.part)?;
+    if let Some(every) = wire.part.every.as_ref().filter(|every| *every.get_ref() == 0) {
+        return Err((Some(every.span()), SidecarProblem::NotPositive { key: "every", found: 0.0 }));
+    }
+    let deviation = |value: &Option<Spanned<f64>>, key| Ok(positive(value.as_ref(), key)?.map(from_deg));
+    Ok(Sidecar {
+        file: file.to_path_buf(),
+        skip_lines: wire.table.skip_lines,
+        separator: wire.table.separator,
+        encoding: wire.table.encoding,
+        header,
+        time_step: positive(wire.table.time_step_s.as_ref(), "time-step-s")?,
+        from,
+        until,
+        every: wire.part.every.map_or(1, Spanned::into_inner),
+        columns,
+        particulars: wire.ship.as_ref().map(particulars).transpose()?,
+        noise: Noise {
+            heading: deviation(&wire.noise.heading_deg, "heading-deg")?,
+            yaw_rate: deviation(&wire.noise.yaw_rate_deg_s, "yaw-rate-deg-s")?,
+            rudder: deviation(&wire.noise.rudder_deg, "rudder-deg")?,
+        },
+        plausibility: wire.check.plausibility.unwrap_or(true),
+    })
+}
+
+fn positive(value: Option<&Spanned<f64>>, key: &'static str) -> Result<Option<f64>, Fault> {
+    let Some(spanned) = value else { return Ok(None) };
+    let found = *spanned.get_ref();
+    if found > 0.0 && found.is_finite() {
+        Ok(Some(found))
+    } else {
+        Err((Some(spanned.span()), SidecarProblem::NotPositive { key, found }))
+    }
+}
+
+fn part(part: &WirePart) -> Result<(f64, f64), Fault> {
+    let from = part.from_s.as_ref().map_or(f64::NEG_INFINITY, |value| *value.get_ref());
+    let until = part.until_s.as_ref().map_or(f64::INFINITY, |value| *value.get_ref());
+    if from < until {
+        return Ok((from, until));
+    }
+    let span = part.until_s.as_ref().or(part.from_s.as_ref()).map(Spanned::span);
+    Err((span, SidecarProblem::Part { from_s: from, until_s: until }))
+}
+
+fn particulars(ship: &Spanned<WireShip>) -> Result<Particulars, Fault> {
+    let wire = ship.get_ref();
+    let length = positive(wire.length_m.as_ref(), "length-m")?;
+    let metres = positive(wire.speed_m_s.as_ref(), "speed-m-s")?;
+    let knots = positive(wire.speed_kn.as_ref(), "speed-kn")?.map(|speed_kn| speed_kn * KNOT);
+    match (length, metres, knots) {
+        (Some(length), Some(speed), None) | (Some(length), None, Some(speed)) => Ok(Particulars { length, speed }),
+        _ => Err((Some(ship.span()), SidecarProblem::Ship)),
+    }
+}
+
+fn described(column: &Spanned<WireColumn>, header: bool, text: &str) -> Result<Described, Fault> {
+    let fault = |problem| (Some(column.span()), problem);
+    let wire = column.get_ref();
+    let which = match (wire.index, &wire.name) {
+        (Some(_), Some(_)) => return Err(fault(SidecarProblem::Which { found: "both" })),
+        (None, None) => return Err(fault(SidecarProblem::Which { found: "neither" })),
+        (Some(0), None) => return Err(fault(SidecarProblem::Which { found: "index 0" })),
+        (Some(index), None) => Which::Place(index - 1),
+        (None, Some(_)) if !header => return Err(fault(SidecarProblem::NameWithoutHeader)),
+        (None, Some(name)) => Which::Name(name.trim().to_owned()),
+    };
+    if wire.ignore && (wire.is.is_some() || wire.flip) {
+        return Err(fault(SidecarProblem::IgnoredAndUsed));
+    }
+    if !wire.ignore && !wire.flip && wire.is.is_none() {
+        return Err(fault(SidecarProblem::Idle));
+    }
+    let quantity = match &wire.is {
+        None => None,
+        Some(is) => Some(Quantity::of(is.get_ref()).ok_or_else(|| {
+            (Some(is.span()), SidecarProblem::UnknownQuantity { found: crate::reader::shortened(is.get_ref()) })
+        })?),
+    };
+    Ok(Described { line: line_of(text, column.span().start), which, quantity, flip: wire.flip, ignore: wire.ignore })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Sidecar, SidecarError> {
+        Sidecar::parse(text, Path::new("run.trial.toml"))
+    }
+
+    #[test]
+    fn every_documented_key_is_understood() {
+        let sidecar = parse(
+            "[table]\nskip-lines = 4\nseparator = \"blank\"\nencoding = \"windows-1252\"\nheader = false\n\
+             time-step-s = 0.1\n[part]\nfrom-s = 20\nuntil-s = 110.0\nevery = 4\n[[column]]\nindex = 4\n\
+             is = \"heading_rad\"\nflip = true\n[[column]]\nindex = 5\nignore = true\n[ship]\nlength-m = 320\n\
+             speed-kn = 15.5\n[noise]\nheading-deg = 0.1\nyaw-rate-deg-s = 0.05\nrudder-deg = 0.2\n[check]\n\
+             plausibility = false\n",
+        )
+        .expect("all keys are documented");
+        assert_eq!((sidecar.skip_lines, sidecar.header, sidecar.every), (4, false, 4));
+        assert_eq!((sidecar.separator, sidecar.encoding), (Some(Separator::Blank), Encoding::Windows1252));
+        assert_eq!((sidecar.from, sidecar.until, sidecar.time_step), (20.0, 110.0, Some(0.1)));
+        assert_eq!(sidecar.columns.len(), 2);
+        assert_eq!(sidecar.columns[0].line, 11);
+        assert_eq!(sidecar.columns[0].which, Which::Place(3));
+        assert_eq!(sidecar.columns[0].quantity, Some(Quantity::Channel(Channel::Heading, Unit::Radian)));
+        let particulars = sidecar.particulars().expect("declared");
+        approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
+        approx::assert_relative_eq!(sidecar.noise().rudder.expect("declared"), from_deg(0.2));
+        assert!(!sidecar.plausibility);
+        assert!(parse("").expect("no key is required").plausibility);
+    }
+
+    #[test]
+    fn faults_point_to_their_line() {
+        let cases = [
+            ("[table]\nskip-line = 4\n", 2, "unknown field `skip-line`"),
+            ("[table]\nseparator = \"bar\"\n", 2, "unknown variant `bar`"),
+            ("[table]\nheader = \n", 2, ""),
+            ("[table]\ntime-step-s = -0.1\n", 2, "`time-step-s` is -0.1, expected a finite number above zero"),
+            ("[part]\nfrom-s = 3.0\nuntil-s = 2.0\n", 3, "from 3 s until 2 s"),
+            ("[part]\nfrom-s = nan\n", 2, "holds nothing"),
+            ("[part]\nevery = 0\n", 2, "`every` is 0"),
+            ("\n[[column]]\nindex = 1\nis = \"heding_deg\"\n", 4, "`is = \"heding_deg\"` is no known column name"),
+            ("\n[[column]]\nis = \"heading_deg\"\n", 2, "this one has neither"),
+            ("[[column]]\nindex = 0\nis = \"heading_deg\"\n", 1, "index 0"),
+            ("[[column]]\nindex = 1\n", 1, "says nothing"),
+            ("[[column]]\nindex = 1\nignore = true\nflip = true\n", 1, "mean nothing"),
+            ("[table]\nheader = false\n[[column]]\nname = \"t\"\nis = \"t_s\"\n", 3, "needs a header"),
+            ("[ship]\nlength-m = 7.0\n", 1, "[ship] needs"),
+            ("[ship]\nlength-m = 7.0\nspeed-kn = 1.0\nspeed-m-s = 1.0\n", 1, "[ship] needs"),
+            ("[noise]\nheading-deg = 0\n", 2, "`heading-deg` is 0"),
+        ];
+        for (text, line, message) in cases {
+            let error = parse(text).expect_err(text);
+            assert_eq!(error.line, Some(line), "{text}\n{error}");
+            assert!(error.to_string().contains(message), "{error}");
+            assert!(error.to_string().starts_with(&format!("run.trial.toml: line {line}: ")), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_sidecar_lies_beside_its_table() {
+        assert_eq!(Sidecar::beside(Path::new("a/run.1.csv")), Path::new("a/run.1.trial.toml"));
+        assert_eq!(Sidecar::beside(Path::new("run")), Path::new("run.trial.toml"));
+        let error = Sidecar::load(Path::new("no/such.trial.toml")).expect_err("it is not there");
+        assert!(matches!(error.problem, SidecarProblem::Io(_)), "{error}");
+    }
+}

@@ -1,0 +1,110 @@
+//! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. What a table
+//! cannot hold (origin, declared noise, particulars) is not written.
+
+use std::io::Write;
+
+use crate::channel::{Channel, TIME_COLUMN};
+use crate::record::Trial;
+
+/// Writes `trial` as CSV: `t_s`, then its channels in the order of [`Channel::ALL`] (angles in degrees), then its columns
+/// with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is left out.
+///
+/// Numbers have as many digits as they need to be read back as the same `f64`. Fails when `output` does.
+pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {
+    let channels: Vec<(Channel, f64, &[f64])> = Channel::ALL
+        .into_iter()
+        .filter(|&channel| channel != Channel::Heading || !trial.heading_from_yaw_rate())
+        .filter_map(|channel| Some((channel, channel.written_unit().to_si(), trial.channel(channel)?)))
+        .collect();
+    let mut table = csv::Writer::from_writer(output);
+    let names = channels.iter().map(|(channel, ..)| channel.column_name());
+    table.write_record(
+        std::iter::once(TIME_COLUMN.to_owned())
+            .chain(names)
+            .chain(trial.unknown().iter().map(|(name, _)| name.clone())),
+    )?;
+    let mut cell = Vec::new();
+    for (row, &time) in trial.time().iter().enumerate() {
+        let known = channels.iter().map(|(_, factor, values)| values[row] / factor);
+        let unknown = trial.unknown().iter().map(|(_, values)| values[row]);
+        for value in std::iter::once(time).chain(known).chain(unknown) {
+            cell.clear();
+            if !value.is_nan() {
+                write!(cell, "{value}")?;
+            }
+            table.write_field(&cell)?;
+        }
+        table.write_record(None::<&[u8]>)?;
+    }
+    table.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::path::Path;
+
+    use approx::assert_abs_diff_eq;
+
+    use super::*;
+    use crate::reader::read_bytes;
+    use crate::record::{Columns, Origin};
+
+    fn trial(without_heading: bool) -> Trial {
+        let time: Vec<f64> = (0..200).map(|i| 1000.0 + 0.7 * f64::from(i) + 0.01 * f64::from(i % 3)).collect();
+        let mut channels: BTreeMap<Channel, Vec<f64>> = Channel::ALL
+            .into_iter()
+            .enumerate()
+            .map(|(k, channel)| (channel, time.iter().map(|t| (0.1 * t + k as f64).sin() / 3.0).collect()))
+            .collect();
+        // A heading that follows the rudder, so that the record is plausible.
+        let (gain, lag) = (0.1, 16.0);
+        let (mut psi, mut r) = (0.4, 0.0);
+        let rudder = channels[&Channel::Rudder].clone();
+        let mut heading = vec![psi];
+        let mut rate = vec![r];
+        for row in 1..time.len() {
+            let h = time[row] - time[row - 1];
+            r += h * (gain * rudder[row - 1] - r) / lag;
+            psi += h * r;
+            heading.push(psi);
+            rate.push(r);
+        }
+        heading[7] = f64::NAN;
+        channels.insert(Channel::Heading, heading);
+        channels.insert(Channel::YawRate, rate);
+        if without_heading {
+            channels.remove(&Channel::Heading);
+        }
+        let unknown = vec![("thrust, \"N\"".to_owned(), time.iter().map(|t| t * 1e-7).collect())];
+        let origin = Origin::Simulated { scenario: "writer".to_owned(), cell: 0, replicate: 0 };
+        Trial::new("writer", origin, Columns { time, channels, unknown }).expect("the columns are complete")
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        for without_heading in [false, true] {
+            let trial = trial(without_heading);
+            let mut bytes = Vec::new();
+            write_csv(&trial, &mut bytes).expect("a vector takes all bytes");
+            let back =
+                read_bytes(Path::new("writer.csv"), &bytes[..], None, None).expect("a written record is readable");
+            let back = back.trial;
+            assert_eq!(back.len(), trial.len());
+            assert_eq!(back.heading_from_yaw_rate(), without_heading);
+            for (found, expected) in back.time().iter().zip(trial.time()) {
+                assert_eq!(found, expected);
+            }
+            for channel in Channel::ALL {
+                let (found, expected) =
+                    (back.channel(channel).expect("written"), trial.channel(channel).expect("made"));
+                for (found, expected) in found.iter().zip(expected).filter(|(_, expected)| !expected.is_nan()) {
+                    assert_abs_diff_eq!(found, expected, epsilon = 1e-12);
+                }
+                let missing = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count();
+                assert_eq!(missing(found), missing(expected), "{channel:?}");
+            }
+            assert_eq!(back.unknown(), trial.unknown());
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Puts executes and heading together: from a record to the characteristics of its zig-zag. How executes are found and
+//! how headings are read is not decided here.
+
+use ship::angle::{from_deg, to_deg};
+
+use super::executes::{self, Hold, Movement, Rudder};
+use super::heading::Heading;
+use super::local::Local;
+use super::quantity::{Quantity, median};
+use super::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
+use crate::channel::Channel;
+use crate::record::Trial;
+
+/// A first execute starts from at most this share of the largest yaw rate; at a reversal it is 0.7 or more.
+const STRAIGHT_RATE: f64 = 0.4;
+
+/// A first execute starts within this share of the execute heading from the middle course; at a peak it is beyond 1.
+const STRAIGHT_HEADING: f64 = 0.6;
+
+/// Rudder movement within which an approach counts as steady, as a share of the rudder of the trial.
+const STEADY_RUDDER: f64 = 0.25;
+
+/// Fewest headings whose mean is a base course.
+const FEWEST_APPROACH_ROWS: usize = 3;
+
+pub(super) fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
+    let time = trial.time();
+    let holds = executes::holds(trial.rudder())?;
+    let rudder = Rudder::new(time, trial.rudder(), &holds, trial.noise().rudder);
+    let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
+    let rough_period =
+        2.0 * (movements[movements.len() - 1].start.value - movements[0].start.value) / (movements.len() - 1) as f64;
+    // A record has at least as many headings as a `Heading` needs.
+    let heading = Heading::new(time, trial.heading(), rough_period, trial.noise().heading)
+        .expect("a trial has at least 8 headings");
+    let mut executes: Vec<Execute> =
+        movements.iter().map(|movement| execute(movement, &heading)).collect::<Result<_, _>>()?;
+    check_direction(&executes)?;
+
+    let end = time[holds[holds.len() - 1].last];
+    let largest_rate_of_swings = heading.largest_rate(executes[0].time.value, end);
+    let middle = middle_course(&executes);
+    let first = rudder
+        .first()
+        .filter(|movement| starts_straight(movement.start.value, &heading, &executes, middle, largest_rate_of_swings));
+    let base_course = match &first {
+        None => BaseCourse { heading: middle, source: BaseCourseSource::Executes },
+        Some(movement) => approach_course(trial, movement, &holds[0], &heading),
+    };
+    let pair = nominal_pair(&holds, &executes, middle);
+    if let Some(movement) = &first {
+        executes.insert(0, execute(movement, &heading)?);
+    }
+    let side = first.map(|_| executes[0].side());
+    let overshoots = overshoots(&executes, usize::from(side.is_some()), end, &heading);
+    let since_first = |time: Option<Quantity>| Some(time?.minus(executes[0].time));
+    let turned = side.zip(pair).and_then(|(side, pair)| {
+        let level = base_course.heading.value + side.sign() * pair.heading - heading.origin;
+        crossing(&heading, level, base_course.heading.sd, side, executes[0].time.value, end)
+    });
+    let back_on_base = |execute: usize| {
+        let execute: &Execute = executes.get(execute)?;
+        let level = base_course.heading.value - heading.origin;
+        crossing(&heading, level, base_course.heading.sd, execute.side(), execute.time.value, time[time.len() - 1])
+    };
+    let from_first = side.is_some();
+    Ok(ZigZag {
+        pair,
+        side,
+        base_course,
+        initial_turning_time: since_first(turned),
+        initial_turning_distance: turned.and_then(|turned| distance(trial, executes[0].time.value, turned.value)),
+        overshoots,
+        period: period(&executes[usize::from(from_first)..], from_first),
+        reach: from_first.then(|| since_first(back_on_base(1))).flatten(),
+        complete_cycle_time: from_first.then(|| since_first(back_on_base(2))).flatten(),
+        largest_yaw_rate: heading.largest_rate(executes[0].time.value, end),
+        rudder_rate: rudder.rate(),
+        heading_noise: heading.noise,
+        executes,
+    })
+}
+
+fn execute(movement: &Movement, heading: &Heading) -> Result<Execute, ZigZagError> {
+    let time = movement.start;
+    let psi = heading
+        .at(time.value)
+        .ok_or(ZigZagError::NoHeading { time: time.value, reach: heading.widest_half_width() })?;
+    let yaw_rate = heading.rate_at(time.value);
+    // An error of the execute time moves the heading along with the turn.
+    let timing = yaw_rate.and_then(|rate| Some((rate.value * time.sd?).abs()));
+    Ok(Execute {
+        time,
+        heading: Quantity { value: psi.value + heading.origin, ..psi.widened(timing.or(Some(0.0))) },
+        yaw_rate,
+        rudder_before: movement.before,
+        rudder_after: movement.after,
+    })
+}
+
+/// Between two reversals the heading has to go to the side of the rudder.
+fn check_direction(reversals: &[Execute]) -> Result<(), ZigZagError> {
+    for pair in reversals.windows(2) {
+        let change = pair[1].heading.value - pair[0].heading.value;
+        if pair[0].side().sign() * change <= 0.0 {
+            return Err(ZigZagError::HeadingAgainstRudder {
+                from: pair[0].time.value,
+                to: pair[1].time.value,
+                rudder_deg: to_deg(pair[0].rudder_after),
+                change_deg: to_deg(change),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Midway between the mean headings at the executes to starboard and to port: a late helm cancels.
+fn middle_course(reversals: &[Execute]) -> Quantity {
+    let mean = |side: Side| {
+        let headings: Vec<Quantity> =
+            reversals.iter().filter(|execute| execute.side() == side).map(|execute| execute.heading).collect();
+        Quantity::mean(&headings).expect("two reversals or more alternate between the sides")
+    };
+    Quantity::mean(&[mean(Side::Port), mean(Side::Starboard)]).expect("there are two sides")
+}
+
+/// Whether the ship runs straight on the middle course when the rudder moves into its first hold: then this is the first
+/// execute of the trial, else the record begins within a reversal.
+fn starts_straight(
+    start: f64,
+    heading: &Heading,
+    reversals: &[Execute],
+    middle: Quantity,
+    largest_rate: Option<Quantity>,
+) -> bool {
+    let Some(largest) = largest_rate else { return false };
+    // At the first row of a record a cubic is many times as noisy as a line, and a line has the mean rate of its window:
+    // the highest degree whose noise is well below the rate looked for.
+    let precise = 0.4 * STRAIGHT_RATE * largest.value;
+    let Some((psi, rate)) = start_motion::<4>(heading, start, precise)
+        .or_else(|| start_motion::<3>(heading, start, precise))
+        .or_else(|| start_motion::<2>(heading, start, f64::INFINITY))
+    else {
+        return false;
+    };
+    let amplitude = 0.5 * (reversals[0].heading.value - reversals[1].heading.value).abs();
+    let off_course = psi + heading.origin - middle.value;
+    rate.abs() <= STRAIGHT_RATE * largest.value && off_course.abs() <= STRAIGHT_HEADING * amplitude
+}
+
+/// Heading (relative) and yaw rate at a time by a polynomial with `N` coefficients; `None` where the noise leaves the
+/// rate with more than the standard deviation `precise`.
+fn start_motion<const N: usize>(heading: &Heading, time: f64, precise: f64) -> Option<(f64, f64)> {
+    let fit = Local::<N>::fit(&heading.time, &heading.relative, time, 2.0 * heading.half_width())?;
+    (fit.slope_gain(time) * heading.noise.unwrap_or(0.0) <= precise).then(|| (fit.value(time), fit.slope(time)))
+}
+
+/// Base course of a record that shows its first execute.
+fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Heading) -> BaseCourse {
+    let tolerance = STEADY_RUDDER * hold.level.abs();
+    let moved = trial.rudder()[..=first.foot].iter().rposition(|delta| (delta - first.before).abs() > tolerance);
+    let from = moved.map_or(trial.time()[0], |row| trial.time()[row]);
+    let rows = heading.rows(from, first.start.value);
+    let n = rows.len();
+    if n < FEWEST_APPROACH_ROWS {
+        let heading = Quantity::new(heading.origin + heading.relative[0], heading.noise);
+        return BaseCourse { heading, source: BaseCourseSource::FirstHeading };
+    }
+    let mean = heading.relative[rows].iter().sum::<f64>() / n as f64;
+    let sd = heading.noise.map(|sd| sd / (n as f64).sqrt());
+    BaseCourse { heading: Quantity::new(heading.origin + mean, sd), source: BaseCourseSource::Approach }
+}
+
+/// Nominal pair from the rudder held and the headings at the reversals; the helm is late rather than early.
+///
+/// Headings count from the middle course: it is less noisy than the first heading of a record, and where an approach was
+/// not steered on the course of the trial it is the right one.
+fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<Pair> {
+    let mut angles: Vec<f64> =
+        reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();
+    let angle = median(&mut angles)?;
+    if angles[angles.len() - 1] - angles[0] > 0.5 * angle {
+        return None;
+    }
+    let slack = to_deg(2.0 * middle.sd.unwrap_or(0.0));
+    let heading = from_deg(executes::conventional_deg(angle, 0.05, 0.25, slack)?);
+    Some(Pair { rudder: executes::nominal_rudder(holds)?, heading })
+}
+
+fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &Heading) -> Vec<Overshoot> {
+    (first_reversal..executes.len())
+        .filter_map(|index| {
+            let execute = &executes[index];
+            let side = -execute.side().sign();
+            let until = executes.get(index + 1).map_or(end, |next| next.time.value);
+            let (peak_time, peak) = heading.peak(side, execute.time.value, until)?;
+            let peak_heading = Quantity { value: peak.value + heading.origin, ..peak };
+            Some(Overshoot {
+                execute: index,
+                peak_time,
+                peak_heading,
+                angle: peak_heading.minus(execute.heading).scaled(side),
+                time_to_check_yaw: peak_time.minus(execute.time),
+            })
+        })
+        .collect()
+}
+
+/// Time at which the heading passes a level that is itself uncertain.
+fn crossing(heading: &Heading, level: f64, level_sd: Option<f64>, side: Side, from: f64, to: f64) -> Option<Quantity> {
+    let time = heading.crossing(level, side.sign(), from, to)?;
+    let rate = heading.rate_at(time.value)?;
+    Some(time.widened(level_sd.map(|sd| sd / rate.value.abs())))
+}
+
+/// Mean time between executes to the same side.
+fn period(reversals: &[Execute], from_first_execute: bool) -> Option<Quantity> {
+    let cycles = reversals.len().checked_sub(2).filter(|&cycles| cycles > 0)?;
+    let first = usize::from(from_first_execute && cycles > 1);
+    // Sums telescope: only the first and last two executes carry error, each 1/n of its own.
+    let cycles_used = (cycles - first) as f64;
+    let mut total = 0.0;
+    let mut variance = Some(0.0);
+    for index in first..cycles {
+        total += reversals[index + 2].time.value - reversals[index].time.value;
+    }
+    let (begin, end) = (&reversals[first..], &reversals[cycles..]);
+    for execute in begin.iter().take(2.min(cycles - first)).chain(end.iter().rev().take(2.min(cycles - first))) {
+        variance = variance.zip(execute.time.sd).map(|(sum, sd)| sum + sd * sd);
+    }
+    Some(Quantity::new(total / cycles_used, variance.map(|sum| sum.sqrt() / cycles_used)))
+}
+
+/// Distance travelled between two times, m: trapezoid integral of the speed over the rows that have it.
+fn distance(trial: &Trial, from: f64, to: f64) -> Option<f64> {
+    let speed = trial.channel(Channel::Speed)?;
+    let rows: Vec<(f64, f64)> =
+        trial.time().iter().copied().zip(speed.iter().copied()).filter(|(_, speed)| speed.is_finite()).collect();
+    let (first, last) = (rows.first()?.0, rows.last()?.0);
+    if from < first || to > last {
+        return None;
+    }
+    let mut total = 0.0;
+    for pair in rows.windows(2) {
+        let ((t0, v0), (t1, v1)) = (pair[0], pair[1]);
+        let (a, b) = (t0.max(from), t1.min(to));
+        if b > a {
+            let at = |t: f64| v0 + (v1 - v0) * (t - t0) / (t1 - t0);
+            total += 0.5 * (at(a) + at(b)) * (b - a);
+        }
+    }
+    Some(total)
+}

@@ -1,0 +1,404 @@
+//! Executes found in the rudder signal alone: when the rudder starts to move, from which angle, to which side.
+//!
+//! Works on ramps, on orders that jump in one sample, on quantised, drifting and noisy rudders. Whether the first
+//! movement of a record is the first execute of a trial is not decided here: that takes the heading.
+
+use ship::angle::{from_deg, to_deg};
+
+use super::ZigZagError;
+use super::quantity::{Quantity, median};
+
+/// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
+/// before a first execute can use more than half the rudder of the trial.
+const LAID: f64 = 0.85;
+
+/// Smallest rudder angle of a zig-zag, degrees.
+pub(super) const SMALLEST_RUDDER_DEG: f64 = 0.5;
+
+/// Least share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise 0.15.
+pub(super) const LEAST_HELD: f64 = 0.3;
+
+/// A stretch with the rudder laid to one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hold {
+    /// +1 starboard, −1 port.
+    pub side: f64,
+    /// First row beyond [`LAID`] of the level.
+    pub first: usize,
+    /// Last such row.
+    pub last: usize,
+    /// Median rudder angle, rad, signed.
+    pub level: f64,
+}
+
+/// A movement of the rudder into a hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Movement {
+    /// Time at which the rudder starts to move, s.
+    pub start: Quantity,
+    /// Rudder angle before, rad: median of the rows just before the start.
+    pub before: f64,
+    /// Rudder angle after, rad: median of the hold.
+    pub after: f64,
+    /// Last row at the level before.
+    pub foot: usize,
+    /// Speed of the rudder, rad/s; `None` where the movement is too fast for the sampling.
+    pub rate: Option<f64>,
+}
+
+/// The holds of a record, alternating between the sides.
+///
+/// Fails when the rudder hardly moves, is not laid to both sides at least twice (two reversals), or is not held there.
+pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
+    let starboard = level(rudder, 1.0);
+    let port = level(rudder, -1.0);
+    let largest = starboard.max(port);
+    if to_deg(largest) < SMALLEST_RUDDER_DEG {
+        return Err(ZigZagError::NoRudder { largest_deg: to_deg(largest), needed_deg: SMALLEST_RUDDER_DEG });
+    }
+    // A neutral rudder of a degree or two in a turning circle is not the other side of a zig-zag.
+    let side_of = |delta: f64| {
+        [(1.0, starboard), (-1.0, port)]
+            .into_iter()
+            .find(|&(side, level)| level > 0.5 * largest && side * delta >= LAID * level)
+            .map(|(side, _)| side)
+    };
+    let mut holds: Vec<Hold> = Vec::new();
+    for (row, &delta) in rudder.iter().enumerate() {
+        let Some(side) = side_of(delta) else { continue };
+        match holds.last_mut() {
+            Some(hold) if hold.side == side => hold.last = row,
+            _ => holds.push(Hold { side, first: row, last: row, level: 0.0 }),
+        }
+    }
+    let found = holds.len().saturating_sub(1);
+    if found < 2 {
+        return Err(ZigZagError::TooFewReversals { found, needed: 2 });
+    }
+    for hold in &mut holds {
+        hold.level =
+            median(&mut rudder[hold.first..=hold.last].to_vec()).expect("a hold has at least the row it began with");
+    }
+    let span = &rudder[holds[0].first..=holds[found].last];
+    let held = span
+        .iter()
+        .filter(|&&delta| {
+            let level = if delta > 0.0 { starboard } else { port };
+            (delta.abs() - level).abs() <= 0.2 * level
+        })
+        .count();
+    let share = held as f64 / span.len() as f64;
+    if share < LEAST_HELD {
+        return Err(ZigZagError::NotHeld { share, needed: LEAST_HELD });
+    }
+    Ok(holds)
+}
+
+/// The angle the rudder is laid to on one side, rad; 0 where it is never on that side.
+///
+/// Median of what lies above 0.6 of the 98 % quantile: neither a spike nor the small angles of an approach move it.
+fn level(rudder: &[f64], side: f64) -> f64 {
+    let mut angles: Vec<f64> = rudder.iter().map(|delta| side * delta).filter(|&delta| delta > 0.0).collect();
+    if angles.is_empty() {
+        return 0.0;
+    }
+    angles.sort_unstable_by(f64::total_cmp);
+    let top = angles[((angles.len() - 1) as f64 * 0.98).round() as usize];
+    let first = angles.partition_point(|&delta| delta <= 0.6 * top);
+    median(&mut angles[first..]).unwrap_or(0.0)
+}
+
+/// The angle of a rudder at rest: a median of rows.
+#[derive(Clone, Copy)]
+struct Level {
+    angle: f64,
+    /// Standard deviation per unit standard deviation of the rudder noise.
+    gain: f64,
+}
+
+impl Level {
+    fn of(rows: &mut [f64]) -> Option<Self> {
+        let n = rows.len() as f64;
+        // A median of many rows has π/2 the variance of their mean.
+        let gain = if n < 3.0 { 1.0 / n.sqrt() } else { (0.5 * std::f64::consts::PI / n).sqrt() };
+        median(rows).map(|angle| Self { angle, gain })
+    }
+}
+
+/// The rudder channel with what is needed to time its movements.
+pub(super) struct Rudder<'a> {
+    time: &'a [f64],
+    angle: &'a [f64],
+    holds: &'a [Hold],
+    /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
+    noise: f64,
+    /// Median speed of the reversals that the sampling resolves, rad/s.
+    rate: Option<f64>,
+}
+
+impl<'a> Rudder<'a> {
+    /// The rudder with its holds; the noise is the declared one, or estimated from row to row within the holds.
+    pub fn new(time: &'a [f64], angle: &'a [f64], holds: &'a [Hold], declared_noise: Option<f64>) -> Self {
+        let noise = declared_noise.unwrap_or_else(|| {
+            let mut steps: Vec<f64> = holds
+                .iter()
+                .flat_map(|hold| angle[hold.first..=hold.last].windows(2))
+                .map(|pair| (pair[1] - pair[0]).abs())
+                .collect();
+            // A step between rows carries the noise of both.
+            median(&mut steps).map_or(0.0, |step| 1.4826 * step / std::f64::consts::SQRT_2)
+        });
+        let noise = noise.max(quantum(angle) / 12.0_f64.sqrt());
+        let mut rudder = Self { time, angle, holds, noise, rate: None };
+        let mut rates: Vec<f64> =
+            (1..holds.len()).filter_map(|index| rudder.reversal(index).rate).map(f64::abs).collect();
+        rudder.rate = median(&mut rates);
+        rudder
+    }
+
+    /// Median speed of the reversals, rad/s; `None` where the sampling resolves none of them.
+    pub fn rate(&self) -> Option<f64> {
+        self.rate
+    }
+
+    /// The movement into hold `index` from the hold before it; `index` is 1 or more.
+    pub fn reversal(&self, index: usize) -> Movement {
+        let (from, to) = (&self.holds[index - 1], &self.holds[index]);
+        let foot = self.foot(from.level, to);
+        let window = 0.25 * (self.time[from.last] - self.time[from.first]);
+        let row = foot.min(from.last);
+        let first = self.time.partition_point(|&t| t < self.time[row] - window).min(row);
+        let before = Level::of(&mut self.angle[first..=row].to_vec()).expect("the row itself is in the window");
+        self.movement(before, to)
+    }
+
+    /// The movement into the first hold from the steering before it; `None` when the record starts in the hold.
+    pub fn first(&self) -> Option<Movement> {
+        let to = &self.holds[0];
+        if to.first == 0 {
+            return None;
+        }
+        // Back along the steep part: manual steering may already have carried the rudder some way to the same side.
+        let steps = (self.time[to.first] - self.time[0]) / to.first as f64;
+        let rate = self.rate.unwrap_or(2.0 * to.level.abs() / steps);
+        // Long enough for a ramp to stand out of the noise.
+        let look_back = (0.2 * to.level.abs()).max(8.0 * self.noise) / rate;
+        let mut row = to.first;
+        while row > 0 {
+            let earlier =
+                self.time.partition_point(|&t| t <= self.time[row] - look_back).saturating_sub(1).min(row - 1);
+            let gain = to.side * (self.angle[row] - self.angle[earlier]);
+            let steep = (0.3 * rate * (self.time[row] - self.time[earlier])).min(0.15 * to.level.abs());
+            if gain < steep {
+                break;
+            }
+            row -= 1;
+        }
+        // The lookback ends a little after the true foot. What counts is the angle the helm has just then, not the mean
+        // of what he did before.
+        let clear = self.time.partition_point(|&t| t <= self.time[row] - 0.3 * look_back).saturating_sub(1).min(row);
+        let tolerance = (0.1 * to.level.abs()).max(5.0 * self.noise);
+        let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
+        let mut steady: Vec<f64> = (0..=clear).rev().take_while(near).map(|row| self.angle[row]).collect();
+        Some(self.movement(Level::of(&mut steady)?, to))
+
+    /// Last row before a hold at which the rudder has done at most a tenth of its way from `before`.
+    fn foot(&self, before: f64, to: &Hold) -> usize {
+        (0..to.first).rev().find(|&row| progress(self.angle[row], before, to.level) <= 0.1).unwrap_or(0)
+    }
+
+    /// Times the movement from `before` into a hold: where the line through its ramp meets the level before.
+    fn movement(&self, level: Level, to: &Hold) -> Movement {
+        let before = level.angle;
+        let foot = self.foot(before, to);
+        let (earliest, latest) = (self.time[foot], self.time[to.first]);
+        let ramp: Vec<usize> = (foot + 1..=to.first)
+            .filter(|&row| (0.1..0.9).contains(&progress(self.angle[row], before, to.level)))
+            .collect();
+        let travel = to.level - before;
+        let (start, rate) = match (ramp.as_slice(), self.rate) {
+            ([_, _, ..], _) => match self.line_start(&ramp, level, travel.signum()) {
+                Some((start, rate)) => (start, Some(rate)),
+                None => (uniform(earliest, latest), None),
+            },
+            (&[row], Some(rate)) => {
+                let start = self.time[row] - (self.angle[row] - before).abs() / rate;
+                (Quantity::new(start, Some(1.0_f64.hypot(level.gain) * self.noise / rate)), None)
+            }
+            (&[row], None) => {
+                // Unknown speed, one row under way: not slower than the neighbouring rows allow.
+                let next = (row + 1).min(self.time.len() - 1);
+                let way = (self.angle[row] - before).abs();
+                let slowest = (way / (self.time[row] - earliest))
+                    .max((travel.abs() - way).max(0.0) / (self.time[next] - self.time[row]).max(f64::MIN_POSITIVE));
+                (uniform(self.time[row] - way / slowest, self.time[row]), None)
+            }
+            ([], rate) => {
+                let under_way = rate.map_or(0.0, |rate| LAID * travel.abs() / rate);
+                (uniform(earliest, (latest - under_way).max(earliest)), None)
+            }
+        };
+        // Noise can put the foot of a line anywhere; the rudder did not move before the record or after it was laid.
+        let start = Quantity { value: start.value.clamp(self.time[0], latest), ..start };
+        Movement { start, before, after: to.level, foot, rate }
+    }
+
+    /// Least-squares line through the rows of a ramp: the time it leaves `before`, with its speed (rad/s, signed).
+    ///
+    /// A steering gear has one speed, so a ramp whose own speed does not differ from that of the others by more than its
+    /// uncertainty takes theirs: a short ramp in whole degrees is timed far better so.
+    fn line_start(&self, ramp: &[usize], level: Level, direction: f64) -> Option<(Quantity, f64)> {
+        let n = ramp.len() as f64;
+        let mean_time = ramp.iter().map(|&row| self.time[row]).sum::<f64>() / n;
+        let mean_angle = ramp.iter().map(|&row| self.angle[row]).sum::<f64>() / n;
+        let (mut tt, mut ta) = (0.0, 0.0);
+        for &row in ramp {
+            let t = self.time[row] - mean_time;
+            tt += t * t;
+            ta += t * (self.angle[row] - mean_angle);
+        }
+        let own_rate = ta / tt;
+        if direction * own_rate <= 0.0 {
+            return None;
+        }
+        let scatter = if ramp.len() > 2 {
+            let squares: f64 = ramp
+                .iter()
+                .map(|&row| (self.angle[row] - mean_angle - own_rate * (self.time[row] - mean_time)).powi(2))
+                .sum();
+            (squares / (n - 2.0)).sqrt()
+        } else {
+            0.0
+        };
+        let noise = self.noise.max(scatter);
+        let common =
+            self.rate.map(|rate| direction * rate).filter(|rate| (rate - own_rate).abs() <= 3.0 * noise / tt.sqrt());
+        let rate = common.unwrap_or(own_rate);
+        let start = mean_time + (level.angle - mean_angle) / rate;
+        let lever = if common.is_some() { 0.0 } else { (start - mean_time).powi(2) / tt };
+        let gain = (1.0 / n + lever + level.gain * level.gain).sqrt();
+        Some((Quantity::new(start, Some(noise / rate.abs() * gain)), own_rate))
+    }
+}
+
+/// Step of a rounded channel: the smallest distance between two of its values. Next to nothing for one not rounded.
+fn quantum(angle: &[f64]) -> f64 {
+    let mut values = angle.to_vec();
+    values.sort_unstable_by(f64::total_cmp);
+    // Values that differ by rounding of the arithmetic are the same.
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 1e-9);
+    steps.min_by(f64::total_cmp).unwrap_or(0.0)
+}
+
+/// Share of the way from `before` to `after` that the rudder has done.
+fn progress(angle: f64, before: f64, after: f64) -> f64 {
+    (angle - before) / (after - before)
+}
+
+/// The middle of an interval in which something happened, with the standard deviation of a uniform distribution.
+fn uniform(from: f64, to: f64) -> Quantity {
+    Quantity::new(0.5 * (from + to), Some((to - from).max(0.0) / 12.0_f64.sqrt()))
+}
+
+/// A conventional trial angle near a measured one, degrees: 1, 2, 3 or a multiple of 5 where one is near, a whole degree else.
+///
+/// `below` and `above` say by how much the measured angle may miss the conventional one, as a share of it; `slack_deg`
+/// adds what the noise of the measurement allows.
+pub(super) fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
+    const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
+    // Small angles are missed by an absolute error (a rudder offset, a late helm), hence half a degree at least.
+    let near = |&nominal: &f64| {
+        measured_deg >= nominal - (below * nominal).max(0.3) - slack_deg
+            && measured_deg <= nominal + (above * nominal).max(0.5) + slack_deg
+    };
+    CONVENTIONAL_DEG
+        .into_iter()
+        .filter(near)
+        .min_by(|a, b| (a - measured_deg).abs().total_cmp(&(b - measured_deg).abs()))
+        .or_else(|| (measured_deg.round() >= 1.0).then(|| measured_deg.round()))
+}
+
+/// Nominal rudder angle of the holds, rad.
+pub(super) fn nominal_rudder(holds: &[Hold]) -> Option<f64> {
+    let mean = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
+    conventional_deg(to_deg(mean), 0.08, 0.08, 0.0).map(from_deg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// A rudder that leaves 0 at 10 s, +δ at 40 s and −δ at 80 s, at `rate` (rad/s).
+    fn rudder_at(t: f64, delta: f64, rate: f64) -> f64 {
+        let first = (rate * (t - 10.0)).clamp(0.0, delta);
+        let second = (rate * (t - 40.0)).clamp(0.0, 2.0 * delta);
+        let third = (rate * (t - 80.0)).clamp(0.0, 2.0 * delta);
+        first - second + third
+    }
+
+    fn starts(time: &[f64], rudder: &[f64]) -> Vec<Quantity> {
+        let holds = holds(rudder).expect("two reversals");
+        let rudder = Rudder::new(time, rudder, &holds, None);
+        let first = rudder.first().expect("starts before the hold").start;
+        std::iter::once(first).chain((1..holds.len()).map(|index| rudder.reversal(index).start)).collect()
+    }
+
+    #[test]
+    fn a_ramp_is_timed_where_it_leaves_its_level() {
+        let rate = from_deg(2.5);
+        for (step, delta_deg) in [(1.0, 10.0), (1.0, 5.0), (0.7, 20.0), (0.1, 3.0), (2.0, 20.0)] {
+            let time: Vec<f64> = (0..(110.0 / step) as usize).map(|k| k as f64 * step).collect();
+            let angle: Vec<f64> = time.iter().map(|&t| rudder_at(t, from_deg(delta_deg), rate)).collect();
+            for (start, expected) in starts(&time, &angle).iter().zip([10.0, 40.0, 80.0]) {
+                assert_relative_eq!(start.value, expected, epsilon = 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn a_jump_is_timed_to_the_middle_of_its_interval() {
+        let time: Vec<f64> = (0..110).map(f64::from).collect();
+        let angle: Vec<f64> = time.iter().map(|&t| rudder_at(t - 0.3, 0.2, 1e6)).collect();
+        for (start, expected) in starts(&time, &angle).iter().zip([10.5, 40.5, 80.5]) {
+            assert_relative_eq!(start.value, expected, epsilon = 1e-9);
+            assert_relative_eq!(start.sd.expect("known from the step"), 1.0 / 12.0_f64.sqrt(), epsilon = 1e-9);
+        }
+    }
+
+    /// Whole degrees at 2.5 deg/s: a line through the steps misses the start by less than their length in time.
+    #[test]
+    fn quantised_ramps_and_drifting_offsets_are_timed_within_half_a_second() {
+        let time: Vec<f64> = (0..220).map(|k| 0.5 * f64::from(k)).collect();
+        let angle: Vec<f64> = time
+            .iter()
+            .map(|&t| from_deg(to_deg(rudder_at(t, from_deg(10.0), from_deg(2.5)) + 0.01 * (t / 60.0).sin()).round()))
+            .collect();
+        for (start, expected) in starts(&time, &angle).iter().zip([10.0, 40.0, 80.0]) {
+            assert!((start.value - expected).abs() < 0.5, "{} for {expected}", start.value);
+        }
+    }
+
+    /// The helm is at 60 % of the angle to the same side when the order comes.
+    #[test]
+    fn manual_steering_before_the_first_execute_does_not_move_it() {
+        let time: Vec<f64> = (0..1100).map(|k| 0.1 * f64::from(k)).collect();
+        let angle: Vec<f64> = time
+            .iter()
+            .map(|&t| if t < 10.0 { 0.02 * (6.0 * (t / 10.0).powi(3)).round() } else { rudder_at(t, 0.2, 1e6) })
+            .collect();
+        let starts = starts(&time, &angle);
+        assert!((starts[0].value - 10.0).abs() < 0.11, "{}", starts[0].value);
+    }
+
+    #[test]
+    fn conventional_angles() {
+        let late_helm = |deg| conventional_deg(deg, 0.05, 0.25, 0.0);
+        assert_eq!(late_helm(1.22), Some(1.0));
+        assert_eq!(late_helm(5.7), Some(5.0));
+        assert_eq!(late_helm(10.9), Some(10.0));
+        assert_eq!(late_helm(22.4), Some(20.0));
+        assert_eq!(late_helm(7.2), Some(7.0));
+        assert_eq!(late_helm(0.2), None);
+    }
+}

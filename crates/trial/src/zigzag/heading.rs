@@ -1,0 +1,208 @@
+//! The heading of a record as a smooth signal: its noise, the width of local fits that suits it, and its values, slopes,
+//! peaks and crossings with their uncertainty. It knows nothing of rudders or executes.
+
+use super::local::Cubic;
+use super::quantity::{Quantity, median};
+
+/// Half-width of the residual window that the noise is estimated with, in periods of the manoeuvre.
+const NOISE_WINDOW: f64 = 0.02;
+
+/// Widest half-width of a local fit, in periods: beyond it a cubic no longer follows a swing.
+const WIDEST: f64 = 0.1;
+
+/// Slopes, and with them the times of peaks, are noisier than values (variance h⁻³ against h⁻¹): their best window is
+/// wider by about this factor.
+const WIDENING: f64 = 1.5;
+
+/// Factors by which a local fit is widened until it holds enough headings.
+const WIDENINGS: [f64; 5] = [1.0, 1.5, 2.25, 3.4, 5.1];
+
+/// Robust standard deviation of the white noise of a sampled signal, in the unit of the signal.
+///
+/// Every value is compared with the cubic fitted to the samples within `half_width` (s) of it; the result is 1.4826
+/// times the median absolute residual, each residual divided by √(1 − leverage). Jumps and outliers in less than a few
+/// tenths of the rows do not matter. NaN values are skipped. `None` when fewer than 8 windows hold 6 values or more.
+pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
+    let mut residuals: Vec<f64> = time
+        .iter()
+        .zip(value)
+        .filter(|(_, y)| y.is_finite())
+        .filter_map(|(&t, &y)| {
+            let fit = Cubic::fit(time, value, t, half_width).filter(|fit| fit.samples >= 6)?;
+            let leverage = fit.value_gain(t).powi(2);
+            (leverage < 0.99).then(|| (y - fit.value(t)).abs() / (1.0 - leverage).sqrt())
+        })
+        .collect();
+    if residuals.len() < 8 {
+        return None;
+    }
+    median(&mut residuals).map(|deviation| 1.4826 * deviation)
+}
+
+/// Observed headings of a record, relative to the first of them so that a large heading costs no digits.
+#[derive(Debug, Clone)]
+pub(super) struct Heading {
+    pub time: Vec<f64>,
+    pub relative: Vec<f64>,
+    /// The heading all others are relative to, rad.
+    pub origin: f64,
+    /// Standard deviation of the noise, rad.
+    pub noise: Option<f64>,
+    /// Half-width of local fits for values, s.
+    half_width: f64,
+}
+
+impl Heading {
+    /// The observed headings of a manoeuvre with the given period (s).
+    ///
+    /// The half-width of the fits balances noise against the bend of the heading where a rudder ramp starts or ends:
+    /// h = 0.35 P ((σ/A)² Δt/P)^(1/7), with the period P, the amplitude A and the sampling interval Δt. (The variance of
+    /// a local cubic falls as σ²Δt/h, its bias at a jump J of ψ''' grows as J h³/192, and J is about 6 A (2π/P)³ for
+    /// ships whose rudder ramp is a tenth of the period.) `None` with fewer than 8 headings.
+    pub fn new(time: &[f64], heading: &[f64], period: f64, declared_noise: Option<f64>) -> Option<Self> {
+        let (time, mut relative): (Vec<f64>, Vec<f64>) =
+            time.iter().zip(heading).filter(|(_, psi)| psi.is_finite()).map(|(&t, &psi)| (t, psi)).unzip();
+        if time.len() < 8 {
+            return None;
+        }
+        let origin = relative[0];
+        relative.iter_mut().for_each(|psi| *psi -= origin);
+        let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let step = median(&mut steps)?;
+        let noise = declared_noise.or_else(|| noise_sd(&time, &relative, (NOISE_WINDOW * period).max(3.0 * step)));
+        let lowest = relative.iter().copied().fold(f64::INFINITY, f64::min);
+        let highest = relative.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let amplitude = 0.5 * (highest - lowest);
+        let ratio = noise.unwrap_or(0.0) / amplitude.max(f64::MIN_POSITIVE);
+        let best = 0.35 * period * (ratio * ratio * step / period).powf(1.0 / 7.0);
+        let narrowest = 2.0 * step;
+        let half_width = best.clamp(narrowest, narrowest.max(WIDEST * period));
+        Some(Self { time, relative, origin, noise, half_width })
+    }
+
+    /// Half-width of local fits for values, s.
+    pub fn half_width(&self) -> f64 {
+        self.half_width
+    }
+
+    /// Half-width of the widest fit tried where headings are missing, s.
+    pub fn widest_half_width(&self) -> f64 {
+        WIDENINGS[WIDENINGS.len() - 1] * self.half_width
+    }
+
+    /// The local cubic at time `t`; widened where headings are missing, `None` where the gap is longer than that.
+    fn local(&self, t: f64, half_width: f64) -> Option<Cubic> {
+        WIDENINGS.iter().find_map(|widening| Cubic::fit(&self.time, &self.relative, t, widening * half_width))
+    }
+
+    /// Heading at time `t` relative to the origin.
+    pub fn at(&self, t: f64) -> Option<Quantity> {
+        let fit = self.local(t, self.half_width)?;
+        Some(Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t))))
+    }
+
+    /// Yaw rate at time `t`, rad/s.
+    pub fn rate_at(&self, t: f64) -> Option<Quantity> {
+        let fit = self.local(t, WIDENING * self.half_width)?;
+        Some(Quantity::new(fit.slope(t), self.noise.map(|sd| sd * fit.slope_gain(t))))
+    }
+
+    /// The largest |yaw rate| between two times, at the rows whose fit has samples on both sides.
+    ///
+    /// It is the largest of many noisy slopes, so on a noisy record it is high by about one of its standard deviations.
+    pub fn largest_rate(&self, from: f64, to: f64) -> Option<Quantity> {
+        let reach = WIDENING * self.half_width;
+        let (start, end) = (self.time[0] + reach, self.time[self.time.len() - 1] - reach);
+        self.rows(from.max(start), to.min(end))
+            .filter_map(|row| self.rate_at(self.time[row]))
+            .map(|rate| Quantity { value: rate.value.abs(), ..rate })
+            .max_by(|a, b| a.value.total_cmp(&b.value))
+    }
+
+    /// Time and heading of the peak towards `side` (+1 or −1) between two times.
+    ///
+    /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit: the peak was not seen.
+    pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
+        let highest = self
+            .rows(from, to)
+            .filter_map(|row| Some((row, side * self.local(self.time[row], self.half_width)?.value(self.time[row]))))
+            .max_by(|a, b| a.1.total_cmp(&b.1))?
+            .0;
+        let half_width = WIDENING * self.half_width;
+        let mut fit = self.local(self.time[highest], half_width)?;
+        // Centred on the peak, a cubic has no first-order error there; two moves are enough to get there.
+        for _ in 0..2 {
+            fit = self.local(fit.stationary_point()?, half_width)?;
+        }
+        let t = fit.stationary_point()?;
+        let curvature = fit.curvature(t);
+        let end = to.min(self.time[self.time.len() - 1]);
+        if side * curvature >= 0.0 || t <= from || t + self.half_width > end {
+            return None;
+        }
+        let time = Quantity::new(t, self.noise.map(|sd| sd * fit.slope_gain(t) / curvature.abs()));
+        Some((time, Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t)))))
+    }
+
+    /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1 falling).
+    ///
+    /// The standard deviation is that of the heading there over the slope.
+    pub fn crossing(&self, level: f64, side: f64, from: f64, to: f64) -> Option<Quantity> {
+        let row = self.rows(from, to).find(|&row| {
+            let t = self.time[row];
+            self.local(t, self.half_width).is_some_and(|fit| side * (fit.value(t) - level) >= 0.0)
+        })?;
+        let mut t = self.time[row];
+        for _ in 0..3 {
+            t = self.local(t, self.half_width)?.crossing(level)?;
+        }
+        let fit = self.local(t, self.half_width)?;
+        let slope = fit.slope(t);
+        (side * slope > 0.0).then(|| Quantity::new(t, self.noise.map(|sd| sd * fit.value_gain(t) / slope.abs())))
+    }
+
+    /// Rows between two times, both included.
+    pub fn rows(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let first = self.time.partition_point(|&t| t < from);
+        first..self.time.partition_point(|&t| t <= to).max(first)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::zigzag::simulator::Gaussian;
+    use approx::assert_relative_eq;
+
+    fn sine(noise: f64) -> (Vec<f64>, Vec<f64>) {
+        let time: Vec<f64> = (0..240).map(f64::from).collect();
+        let mut gaussian = Gaussian::new(2);
+        let value = time.iter().map(|t| (t / 19.0).sin() + noise * gaussian.draw()).collect();
+        (time, value)
+    }
+
+    #[test]
+    fn noise_is_seen_apart_from_the_motion() {
+        let (time, value) = sine(0.0);
+        assert!(noise_sd(&time, &value, 4.0).expect("enough rows") < 1e-4);
+        let (time, mut value) = sine(0.01);
+        let quiet = noise_sd(&time, &value, 4.0).expect("enough rows");
+        assert_relative_eq!(quiet, 0.01, max_relative = 0.15);
+        value[100] += 5.0;
+        value[101] += 5.0;
+        assert_relative_eq!(noise_sd(&time, &value, 4.0).expect("enough rows"), quiet, max_relative = 0.15);
+        assert_eq!(noise_sd(&time[..6], &value[..6], 4.0), None);
+    }
+
+    #[test]
+    fn peak_and_crossing_of_a_sine() {
+        let (time, value) = sine(0.0);
+        let heading = Heading::new(&time, &value, 119.4, None).expect("enough rows");
+        let (t, psi) = heading.peak(1.0, 5.0, 55.0).expect("peak inside");
+        assert_relative_eq!(t.value, 19.0 * std::f64::consts::FRAC_PI_2, max_relative = 1e-4);
+        assert_relative_eq!(psi.value, 1.0, max_relative = 1e-5);
+        assert!(heading.peak(1.0, 5.0, 30.0).is_none(), "the span ends at the peak");
+        let t = heading.crossing(0.5, -1.0, 31.0, 80.0).expect("falls through 0.5");
+        assert_relative_eq!(t.value, 19.0 * 5.0 * std::f64::consts::PI / 6.0, max_relative = 1e-5);
+    }
+}
