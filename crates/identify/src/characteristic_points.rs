@@ -92,7 +92,7 @@ impl Settings {
                 return refused(key, angle, "an angle");
             }
         }
-        if !(self.condition_limit > 1.0) {
+        if self.condition_limit.is_nan() || self.condition_limit <= 1.0 {
             return refused("condition-limit", self.condition_limit, "a number above 1");
         }
         Ok(CharacteristicPoints { settings: self })

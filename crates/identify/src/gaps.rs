@@ -34,7 +34,7 @@ mod tests {
     fn every_row_is_in_one_piece() {
         let time = [0.0, 1.0, 2.0, 9.0, 10.0, 30.0];
         assert_eq!(pieces(&time, 3.0).collect::<Vec<_>>(), [0..3, 3..5, 5..6]);
-        assert_eq!(pieces(&time, 50.0).collect::<Vec<_>>(), [0..6]);
+        assert!(pieces(&time, 50.0).eq(std::iter::once(0..6)));
         assert_eq!(pieces(&[], 3.0).count(), 0);
     }
 

@@ -19,6 +19,7 @@ use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
+use crate::robust::newey_west;
 use crate::samples::Samples;
 use crate::settings::SettingsError;
 use noise::Noise;
@@ -54,11 +55,11 @@ impl Settings {
     /// Fails when the gap is not positive or the condition limit is not above 1.
     pub fn build(self) -> Result<IntegralLeastSquares, SettingsError> {
         if let Some(gap) = self.longest_gap_s
-            && !(gap > 0.0)
+            && (gap.is_nan() || gap <= 0.0)
         {
             return Err(SettingsError { key: "longest-gap-s", found: gap.to_string(), expected: "a positive time" });
         }
-        if !(self.condition_limit > 1.0) {
+        if self.condition_limit.is_nan() || self.condition_limit <= 1.0 {
             let found = self.condition_limit.to_string();
             return Err(SettingsError { key: "condition-limit", found, expected: "a number above 1" });
         }
@@ -74,8 +75,8 @@ impl Settings {
 /// by its length before the projection.
 ///
 /// The covariance is that of white heading noise n seen through the equation, e = n + a ∫n, with the variance of n
-/// estimated from the residual. The robust covariance takes the same equation with the noise that was found, in time
-/// blocks, so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts.
+/// estimated from the residual. The robust covariance (Newey and West 1987) takes the noise that was found, row by row,
+/// so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts.
 ///
 /// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is
 /// not positive. A negative 1/T is an answer: the ship is course-unstable.
@@ -98,7 +99,7 @@ impl Identifier for IntegralLeastSquares {
         let mut pieces = self.stretches(&samples)?;
         let solution = Solution::of(&mut pieces, self.settings.condition_limit)?;
         let [a, b, beta] = solution.parameters.into();
-        if !(b > 0.0) {
+        if b.is_nan() || b <= 0.0 {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
         let response = FirstOrder { inverse_T: a, K_over_T: b, rudder_bias: beta / b };
@@ -113,10 +114,10 @@ impl Identifier for IntegralLeastSquares {
             }),
             None => Uncertainty::None { reason: "no more equations than unknowns" },
         };
-        let robust = noise
-            .blocks
-            .covariance()
-            .map(|(scores, freedom)| Covariance { matrix: base(scores), degrees_of_freedom: Some(freedom) });
+        let robust = noise.variance.map(|_| Covariance {
+            matrix: base(newey_west(&noise.scores) * noise.finite_sample),
+            degrees_of_freedom: Some(noise.degrees_of_freedom),
+        });
         let mut diagnostics = vec![
             ("condition", solution.condition),
             ("equations", pieces.iter().map(|piece| piece.time.len() as f64).sum()),
@@ -283,8 +284,7 @@ impl Solution {
         let smallest: f64 = SymmetricEigen::new(scaled).eigenvalues.min();
         let condition = if smallest > 0.0 { 1.0 / smallest.sqrt() } else { f64::INFINITY };
         let singular = || IdentifyError::Singular { condition, limit: condition_limit };
-        // Written so that a NaN condition is refused too.
-        if !(condition <= condition_limit) {
+        if condition.is_nan() || condition > condition_limit {
             return Err(singular());
         }
         let scaled_inverse = scaled.cholesky().ok_or_else(singular)?.inverse();

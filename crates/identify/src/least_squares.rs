@@ -10,13 +10,13 @@ use ship::FirstOrder;
 use trial::Trial;
 
 use crate::Identifier;
-use crate::block_sums::BlockSums;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
 use crate::linear::LeastSquares as Solution;
+use crate::robust::newey_west;
 use crate::samples::Samples;
-use crate::savitzky_golay::{COEFFICIENTS, LocalFit, SavitzkyGolay};
+use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::SettingsError;
 
 /// Bias of 1/T by noise, as a share, from which on a reader is warned.
@@ -73,11 +73,11 @@ impl Settings {
             smoothing.check()?;
         }
         if let Some(gap) = self.longest_gap_s
-            && !(gap > 0.0)
+            && (gap.is_nan() || gap <= 0.0)
         {
             return Err(SettingsError { key: "longest-gap-s", found: gap.to_string(), expected: "a positive time" });
         }
-        if !(self.condition_limit > 1.0) {
+        if self.condition_limit.is_nan() || self.condition_limit <= 1.0 {
             let found = self.condition_limit.to_string();
             return Err(SettingsError { key: "condition-limit", found, expected: "a number above 1" });
         }
@@ -88,8 +88,8 @@ impl Settings {
 /// Least squares on r' = −a r + b δ + c.
 ///
 /// The covariance is that of white noise in the signal, led through the differentiating filters; its variance is
-/// estimated from the residual. The robust covariance takes the residual in time blocks instead and holds for noise of
-/// any colour. Where noise dominates the differentiated signal (`r_squared` far below 1) both are several times too
+/// estimated from the residual. The robust covariance (Newey and West 1987) takes the residual as it
+/// is, of any colour. Where noise dominates the differentiated signal (`r_squared` far below 1) both are several times too
 /// large, because errors of r and r' cancel in a way they do not count.
 /// **Neither contains the bias that noise in r causes** (errors in variables); to first order it is the diagnostic
 /// `noise_bias_of_inverse_T_percent`. Smoothing adds a bias of its own, which nothing here shows.
@@ -148,7 +148,7 @@ impl Identifier for LeastSquares {
         let ones = vec![1.0; acceleration.len()];
         let solution = Solution::solve(&[minus_rate, rudder, &ones], acceleration, self.settings.condition_limit)?;
         let [a, b, c] = [0, 1, 2].map(|i| solution.parameters[i]);
-        if !(b > 0.0) {
+        if b.is_nan() || b <= 0.0 {
             return Err(IdentifyError::NotAShip { inverse_time: a, gain: b });
         }
         let unscaled = Matrix3::from_fn(|i, j| solution.unscaled_covariance[(i, j)]);
@@ -164,10 +164,13 @@ impl Identifier for LeastSquares {
             }),
             None => Uncertainty::None { reason: "no more equations than unknowns" },
         };
-        let robust = equations
-            .scores([a, b, c])
-            .covariance()
-            .map(|(scores, freedom)| Covariance { matrix: base(scores), degrees_of_freedom: Some(freedom) });
+        let robust = solution.variance().map(|_| {
+            let finite_sample = acceleration.len() as f64 / solution.degrees_of_freedom;
+            Covariance {
+                matrix: base(newey_west(&equations.scores([a, b, c])) * finite_sample),
+                degrees_of_freedom: Some(solution.degrees_of_freedom),
+            }
+        });
         let mut diagnostics = vec![
             ("r_squared", 1.0 - solution.rss / total_squares(acceleration)),
             ("condition", solution.condition),
@@ -203,11 +206,11 @@ impl LeastSquares {
         self.settings.smoothing.as_ref().unwrap_or(&SavitzkyGolay::CENTRAL_DIFFERENCES)
     }
 
-    /// Coefficients of the local polynomial that make r and r'.
-    fn rate_and_acceleration(&self) -> [[f64; COEFFICIENTS]; 2] {
+    /// r and r' from the coefficients of the local polynomial, or from the weights of one row in them.
+    fn rate_and_acceleration(&self, [value, first, half_second]: [f64; 3]) -> (f64, f64) {
         match self.settings.signal {
-            Signal::Heading => [[0.0, 1.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0, 0.0, 0.0]],
-            Signal::YawRate => [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0, 0.0]],
+            Signal::Heading => (first, 2.0 * half_second),
+            Signal::YawRate => (value, first),
         }
     }
 
@@ -237,23 +240,16 @@ impl LeastSquares {
 
     /// Adds an equation for every row with a whole window around it that no gap cuts.
     fn add(&self, time: &[f64], signal: &[f64], rudder: &[f64], equations: &mut Equations) {
-        let polynomial = self.polynomial();
+        let mut weights = WindowWeights::new(self.polynomial());
         for range in pieces(time, longest_gap(self.settings.longest_gap_s, time)) {
             let (time, signal, rudder) = (&time[range.clone()], &signal[range.clone()], &rudder[range]);
             let mut rows = Vec::with_capacity(time.len());
             for k in 0..time.len() {
-                let Some([value, first, second, ..]) = polynomial.at_row(time, signal, k) else { continue };
-                let rudder = if self.settings.smooth_rudder {
-                    polynomial.at_row(time, rudder, k).map_or(rudder[k], |[value, ..]| value)
-                } else {
-                    rudder[k]
-                };
-                let (rate, acceleration) = match self.settings.signal {
-                    Signal::Heading => (first, 2.0 * second),
-                    Signal::YawRate => (value, first),
-                };
+                let Some(coefficients) = weights.apply(time, signal, k) else { continue };
+                let (rate, acceleration) = self.rate_and_acceleration(coefficients);
+                let smooth = self.settings.smooth_rudder.then(|| weights.apply(time, rudder, k)).flatten();
                 equations.minus_rate.push(-rate);
-                equations.rudder.push(rudder);
+                equations.rudder.push(smooth.map_or(rudder[k], |[value, ..]| value));
                 equations.acceleration.push(acceleration);
                 rows.push(k);
             }
@@ -263,9 +259,7 @@ impl LeastSquares {
 
     /// Leads unit white noise through the filters into the equation error e = n_r' + a n_r.
     fn noise_path(&self, equations: &Equations, a: f64) -> NoisePath {
-        let polynomial = self.polynomial();
-        let [rate, acceleration] = self.rate_and_acceleration();
-        let error = std::array::from_fn(|p| acceleration[p] + a * rate[p]);
+        let mut weights = WindowWeights::new(self.polynomial());
         let mut path = NoisePath { influence: Matrix3::zeros(), of_error: 0.0, of_rate_and_error: 0.0 };
         let mut equation = 0;
         let mut influence = Vec::new();
@@ -275,11 +269,10 @@ impl LeastSquares {
             for &k in &stretch.rows {
                 let row = equations.row(equation);
                 equation += 1;
-                let Some(window) = polynomial.window(k, stretch.time.len()) else { continue };
-                let Some(fit) = LocalFit::new(&stretch.time[window.clone()], stretch.time[k], polynomial.order) else {
-                    continue;
-                };
-                for ((j, of_error), of_rate) in window.zip(fit.weights(error)).zip(fit.weights(rate)) {
+                let Some((window, weights)) = weights.at(&stretch.time, k) else { continue };
+                for (j, &weights) in window.zip(weights) {
+                    let (of_rate, of_acceleration) = self.rate_and_acceleration(weights);
+                    let of_error = of_acceleration + a * of_rate;
                     influence[j] += row * of_error;
                     path.of_error += of_error * of_error;
                     path.of_rate_and_error += of_rate * of_error;
@@ -296,19 +289,16 @@ impl Equations {
         Vector3::new(self.minus_rate[equation], self.rudder[equation], 1.0)
     }
 
-    /// Block sums of regressors times residual; no block spans a gap.
-    fn scores(&self, [a, b, c]: [f64; 3]) -> BlockSums {
-        let mut sums = BlockSums::new(self.acceleration.len());
+    /// Regressors times residual, stretch by stretch.
+    fn scores(&self, [a, b, c]: [f64; 3]) -> Vec<Vec<[f64; 3]>> {
         let mut equation = 0;
-        for stretch in &self.stretches {
-            for _ in &stretch.rows {
-                let row = self.row(equation);
-                sums.add(row * (self.acceleration[equation] - row.dot(&Vector3::new(a, b, c))));
-                equation += 1;
-            }
-            sums.close();
-        }
-        sums
+        let mut score = |_: &usize| -> [f64; 3] {
+            let row = self.row(equation);
+            let error = self.acceleration[equation] - row.dot(&Vector3::new(a, b, c));
+            equation += 1;
+            (row * error).into()
+        };
+        self.stretches.iter().map(|stretch| stretch.rows.iter().map(&mut score).collect()).collect()
     }
 }
 

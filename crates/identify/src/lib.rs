@@ -14,7 +14,6 @@
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
 
-mod block_sums;
 pub mod characteristic_points;
 pub mod error;
 pub mod estimate;

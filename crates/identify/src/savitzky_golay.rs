@@ -52,13 +52,54 @@ impl SavitzkyGolay {
         let window = k.checked_sub(half)?..(k + half + 1);
         (window.end <= len).then_some(window)
     }
+}
 
-    /// Taylor coefficients at row `k` of the polynomial through the window around it.
+/// Weights of every row of a window in c₀, c₁ and c₂ (value, slope and half the second derivative), kept from one
+/// window to the next as long as the spacing of the rows repeats: with even sampling they are computed once.
+#[derive(Debug)]
+pub struct WindowWeights<'a> {
+    filter: &'a SavitzkyGolay,
+    /// Times relative to the middle row, s, that the weights belong to.
+    relative: Vec<f64>,
+    weights: Vec<[f64; 3]>,
+}
+
+impl<'a> WindowWeights<'a> {
+    /// For windows and polynomials of `filter`.
+    pub fn new(filter: &'a SavitzkyGolay) -> Self {
+        Self { filter, relative: Vec::new(), weights: Vec::new() }
+    }
+
+    /// Rows of the window around row `k` with their weights.
     ///
     /// `None` when the window does not fit into the record or the fit is singular.
-    pub fn at_row(&self, time: &[f64], value: &[f64], k: usize) -> Option<[f64; COEFFICIENTS]> {
-        let window = self.window(k, time.len())?;
-        local_polynomial(&time[window.clone()], &value[window], time[k], self.order)
+    pub fn at(&mut self, time: &[f64], k: usize) -> Option<(Range<usize>, &[[f64; 3]])> {
+        let window = self.filter.window(k, time.len())?;
+        let times = &time[window.clone()];
+        // Times such as 0.1 k carry rounding errors that are no change of spacing.
+        let tolerance = 1e-9 * (times[times.len() - 1] - times[0]);
+        let repeats = self.relative.len() == times.len()
+            && times.iter().zip(&self.relative).all(|(t, before)| (t - time[k] - before).abs() <= tolerance);
+        if !repeats {
+            self.relative.clear();
+            self.weights.clear();
+            self.relative.extend(times.iter().map(|t| t - time[k]));
+            let fit = LocalFit::new(&self.relative, 0.0, self.filter.order)?;
+            let weights = |p: usize| fit.weights(std::array::from_fn(|i| if i == p { 1.0 } else { 0.0 }));
+            self.weights.extend(weights(0).zip(weights(1)).zip(weights(2)).map(|((c0, c1), c2)| [c0, c1, c2]));
+        }
+        (self.weights.len() == window.len()).then_some((window, &self.weights))
+    }
+
+    /// c₀, c₁ and c₂ at row `k`.
+    pub fn apply(&mut self, time: &[f64], value: &[f64], k: usize) -> Option<[f64; 3]> {
+        let (window, weights) = self.at(time, k)?;
+        Some(
+            value[window]
+                .iter()
+                .zip(weights)
+                .fold([0.0; 3], |sum, (y, w)| [sum[0] + w[0] * y, sum[1] + w[1] * y, sum[2] + w[2] * y]),
+        )
     }
 }
 
@@ -155,7 +196,7 @@ mod tests {
         let time = [0.0, 1.0, 2.0, 3.0, 4.0];
         let impulse = |k: usize| std::array::from_fn::<f64, 5, _>(|i| if i == k { 1.0 } else { 0.0 });
         let filter = SavitzkyGolay { window_samples: 5, order };
-        (0..5).map(|k| filter.at_row(&time, &impulse(k), 2).expect("regular")[p]).collect()
+        (0..5).map(|k| WindowWeights::new(&filter).apply(&time, &impulse(k), 2).expect("regular")[p]).collect()
     }
 
     /// Five-point tables of Savitzky and Golay (1964).
@@ -201,10 +242,28 @@ mod tests {
     }
 
     #[test]
+    fn weights_follow_a_change_of_spacing() {
+        let time: Vec<f64> =
+            (0..30).map(|k| if k < 15 { 0.1 * f64::from(k) } else { 1.4 + f64::from(k - 14) }).collect();
+        let value: Vec<f64> = time.iter().map(|t| (0.2 * t).sin()).collect();
+        let filter = SavitzkyGolay { window_samples: 7, order: 3 };
+        let mut weights = WindowWeights::new(&filter);
+        for k in 3..27 {
+            let kept = weights.apply(&time, &value, k).expect("regular");
+            let fresh = local_polynomial(&time[k - 3..k + 4], &value[k - 3..k + 4], time[k], 3).expect("regular");
+            for p in 0..3 {
+                assert_abs_diff_eq!(kept[p], fresh[p], epsilon = 1e-8);
+            }
+        }
+    }
+
+    #[test]
     fn too_few_rows_give_nothing() {
         assert!(local_polynomial(&[0.0, 1.0], &[0.0, 1.0], 0.5, 2).is_none());
         assert!(local_polynomial(&[1.0], &[0.0], 1.0, 0).is_none());
-        assert!(SavitzkyGolay::default().at_row(&[0.0; 20], &[0.0; 20], 6).is_none());
+        assert!(SavitzkyGolay::default().window(6, 20).is_none());
+        assert!(SavitzkyGolay::default().window(13, 20).is_none());
+        assert_eq!(SavitzkyGolay::default().window(7, 20), Some(0..15));
         assert!(SavitzkyGolay { window_samples: 4, order: 2 }.check().is_err());
         assert!(SavitzkyGolay { window_samples: 5, order: 6 }.check().is_err());
     }

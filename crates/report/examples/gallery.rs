@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use report::figures::*;
-use report::{Curve, Figure, Origin, Theme};
+use report::{Curve, Figure, Origin, Theme, symbol};
 
 /// A zig-zag of a first-order response: time, heading, yaw rate, yaw acceleration, rudder.
 struct Run {
@@ -260,7 +260,7 @@ fn error_figure(theme: &Theme, x_scale: Scale) -> Figure {
             x_title: "heading noise, standard deviation [°]".into(),
             x_scale,
             y_scale: Scale::Log,
-            rows: vec!["rms error of K [%]".into(), "rms error of T [%]".into()],
+            rows: ["K", "T"].map(|name| format!("rms error of {} [%]", symbol(name))).into(),
             columns: vec!["10°/10° zig-zag".into(), "20°/20° zig-zag".into()],
             cells: vec![cell(0, 0), cell(0, 1), cell(1, 0), cell(1, 1)],
         },

@@ -51,5 +51,6 @@ pub use curve::Curve;
 pub use error::ReportError;
 pub use figure::Figure;
 pub use palette::Origin;
+pub use scene::symbol;
 pub use table::{Alignment, Column, Table};
 pub use theme::Theme;

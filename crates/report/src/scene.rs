@@ -17,8 +17,8 @@ pub(crate) fn is_markup(c: char) -> bool {
     c == ITALIC_ON || c == ITALIC_OFF
 }
 
-/// A quantity symbol, set in italic as ISO 80000-1 wants it.
-pub(crate) fn symbol(text: &str) -> String {
+/// A quantity symbol, set in italic as ISO 80000-1 wants it: for titles and labels of figures, not for tables.
+pub fn symbol(text: &str) -> String {
     format!("{ITALIC_ON}{text}{ITALIC_OFF}")
 }
 

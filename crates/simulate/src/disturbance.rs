@@ -1,6 +1,7 @@
 //! What the sea does to the ship, as a specification. Every moment is given as the rudder angle (rad) that has the same
 //! yaw moment at approach speed; waves are a heading that is seen on top of the response. The paths of one run are drawn
 //! in `weather` and `wave_path`, on grids that depend on nothing but this specification.
+#![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
 use ship::narrow_band::NarrowBand;
 
@@ -92,11 +93,15 @@ impl Disturbances {
         if let Some(waves) = &self.waves {
             error::not_negative("disturbances.waves.sd", waves.sd)?;
             error::positive("disturbances.waves.frequency", waves.frequency)?;
+            error::at_most("disturbances.waves.frequency", waves.frequency, HIGHEST_FREQUENCY)?;
             error::between("disturbances.waves.damping", waves.damping, 0.0, LARGEST_DAMPING)?;
         }
         Ok(())
     }
 }
+
+/// Highest encounter frequency of waves, rad/s: those of a model a metre long are below it.
+const HIGHEST_FREQUENCY: f64 = 100.0;
 
 /// Relative damping up to which [`NarrowBand`] is an oscillator; at 1 its damped frequency is zero.
 const LARGEST_DAMPING: f64 = 0.999;
@@ -120,5 +125,36 @@ impl Wind {
     #[inline]
     pub fn yaw_moment(&self, heading: f64, gust: f64) -> f64 {
         self.moment * gust * (2.0 * (self.from - heading)).sin()
+    }
+
+    /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed` (m/s)
+    /// on a ship that makes `U` (m/s) ahead; its drift angle is left out.
+    pub fn relative(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
+        let (side, ahead) = (self.from - heading).sin_cos();
+        let (ahead, side) = (speed * ahead + U, speed * side);
+        (ahead.hypot(side), side.atan2(ahead))
+    }
+}
+
+/// Wind speed, m/s, of mean `mean` under the gust factor `gust` = 1 + g of the moment, which goes with its square.
+pub(crate) fn gusting_speed(mean: f64, gust: f64) -> f64 {
+    mean * gust.max(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn wind_from_ahead_adds_to_the_speed_and_from_abeam_does_not() {
+        let wind = Wind { moment: 0.0, from: 0.5, speed: Some(10.0), gusting: None };
+        let (speed, from) = wind.relative(10.0, 5.0, 0.5);
+        assert_relative_eq!(speed, 15.0, max_relative = 1e-12);
+        assert_relative_eq!(from, 0.0, epsilon = 1e-12);
+        // Heading such that the wind is on the starboard beam.
+        let (speed, from) = wind.relative(10.0, 5.0, 0.5 - std::f64::consts::FRAC_PI_2);
+        assert_relative_eq!(speed, 125.0_f64.sqrt(), max_relative = 1e-12);
+        assert_relative_eq!(from, 2.0_f64.atan(), max_relative = 1e-12);
     }
 }

@@ -27,11 +27,15 @@ pub struct Helmsman {
     pub reaction_time: f64,
 }
 
+/// Times between two readings, s, that make sense.
+const SHORTEST_PERIOD: f64 = 1e-3;
+const LONGEST_PERIOD: f64 = 1e3;
+
 impl Helmsman {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         if let Watches::Display { period } = self.watches {
-            error::positive("helmsman.period", period)?;
+            error::between("helmsman.period", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         }
         error::not_negative("helmsman.reaction_time", self.reaction_time)
     }

@@ -8,7 +8,7 @@ use ship::Particulars;
 use trial::{Channel, Columns};
 
 use crate::display::Reading;
-use crate::disturbance::Wind;
+use crate::disturbance::{Wind, gusting_speed};
 use crate::propagate::Sample;
 use crate::run::Wake;
 use crate::sensor::{DropOut, Loses, Sensors, quantise};
@@ -140,14 +140,13 @@ fn order_at(executes: &[Execute], first: f64, t: f64) -> f64 {
 fn write_wind(scene: &Scene, channels: &mut BTreeMap<Channel, Vec<f64>>) {
     let Some(wind) = scene.wind else { return };
     let Some(mean) = wind.speed else { return };
-    // The moment goes with the square of the speed, so the speed goes with the root of the gust factor.
-    let speeds: Vec<f64> = scene.samples.iter().map(|sample| mean * sample.gust.max(0.0).sqrt()).collect();
+    let speeds: Vec<f64> = scene.samples.iter().map(|sample| gusting_speed(mean, sample.gust)).collect();
     let ship = |sample: &Sample| sample.motion.speed.or(scene.particulars.map(|particulars| particulars.speed));
     let relative: Option<Vec<(f64, f64)>> = scene
         .samples
         .iter()
         .zip(&speeds)
-        .map(|(sample, &speed)| ship(sample).map(|U| relative_wind(&wind, speed, U, sample.motion.heading)))
+        .map(|(sample, &speed)| ship(sample).map(|U| wind.relative(speed, U, sample.motion.heading)))
         .collect();
     if let Some(relative) = relative {
         let (speed, from) = relative.into_iter().unzip();
@@ -156,14 +155,6 @@ fn write_wind(scene: &Scene, channels: &mut BTreeMap<Channel, Vec<f64>>) {
     }
     channels.insert(Channel::WindTrueFrom, vec![wind.from; speeds.len()]);
     channels.insert(Channel::WindTrueSpeed, speeds);
-}
-
-/// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π) on a ship that makes `U` (m/s) ahead.
-fn relative_wind(wind: &Wind, speed: f64, U: f64, heading: f64) -> (f64, f64) {
-    let (side, ahead) = (wind.from - heading).sin_cos();
-    // Towards the wind: the true wind plus the ship's own speed from ahead.
-    let (ahead, side) = (speed * ahead + U, speed * side);
-    (ahead.hypot(side), side.atan2(ahead))
 }
 
 /// Which rows are lost; `None` when none can be.
@@ -202,17 +193,5 @@ mod tests {
         // Stationary share p/(p + 1/m); some 1800 bursts, so the mean length is known to about 2.4 %.
         assert_relative_eq!(share, 0.01 / (0.01 + 0.125), max_relative = 0.08);
         assert_relative_eq!(share * rows as f64 / begun as f64, 8.0, max_relative = 0.08);
-    }
-
-    #[test]
-    fn wind_from_ahead_adds_to_the_speed_and_from_abeam_does_not() {
-        let wind = Wind { moment: 0.0, from: 0.5, speed: Some(10.0), gusting: None };
-        let (speed, from) = relative_wind(&wind, 10.0, 5.0, 0.5);
-        assert_relative_eq!(speed, 15.0, max_relative = 1e-12);
-        assert_relative_eq!(from, 0.0, epsilon = 1e-12);
-        // Heading such that the wind is on the starboard beam.
-        let (speed, from) = relative_wind(&wind, 10.0, 5.0, 0.5 - std::f64::consts::FRAC_PI_2);
-        assert_relative_eq!(speed, 125.0_f64.sqrt(), max_relative = 1e-12);
-        assert_relative_eq!(from, 2.0_f64.atan(), max_relative = 1e-12);
     }
 }

@@ -40,7 +40,15 @@ impl Default for Recording {
     }
 }
 
+/// Rows beyond which a period or duration is taken for a mistake: more than a gigabyte.
+const MOST_ROWS: f64 = 1e7;
+
 impl Recording {
+    /// Longest record that is taken for meant, s.
+    pub(crate) fn longest(&self) -> f64 {
+        MOST_ROWS * self.period
+    }
+
     /// Number of rows, where the duration says it.
     pub fn rows(&self) -> Option<usize> {
         // A duration of whole periods keeps its last row in spite of rounding.

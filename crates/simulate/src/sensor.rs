@@ -105,12 +105,18 @@ pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 { (value / quantum).round() * quantum } else { value }
 }
 
+/// Lags of a gyrocompass, s, other than none; a shorter one would only shorten the step of the solver.
+const SHORTEST_LAG: f64 = 0.01;
+const LONGEST_LAG: f64 = 100.0;
+
 impl Sensors {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         error::not_negative("sensors.heading.noise", self.heading.noise)?;
         error::not_negative("sensors.heading.quantum", self.heading.quantum)?;
-        error::not_negative("sensors.heading.lag", self.heading.lag)?;
+        if self.heading.lag != 0.0 {
+            error::between("sensors.heading.lag", self.heading.lag, SHORTEST_LAG, LONGEST_LAG)?;
+        }
         error::finite("sensors.heading.bias", self.heading.bias)?;
         if let Some(yaw_rate) = &self.yaw_rate {
             error::not_negative("sensors.yaw_rate.noise", yaw_rate.noise)?;

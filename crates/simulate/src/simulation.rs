@@ -12,7 +12,7 @@ use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, Helmsman, Watches};
 use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
 use crate::measure::{self, Scene};
-use crate::propagate::{ClosedForm, Integrated, Propagator, Sample};
+use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator, Sample};
 use crate::recording::{Recording, Start, Tap};
 use crate::run::{Progress, Run};
 use crate::sensor::Sensors;
@@ -108,6 +108,10 @@ pub struct Simulated {
 /// Default of [`Simulation::longest_wait`], s: no ship of the registry needs ten minutes for one leg of a zig-zag.
 const LONGEST_WAIT: f64 = 3600.0;
 
+/// Steps of the solver, s, between which it makes sense to ask for one.
+const SHORTEST_STEP: f64 = 1e-5;
+const LONGEST_STEP: f64 = 60.0;
+
 impl Simulation {
     /// A trial in a calm, with a perfect helmsman, gear and instruments, recorded whole once a second.
     pub fn new(vessel: Vessel, manoeuvre: Manoeuvre) -> Self {
@@ -140,7 +144,7 @@ impl Simulation {
         error::not_negative("approach.lead_in", self.approach.lead_in)?;
         error::positive("longest_wait", self.longest_wait)?;
         if let Solver::RungeKutta(step) = self.solver {
-            error::positive("solver.step", step)?;
+            error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
         }
         error::at_most("approach.rudder", self.approach.rudder.abs(), self.gear.maximum)?;
         if !matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
@@ -148,7 +152,10 @@ impl Simulation {
         }
         // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
         error::not_negative("vessel.dead_time", self.vessel.dynamics().dead_time())?;
+        let end = Helm::new(&self.manoeuvre, &self.helmsman, self.approach.lead_in).end();
         match (&self.manoeuvre, self.recording.duration) {
+            (_, None) if end.is_finite() => error::at_most("manoeuvre.duration", end, self.recording.longest()),
+            (_, Some(duration)) => error::at_most("recording.duration", duration, self.recording.longest()),
             (Manoeuvre::ZigZag(zig_zag), None) if zig_zag.end == ZigZagEnd::Record => {
                 Err(SpecificationError { key: "recording.duration", value: f64::NAN, expected: Expected::Duration })
             }
@@ -171,8 +178,10 @@ impl Simulation {
                     Solver::Automatic => None,
                     Solver::RungeKutta(step) => Some(step),
                 };
-                let (wind, lag) = (self.disturbances.wind, self.sensors.heading.lag);
-                self.drive(key, || Integrated::new(self.vessel.dynamics(), wind, lag, weather(), approach, step))
+                let (ship, wind, lag) = (self.vessel.dynamics(), self.disturbances.wind, self.sensors.heading.lag);
+                let speed = self.vessel.particulars().map(|particulars| particulars.speed);
+                let exposed = || Exposed::new(ship, wind, speed, lag, weather());
+                self.drive(key, || Integrated::new(exposed(), approach, step))
             }
         }
     }

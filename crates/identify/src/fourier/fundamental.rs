@@ -31,7 +31,8 @@ pub enum StartPoint {
 pub enum Fundamental {
     /// A local search from every start, downhill in RSS(w); the best end wins.
     Starts(Vec<StartPoint>),
-    /// The lowest RSS over all w from 0.35 periods a record to 1.5 times the peak of the transform.
+    /// The lowest RSS over all w from 0.35 periods a record (or 1.25/N of the peak of the transform, if that is more) to
+    /// 1.5 times the peak.
     Global,
     /// The best-conditioned local minimum of RSS whose R² lies within this much of the best.
     BestConditioned {

@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Piece, SHARED, Solution};
-use crate::block_sums::BlockSums;
 
 /// Heading noise found in the residual and its way into the parameters.
 #[derive(Debug)]
@@ -12,11 +11,13 @@ pub(super) struct Noise {
     pub variance: Option<f64>,
     /// Equations less unknowns.
     pub degrees_of_freedom: f64,
+    /// Equations over degrees of freedom: what the fit took from the noise it left.
+    pub finite_sample: f64,
     /// Σ z zᵀ, where z is the derivative of Xᵀe with respect to the noise of one heading; times the variance it is
     /// the covariance of Xᵀe.
     pub influence: Matrix3<f64>,
-    /// Sums of z n, for a covariance that does not take n to be white.
-    pub blocks: BlockSums,
+    /// z n row by row of every piece, for a covariance that does not take n to be white.
+    pub scores: Vec<Vec<[f64; SHARED]>>,
 }
 
 impl Noise {
@@ -26,16 +27,17 @@ impl Noise {
         let degrees_of_freedom = count as f64 - (SHARED + 2 * pieces.len()) as f64;
         let mut squares = 0.0;
         let mut influence = Matrix3::zeros();
-        let mut blocks = BlockSums::new(count);
+        let mut scores = Vec::with_capacity(pieces.len());
         let mut noise = Vec::with_capacity(count);
         for piece in pieces {
             noise.clear();
             heading_noise(piece, solution, &mut noise);
             squares += noise.iter().map(|n| n * n).sum::<f64>();
-            add_influence(piece, solution, &noise, &mut influence, &mut blocks);
+            scores.push(add_influence(piece, solution, &noise, &mut influence));
         }
         let variance = (degrees_of_freedom > 0.0).then(|| squares / degrees_of_freedom);
-        Self { variance, degrees_of_freedom, influence, blocks }
+        let finite_sample = count as f64 / degrees_of_freedom;
+        Self { variance, degrees_of_freedom, finite_sample, influence, scores }
     }
 }
 
@@ -62,7 +64,7 @@ fn heading_noise(piece: &Piece, solution: &Solution, noise: &mut Vec<f64>) {
     }
 }
 
-/// Adds a stretch to Σ z zᵀ and to the block sums of z n.
+/// Adds a stretch to Σ z zᵀ and returns its z n, last row first.
 ///
 /// A heading enters its own equation with weight 1 + a h/2 and every later one with a (h + h')/2, where h and h' are
 /// the intervals before and after it; hence one pass backwards with the sum of the later columns.
@@ -71,19 +73,19 @@ fn add_influence(
     solution: &Solution,
     noise: &[f64],
     influence: &mut Matrix3<f64>,
-    blocks: &mut BlockSums,
-) {
+) -> Vec<[f64; SHARED]> {
     let half_a = 0.5 * solution.parameters[0];
     let mut later = Vector3::zeros();
     let mut after = 0.0;
+    let mut scores = Vec::with_capacity(noise.len());
     for (k, &[x0, x1, x2, _]) in piece.rows.iter().enumerate().rev() {
         let before = if k > 0 { piece.time[k] - piece.time[k - 1] } else { 0.0 };
         let x = Vector3::new(x0, x1, x2);
         let z = x * (1.0 + half_a * before) + later * (half_a * (before + after));
         *influence += z * z.transpose();
-        blocks.add(z * noise[k]);
+        scores.push((z * noise[k]).into());
         later += x;
         after = before;
     }
-    blocks.close();
+    scores
 }

@@ -62,7 +62,7 @@ fn the_reported_standard_deviation_is_the_scatter() {
         for seed in 0..repeats {
             let case = Case { noise_deg, seed, ..Case::default() };
             let estimate = identify(&[case.trial()]);
-            let [k, t, _] = estimate.robust_indices().expect("enough blocks");
+            let [k, t, _] = estimate.robust_indices().expect("a robust covariance");
             for (i, error) in errors(&estimate, &case).into_iter().enumerate() {
                 let scale = 100.0 / [case.K, case.T][i] / repeats as f64;
                 squares[i] += error * error / repeats as f64;

@@ -64,7 +64,8 @@ pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
     for fit in &data.fits {
         let stroke = stroke_of(&fit.origin, theme);
         upper.line(&mut sheet.scene, fit.heading.pairs(), stroke);
-        middle.line(&mut sheet.scene, fit.residual.pairs(), Stroke { width: 0.8 * stroke.width, ..stroke });
+        // Solid, because dashes would hide parts of a noisy residual.
+        middle.line(&mut sheet.scene, fit.residual.pairs(), Stroke::solid(stroke.colour, 0.8 * stroke.width));
     }
     zero_line(lower, &mut sheet.scene, theme);
     lower.line(&mut sheet.scene, data.rudder.pairs(), Stroke::solid(RUDDER, theme.line));

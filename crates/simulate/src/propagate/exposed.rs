@@ -1,15 +1,17 @@
 //! A ship exposed to the wind and fitted with a gyrocompass: what depends on heading is added to the right-hand side.
 
-use ship::{Dynamics, Input, Motion};
+use ship::{Dynamics, Input, Measured, Motion};
 
-use crate::disturbance::Wind;
+use crate::disturbance::{Wind, gusting_speed};
 use crate::weather::{Cell, Weather};
 
 /// A ship with the weather of one run acting on it and the lag of its gyrocompass as the last state.
 #[derive(Debug)]
-pub(super) struct Exposed<'a, D: ?Sized> {
+pub(crate) struct Exposed<'a, D: ?Sized> {
     ship: &'a D,
     wind: Option<Wind>,
+    /// Approach speed of the ship, m/s, where its own equations have none.
+    approach_speed: Option<f64>,
     /// Time constant of the gyrocompass, s; 0 for none.
     gyro_lag: f64,
     /// The weather; its cell changes between steps only.
@@ -17,8 +19,9 @@ pub(super) struct Exposed<'a, D: ?Sized> {
 }
 
 impl<'a, D: Dynamics + ?Sized> Exposed<'a, D> {
-    pub fn new(ship: &'a D, wind: Option<Wind>, gyro_lag: f64, weather: Weather) -> Self {
-        Self { ship, wind, gyro_lag, weather }
+    /// `ship` in the weather of one run, at its beginning.
+    pub fn new(ship: &'a D, wind: Option<Wind>, approach_speed: Option<f64>, gyro_lag: f64, weather: Weather) -> Self {
+        Self { ship, wind, approach_speed, gyro_lag, weather }
     }
 
     /// Total disturbance as equivalent rudder angle, rad.
@@ -33,7 +36,21 @@ impl<'a, D: Dynamics + ?Sized> Exposed<'a, D> {
     }
 
     fn acting(&self, t: f64, state: &[f64], input: &Input) -> Input {
-        Input { disturbance: self.disturbance(t, state[0]), ..*input }
+        let input = Input { disturbance: self.disturbance(t, state[0]), ..*input };
+        match self.wind {
+            Some(Wind { speed: Some(mean), .. }) => self.in_measured_wind(t, state, input, mean),
+            _ => input,
+        }
+    }
+
+    /// The relative wind, for ships whose own equations use it.
+    fn in_measured_wind(&self, t: f64, state: &[f64], input: Input, mean: f64) -> Input {
+        let own = self.ship.motion(t, &state[..self.ship.dimension()], &input).speed;
+        let (Some(wind), Some(own)) = (self.wind, own.or(self.approach_speed)) else { return input };
+        let speed = gusting_speed(mean, self.weather.cell().gust(t));
+        let (speed, from) = wind.relative(speed, own, state[0]);
+        let measured = Measured { wind_speed: Some(speed), wind_from: Some(from), ..input.measured };
+        Input { measured, ..input }
     }
 }
 

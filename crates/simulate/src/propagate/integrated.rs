@@ -6,9 +6,7 @@ use ship::{Dynamics, Input};
 
 use super::exposed::Exposed;
 use super::{Propagator, Sample, acting};
-use crate::disturbance::Wind;
 use crate::gear::{RudderPath, Segment};
-use crate::weather::Weather;
 
 /// Integrated motion of any ship.
 pub(crate) struct Integrated<'a, D: ?Sized> {
@@ -28,15 +26,7 @@ fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
 
 impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
     /// The ship at time 0 on its approach; `step` is the largest step, s, where it is not left to the ship.
-    pub fn new(
-        ship: &'a D,
-        wind: Option<Wind>,
-        gyro_lag: f64,
-        weather: Weather,
-        approach: State,
-        step: Option<f64>,
-    ) -> Self {
-        let ship = Exposed::new(ship, wind, gyro_lag, weather);
+    pub fn new(ship: Exposed<'a, D>, approach: State, step: Option<f64>) -> Self {
         let dimension = ship.dimension();
         let mut state = vec![0.0; dimension];
         ship.approach(approach.heading, approach.yaw_rate, &mut state);

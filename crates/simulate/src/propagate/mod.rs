@@ -8,6 +8,7 @@ mod exposed;
 mod integrated;
 
 pub(crate) use closed_form::ClosedForm;
+pub(crate) use exposed::Exposed;
 pub(crate) use integrated::Integrated;
 
 use ship::Motion;

@@ -4,9 +4,10 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 
 use super::{KEY, zig_zag};
+use crate::helm::Watches;
 use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
 use crate::recording::Start;
-use crate::{Expected, SimulateError, Simulation, Vessel};
+use crate::{Expected, SimulateError, Simulation, Solver, Vessel};
 
 fn failure(simulation: &Simulation) -> SimulateError {
     simulation.run(&KEY).expect_err("this must fail")
@@ -30,6 +31,10 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
     let limit = from_deg(8.0);
     assert_eq!(refused(|s| s.gear.maximum = limit), ("manoeuvre.rudder", Expected::AtMost(limit)));
     assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration", Expected::Duration));
+    assert_eq!(refused(|s| s.recording.duration = Some(1e300)), ("recording.duration", Expected::AtMost(1e7)));
+    assert_eq!(refused(|s| s.solver = Solver::RungeKutta(1e-300)).0, "solver.step");
+    assert_eq!(refused(|s| s.sensors.heading.lag = 1e-300).0, "sensors.heading.lag");
+    assert_eq!(refused(|s| s.helmsman.watches = Watches::Display { period: 1e-300 }).0, "helmsman.period");
     assert_eq!(refused(|s| s.approach.heading = f64::INFINITY), ("approach.heading", Expected::Finite));
     assert_eq!(refused(|s| s.sensors.heading.noise = -1.0), ("sensors.heading.noise", Expected::NotNegative));
     assert_eq!(

@@ -3,8 +3,9 @@
 
 use ship::angle::{from_deg, to_deg};
 
-use super::executes::{self, Hold, Movement, Rudder};
+use super::executes::{Movement, Rudder};
 use super::heading::Heading;
+use super::holds::{self, Hold};
 use super::local::Local;
 use super::quantity::{Quantity, median};
 use super::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
@@ -25,7 +26,7 @@ const FEWEST_APPROACH_ROWS: usize = 3;
 
 pub(super) fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let time = trial.time();
-    let holds = executes::holds(trial.rudder())?;
+    let holds = holds::holds(trial.rudder())?;
     let rudder = Rudder::new(time, trial.rudder(), &holds, trial.noise().rudder);
     let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
     let rough_period =
@@ -183,8 +184,8 @@ fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Opti
         return None;
     }
     let slack = to_deg(2.0 * middle.sd.unwrap_or(0.0));
-    let heading = from_deg(executes::conventional_deg(angle, 0.05, 0.25, slack)?);
-    Some(Pair { rudder: executes::nominal_rudder(holds)?, heading })
+    let heading = from_deg(holds::conventional_deg(angle, 0.05, 0.25, slack)?);
+    Some(Pair { rudder: holds::nominal_rudder(holds)?, heading })
 }
 
 fn overshoots(executes: &[Execute], first_reversal: usize, end: f64, heading: &Heading) -> Vec<Overshoot> {

@@ -1,35 +1,9 @@
-//! Executes found in the rudder signal alone: when the rudder starts to move, from which angle, to which side.
-//!
-//! Works on ramps, on orders that jump in one sample, on quantised, drifting and noisy rudders. Whether the first
-//! movement of a record is the first execute of a trial is not decided here: that takes the heading.
+//! Movements of the rudder between its holds: when it starts to move, from which angle, how fast. Works on ramps, on orders
+//! that jump in one sample, on quantised, drifting and noisy rudders. Whether the first movement of a record is the first
+//! execute of a trial is not decided here: that takes the heading.
 
-use ship::angle::{from_deg, to_deg};
-
-use super::ZigZagError;
+use super::holds::{Hold, LAID};
 use super::quantity::{Quantity, median};
-
-/// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
-/// before a first execute can use more than half the rudder of the trial.
-const LAID: f64 = 0.85;
-
-/// Smallest rudder angle of a zig-zag, degrees.
-pub(super) const SMALLEST_RUDDER_DEG: f64 = 0.5;
-
-/// Least share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise 0.15.
-pub(super) const LEAST_HELD: f64 = 0.3;
-
-/// A stretch with the rudder laid to one side.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Hold {
-    /// +1 starboard, −1 port.
-    pub side: f64,
-    /// First row beyond [`LAID`] of the level.
-    pub first: usize,
-    /// Last such row.
-    pub last: usize,
-    /// Median rudder angle, rad, signed.
-    pub level: f64,
-}
 
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,68 +18,8 @@ pub(super) struct Movement {
     pub foot: usize,
     /// Speed of the rudder, rad/s; `None` where the movement is too fast for the sampling.
     pub rate: Option<f64>,
-}
-
-/// The holds of a record, alternating between the sides.
-///
-/// Fails when the rudder hardly moves, is not laid to both sides at least twice (two reversals), or is not held there.
-pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
-    let starboard = level(rudder, 1.0);
-    let port = level(rudder, -1.0);
-    let largest = starboard.max(port);
-    if to_deg(largest) < SMALLEST_RUDDER_DEG {
-        return Err(ZigZagError::NoRudder { largest_deg: to_deg(largest), needed_deg: SMALLEST_RUDDER_DEG });
-    }
-    // A neutral rudder of a degree or two in a turning circle is not the other side of a zig-zag.
-    let side_of = |delta: f64| {
-        [(1.0, starboard), (-1.0, port)]
-            .into_iter()
-            .find(|&(side, level)| level > 0.5 * largest && side * delta >= LAID * level)
-            .map(|(side, _)| side)
-    };
-    let mut holds: Vec<Hold> = Vec::new();
-    for (row, &delta) in rudder.iter().enumerate() {
-        let Some(side) = side_of(delta) else { continue };
-        match holds.last_mut() {
-            Some(hold) if hold.side == side => hold.last = row,
-            _ => holds.push(Hold { side, first: row, last: row, level: 0.0 }),
-        }
-    }
-    let found = holds.len().saturating_sub(1);
-    if found < 2 {
-        return Err(ZigZagError::TooFewReversals { found, needed: 2 });
-    }
-    for hold in &mut holds {
-        hold.level =
-            median(&mut rudder[hold.first..=hold.last].to_vec()).expect("a hold has at least the row it began with");
-    }
-    let span = &rudder[holds[0].first..=holds[found].last];
-    let held = span
-        .iter()
-        .filter(|&&delta| {
-            let level = if delta > 0.0 { starboard } else { port };
-            (delta.abs() - level).abs() <= 0.2 * level
-        })
-        .count();
-    let share = held as f64 / span.len() as f64;
-    if share < LEAST_HELD {
-        return Err(ZigZagError::NotHeld { share, needed: LEAST_HELD });
-    }
-    Ok(holds)
-}
-
-/// The angle the rudder is laid to on one side, rad; 0 where it is never on that side.
-///
-/// Median of what lies above 0.6 of the 98 % quantile: neither a spike nor the small angles of an approach move it.
-fn level(rudder: &[f64], side: f64) -> f64 {
-    let mut angles: Vec<f64> = rudder.iter().map(|delta| side * delta).filter(|&delta| delta > 0.0).collect();
-    if angles.is_empty() {
-        return 0.0;
-    }
-    angles.sort_unstable_by(f64::total_cmp);
-    let top = angles[((angles.len() - 1) as f64 * 0.98).round() as usize];
-    let first = angles.partition_point(|&delta| delta <= 0.6 * top);
-    median(&mut angles[first..]).unwrap_or(0.0)
+    /// Least speed that the rows about a single row under way allow, rad/s; `None` for other movements.
+    least_rate: Option<f64>,
 }
 
 /// The angle of a rudder at rest: a median of rows.
@@ -132,8 +46,10 @@ pub(super) struct Rudder<'a> {
     holds: &'a [Hold],
     /// Standard deviation of the rudder noise, rad; not less than that of the rounding of the channel.
     noise: f64,
-    /// Median speed of the reversals that the sampling resolves, rad/s.
+    /// Median speed of the reversals that the sampling resolves, or the best bound on it, rad/s.
     rate: Option<f64>,
+    /// Whether that speed is a lower bound.
+    rate_is_bound: bool,
 }
 
 impl<'a> Rudder<'a> {
@@ -149,14 +65,20 @@ impl<'a> Rudder<'a> {
             median(&mut steps).map_or(0.0, |step| 1.4826 * step / std::f64::consts::SQRT_2)
         });
         let noise = noise.max(quantum(angle) / 12.0_f64.sqrt());
-        let mut rudder = Self { time, angle, holds, noise, rate: None };
-        let mut rates: Vec<f64> =
-            (1..holds.len()).filter_map(|index| rudder.reversal(index).rate).map(f64::abs).collect();
-        rudder.rate = median(&mut rates);
+        let mut rudder = Self { time, angle, holds, noise, rate: None, rate_is_bound: false };
+        let reversals: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
+        let mut rates: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.rate).map(f64::abs).collect();
+        // With one row under way in most reversals a ramp is about as long as a sampling interval, and the tightest of
+        // the bounds is near the speed; with such rows in few it is much shorter and its speed remains unknown.
+        let bounds: Vec<f64> = reversals.iter().filter_map(|reversal| reversal.least_rate).collect();
+        let tightest = bounds.iter().copied().max_by(f64::total_cmp).filter(|_| 2 * bounds.len() >= reversals.len());
+        rudder.rate = median(&mut rates).or(tightest);
+        rudder.rate_is_bound = rates.is_empty() && tightest.is_some();
         rudder
     }
 
-    /// Median speed of the reversals, rad/s; `None` where the sampling resolves none of them.
+    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves, a bound where a ramp is about as
+    /// long as a sampling interval, `None` where it is shorter.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }
@@ -201,6 +123,7 @@ impl<'a> Rudder<'a> {
         let near = |&earlier: &usize| (self.angle[earlier] - self.angle[clear]).abs() <= tolerance;
         let mut steady: Vec<f64> = (0..=clear).rev().take_while(near).map(|row| self.angle[row]).collect();
         Some(self.movement(Level::of(&mut steady)?, to))
+    }
 
     /// Last row before a hold at which the rudder has done at most a tenth of its way from `before`.
     fn foot(&self, before: f64, to: &Hold) -> usize {
@@ -216,31 +139,39 @@ impl<'a> Rudder<'a> {
             .filter(|&row| (0.1..0.9).contains(&progress(self.angle[row], before, to.level)))
             .collect();
         let travel = to.level - before;
+        let mut least_rate = None;
         let (start, rate) = match (ramp.as_slice(), self.rate) {
             ([_, _, ..], _) => match self.line_start(&ramp, level, travel.signum()) {
                 Some((start, rate)) => (start, Some(rate)),
                 None => (uniform(earliest, latest), None),
             },
-            (&[row], Some(rate)) => {
-                let start = self.time[row] - (self.angle[row] - before).abs() / rate;
-                (Quantity::new(start, Some(1.0_f64.hypot(level.gain) * self.noise / rate)), None)
-            }
-            (&[row], None) => {
-                // Unknown speed, one row under way: not slower than the neighbouring rows allow.
-                let next = (row + 1).min(self.time.len() - 1);
+            (&[row], common) => {
                 let way = (self.angle[row] - before).abs();
-                let slowest = (way / (self.time[row] - earliest))
-                    .max((travel.abs() - way).max(0.0) / (self.time[next] - self.time[row]).max(f64::MIN_POSITIVE));
-                (uniform(self.time[row] - way / slowest, self.time[row]), None)
+                match common {
+                    Some(rate) => {
+                        let noise = 1.0_f64.hypot(level.gain) * self.noise / rate;
+                        let speed = if self.rate_is_bound { way / rate / 12.0_f64.sqrt() } else { 0.0 };
+                        (Quantity::new(self.time[row] - way / rate, Some(noise.hypot(speed))), None)
+                    }
+                    None => {
+                        let next = (row + 1).min(self.time.len() - 1);
+                        let slowest = (way / (self.time[row] - earliest)).max(
+                            (travel.abs() - way).max(0.0) / (self.time[next] - self.time[row]).max(f64::MIN_POSITIVE),
+                        );
+                        least_rate = Some(slowest);
+                        (uniform(self.time[row] - way / slowest, self.time[row]), None)
+                    }
+                }
             }
             ([], rate) => {
-                let under_way = rate.map_or(0.0, |rate| LAID * travel.abs() / rate);
+                // The faster a rudder may be, the later it may have started: a bound on its speed leaves the whole interval.
+                let under_way = rate.filter(|_| !self.rate_is_bound).map_or(0.0, |rate| LAID * travel.abs() / rate);
                 (uniform(earliest, (latest - under_way).max(earliest)), None)
             }
         };
         // Noise can put the foot of a line anywhere; the rudder did not move before the record or after it was laid.
         let start = Quantity { value: start.value.clamp(self.time[0], latest), ..start };
-        Movement { start, before, after: to.level, foot, rate }
+        Movement { start, before, after: to.level, foot, rate, least_rate }
     }
 
     /// Least-squares line through the rows of a ramp: the time it leaves `before`, with its speed (rad/s, signed).
@@ -300,34 +231,12 @@ fn uniform(from: f64, to: f64) -> Quantity {
     Quantity::new(0.5 * (from + to), Some((to - from).max(0.0) / 12.0_f64.sqrt()))
 }
 
-/// A conventional trial angle near a measured one, degrees: 1, 2, 3 or a multiple of 5 where one is near, a whole degree else.
-///
-/// `below` and `above` say by how much the measured angle may miss the conventional one, as a share of it; `slack_deg`
-/// adds what the noise of the measurement allows.
-pub(super) fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
-    const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
-    // Small angles are missed by an absolute error (a rudder offset, a late helm), hence half a degree at least.
-    let near = |&nominal: &f64| {
-        measured_deg >= nominal - (below * nominal).max(0.3) - slack_deg
-            && measured_deg <= nominal + (above * nominal).max(0.5) + slack_deg
-    };
-    CONVENTIONAL_DEG
-        .into_iter()
-        .filter(near)
-        .min_by(|a, b| (a - measured_deg).abs().total_cmp(&(b - measured_deg).abs()))
-        .or_else(|| (measured_deg.round() >= 1.0).then(|| measured_deg.round()))
-}
-
-/// Nominal rudder angle of the holds, rad.
-pub(super) fn nominal_rudder(holds: &[Hold]) -> Option<f64> {
-    let mean = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
-    conventional_deg(to_deg(mean), 0.08, 0.08, 0.0).map(from_deg)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::zigzag::holds::holds;
     use approx::assert_relative_eq;
+    use ship::angle::{from_deg, to_deg};
 
     /// A rudder that leaves 0 at 10 s, +δ at 40 s and −δ at 80 s, at `rate` (rad/s).
     fn rudder_at(t: f64, delta: f64, rate: f64) -> f64 {
@@ -389,16 +298,5 @@ mod tests {
             .collect();
         let starts = starts(&time, &angle);
         assert!((starts[0].value - 10.0).abs() < 0.11, "{}", starts[0].value);
-    }
-
-    #[test]
-    fn conventional_angles() {
-        let late_helm = |deg| conventional_deg(deg, 0.05, 0.25, 0.0);
-        assert_eq!(late_helm(1.22), Some(1.0));
-        assert_eq!(late_helm(5.7), Some(5.0));
-        assert_eq!(late_helm(10.9), Some(10.0));
-        assert_eq!(late_helm(22.4), Some(20.0));
-        assert_eq!(late_helm(7.2), Some(7.0));
-        assert_eq!(late_helm(0.2), None);
     }
 }

@@ -1,5 +1,5 @@
 //! Local least-squares polynomials: the value, slope, peak and crossings of a sampled signal near one instant, with the
-//! gain by which each passes on white noise. It does not choose the width of the fit; see [`super::heading`].
+//! gain by which each passes on white noise. It does not choose the width of the fit; see `heading`.
 
 use nalgebra::{SMatrix, SVector};
 

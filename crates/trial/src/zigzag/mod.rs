@@ -3,13 +3,14 @@
 //! record alone, simulated or measured. It compares with no criterion (see [`crate::imo`]) and identifies nothing; the
 //! points a characteristic-point identification needs are in [`points`].
 //!
-//! Executes come from the rudder ([`executes`]): a rudder is laid to alternate sides and the moment it starts to move is
+//! Executes come from the rudder (`holds`, `executes`): a rudder is laid to alternate sides and the moment it starts to move is
 //! where the line through its ramp leaves the level before. Everything about the heading comes from local cubic fits
-//! ([`heading`]), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
+//! (`heading`), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
 
 mod characteristics;
 mod executes;
 mod heading;
+mod holds;
 mod local;
 pub mod points;
 mod quantity;
@@ -228,7 +229,8 @@ pub struct ZigZag {
     /// Largest |yaw rate| between the first execute and the end of the last hold, rad/s. As the largest of many noisy
     /// slopes it is high by about one of its standard deviations.
     pub largest_yaw_rate: Option<Quantity>,
-    /// Speed of the rudder, rad/s: median over the reversals; `None` where the rudder moves too fast for the sampling.
+    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is about
+    /// as long as a sampling interval; `None` where it is shorter.
     pub rudder_rate: Option<f64>,
     /// Standard deviation of the heading noise the uncertainties are made with, rad: the declared one, or a robust
     /// estimate from the record ([`noise_sd`]).

@@ -1,0 +1,144 @@
+//! Where the rudder is laid to one side and held there, and which conventional angles a trial used. Works on drifting,
+//! quantised and noisy rudders; the moments at which the rudder moves are found in `executes`.
+
+use ship::angle::{from_deg, to_deg};
+
+use super::ZigZagError;
+use super::quantity::median;
+
+/// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
+/// before a first execute can use more than half the rudder of the trial.
+pub(super) const LAID: f64 = 0.85;
+
+/// Smallest rudder angle of a zig-zag, degrees.
+const SMALLEST_RUDDER_DEG: f64 = 0.5;
+
+/// Least share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise 0.15.
+const LEAST_HELD: f64 = 0.3;
+
+/// A stretch with the rudder laid to one side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Hold {
+    /// +1 starboard, −1 port.
+    pub side: f64,
+    /// First row beyond [`LAID`] of the level.
+    pub first: usize,
+    /// Last such row.
+    pub last: usize,
+    /// Median rudder angle, rad, signed.
+    pub level: f64,
+}
+
+/// The holds of a record, alternating between the sides.
+///
+/// Fails when the rudder hardly moves, is not laid to both sides at least twice (two reversals), or is not held there.
+pub(super) fn holds(rudder: &[f64]) -> Result<Vec<Hold>, ZigZagError> {
+    let starboard = level(rudder, 1.0);
+    let port = level(rudder, -1.0);
+    let largest = starboard.max(port);
+    if to_deg(largest) < SMALLEST_RUDDER_DEG {
+        return Err(ZigZagError::NoRudder { largest_deg: to_deg(largest), needed_deg: SMALLEST_RUDDER_DEG });
+    }
+    // A neutral rudder of a degree or two in a turning circle is not the other side of a zig-zag.
+    let side_of = |delta: f64| {
+        [(1.0, starboard), (-1.0, port)]
+            .into_iter()
+            .find(|&(side, level)| level > 0.5 * largest && side * delta >= LAID * level)
+            .map(|(side, _)| side)
+    };
+    let mut holds: Vec<Hold> = Vec::new();
+    for (row, &delta) in rudder.iter().enumerate() {
+        let Some(side) = side_of(delta) else { continue };
+        match holds.last_mut() {
+            Some(hold) if hold.side == side => hold.last = row,
+            _ => holds.push(Hold { side, first: row, last: row, level: 0.0 }),
+        }
+    }
+    let found = holds.len().saturating_sub(1);
+    if found < 2 {
+        return Err(ZigZagError::TooFewReversals { found, needed: 2 });
+    }
+    for hold in &mut holds {
+        hold.level =
+            median(&mut rudder[hold.first..=hold.last].to_vec()).expect("a hold has at least the row it began with");
+    }
+    let span = &rudder[holds[0].first..=holds[found].last];
+    let held = span
+        .iter()
+        .filter(|&&delta| {
+            let level = if delta > 0.0 { starboard } else { port };
+            (delta.abs() - level).abs() <= 0.2 * level
+        })
+        .count();
+    let share = held as f64 / span.len() as f64;
+    if share < LEAST_HELD {
+        return Err(ZigZagError::NotHeld { share, needed: LEAST_HELD });
+    }
+    Ok(holds)
+}
+
+/// The angle the rudder is laid to on one side, rad; 0 where it is never on that side.
+///
+/// Median of what lies above 0.6 of the 98 % quantile: neither a spike nor the small angles of an approach move it.
+fn level(rudder: &[f64], side: f64) -> f64 {
+    let mut angles: Vec<f64> = rudder.iter().map(|delta| side * delta).filter(|&delta| delta > 0.0).collect();
+    if angles.is_empty() {
+        return 0.0;
+    }
+    angles.sort_unstable_by(f64::total_cmp);
+    let top = angles[((angles.len() - 1) as f64 * 0.98).round() as usize];
+    let first = angles.partition_point(|&delta| delta <= 0.6 * top);
+    median(&mut angles[first..]).unwrap_or(0.0)
+}
+
+/// A conventional trial angle near a measured one, degrees: 1, 2, 3 or a multiple of 5 where one is near, a whole degree else.
+///
+/// `below` and `above` say by how much the measured angle may miss the conventional one, as a share of it; `slack_deg`
+/// adds what the noise of the measurement allows.
+pub(super) fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
+    const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
+    // Small angles are missed by an absolute error (a rudder offset, a late helm), hence half a degree at least.
+    let near = |&nominal: &f64| {
+        measured_deg >= nominal - (below * nominal).max(0.3) - slack_deg
+            && measured_deg <= nominal + (above * nominal).max(0.5) + slack_deg
+    };
+    CONVENTIONAL_DEG
+        .into_iter()
+        .filter(near)
+        .min_by(|a, b| (a - measured_deg).abs().total_cmp(&(b - measured_deg).abs()))
+        .or_else(|| (measured_deg.round() >= 1.0).then(|| measured_deg.round()))
+}
+
+/// Nominal rudder angle of the holds, rad.
+pub(super) fn nominal_rudder(holds: &[Hold]) -> Option<f64> {
+    let mean = holds.iter().map(|hold| hold.level.abs()).sum::<f64>() / holds.len() as f64;
+    conventional_deg(to_deg(mean), 0.08, 0.08, 0.0).map(from_deg)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conventional_angles() {
+        let late_helm = |deg| conventional_deg(deg, 0.05, 0.25, 0.0);
+        assert_eq!(late_helm(1.22), Some(1.0));
+        assert_eq!(late_helm(5.7), Some(5.0));
+        assert_eq!(late_helm(10.9), Some(10.0));
+        assert_eq!(late_helm(22.4), Some(20.0));
+        assert_eq!(late_helm(7.2), Some(7.0));
+        assert_eq!(late_helm(0.2), None);
+    }
+
+    #[test]
+    fn holds_alternate_whatever_the_spikes_and_the_return_amidships() {
+        let mut rudder = [vec![0.0; 30], vec![0.2; 40], vec![-0.21; 50], vec![0.2; 40], vec![0.0; 30]].concat();
+        rudder[10] = 0.15;
+        rudder[80] = 0.05;
+        rudder[100] = -0.6;
+        let found = holds(&rudder).expect("two reversals");
+        let rows: Vec<(f64, usize, usize)> = found.iter().map(|hold| (hold.side, hold.first, hold.last)).collect();
+        assert_eq!(rows, [(1.0, 30, 69), (-1.0, 70, 119), (1.0, 120, 159)]);
+        assert_eq!(found[1].level, -0.21);
+    }
+}
