@@ -165,6 +165,10 @@ impl Identifier for FourierPublished {
         "Fourier series with a free fundamental, triples of instants, their mean (Ge, Hu, Yin and Sun)"
     }
 
+    fn with_seed(&self, seed: u64) -> Option<Box<dyn Identifier>> {
+        Some(Box::new(Self { settings: Settings { seed, ..self.settings.clone() } }))
+    }
+
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let samples = Samples::of_all(trials, 2 * self.settings.harmonics + 2)?;
         let mut fits = Vec::with_capacity(trials.len());

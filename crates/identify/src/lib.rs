@@ -59,4 +59,11 @@ pub trait Identifier: Send + Sync {
     /// Fails with a typed reason when a record does not excite the ship, is too short for the method, or the
     /// equations are singular; never panics on a valid [`Trial`].
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError>;
+
+    /// The same method with another seed, for methods that draw at random; `None` for all others.
+    ///
+    /// A benchmark gives every trial a seed of its own, so that the spread over trials holds the method's own chance.
+    fn with_seed(&self, _seed: u64) -> Option<Box<dyn Identifier>> {
+        None
+    }
 }

@@ -43,8 +43,7 @@ impl LeastSquares {
         let svd = qr.r().svd(true, true);
         let (largest, smallest) = (svd.singular_values.max(), svd.singular_values.min());
         let condition = if smallest > 0.0 { largest / smallest } else { f64::INFINITY };
-        // Written so that a NaN condition is refused too.
-        if !(condition <= condition_limit) {
+        if condition.is_nan() || condition > condition_limit {
             return Err(singular(condition));
         }
         let head = rotated.rows(0, width).into_owned();

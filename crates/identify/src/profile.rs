@@ -237,8 +237,8 @@ fn solve2(gram: &Matrix2<f64>, moment: &Vector2<f64>) -> Option<Vector2<f64>> {
     let scale = Vector2::new(gram[(0, 0)].sqrt().recip(), gram[(1, 1)].sqrt().recip());
     let cosine = gram[(0, 1)] * scale[0] * scale[1];
     let determinant = 1.0 - cosine * cosine;
-    // Also refuses NaN and a column that vanished.
-    if !(determinant > 1e-14) {
+    // NaN is a column that vanished.
+    if determinant.is_nan() || determinant <= 1e-14 {
         return None;
     }
     let (m0, m1) = (moment[0] * scale[0], moment[1] * scale[1]);

@@ -190,7 +190,7 @@ fn replays_figure(theme: &Theme) -> Figure {
         let heading = replay(&run, k, time_constant);
         let residual = difference(&record, &heading);
         Replay {
-            method: method.into(),
+            origin: Origin::Method(method.into()),
             rms_deg: Some(rms(&residual)),
             heading: Curve::new(run.t.clone(), heading),
             residual: Curve::new(run.t.clone(), residual),
@@ -211,12 +211,12 @@ fn intervals_figure(theme: &Theme) -> Figure {
     let estimate =
         |value: f64, half: Option<f64>| Some(PointEstimate { value, interval: half.map(|h| [value - h, value + h]) });
     let estimates = GUESSES.iter().enumerate().map(|(i, (method, k, t))| match i {
-        0 => MethodEstimate { method: (*method).into(), k_per_s: estimate(0.31, None), t_s: estimate(-4.0, None) },
-        2 => MethodEstimate { method: (*method).into(), k_per_s: None, t_s: None },
+        0 => MethodEstimate { origin: Origin::Method((*method).into()), k_per_s: estimate(0.31, None), t_s: estimate(-4.0, None) },
+        2 => MethodEstimate { origin: Origin::Method((*method).into()), k_per_s: None, t_s: None },
         _ => {
             let half = if i == 3 { 8.0 } else { 1.0 };
             MethodEstimate {
-                method: (*method).into(),
+                origin: Origin::Method((*method).into()),
                 k_per_s: estimate(*k, Some(0.0009 * half)),
                 t_s: estimate(*t, Some(0.3 * half)),
             }

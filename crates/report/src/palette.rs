@@ -18,8 +18,17 @@ pub enum Origin {
     Published,
     /// The Cramér–Rao bound.
     Bound,
-    /// An identification method, by its id.
+    /// An identification method with its usual settings, by its id.
     Method(String),
+    /// The same method with other settings.
+    Variant {
+        /// Name in the legend.
+        label: String,
+        /// Id of the method, whose colour it keeps.
+        method: String,
+        /// Which of several variants of the method, from 0.
+        number: usize,
+    },
 }
 
 impl Origin {
@@ -30,7 +39,7 @@ impl Origin {
             Self::Truth => "truth",
             Self::Published => "published",
             Self::Bound => "Cramér–Rao bound",
-            Self::Method(id) => id,
+            Self::Method(label) | Self::Variant { label, .. } => label,
         }
     }
 
@@ -42,6 +51,7 @@ impl Origin {
             Self::Published => Look::new(RECORD, Marker::Cross, DASHED),
             Self::Bound => Look::new(INK, Marker::Plus, DOTTED),
             Self::Method(id) => method_look(id),
+            Self::Variant { method, number, .. } => variant_look(method, *number),
         }
     }
 }
@@ -129,6 +139,18 @@ pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
+/// A variant has the colour of its method, a hollow marker and a dash of its own.
+fn variant_look(method: &str, number: usize) -> Look {
+    const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
+    const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
+    Look {
+        marker: MARKERS[number % MARKERS.len()],
+        dash: DASHES[number % DASHES.len()],
+        hollow: true,
+        ..method_look(method)
+    }
+}
+
 /// A method outside the list keeps its look through all figures too: its name picks colour, marker and dash, and the
 /// hollow marker keeps it apart from the known methods.
 fn method_look(id: &str) -> Look {
@@ -158,6 +180,14 @@ mod tests {
                 assert!(a.colour != b.colour && a.marker != b.marker && a.dash != b.dash);
             }
         }
+    }
+
+    #[test]
+    fn variants_keep_the_colour_of_their_method() {
+        let variant = |number| Origin::Variant { label: "other".into(), method: "srivc".into(), number }.look();
+        let method = Origin::Method("srivc".into()).look();
+        assert_eq!((variant(0).colour, variant(1).colour), (method.colour, method.colour));
+        assert!(variant(0).marker != variant(1).marker && variant(0).dash != variant(1).dash);
     }
 
     #[test]

@@ -36,11 +36,13 @@ pub enum Purpose {
     EffectWaves = 11,
     /// Values of the specification itself, dispersed from trial to trial by a study.
     Specification = 12,
+    /// Chance inside an identification method: its seed for this trial.
+    Method = 13,
 }
 
 impl Purpose {
     /// All purposes, in the order of their numbers.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Heading,
         Self::Display,
         Self::YawRate,
@@ -54,6 +56,7 @@ impl Purpose {
         Self::Waves,
         Self::EffectWaves,
         Self::Specification,
+        Self::Method,
     ];
 }
 
@@ -118,7 +121,7 @@ mod tests {
         assert_eq!([normal(&mut rng), normal(&mut rng)], [0.785_614_548_219_654_8, -0.108_714_680_095_289_06]);
     }
 
-    const GOLDEN: [[u64; 2]; 13] = [
+    const GOLDEN: [[u64; 2]; 14] = [
         [0xcefb_61ae_36f3_d6a7, 0x7929_869b_6e05_323f],
         [0x7723_276b_606f_56c4, 0x66b7_6ed2_b5c8_3011],
         [0xa7e0_1fde_49f1_7e1b, 0x9d6e_3310_dbab_5155],
@@ -132,6 +135,7 @@ mod tests {
         [0xdf4c_9a52_fa8d_ff38, 0x81cd_6597_1074_8684],
         [0x23ea_fdb1_b171_943d, 0x6984_48ed_daae_e5e9],
         [0x4f35_6280_be9d_7896, 0x23e9_ba16_aa3a_7cb9],
+        [0x4094_1b33_b1c2_a1a8, 0xf2c9_075c_959b_33b8],
     ];
 
     #[test]

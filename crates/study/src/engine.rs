@@ -30,10 +30,14 @@ pub struct CellFacts {
     pub bound_t_percent: Option<f64>,
 }
 
+/// Key of all that is random in one trial.
+pub fn key(scenario: &Scenario, cell: usize, replicate: u64) -> StreamKey {
+    StreamKey { seed: scenario.seed, cell: cell as u64, replicate }
+}
+
 /// Simulates one trial of a cell.
 pub fn simulate(scenario: &Scenario, cell: usize, replicate: u64) -> Result<Simulated, SimulateError> {
-    let key = StreamKey { seed: scenario.seed, cell: cell as u64, replicate };
-    scenario.cells[cell].simulation.run(&key)
+    scenario.cells[cell].simulation.run(&key(scenario, cell, replicate))
 }
 
 /// Runs everything and returns the rows: cell by cell, replicate by replicate, method by method.
@@ -69,7 +73,7 @@ fn one_trial(scenario: &Scenario, index: usize, replicate: u64) -> Vec<Row> {
         Ok(simulated) => cell
             .methods
             .iter()
-            .map(|method| match method.identifier.identify(std::slice::from_ref(&simulated.trial)) {
+            .map(|method| match method.identify(&simulated.trial, &key(scenario, index, replicate)) {
                 Err(error) => Row { reason: Some(error.kind().to_owned()), ..blank(&method.label) },
                 Ok(estimate) => row(blank(&method.label), &simulated.trial, &estimate),
             })

@@ -31,7 +31,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .iter()
         .map(|method| {
-            let (mut entry, estimate) = json::identify(method.id(), method.as_ref(), &trials);
+            let (mut entry, estimate) = json::entry(method.id(), method.identify(&trials), &trials);
             entry.validation = others.iter().map(|other| validate(other, estimate.as_ref())).collect();
             (entry, estimate)
         })
@@ -201,7 +201,7 @@ fn draw(
             title: Some(title.clone()),
             record: thin(trial.time(), trial.heading()),
             truth: None,
-            replays: replay_curves(trial, answers),
+            replays: replay_curves(trial, answers, |label| Who::Method(label.to_owned())),
         };
         write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
         let best = answers.iter().filter(|(entry, _)| entry.method == "output-error").chain(answers);

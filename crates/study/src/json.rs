@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use identify::estimate::Quantity;
-use identify::{Estimate, Identifier};
+use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
@@ -131,17 +131,14 @@ impl MethodEntry {
     }
 }
 
-/// Identifies trials with one method and keeps the estimate beside its entry.
-pub fn identify(
+/// The entry of an answer, and the estimate itself where there is one.
+pub fn entry(
     label: &str,
-    identifier: &dyn Identifier,
+    answer: Result<Estimate, IdentifyError>,
     trials: &[trial::Trial],
 ) -> (MethodEntry, Option<Estimate>) {
-    match identifier.identify(trials) {
-        Ok(estimate) => {
-            let rmse = pooled_rmse_deg(trials, &estimate);
-            (MethodEntry::of(label, &estimate, rmse), Some(estimate))
-        }
+    match answer {
+        Ok(estimate) => (MethodEntry::of(label, &estimate, pooled_rmse_deg(trials, &estimate)), Some(estimate)),
         Err(error) => (MethodEntry::failed(label, error), None),
     }
 }

@@ -106,6 +106,29 @@ pub fn summary(summaries: &[MethodSummary], facts: &[CellFacts], axes: &[String]
     table
 }
 
+/// The same in the width of a screen: failures, median and rms errors, coverage.
+pub fn summary_in_brief(summaries: &[MethodSummary], facts: &[CellFacts], axes: &[String]) -> Table {
+    let mut columns: Vec<Column> = axes.iter().map(|axis| Column::left(axis.clone())).collect();
+    columns.extend([Column::left("method"), Column::right("failed")]);
+    for index in ["K", "T"] {
+        columns.push(Column::decimal(format!("{index} median")).unit("%"));
+        columns.push(Column::decimal(format!("{index} rms")).unit("%"));
+        columns.push(Column::left("95 %"));
+        columns.push(Column::right("coverage").unit("%"));
+    }
+    let mut table = Table::new(columns);
+    for summary in summaries {
+        let mut cells: Vec<String> = facts[summary.cell].labels.clone();
+        cells.extend([summary.method.clone(), format!("{}/{}", summary.failed(), summary.trials)]);
+        for errors in [&summary.k, &summary.t] {
+            let [median, _, rms, interval, coverage, _] = error_cells(errors);
+            cells.extend([median, rms, interval, coverage]);
+        }
+        table.push(cells);
+    }
+    table
+}
+
 fn error_cells(errors: &Errors) -> [String; 6] {
     let interval = |figure: Option<Figure>| {
         figure.and_then(|figure| figure.ci95).map_or_else(|| MISSING.to_owned(), |[low, high]| {

@@ -17,8 +17,8 @@ use crate::failure::{Failure, OnPath};
 use crate::manifest::Manifest;
 use crate::present;
 use crate::rows;
-use crate::scenario::Scenario;
 use crate::scenario::sweep::Axis;
+use crate::scenario::{MethodName, Scenario};
 use crate::showcase::{self, Showcase};
 use crate::summary::{self, MethodSummary};
 
@@ -34,6 +34,7 @@ struct Design {
     question: String,
     analysis: String,
     axes: Vec<String>,
+    methods: Vec<MethodName>,
     cells: Vec<CellFacts>,
 }
 
@@ -49,6 +50,7 @@ pub fn run(path: &Path, common: &Common) -> Result<(), Failure> {
         question: scenario.question.clone(),
         analysis: scenario.analysis.clone(),
         axes: scenario.axes.iter().map(|axis: &Axis| axis.name.clone()).collect(),
+        methods: scenario.method_names(),
         cells: engine::facts(&scenario),
     };
     write_json(&folder.join(CELLS), &design)?;
@@ -86,7 +88,8 @@ pub fn report(folder: &Path, common: &Common) -> Result<(), Failure> {
             println!("{}", present::render(&present::methods(&showcase.methods), common.format));
         }
         if showcases.is_empty() || common.format != Format::Text || rows.iter().any(|row| row.replicate > 0) {
-            println!("{}", present::render(&summary_table, common.format));
+            let table = present::summary_in_brief(&summaries, &design.cells, &design.axes);
+            println!("{}", present::render(&table, common.format));
         }
         for failure in present::failures(&summaries, &design.cells) {
             println!("{failure}");
@@ -188,25 +191,20 @@ fn error_curves(design: &Design, summaries: &[MethodSummary]) -> Option<ErrorCur
             columns.push(head(cell));
         }
     }
-    let mut methods: Vec<&str> = Vec::new();
-    for summary in summaries {
-        if !methods.contains(&summary.method.as_str()) {
-            methods.push(&summary.method);
-        }
-    }
     let mut cells = Vec::new();
     for (column, name) in columns.iter().enumerate() {
         let own: Vec<usize> = (0..design.cells.len()).filter(|&cell| head(&design.cells[cell]) == *name).collect();
         for row in 0..2 {
             let errors = |summary: &MethodSummary| if row == 0 { summary.k } else { summary.t };
-            let mut curves: Vec<ErrorCurve> = methods
+            let mut curves: Vec<ErrorCurve> = design
+                .methods
                 .iter()
-                .map(|&method| ErrorCurve {
-                    origin: Origin::Method(method.to_owned()),
+                .map(|method| ErrorCurve {
+                    origin: showcase::origin(&design.methods, &method.label),
                     points: own
                         .iter()
                         .filter_map(|&cell| {
-                            let summary = summaries.iter().find(|s| s.cell == cell && s.method == method)?;
+                            let summary = summaries.iter().find(|s| s.cell == cell && s.method == method.label)?;
                             let rms = errors(summary).rms_percent?;
                             Some(ErrorPoint { x: design.cells[cell].values[x]?, y: rms.value, interval: rms.ci95 })
                         })

@@ -16,7 +16,7 @@ use trial::{Trial, ZigZag};
 
 use crate::engine;
 use crate::json::{self, MethodEntry, Value};
-use crate::scenario::{Cell, Method, Published, Scenario};
+use crate::scenario::{Cell, Method, MethodName, Published, Scenario};
 
 /// The first trial of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,13 +48,14 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell
         .methods
         .iter()
-        .map(|method| json::identify(&method.label, method.identifier.as_ref(), std::slice::from_ref(trial)))
+        .map(|method| json::entry(&method.label, method.identify(trial, &engine::key(scenario, index, 0)), std::slice::from_ref(trial)))
         .collect();
     let title = |what: &str| match cell.labels.is_empty() {
         true => Some(what.to_owned()),
         false => Some(format!("{}: {what}", cell.title())),
     };
-    let fits = FourierFits::of(cell, trial);
+    let names = scenario.method_names();
+    let fits = FourierFits::of(cell, &names, trial);
     Some(Showcase {
         title: cell.title(),
         trial: ZigZag::of(trial).ok().map(|zigzag| ZigzagTrial {
@@ -71,11 +72,23 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             title: title("replay of every K and T"),
             record: curve(trial.time(), trial.heading()),
             truth: None,
-            replays: replay_curves(trial, &answers),
+            replays: replay_curves(trial, &answers, |label| origin(&names, label)),
         },
-        intervals: intervals(title("K and T"), &answers, cell.truth.as_ref(), &scenario.published),
+        intervals: intervals(title("K and T"), &answers, &names, cell.truth.as_ref(), &scenario.published),
         methods: answers.into_iter().map(|(entry, _)| entry).collect(),
     })
+}
+
+/// How a method of a scenario is drawn: as itself when it goes by its id, else as a variant of it.
+pub fn origin(names: &[MethodName], label: &str) -> Origin {
+    match names.iter().find(|name| name.label == label) {
+        Some(own) if own.id != label => {
+            let mut variants = names.iter().filter(|name| name.id == own.id && name.label != name.id);
+            let number = variants.position(|name| name.label == label).unwrap_or(0);
+            Origin::Variant { label: label.to_owned(), method: own.id.clone(), number }
+        }
+        _ => Origin::Method(label.to_owned()),
+    }
 }
 
 /// Radians over seconds as degrees over seconds.
@@ -124,13 +137,17 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
 }
 
 /// Replays of all answers, for a figure; methods that failed are left out.
-pub fn replay_curves(trial: &Trial, answers: &[(MethodEntry, Option<Estimate>)]) -> Vec<Replay> {
+pub fn replay_curves(
+    trial: &Trial,
+    answers: &[(MethodEntry, Option<Estimate>)],
+    origin: impl Fn(&str) -> Origin,
+) -> Vec<Replay> {
     answers
         .iter()
         .filter_map(|(entry, estimate)| {
             let replay = replay(trial, &estimate.as_ref()?.response)?;
             Some(Replay {
-                method: entry.method.clone(),
+                origin: origin(&entry.method),
                 heading: curve(&replay.time, &replay.heading),
                 residual: curve(&replay.residual_time, &replay.residual),
                 rms_deg: Some(replay.heading_rmse_deg),
@@ -142,6 +159,7 @@ pub fn replay_curves(trial: &Trial, answers: &[(MethodEntry, Option<Estimate>)])
 fn intervals(
     title: Option<String>,
     answers: &[(MethodEntry, Option<Estimate>)],
+    names: &[MethodName],
     truth: Option<&FirstOrder>,
     published: &Published,
 ) -> Intervals {
@@ -151,7 +169,7 @@ fn intervals(
         estimates: answers
             .iter()
             .map(|(entry, _)| MethodEstimate {
-                method: entry.method.clone(),
+                origin: origin(names, &entry.method),
                 k_per_s: entry.parameters.as_ref().and_then(|parameters| point(&parameters.k_per_s)),
                 t_s: entry.parameters.as_ref().and_then(|parameters| point(&parameters.t_s)),
             })
@@ -173,7 +191,7 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
 
 /// A Fourier curve of the heading; its time runs from the first observed row.
 struct FourierFit {
-    label: String,
+    origin: Origin,
     curve: identify::fourier::FourierFit,
     window: [f64; 2],
 }
@@ -182,22 +200,22 @@ struct FourierFit {
 struct FourierFits(Vec<FourierFit>);
 
 impl FourierFits {
-    fn of(cell: &Cell, trial: &Trial) -> Self {
+    fn of(cell: &Cell, names: &[MethodName], trial: &Trial) -> Self {
         let mut seen = Vec::new();
         let fit = |method: &Method| {
             // One curve for each kind of method: variants differ in what they do with it.
             if seen.contains(&method.id) {
                 return None;
             }
-            let label = method.label.clone();
+            let origin = origin(names, &method.label);
             let fit = match &method.settings {
                 IdentifierSettings::FourierPublished(settings) => {
                     let curve = settings.clone().build().ok()?.curve(trial).ok()?.curve;
-                    FourierFit { label, curve, window: [0.0, trial.duration()] }
+                    FourierFit { origin, curve, window: [0.0, trial.duration()] }
                 }
                 IdentifierSettings::FourierProjected(settings) => {
                     let curves = settings.clone().build().ok()?.curves(trial).ok()?;
-                    FourierFit { label, curve: curves.heading.curve, window: curves.window }
+                    FourierFit { origin, curve: curves.heading.curve, window: curves.window }
                 }
                 _ => return None,
             };
@@ -229,7 +247,7 @@ impl FourierFit {
 
     fn motion(&self, trial: &Trial) -> MotionCurves {
         MotionCurves {
-            origin: Origin::Method(self.label.clone()),
+            origin: self.origin.clone(),
             name: None,
             heading: self.sampled(trial, |t| self.curve.heading(t)),
             yaw_rate: self.sampled(trial, |t| self.curve.yaw_rate(t)),
@@ -249,7 +267,7 @@ impl FourierFit {
             title: None,
             measured: curve(trial.time(), trial.heading()),
             fitted: self.sampled(trial, |t| self.curve.heading(t)),
-            fitted_name: format!("{}, {} harmonics", self.label, self.curve.cosine.len()),
+            fitted_name: format!("{}, {} harmonics", self.origin.label(), self.curve.cosine.len()),
             residual: curve(trial.time(), &residual),
             r_squared: Some(self.curve.r_squared),
             fundamental_rad_s: Some(self.curve.fundamental),

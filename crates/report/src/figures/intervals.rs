@@ -27,8 +27,8 @@ pub struct PointEstimate {
 /// What one method found; `None` where it found nothing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodEstimate {
-    /// Id of the method.
-    pub method: String,
+    /// The method; decides how its row looks.
+    pub origin: Origin,
     /// Gain, 1/s.
     pub k_per_s: Option<PointEstimate>,
     /// Time constant, s.
@@ -104,7 +104,7 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 pub fn intervals(data: &Intervals, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
-    let names: Vec<String> = data.estimates.iter().map(|e| e.method.clone()).collect();
+    let names: Vec<String> = data.estimates.iter().map(|e| e.origin.label().to_owned()).collect();
     let height = (names.len().max(2) as f64 + 0.4) * 2.0 * theme.tick_font;
     let rows = vec![(Side::new(Axis::names(names), ""), height)];
     let quantities = quantities(data);
@@ -122,7 +122,7 @@ pub fn intervals(data: &Intervals, theme: &Theme) -> Figure {
             }
         }
         for (row, (estimate, method)) in quantity.estimates.iter().zip(&data.estimates).enumerate() {
-            let look = Origin::Method(method.method.clone()).look();
+            let look = method.origin.look();
             beyond |= draw_row(panel, &mut sheet.scene, theme, row, *estimate, &look);
         }
     }

@@ -19,8 +19,8 @@ use crate::ticks::Steps;
 /// The heading a method's model gives for the recorded rudder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Replay {
-    /// Id of the method.
-    pub method: String,
+    /// The method; decides how its replay looks.
+    pub origin: Origin,
     /// Replayed heading, degrees over seconds.
     pub heading: Curve,
     /// Recorded minus replayed heading, degrees over seconds.
@@ -81,7 +81,7 @@ pub fn replays(data: &Replays, theme: &Theme) -> Figure {
             panel.line(&mut sheet.scene, truth.pairs(), stroke_of(&Origin::Truth, theme));
         }
         for replay in &data.replays {
-            panel.line(&mut sheet.scene, replay.heading.pairs(), stroke_of(&origin(replay), theme));
+            panel.line(&mut sheet.scene, replay.heading.pairs(), stroke_of(&replay.origin, theme));
         }
     }
     if has_residuals {
@@ -91,10 +91,6 @@ pub fn replays(data: &Replays, theme: &Theme) -> Figure {
         }
     }
     sheet.finish()
-}
-
-fn origin(replay: &Replay) -> Origin {
-    Origin::Method(replay.method.clone())
 }
 
 fn entries(data: &Replays, theme: &Theme) -> Vec<Entry> {
@@ -109,13 +105,13 @@ fn entries(data: &Replays, theme: &Theme) -> Vec<Entry> {
 /// The key of a method. Its rms error stands in the legend, or in a narrow figure at the small panel, where there is
 /// room for it.
 fn entry(replay: &Replay, with_rms: bool, theme: &Theme) -> Entry {
-    let entry = Entry::line_of(&origin(replay), theme);
+    let entry = Entry::line_of(&replay.origin, theme);
     if !with_rms {
         return entry;
     }
     let rms = replay.rms_deg.filter(|rms| rms.is_finite());
     let rms = rms.map_or_else(|| number::MISSING.into(), |rms| format!("{}°", number::significant(rms, 2)));
-    Entry { label: format!("{}, rms {rms}", replay.method), ..entry }
+    Entry { label: format!("{}, rms {rms}", replay.origin.label()), ..entry }
 }
 
 fn heading_side(data: &Replays) -> Side {
@@ -151,7 +147,7 @@ fn residual_limit(replays: &[Replay]) -> f64 {
 
 fn residual(panel: &Panel, replay: &Replay, limit: f64, scene: &mut Scene, theme: &Theme) {
     zero_line(panel, scene, theme);
-    let look = origin(replay).look();
+    let look = replay.origin.look();
     panel.line(scene, replay.residual.pairs(), Stroke::solid(look.colour, 0.8 * theme.line));
     if let Some(peak) = largest(&replay.residual).filter(|peak| *peak > limit) {
         let text = format!("cut, reaches {}°", number::significant(peak, 2));

@@ -62,10 +62,10 @@ fn all(n: usize, gap: usize, theme: &Theme) -> Vec<(&'static str, Figure)> {
         yaw_rate: curve.clone(),
         yaw_acceleration: curve.clone(),
     };
-    let replay = |method| Replay { method, heading: curve.clone(), residual: curve.clone(), rms_deg: Some(undefined) };
+    let replay = |method| Replay { origin: Origin::Method(method), heading: curve.clone(), residual: curve.clone(), rms_deg: Some(undefined) };
     let point =
         |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01 + 0.0 * undefined]) });
-    let estimate = |(i, method)| MethodEstimate { method, k_per_s: point(0.1 + 0.3 * (i / 6) as f64), t_s: None };
+    let estimate = |(i, method)| MethodEstimate { origin: Origin::Method(method), k_per_s: point(0.1 + 0.3 * (i / 6) as f64), t_s: None };
     let error = |x: f64| ErrorPoint { x, y: undefined * x, interval: Some([-1.0, 2.0 * x]) };
     let cell = |row| ErrorCell {
         row,
@@ -187,7 +187,7 @@ fn labels_carry_symbol_and_unit() {
 #[test]
 fn a_replay_that_runs_off_is_cut_and_says_so() {
     let replay = |method: &str, size: f64| Replay {
-        method: method.into(),
+        origin: Origin::Method(method.into()),
         heading: wave(200, 0),
         residual: Curve { y: wave(200, 0).y.iter().map(|y| y * size).collect(), x: wave(200, 0).x },
         rms_deg: Some(size),

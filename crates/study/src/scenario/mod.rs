@@ -11,11 +11,13 @@ mod wire;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use identify::{Identifier, IdentifierSettings};
-use serde::Deserialize;
+use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
+use rand::RngExt;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use ship::FirstOrder;
-use simulate::Simulation;
+use simulate::{Purpose, Simulation, StreamKey};
+use trial::Trial;
 
 use crate::failure::Failure;
 use sweep::Axis;
@@ -31,6 +33,23 @@ pub struct Method {
     pub settings: IdentifierSettings,
     /// The method with its settings.
     pub identifier: Box<dyn Identifier>,
+}
+
+/// What a method is called, and which it is.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MethodName {
+    /// Label in tables and figures.
+    pub label: String,
+    /// Id of the method.
+    pub id: String,
+}
+
+impl Method {
+    /// Identifies one trial; a method that draws at random draws from the stream of this trial.
+    pub fn identify(&self, trial: &Trial, key: &StreamKey) -> Result<Estimate, IdentifyError> {
+        let own = self.identifier.with_seed(key.rng(Purpose::Method).random());
+        own.as_ref().unwrap_or(&self.identifier).identify(std::slice::from_ref(trial))
+    }
 }
 
 /// One cell of the design: everything but chance is fixed.
@@ -158,6 +177,15 @@ impl Scenario {
             text,
             sha256,
         })
+    }
+
+    /// Labels and ids of the methods, in the order of the scenario.
+    pub fn method_names(&self) -> Vec<MethodName> {
+        self.cells[0]
+            .methods
+            .iter()
+            .map(|method| MethodName { label: method.label.clone(), id: method.id.to_owned() })
+            .collect()
     }
 
     /// Labels of the methods, in the order of the scenario.
