@@ -19,7 +19,7 @@ use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::robust::newey_west;
+use crate::robust::{judge, newey_west};
 use crate::samples::Samples;
 use crate::settings::SettingsError;
 use noise::Noise;
@@ -107,20 +107,17 @@ impl Identifier for IntegralLeastSquares {
         // δ_r = (b δ_r)/b.
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
-        let uncertainty = match noise.variance {
-            Some(variance) => Uncertainty::Covariance(Covariance {
-                matrix: base(noise.influence * variance),
-                degrees_of_freedom: Some(noise.degrees_of_freedom),
-            }),
-            None => Uncertainty::None { reason: "no more equations than unknowns" },
+        let covariance = |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
+        let robust = noise.variance.map(|_| covariance(newey_west(&noise.scores) * noise.finite_sample));
+        let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
+        let (uncertainty, warning) = match (noise.variance, &robust) {
+            (Some(variance), Some(robust)) => judge(covariance(noise.influence * variance), robust, noise.lag1, equations),
+            _ => (Uncertainty::None { reason: "no more equations than unknowns" }, None),
         };
-        let robust = noise.variance.map(|_| Covariance {
-            matrix: base(newey_west(&noise.scores) * noise.finite_sample),
-            degrees_of_freedom: Some(noise.degrees_of_freedom),
-        });
         let mut diagnostics = vec![
             ("condition", solution.condition),
-            ("equations", pieces.iter().map(|piece| piece.time.len() as f64).sum()),
+            ("equations", equations as f64),
+            ("lag1_autocorrelation", noise.lag1),
             ("stretches_without_gap", pieces.len() as f64),
         ];
         diagnostics.extend(noise.variance.map(|variance| ("heading_noise_deg", to_deg(variance.sqrt()))));
@@ -131,7 +128,7 @@ impl Identifier for IntegralLeastSquares {
             stop: StopReason::Direct,
             evaluations: 1,
             diagnostics,
-            warnings: warnings(trials, pieces.len()),
+            warnings: warnings(trials, pieces.len()).into_iter().chain(warning).collect(),
         })
     }
 }

@@ -14,7 +14,7 @@ use ship::first_order::State;
 use trial::Trial;
 
 use crate::error::IdentifyError;
-use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::profile::Profile;
 use crate::settings::SettingsError;
 use crate::track::{Coefficients, Track};
@@ -184,25 +184,18 @@ impl Identifier for OutputError {
             information.try_inverse().ok_or(IdentifyError::Singular { condition: f64::INFINITY, limit: 1e15 })?;
         let white = to_response(&(inverse * variance), &response, freedom);
         let scores = profile.scores();
-        let robust = to_response(&(inverse * robust::newey_west(&scores) * inverse), &response, freedom);
+        let robust_covariance = to_response(&(inverse * robust::newey_west(&scores) * inverse), &response, freedom);
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
-        // Bartlett's standard error of an autocorrelation of white noise; 1 % two-sided.
-        let coloured = lag1.abs() > 2.58 / (observations as f64).sqrt();
-
-        let mut warnings = Vec::new();
-        if coloured {
-            warnings.push(format!(
-                "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance"
-            ));
-        }
+        let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, observations);
+        let mut warnings = Vec::from_iter(warning);
         if response.is_course_unstable() {
             warnings.push("course-unstable: 1/T is negative, K and T are negative".into());
         }
         let condition = profile.condition(inverse_time);
         Ok(Estimate {
             response,
-            uncertainty: Uncertainty::Covariance(if coloured { robust.clone() } else { white }),
-            robust: Some(robust),
+            uncertainty,
+            robust: Some(robust_covariance),
             stop: if range_end { StopReason::RangeLimit } else { minimum.stop },
             evaluations: profile.evaluations(),
             diagnostics: vec![
@@ -250,6 +243,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimate::Uncertainty;
     use crate::testing::{Case, Start};
     use approx::assert_relative_eq;
     use ship::angle::from_deg;

@@ -2,6 +2,23 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::estimate::{Covariance, Uncertainty};
+
+/// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
+const COLOURED: f64 = 0.2;
+
+/// The error a method quotes: that of a white residual where it is white, else the robust one, with a sentence on it.
+pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usize) -> (Uncertainty, Option<String>) {
+    if lag1.abs() <= COLOURED.max(3.0 / (rows as f64).sqrt()) {
+        return (Uncertainty::Covariance(white), None);
+    }
+    let warning = format!(
+        "the residual is coloured (lag-1 autocorrelation {lag1:.2}): intervals are from the Newey-West covariance, and \
+         the model lacks an effect"
+    );
+    (Uncertainty::Covariance(robust.clone()), Some(warning))
+}
+
 /// Lag-1 autocorrelation of residuals, pooled over trials.
 pub(crate) fn lag1_autocorrelation<'a>(residuals: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
     let square: f64 = residuals.clone().flatten().map(|e| e * e).sum();

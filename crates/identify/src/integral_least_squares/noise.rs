@@ -13,6 +13,8 @@ pub(super) struct Noise {
     pub degrees_of_freedom: f64,
     /// Equations over degrees of freedom: what the fit took from the noise it left.
     pub finite_sample: f64,
+    /// Lag-1 autocorrelation of the heading noise.
+    pub lag1: f64,
     /// Σ z zᵀ, where z is the derivative of Xᵀe with respect to the noise of one heading; times the variance it is
     /// the covariance of Xᵀe.
     pub influence: Matrix3<f64>,
@@ -25,7 +27,7 @@ impl Noise {
     pub fn of(pieces: &[Piece], solution: &Solution) -> Self {
         let count: usize = pieces.iter().map(|piece| piece.rows.len()).sum();
         let degrees_of_freedom = count as f64 - (SHARED + 2 * pieces.len()) as f64;
-        let mut squares = 0.0;
+        let (mut squares, mut products) = (0.0, 0.0);
         let mut influence = Matrix3::zeros();
         let mut scores = Vec::with_capacity(pieces.len());
         let mut noise = Vec::with_capacity(count);
@@ -33,11 +35,13 @@ impl Noise {
             noise.clear();
             heading_noise(piece, solution, &mut noise);
             squares += noise.iter().map(|n| n * n).sum::<f64>();
+            products += noise.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
             scores.push(add_influence(piece, solution, &noise, &mut influence));
         }
         let variance = (degrees_of_freedom > 0.0).then(|| squares / degrees_of_freedom);
         let finite_sample = count as f64 / degrees_of_freedom;
-        Self { variance, degrees_of_freedom, finite_sample, influence, scores }
+        let lag1 = if squares > 0.0 { products / squares } else { 0.0 };
+        Self { variance, degrees_of_freedom, finite_sample, lag1, influence, scores }
     }
 }
 

@@ -33,7 +33,7 @@ use ship::angle::to_deg;
 use ship::first_order::State;
 use trial::Trial;
 
-use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::samples::Samples;
 use crate::settings::SettingsError;
 use crate::{Identifier, IdentifyError};
@@ -43,9 +43,6 @@ use record::Record;
 
 /// Fewest observed headings of a trial: twice the unknowns of a single one.
 const FEWEST_ROWS: usize = 10;
-
-/// A residual whose neighbours are correlated by more than this is called coloured, if chance does not explain it.
-const COLOURED: f64 = 0.2;
 
 /// Settings of [`Srivc`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -135,21 +132,17 @@ impl Identifier for Srivc {
             degrees_of_freedom: Some(residuals.degrees_of_freedom),
         };
         let count = residuals.count as f64;
-        let mut warnings = Vec::new();
-        if residuals.lag1.abs() > COLOURED.max(3.0 / count.sqrt()) {
-            warnings.push(format!(
-                "the residual is coloured (lag-1 autocorrelation {:.2}): trust the robust errors, and look for an \
-                 effect the model lacks",
-                residuals.lag1
-            ));
-        }
+        let robust_covariance = covariance(&residuals.robust);
+        let white = covariance(&residuals.white);
+        let (uncertainty, warning) = crate::robust::judge(white, &robust_covariance, residuals.lag1, residuals.count);
+        let mut warnings = Vec::from_iter(warning);
         if inverse_time < 0.0 {
             warnings.push("course-unstable: 1/T is negative, and so are K and T".into());
         }
         Ok(Estimate {
             response: FirstOrder { inverse_T: inverse_time, K_over_T: b, rudder_bias: bias / b },
-            uncertainty: Uncertainty::Covariance(covariance(&residuals.white)),
-            robust: Some(covariance(&residuals.robust)),
+            uncertainty,
+            robust: Some(robust_covariance),
             stop: StopReason::Converged,
             evaluations: evaluations + iterations + 1,
             diagnostics: vec![
