@@ -1,7 +1,7 @@
 //! `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
 //!
 //! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. Once 1/T is
-//! given the heading is linear in all the others ([`crate::track`]), so the whole problem is a search over one number:
+//! given the heading is linear in all the others, so the whole problem is a search over one number:
 //! the profiled sum of squares is scanned over both signs of 1/T, every local minimum of the scan is polished by
 //! variable projection with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), and the lowest wins. A local
 //! minimum therefore cannot be mistaken for the answer unless it is narrower than the scan.

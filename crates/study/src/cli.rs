@@ -24,7 +24,7 @@ struct Cli {
 /// Options every command understands.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Folder for results [default: results/<scenario name>, or ./<trial name>-<command>]
+    /// Folder for results [default: `results/SCENARIO`, or `./TRIAL-fit`]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads [default: all cores]; the results do not depend on it
