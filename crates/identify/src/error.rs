@@ -65,6 +65,17 @@ pub enum IdentifyError {
         /// Last relative step.
         step: f64,
     },
+    /// The record does not show that the rudder acts, as in a steady turn in which K and δ_r cannot be told apart.
+    #[error(
+        "the record does not show an effect of the rudder: K/T = {gain:.1e} ± {sd:.1e} 1/s²; give a record in which the \
+         rudder is put to both sides"
+    )]
+    NoRudderEffect {
+        /// K/T, 1/s².
+        gain: f64,
+        /// Its standard deviation, 1/s².
+        sd: f64,
+    },
     /// The answer is not a ship: K/T ≤ 0 or not finite.
     #[error("the answer is not a ship: 1/T = {inverse_time:.3e} 1/s, K/T = {gain:.3e} 1/s²")]
     NotAShip {
@@ -86,6 +97,7 @@ impl IdentifyError {
             Self::NoChannel { .. } => "no-channel",
             Self::Singular { .. } => "singular",
             Self::NotConverged { .. } => "not-converged",
+            Self::NoRudderEffect { .. } => "no-rudder-effect",
             Self::NotAShip { .. } => "not-a-ship",
         }
     }

@@ -5,7 +5,8 @@
 //! projected on the same basis first: both sides are filtered alike and the bias goes. The fundamental follows from the
 //! length of the record and the zig-zag period, not from the best fit; the number of harmonics from the noise; and all
 //! samples are used instead of triples. What is left is a small truncation bias (some 0.5 %) and, in much noise, the
-//! attenuation of a regression on a noisy yaw rate: neither is in the reported covariance.
+//! attenuation of a regression on a noisy yaw rate. The reported covariance takes all that the series leaves of the
+//! heading for white noise, truncation included, so that it is not too sure of a quiet record.
 //!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series by
 //! generalised cross-validation (Golub, Heath and Wahba 1979) or AICc (Hurvich and Tsai 1989).
@@ -261,7 +262,7 @@ impl FourierProjected {
                 &projected
             }
         };
-        equations.add(&fitted.basis, &fitted.projection, &time[from..to], rudder, noise.white);
+        equations.add(&fitted.basis, &fitted.projection, &time[from..to], rudder, noise.residual.max(noise.white));
         noise
     }
 }
@@ -277,12 +278,12 @@ impl Identifier for FourierProjected {
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
         let mut equations = Equations::default();
-        let (mut fits, mut noises, mut rows) = (Vec::new(), Vec::new(), 0);
+        let (mut fits, mut noises, mut freedom) = (Vec::new(), Vec::new(), 0.0);
         for samples in Samples::of_all(trials, FEWEST_ROWS)? {
             let part = self.window(&samples)?;
             let fitted = self.fit(&part)?;
             noises.push(self.add(&part, &fitted, &mut equations));
-            rows += part.time.len();
+            freedom += part.time.len() as f64 - (2 * fitted.basis.harmonics() + 1) as f64;
             fits.push(fitted);
         }
         let solution = equations.solve(self.settings.response, self.settings.condition_limit)?;
@@ -300,7 +301,7 @@ impl Identifier for FourierProjected {
             if noise.white < LEAST_WHITE_SHARE * noise.residual {
                 warnings.push(format!(
                     "{}: the residual of the heading fit ({:.3} deg) is mostly not white noise ({:.3} deg): truncation of \
-                     the series or a disturbance; the standard deviations are those of white noise alone",
+                     the series or a disturbance; the intervals take all of it for noise",
                     trial.name(),
                     to_deg(noise.residual.sqrt()),
                     to_deg(noise.white.sqrt()),
@@ -310,11 +311,7 @@ impl Identifier for FourierProjected {
         let matrix = solution.covariance;
         Ok(Estimate {
             response: solution.response,
-            // Degrees of freedom of the variance from differences, see white_variance.
-            uncertainty: Uncertainty::Covariance(Covariance {
-                matrix,
-                degrees_of_freedom: Some(18.0 / 35.0 * rows as f64),
-            }),
+            uncertainty: Uncertainty::Covariance(Covariance { matrix, degrees_of_freedom: Some(freedom) }),
             robust: None,
             stop: fits.iter().fold(StopReason::Direct, |worst, fit| fourier::worse(worst, fit.stop)),
             evaluations: fits.iter().map(|fit| fit.evaluations).sum::<usize>() + 1,

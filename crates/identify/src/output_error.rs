@@ -75,6 +75,9 @@ const SHARED: usize = 3;
 /// Fewest headings of one trial.
 const FEWEST_ROWS: usize = 12;
 
+/// Standard deviations by which K/T has to exceed zero: below, the rudder is not shown to act and δ_r means nothing.
+const SIGNIFICANT: f64 = 2.0;
+
 /// A polished minimum of the profiled sum of squares.
 struct Minimum {
     inverse_time: f64,
@@ -183,6 +186,10 @@ impl Identifier for OutputError {
         let inverse =
             information.try_inverse().ok_or(IdentifyError::Singular { condition: f64::INFINITY, limit: 1e15 })?;
         let white = to_response(&(inverse * variance), &response, freedom);
+        let gain_sd = white.matrix[(1, 1)].sqrt();
+        if gain < SIGNIFICANT * gain_sd {
+            return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
+        }
         let scores = profile.scores();
         let robust_covariance = to_response(&(inverse * robust::newey_west(&scores) * inverse), &response, freedom);
         let lag1 = robust::lag1_autocorrelation(profile.residuals());

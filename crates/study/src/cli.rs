@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::failure::Failure;
-use crate::{check, fit, list, run};
+use crate::{check, fit, list, run, screen};
 
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
 #[derive(Debug, Parser)]
@@ -21,6 +21,9 @@ struct Cli {
     common: Common,
 }
 
+/// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
+const MOST_THREADS: i64 = 1024;
+
 /// Options every command understands.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
@@ -28,10 +31,10 @@ pub struct Common {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads [default: all cores]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
     pub threads: Option<u16>,
     /// Seed in place of the scenario's
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
     pub seed: Option<u64>,
     /// No progress bar and no table; errors and warnings remain
     #[arg(long)]
@@ -39,6 +42,10 @@ pub struct Common {
     /// Format of the table on standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
 /// Format of tables on standard output.
@@ -124,7 +131,7 @@ pub fn main() -> ExitCode {
     match answer(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("{failure}");
+            screen::warn(&failure.to_string());
             ExitCode::from(failure.blame.exit_code())
         }
     }

@@ -45,12 +45,14 @@ impl Failure {
         Self { blame: Blame::Work, message: format!("error: {message}") }
     }
 
-    /// The input is wrong at a place of a text file: the line is shown and the place underlined.
-    pub fn at(file: &Path, text: &str, span: Range<usize>, problem: &str, advice: &str) -> Self {
+    /// The input is wrong at a place of a text file: the line is shown, the place underlined with what was `expected`
+    /// there, and `advice` says what to do.
+    pub fn at(file: &Path, text: &str, span: Range<usize>, found: &str, expected: &str, advice: &str) -> Self {
         let name = file.display().to_string();
         let span = span.start.min(text.len())..span.end.min(text.len());
-        let snippet = Snippet::source(text).path(&name).annotation(AnnotationKind::Primary.span(span).label(advice));
-        let group = Level::ERROR.primary_title(problem).element(snippet);
+        let place = AnnotationKind::Primary.span(span).label(expected);
+        let snippet = Snippet::source(text).path(&name).annotation(place);
+        let group = Level::ERROR.primary_title(found).element(snippet).element(Level::HELP.message(advice));
         Self { blame: Blame::Input, message: Renderer::plain().render(&[group]) }
     }
 }
@@ -73,4 +75,19 @@ impl<T, E: fmt::Display> OnPath<T> for Result<T, E> {
     fn on(self, tried: &str, path: &Path) -> Result<T, Failure> {
         self.map_err(|error| Failure::work(format!("failed to {tried} {}: {error}", path.display())))
     }
+}
+
+/// Makes a folder for results and makes sure that files can be written there, before any work is done.
+///
+/// Fails when the folder cannot be made or written, and says so.
+pub fn result_folder(folder: &Path) -> Result<(), Failure> {
+    let refuse = |tried: &str, error: std::io::Error| {
+        Failure::work(format!(
+            "failed to {tried} the folder {}: {error}; give another one with --out",
+            folder.display()
+        ))
+    };
+    std::fs::create_dir_all(folder).map_err(|error| refuse("make", error))?;
+    let probe = folder.join(format!(".writable-{}.tmp", std::process::id()));
+    std::fs::write(&probe, []).and_then(|()| std::fs::remove_file(&probe)).map_err(|error| refuse("write to", error))
 }

@@ -1,35 +1,45 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others.
 
+mod figures;
+mod table;
+
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use identify::replay::replay;
-use identify::{Estimate, IdentifierSettings, Identifier, registry};
-use report::Theme;
-use report::figures::{self, Fit, RecordFit, Replays};
-use report::Origin as Who;
+use identify::{Estimate, Identifier, IdentifierSettings, registry};
+use indicatif::ParallelProgressIterator;
+use rayon::prelude::*;
+use report::number::{fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Origin, Reading, Trial, ZigZag, imo};
 
-use crate::cli::{Common, FitRequest};
-use crate::failure::{Failure, OnPath};
+use crate::cli::{Common, FitRequest, Format};
+use crate::failure::{Failure, OnPath, result_folder};
 use crate::json::{self, CriterionEntry, FitFile, MethodEntry, TrialEntry, Validation, ZigZagEntry};
-use crate::present;
-use crate::run::{folder_of, slug, write_figure};
-use crate::showcase::{curve, replay_curves, zigzag_figure};
-
-/// Rows a figure can show; a longer record is drawn thinned.
-const DRAWN_ROWS: usize = 4000;
+use crate::run::folder_of;
+use crate::{present, progress, screen};
+use figures::Drawn;
 
 /// Identifies the records, prints the table, writes figures and `fit.json`.
+///
+/// Fails when a record cannot be read, and when no method can identify the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
-    let methods = methods(&request.methods)?;
-    let columns = request.columns.as_deref();
-    let trials = request.trials.iter().map(|path| read(path, columns)).collect::<Result<Vec<Trial>, _>>()?;
-    let others = request.validate.iter().map(|path| read(path, columns)).collect::<Result<Vec<Trial>, _>>()?;
+    let methods = methods(&request.methods, common.seed)?;
+    let mut warnings = Vec::new();
+    let mut read_all = |paths: &[PathBuf]| {
+        paths
+            .iter()
+            .map(|path| read(path, request.columns.as_deref(), &mut warnings))
+            .collect::<Result<Vec<Trial>, _>>()
+    };
+    let trials = read_all(&request.trials)?;
+    let others = read_all(&request.validate)?;
+    warn_of_repetition(&trials, &others, &mut warnings);
 
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
-        .iter()
+        .par_iter()
+        .progress_with(progress::of("methods", methods.len() as u64, common.quiet))
         .map(|method| {
             let (mut entry, estimate) = json::entry(method.id(), method.identify(&trials), &trials);
             entry.validation = others.iter().map(|other| validate(other, estimate.as_ref())).collect();
@@ -39,13 +49,12 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let entries: Vec<MethodEntry> = answers.iter().map(|(entry, _)| entry.clone()).collect();
     // A record that no method can use is wrong input, not a result.
     if entries.iter().all(|entry| entry.parameters.is_none()) {
-        let reason = entries[0].reason.as_deref().unwrap_or("no method gave an answer");
-        return Err(Failure::input(format!("{}: no method can identify this record: {reason}", request.trials[0].display())));
+        return Err(unusable(&request.trials[0], &entries, &warnings));
     }
 
     let zigzag = ZigZag::of(&trials[0]);
-    let folder = folder_of(common, &slug(trials[0].name()), "fit");
-    fs::create_dir_all(&folder).on("create", &folder)?;
+    let folder = folder_of(common, trials[0].name(), "fit");
+    result_folder(&folder)?;
     let file = FitFile {
         schema: "fit/1".into(),
         trials: trials.iter().map(trial_entry).collect(),
@@ -55,28 +64,44 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let path = folder.join("fit.json");
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
     fs::write(&path, text + "\n").on("write", &path)?;
-    draw(&trials, &others, &answers, zigzag.as_ref().ok(), &folder)?;
+    let names = names(trials.iter().chain(&others).map(Trial::name));
+    let records: Vec<Drawn> = trials
+        .iter()
+        .chain(&others)
+        .zip(&names)
+        .enumerate()
+        .map(|(number, (trial, name))| Drawn { trial, name, validation: number >= trials.len() })
+        .collect();
+    figures::draw(&records, &answers, zigzag.as_ref().ok(), &folder)?;
 
     if !common.quiet {
-        let samples: usize = trials.iter().map(Trial::len).sum();
-        println!("{} records, {samples} rows\n", trials.len());
-        println!("{}", present::render(&present::methods(&file.methods), common.format));
+        let table = table::of(&file.methods, &names[trials.len()..]);
+        let table = present::render(&table, common.format);
+        let mut notes = renamed(&records) + &reasons(&file.methods);
         match (&zigzag, &file.zigzag) {
-            (_, Some(entry)) => println!("{}", characteristics(entry)),
-            (Err(error), _) => println!("no zig-zag characteristics: {error}"),
+            (_, Some(entry)) => notes += &format!("\n{}", characteristics(entry)),
+            (Err(error), None) => notes += &format!("\nno zig-zag characteristics: {error}\n"),
             (Ok(_), None) => {}
         }
-        println!("results: {}", path.display());
+        notes += &format!("\nresults: {}", path.display());
+        if common.format == Format::Text {
+            screen::say(&format!("{}\n\n{table}{notes}", headline(&trials)))?;
+        } else {
+            // Another program reads the table: nothing else may stand beside it.
+            screen::say(table.trim_end())?;
+            screen::warn(notes.trim_start());
+        }
     }
     for entry in &file.methods {
-        for warning in &entry.warnings {
-            eprintln!("{}: {warning}", entry.method);
-        }
+        warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
+    }
+    for warning in warnings {
+        screen::warn(&format!("warning: {warning}"));
     }
     Ok(())
 }
 
-fn methods(names: &[String]) -> Result<Vec<Box<dyn Identifier>>, Failure> {
+fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier>>, Failure> {
     let all: Vec<Box<dyn Identifier>> = registry::defaults()
         .iter()
         .map(IdentifierSettings::build)
@@ -84,27 +109,129 @@ fn methods(names: &[String]) -> Result<Vec<Box<dyn Identifier>>, Failure> {
         .map_err(|error| Failure::work(format!("default settings: {error}")))?;
     let known: Vec<&str> = all.iter().map(|method| method.id()).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
-        return Err(Failure::input(format!("--method {unknown}: no such method; expected one of {}", known.join(", "))));
+        return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
     }
-    Ok(all.into_iter().filter(|method| names.is_empty() || names.iter().any(|name| name == method.id())).collect())
+    Ok(all
+        .into_iter()
+        .filter(|method| names.is_empty() || names.iter().any(|name| name == method.id()))
+        .map(|method| seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method))
+        .collect())
 }
 
-fn read(path: &Path, columns: Option<&Path>) -> Result<Trial, Failure> {
+fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
+    if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
+    {
+        return Err(Failure::input(format!(
+            "{0}: this is a TOML file and no record; expected a table of time, heading and rudder. A scenario is run with \
+             `study {0}`, a description of columns is given with `--columns {0}`",
+            path.display()
+        )));
+    }
     let reading = match columns {
         Some(columns) => trial::read_with(path, Some(columns)),
         None => trial::read(path),
     };
-    let Reading { trial, warnings } = reading.map_err(Failure::input)?;
-    for warning in warnings {
-        eprintln!("{}: {warning}", path.display());
-    }
+    let Reading { trial, warnings: found } = reading.map_err(Failure::input)?;
+    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
     Ok(trial)
+}
+
+/// The same record counts only once: given twice for identification its errors come out too small, and on a record that was
+/// fitted there is nothing to validate.
+fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec<String>) {
+    for (number, trial) in trials.iter().enumerate() {
+        if trials[..number].iter().any(|before| file_of(before).1 == file_of(trial).1) {
+            let (file, _) = file_of(trial);
+            warnings.push(format!(
+                "{file}: given twice with the same content; it counts twice, and the intervals are too narrow"
+            ));
+        }
+    }
+    for other in others {
+        if trials.iter().any(|trial| file_of(trial).1 == file_of(other).1) {
+            let (file, _) = file_of(other);
+            warnings
+                .push(format!("{file}: used for identification and for validation; the error on it validates nothing"));
+        }
+    }
+}
+
+/// The message when no method gives an answer: every reason once.
+fn unusable(path: &Path, entries: &[MethodEntry], warnings: &[String]) -> Failure {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for entry in entries {
+        let reason = entry.reason.as_deref().unwrap_or("no answer");
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, methods)) => methods.push(&entry.method),
+            None => reasons.push((reason, vec![&entry.method])),
+        }
+    }
+    let file = path.display();
+    let mut message = match (entries, reasons.as_slice()) {
+        ([only], _) => {
+            let reason = only.reason.as_deref().unwrap_or("no answer");
+            format!("{file}: {} cannot identify this record: {reason}", only.method)
+        }
+        (_, [(reason, _)]) => format!("{file}: no method can identify this record: {reason}"),
+        _ => {
+            let lines: Vec<String> =
+                reasons.iter().map(|(reason, methods)| format!("\n  {}: {reason}", methods.join(", "))).collect();
+            format!("{file}: no method can identify this record{}", lines.concat())
+        }
+    };
+    for warning in warnings {
+        message += &format!("\nnote: {warning}");
+    }
+    if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
+        message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
+    }
+    Failure::input(message)
+}
+
+fn headline(trials: &[Trial]) -> String {
+    let rows: usize = trials.iter().map(Trial::len).sum();
+    match trials {
+        [only] => format!("{}: {rows} rows, {:.1} s", only.name(), only.duration()),
+        several => format!("{} records together: {rows} rows", several.len()),
+    }
+}
+
+/// Which record is meant, where several have the same name.
+fn renamed(records: &[Drawn]) -> String {
+    let lines: String = records
+        .iter()
+        .filter(|record| record.name != record.trial.name())
+        .map(|record| format!("{} is {}\n", record.name, file_of(record.trial).0))
+        .collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
+}
+
+/// Why methods failed, one line each; the table has the reason in a word only.
+fn reasons(entries: &[MethodEntry]) -> String {
+    let lines: String = entries
+        .iter()
+        .filter_map(|entry| entry.reason.as_ref().map(|reason| format!("{} failed: {reason}\n", entry.method)))
+        .collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
+}
+
+/// A name for every record: its own, with a number where several have the same.
+fn names<'a>(trials: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in trials {
+        let numbered = (2..).map(|number| format!("{name}-{number}"));
+        let unique = std::iter::once(name.to_owned()).chain(numbered).find(|candidate| !names.contains(candidate));
+        names.push(unique.expect("one of the endless numbers is free"));
+    }
+    names
 }
 
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
     Validation {
         file: file_of(other).0.to_owned(),
-        heading_rmse_deg: estimate.and_then(|estimate| replay(other, &estimate.response)).map(|replay| replay.heading_rmse_deg),
+        heading_rmse_deg: estimate
+            .and_then(|estimate| replay(other, &estimate.response))
+            .map(|replay| replay.heading_rmse_deg),
     }
 }
 
@@ -146,24 +273,20 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     }
 }
 
-/// Characteristics in words, and the IMO table where the ship is known.
+/// Characteristics in words, and the IMO criteria this record measures.
 fn characteristics(entry: &ZigZagEntry) -> String {
-    use report::number::{fixed, optional, with_uncertainty};
     let overshoots: Vec<String> = entry
         .overshoots_deg
         .iter()
         .zip(&entry.overshoots_sd_deg)
         .map(|(&angle, &sd)| with_uncertainty(angle, sd))
         .collect();
-    let mut text = format!(
-        "zig-zag: initial turning time {} s, overshoots {} deg, period {} s\n",
-        optional(entry.initial_turning_time_s, 2),
-        overshoots.join(", "),
-        optional(entry.period_s, 1),
-    );
-    for criterion in &entry.imo {
+    let overshoots = if overshoots.is_empty() { "none".to_owned() } else { format!("{} deg", overshoots.join(", ")) };
+    let mut text = format!("zig-zag: initial turning time {}", seconds(entry.initial_turning_time_s, 2));
+    text += &format!(", period {}\n  overshoots {overshoots}\n", seconds(entry.period_s, 1));
+    for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
         text += &format!(
-            "  {}: {} {} (limit {}): {}\n",
+            "  IMO {}: {} {}, limit {}: {}\n",
             criterion.criterion,
             optional(criterion.measured, 2),
             criterion.unit,
@@ -174,56 +297,18 @@ fn characteristics(entry: &ZigZagEntry) -> String {
     text
 }
 
-fn draw(
-    trials: &[Trial],
-    others: &[Trial],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    zigzag: Option<&ZigZag>,
-    folder: &Path,
-) -> Result<(), Failure> {
-    let theme = Theme::screen();
-    if let Some(zigzag) = zigzag {
-        let data = figures::ZigzagTrial { title: Some(trials[0].name().into()), ..zigzag_figure(&trials[0], zigzag) };
-        write_figure(&figures::zigzag_trial(&data, &theme), folder, "trial")?;
+fn seconds(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "not measured".to_owned(), |value| format!("{} s", fixed(value, decimals)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names;
+
+    #[test]
+    fn no_two_records_have_the_same_name() {
+        assert_eq!(names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
+        assert_eq!(names(["a", "a-2", "a"].into_iter()), ["a", "a-2", "a-3"]);
+        assert_eq!(names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
     }
-    for (number, trial) in trials.iter().chain(others).enumerate() {
-        let suffix = if number == 0 { String::new() } else { format!("-{}", slug(trial.name())) };
-        let title = match number < trials.len() {
-            true => trial.name().to_owned(),
-            false => format!("{} (validation)", trial.name()),
-        };
-        let keep = trial.len().div_ceil(DRAWN_ROWS);
-        let thin = |time: &[f64], angle: &[f64]| {
-            let every = |values: &[f64]| values.iter().copied().step_by(keep).collect::<Vec<f64>>();
-            curve(&every(time), &every(angle))
-        };
-        let replays = Replays {
-            title: Some(title.clone()),
-            record: thin(trial.time(), trial.heading()),
-            truth: None,
-            replays: replay_curves(trial, answers, |label| Who::Method(label.to_owned())),
-        };
-        write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
-        let best = answers.iter().filter(|(entry, _)| entry.method == "output-error").chain(answers);
-        let fits = best
-            .filter_map(|(entry, estimate)| {
-                let replay = replay(trial, &estimate.as_ref()?.response)?;
-                Some(Fit {
-                    origin: Who::Method(entry.method.clone()),
-                    heading: thin(&replay.time, &replay.heading),
-                    residual: thin(&replay.residual_time, &replay.residual),
-                    rms_deg: Some(replay.heading_rmse_deg),
-                })
-            })
-            .take(1)
-            .collect();
-        let record = RecordFit {
-            title: Some(title),
-            heading: thin(trial.time(), trial.heading()),
-            rudder: thin(trial.time(), trial.rudder()),
-            fits,
-        };
-        write_figure(&figures::record_fit(&record, &theme), folder, &format!("fit{suffix}"))?;
-    }
-    Ok(())
 }

@@ -25,7 +25,10 @@ impl Value {
         Self {
             value: finite(quantity.value * factor),
             sd: quantity.sd.and_then(|sd| finite(sd * factor)),
-            ci95: quantity.ci95.filter(|ends| ends.iter().all(|end| end.is_finite())).map(|ends| ends.map(|end| end * factor)),
+            ci95: quantity
+                .ci95
+                .filter(|ends| ends.iter().all(|end| end.is_finite()))
+                .map(|ends| ends.map(|end| end * factor)),
         }
     }
 }
@@ -71,6 +74,8 @@ pub struct MethodEntry {
     pub status: Status,
     /// Why it gave none.
     pub reason: Option<String>,
+    /// The reason in a word or two, for tables: "not-excited".
+    pub failure: Option<String>,
     /// K, T and δ_r.
     pub parameters: Option<Parameters>,
     /// 1/T < 0, in words "course-unstable".
@@ -95,6 +100,7 @@ impl MethodEntry {
             method: method.to_owned(),
             status: Status::Ok,
             reason: None,
+            failure: None,
             parameters: Some(Parameters {
                 k_per_s: Value::of(estimate.K(), 1.0),
                 t_s: Value::of(estimate.T(), 1.0),
@@ -115,11 +121,12 @@ impl MethodEntry {
     }
 
     /// The entry of a method that gave none.
-    pub fn failed(method: &str, reason: impl ToString) -> Self {
+    pub fn failed(method: &str, error: &IdentifyError) -> Self {
         Self {
             method: method.to_owned(),
             status: Status::Failed,
-            reason: Some(reason.to_string()),
+            reason: Some(error.to_string()),
+            failure: Some(error.kind().to_owned()),
             parameters: None,
             course_unstable: false,
             heading_rmse_deg: None,
@@ -139,7 +146,7 @@ pub fn entry(
 ) -> (MethodEntry, Option<Estimate>) {
     match answer {
         Ok(estimate) => (MethodEntry::of(label, &estimate, pooled_rmse_deg(trials, &estimate)), Some(estimate)),
-        Err(error) => (MethodEntry::failed(label, error), None),
+        Err(error) => (MethodEntry::failed(label, &error), None),
     }
 }
 

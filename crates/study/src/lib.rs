@@ -9,7 +9,7 @@
 //! | what is stored | [`rows`], [`manifest`], [`showcase`] |
 //! | what is said about it | [`summary`], [`present`] |
 //! | measured records | [`fit`] |
-//! | commands and exit codes | [`cli`], [`failure`] |
+//! | commands and exit codes | [`cli`], [`failure`], [`screen`] |
 
 pub mod check;
 pub mod cli;
@@ -24,6 +24,7 @@ mod progress;
 pub mod rows;
 pub mod run;
 pub mod scenario;
+pub mod screen;
 pub mod showcase;
 pub mod statistics;
 pub mod summary;

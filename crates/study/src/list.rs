@@ -1,13 +1,15 @@
 //! `study list`: what scenario files can name.
 
 use identify::{IdentifierSettings, registry};
+use report::number::MISSING;
 use report::{Column, Table};
 use ship::angle::KNOT;
 use ship::{effects, ships};
 
 use crate::cli::{Common, Listed};
 use crate::failure::Failure;
-use crate::present;
+use crate::scenario::effect_keys;
+use crate::{present, screen};
 
 /// Prints the list.
 pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
@@ -18,8 +20,7 @@ pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
         Listed::Manoeuvres => pairs(&MANOEUVRES),
         Listed::Sensors => pairs(&SENSORS),
     };
-    print!("{}", present::render(&table, common.format));
-    Ok(())
+    screen::say(present::render(&table, common.format).trim_end())
 }
 
 fn identifiers() -> Result<Table, Failure> {
@@ -38,11 +39,18 @@ fn keys(settings: &IdentifierSettings) -> String {
 }
 
 fn effects() -> Table {
-    let mut table = Table::new([Column::left("id"), Column::left("form"), Column::left("equation"), Column::left("parameters")]);
+    let mut table = Table::new([
+        Column::left("id"),
+        Column::left("form"),
+        Column::left("keys in a scenario"),
+        Column::left("equation"),
+        Column::left("parameters"),
+    ]);
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        table.push([effect.id(), effect.form(), effect.equation(), &parameters.join(", ")]);
+        let keys = effect_keys(effect.as_ref()).unwrap_or(MISSING);
+        table.push([effect.id(), effect.form(), keys, effect.equation(), &parameters.join(", ")]);
     }
     table
 }
@@ -86,7 +94,10 @@ const SENSORS: [(&str, &str); 12] = [
     ("heading-quantum-deg", "step of the heading display"),
     ("heading-lag-s", "follow-up lag of the gyrocompass"),
     ("heading-bias-deg", "constant heading error"),
-    ("yaw-rate-noise-deg-s", "standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator"),
+    (
+        "yaw-rate-noise-deg-s",
+        "standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator",
+    ),
     ("yaw-rate-bias-deg-s", "constant yaw-rate error"),
     ("yaw-rate-scale-error", "scale error of the yaw rate, as a share"),
     ("rudder-noise-deg", "standard deviation of white noise of the rudder feedback"),

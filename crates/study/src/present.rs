@@ -1,11 +1,13 @@
 //! Tables of what was found, for the screen, `report.md` and other programs.
 
+use report::figures::Reference;
 use report::number::{self, MISSING};
 use report::{Column, Table};
 
 use crate::cli::Format;
 use crate::engine::CellFacts;
 use crate::json::{MethodEntry, Status, Value};
+use crate::showcase::Showcase;
 use crate::statistics::Figure;
 use crate::summary::{Errors, MethodSummary};
 
@@ -72,6 +74,19 @@ fn remark(entry: &MethodEntry) -> String {
         (_, _, true) => "course-unstable".to_owned(),
         _ => String::new(),
     }
+}
+
+/// The table of a showcase: the methods, and below them the truth and the published values.
+pub fn showcase(showcase: &Showcase) -> Table {
+    let mut table = methods(&showcase.methods);
+    let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
+    for (name, reference) in references {
+        if let Some(Reference { k_per_s, t_s }) = reference {
+            let (k, t) = (number::significant(k_per_s, 4), number::significant(t_s, 4));
+            table.push([name, &k, MISSING, &t]);
+        }
+    }
+    table
 }
 
 fn stem(file: &str) -> String {

@@ -85,7 +85,7 @@ pub fn report(folder: &Path, common: &Common) -> Result<(), Failure> {
         println!("{}: {}\n", manifest.name, design.question);
         for showcase in &showcases {
             println!("{}", if showcase.title.is_empty() { "first trial" } else { &showcase.title });
-            println!("{}", present::render(&present::methods(&showcase.methods), common.format));
+            println!("{}", present::render(&present::showcase(showcase), common.format));
         }
         if showcases.is_empty() || common.format != Format::Text || rows.iter().any(|row| row.replicate > 0) {
             let table = present::summary_in_brief(&summaries, &design.cells, &design.axes);
@@ -252,7 +252,7 @@ fn markdown(
     let drawings = plan.figures();
     for showcase in showcases {
         let title = if showcase.title.is_empty() { "The first trial" } else { &showcase.title };
-        let _ = writeln!(page, "## {title}\n\n{}", present::methods(&showcase.methods).to_markdown());
+        let _ = writeln!(page, "## {title}\n\n{}", present::showcase(showcase).to_markdown());
         for entry in &showcase.methods {
             for warning in &entry.warnings {
                 let _ = writeln!(page, "- {}: {warning}", entry.method);

@@ -101,8 +101,12 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     let mark = |time: f64, heading: f64| Mark { t_s: time, heading_deg: to_deg(heading) };
     let span = |from: f64, length: f64| Span { from_s: from, to_s: from + length };
     let first = zigzag.executes.first();
-    // A cycle is drawn from the second execute of a trial, where the transient of the start is over.
-    let cycle_start = zigzag.executes.get(usize::from(!zigzag.begins_within_trial()));
+    // The cycle that begins with the second execute of a trial holds the transient of the start: drawn only if alone.
+    let settled = if zigzag.begins_within_trial() { 0 } else { 2 };
+    let cycle_start = match zigzag.executes.len() > settled + 2 {
+        true => zigzag.executes.get(settled),
+        false => zigzag.executes.get(1),
+    };
     ZigzagTrial {
         title: None,
         heading: curve(trial.time(), trial.heading()),

@@ -20,7 +20,8 @@ pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial, zigzag_trial};
 use crate::axis::Axis;
 use crate::curve::Curve;
 use crate::layout::Side;
-use crate::palette::INK;
+use crate::legend::{Entry, Sample};
+use crate::palette::{INK, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke, symbol};
 use crate::theme::Theme;
@@ -46,6 +47,28 @@ fn time_side<'a>(curves: impl IntoIterator<Item = &'a Curve>) -> Side {
 /// An axis in degrees around everything in `curves`.
 fn angle_side<'a>(curves: impl IntoIterator<Item = &'a Curve>, title: String) -> Side {
     Side::new(Axis::covering(curves.into_iter().flat_map(|c| c.finite().map(|(_, y)| y)), PAD, Steps::Angle), title)
+}
+
+/// More points than this in a panel run into each other and are drawn as a line.
+const DENSE: usize = 400;
+
+/// A recorded heading: dots, or a wide line under the fits where the record is dense.
+fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &Curve, size: f64) {
+    if heading.finite().count() > DENSE {
+        panel.line(scene, heading.pairs(), Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) });
+    } else {
+        panel.dots(scene, heading.finite(), size, RECORD);
+    }
+}
+
+/// How [`record`] looks in a legend.
+fn record_entry(label: &str, theme: &Theme, heading: &Curve) -> Entry {
+    let sample = if heading.finite().count() > DENSE {
+        Sample::Line(Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) })
+    } else {
+        Sample::Dots(RECORD)
+    };
+    Entry::new(sample, label)
 }
 
 /// The line a residual scatters about.

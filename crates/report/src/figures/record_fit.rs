@@ -3,13 +3,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{angle_side, heading_title, rudder_title, time_side, zero_line};
+use super::{angle_side, heading_title, record, record_entry, rudder_title, time_side, zero_line};
 use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet};
 use crate::legend::{Entry, Sample, stroke_of};
 use crate::number;
-use crate::palette::{Origin, RECORD, RUDDER};
+use crate::palette::{Origin, RUDDER};
 use crate::scene::Stroke;
 use crate::theme::Theme;
 
@@ -42,7 +42,7 @@ pub struct RecordFit {
 /// Draws heading with fits, residuals and rudder over one time axis.
 pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let mut entries = vec![Entry::new(Sample::Dots(RECORD), "recorded heading")];
+    let mut entries = vec![record_entry("recorded heading", theme, &data.heading)];
     entries.extend(data.fits.iter().map(|fit| {
         let rms = fit.rms_deg.map_or_else(String::new, |rms| format!(", rms {}°", number::significant(rms, 2)));
         Entry { label: format!("{}{rms}", fit.origin.label()), ..Entry::line_of(&fit.origin, theme) }
@@ -59,7 +59,7 @@ pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
     let panels = sheet.grid(Grid::stack(time_side(headings().chain(residuals()).chain([&data.rudder])), rows));
     let [upper, middle, lower] = &panels[..] else { return sheet.finish() };
 
-    upper.dots(&mut sheet.scene, data.heading.finite(), 1.5 * theme.dot, RECORD);
+    record(upper, &mut sheet.scene, theme, &data.heading, 1.5 * theme.dot);
     zero_line(middle, &mut sheet.scene, theme);
     for fit in &data.fits {
         let stroke = stroke_of(&fit.origin, theme);

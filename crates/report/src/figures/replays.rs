@@ -3,14 +3,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PAD, heading_title, time_side, zero_line};
+use super::{PAD, heading_title, record, record_entry, time_side, zero_line};
 use crate::axis::{self, Axis};
 use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
-use crate::legend::{Entry, Sample, stroke_of};
+use crate::legend::{Entry, stroke_of};
 use crate::number;
-use crate::palette::{Origin, RECORD};
+use crate::palette::Origin;
 use crate::panel::Panel;
 use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
@@ -76,7 +76,7 @@ pub fn replays(data: &Replays, theme: &Theme) -> Figure {
     (upper_grid.left, lower_grid.left) = (left, left);
     let upper = sheet.grid(upper_grid);
     for panel in &upper {
-        panel.dots(&mut sheet.scene, data.record.finite(), 1.5 * theme.dot, RECORD);
+        record(panel, &mut sheet.scene, theme, &data.record, 1.5 * theme.dot);
         if let Some(truth) = &data.truth {
             panel.line(&mut sheet.scene, truth.pairs(), stroke_of(&Origin::Truth, theme));
         }
@@ -94,7 +94,7 @@ pub fn replays(data: &Replays, theme: &Theme) -> Figure {
 }
 
 fn entries(data: &Replays, theme: &Theme) -> Vec<Entry> {
-    let mut entries = vec![Entry::new(Sample::Dots(RECORD), "record")];
+    let mut entries = vec![record_entry("record", theme, &data.record)];
     if data.truth.is_some() {
         entries.push(Entry::line_of(&Origin::Truth, theme));
     }

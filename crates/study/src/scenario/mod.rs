@@ -1,14 +1,20 @@
 //! Scenario files: one question each, read strictly, resolved completely before anything runs.
 //!
-//! `wire` is what a file says, [`sweep`] the design, `resolve` the checks, [`Scenario`] what the engine accepts. A
-//! value of [`Scenario`] has been checked in every cell of the design.
+//! `wire` is what a file says, `reader` how it is read, [`sweep`] the design, `resolve` the checks, `problem` and `locate`
+//! what is wrong and where, [`Scenario`] what the engine accepts. A value of [`Scenario`] has been checked in every cell
+//! of the design.
 
+mod effect;
 mod locate;
+mod problem;
+mod reader;
 mod resolve;
+mod specification;
 pub mod sweep;
 mod wire;
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
@@ -17,9 +23,12 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use ship::FirstOrder;
 use simulate::{Purpose, Simulation, StreamKey};
+use toml::Table;
 use trial::Trial;
 
 use crate::failure::Failure;
+pub use effect::keys as effect_keys;
+use problem::{KeyPath, Problem};
 use sweep::Axis;
 use wire::ScenarioWire;
 
@@ -120,49 +129,37 @@ impl Scenario {
 
     /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
-        let wire: ScenarioWire = toml::from_str(&text).map_err(|error| {
-            Failure::at(path, &text, error.span().unwrap_or(0..0), error.message(), "see the README for the keys of a scenario")
-        })?;
-        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-        let fail = |key: &str, problem: &str, advice: &str| {
-            Failure::at(path, &text, locate::span(&text, key), problem, advice)
+        let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
+        let fail = |problem: Problem| {
+            let span = locate::span(&text, &problem.key, problem.mark);
+            Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
         };
-        let axes = wire
+        if document.is_empty() {
+            return Err(fail(Problem::name(
+                KeyPath::default(),
+                "there is nothing in this scenario",
+                "expected keys",
+                "start from one of the files in scenarios/; the README explains the keys",
+            )));
+        }
+        let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
+        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        // The document as written has to make sense by itself: a sweep changes it, it does not complete it.
+        let base = resolve::cell(&wire, &folder).map_err(&fail)?;
+        let axes: Vec<Axis> = wire
             .sweep
             .iter()
             .enumerate()
             .map(|(index, axis)| axis.resolve(index))
-            .collect::<Result<Vec<Axis>, _>>()
-            .map_err(|error| fail(&error.key, &error.problem, "mend this axis"))?;
-        let combinations = sweep::product(&axes).map_err(|error| fail(&error.key, &error.problem, "use fewer points"))?;
-        // The document as written has to make sense by itself: a sweep changes it, it does not complete it.
-        let base = resolve::cell(&wire, &folder).map_err(|error| fail(&error.key, &error.problem, &error.advice))?;
-        let document: toml::Table = text.parse().map_err(|error: toml::de::Error| fail("", error.message(), "mend the file"))?;
-        let mut cells = Vec::with_capacity(combinations.len());
-        for combination in &combinations {
-            let mut changed = document.clone();
-            for point in combination {
-                for (key, value) in &point.set {
-                    sweep::set(&mut changed, key, value.clone())
-                        .map_err(|problem| fail("sweep", &format!("sweep of `{key}`: {problem}"), "mend the key"))?;
-                }
-            }
-            let labels: Vec<String> = combination.iter().map(|point| point.label.clone()).collect();
-            let place = || labels.join(", ");
-            let wire = ScenarioWire::deserialize(changed)
-                .map_err(|error| fail("sweep", &format!("in cell {}: {}", place(), error.message()), "mend the swept key or value"))?;
-            let resolved = resolve::cell(&wire, &folder).map_err(|error| {
-                fail("sweep", &format!("in cell {}: `{}`: {}", place(), error.key, error.problem), &error.advice)
-            })?;
-            let values = combination.iter().map(|point| point.value).collect();
-            cells.push(Cell { labels, values, ..resolved });
-        }
-        if cells.iter().any(|cell| cell.methods.iter().map(|method| &method.label).ne(base.methods.iter().map(|method| &method.label))) {
-            return Err(fail("sweep", "a sweep may change the settings of methods, not which methods there are", "sweep settings only"));
-        }
-        if wire.replicates == 0 {
-            return Err(fail("replicates", "0 replicates: nothing would be run", "at least 1"));
-        }
+            .collect::<Result<_, _>>()
+            .map_err(&fail)?;
+        let combinations = sweep::product(&axes).map_err(&fail)?;
+        check_size(wire.replicates, combinations.len()).map_err(&fail)?;
+        let cells: Vec<Cell> = combinations
+            .iter()
+            .map(|points| swept(&document, points, &base, &folder))
+            .collect::<Result<_, _>>()
+            .map_err(&fail)?;
         let sha256 = hex(&Sha256::digest(text.as_bytes()));
         Ok(Self {
             name: name.to_owned(),
@@ -194,21 +191,98 @@ impl Scenario {
     }
 }
 
+/// Largest number of trials; more is a slip of the pen.
+const MOST_TRIALS: u64 = 1_000_000_000;
+
+fn check_size(replicates: u64, cells: usize) -> Result<(), Problem> {
+    let key = KeyPath::dotted("replicates");
+    if replicates == 0 {
+        return Err(Problem::value(
+            key,
+            "`replicates` is 0, so nothing would be run",
+            "expected at least 1",
+            "give the number of trials in every cell, or leave the key out for one",
+        ));
+    }
+    if replicates.saturating_mul(cells as u64) > MOST_TRIALS {
+        return Err(Problem::value(
+            key,
+            format!("`replicates` is {replicates}, for a design of size {cells}"),
+            format!("expected at most {MOST_TRIALS} trials in all"),
+            "use fewer replicates; 200 are enough for a first look",
+        ));
+    }
+    Ok(())
+}
+
+/// One cell of the design: the document with the keys of its points changed, resolved like any scenario.
+fn swept(document: &Table, points: &[&sweep::Point], base: &Cell, folder: &Path) -> Result<Cell, Problem> {
+    let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
+    let settings = || points.iter().flat_map(|point| &point.set);
+    // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of several.
+    let blame = |problem: Problem| {
+        let of_key = settings().rfind(|setting| setting.key.meets(&problem.key));
+        let setting = of_key.or_else(|| settings().next_back());
+        match setting {
+            Some(setting) => setting.blamed(problem, (labels.len() > 1).then(|| labels.join(", ")).as_deref()),
+            None => problem,
+        }
+    };
+    let mut changed = document.clone();
+    for setting in settings() {
+        sweep::set(&mut changed, setting).map_err(blame)?;
+    }
+    let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
+    let resolved = resolve::cell(&wire, folder).map_err(blame)?;
+    if resolved.methods.iter().map(|method| &method.label).ne(base.methods.iter().map(|method| &method.label)) {
+        return Err(blame(Problem::value(
+            KeyPath::dotted("identifier"),
+            "the methods are not the same in every cell",
+            "expected settings of methods",
+            "sweep settings only, and name every method once in an [[identifier]] of its own",
+        )));
+    }
+    let values = points.iter().map(|point| point.value).collect();
+    Ok(Cell { labels, values, ..resolved })
+}
+
+/// A file that is not TOML, at the place where it stops to be.
+fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
+    let span = error.span().unwrap_or(0..0);
+    let message = match error.message() {
+        message if message.starts_with("invalid type: integer") => "this number has too many digits".to_owned(),
+        message => message.split_whitespace().collect::<Vec<_>>().join(" "),
+    };
+    let advice = match path.extension().is_some_and(|extension| extension == "toml") {
+        true => "mend the line; a scenario is a TOML file of `key = value` lines under [table] headings",
+        false => "give a scenario (a TOML file); a record is identified with `study fit`",
+    };
+    Failure::at(path, text, span, "this is not valid TOML", &message, advice)
+}
+
 /// Largest scenario file accepted, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
 fn read_text(path: &Path) -> Result<String, Failure> {
-    let refuse = |problem: String| Failure::input(format!("{}: {problem}", path.display()));
-    let about = fs::metadata(path).map_err(|error| refuse(format!("{error}; give the path of a scenario file (TOML)")))?;
+    let refuse = |problem: String, advice: &str| Failure::input(format!("{}: {problem}; {advice}", path.display()));
+    let advice = "give the path of a scenario (a TOML file)";
+    let about = fs::metadata(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => refuse("there is no such file".into(), advice),
+        _ => refuse(format!("cannot be read: {error}"), advice),
+    })?;
     if about.is_dir() {
-        return Err(refuse("is a folder; give the path of a scenario file (TOML)".into()));
+        return Err(refuse("this is a folder".into(), advice));
     }
     if about.len() > LARGEST_FILE {
-        return Err(refuse(format!("has {} bytes, a scenario has at most {LARGEST_FILE}; is this a record? try `study fit`", about.len())));
+        let problem = format!("this file has {} bytes, a scenario has at most {LARGEST_FILE}", about.len());
+        return Err(refuse(problem, "if it is a record, identify it with `study fit`"));
     }
-    let bytes = fs::read(path).map_err(|error| refuse(error.to_string()))?;
+    let bytes = fs::read(path).map_err(|error| refuse(format!("cannot be read: {error}"), "check its rights"))?;
     String::from_utf8(bytes).map_err(|error| {
-        refuse(format!("byte {} is not UTF-8 text; a scenario is a TOML text file", error.utf8_error().valid_up_to()))
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
+        let byte = error.as_bytes()[valid];
+        refuse(format!("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text"), advice)
     })
 }
 
@@ -216,3 +290,6 @@ fn read_text(path: &Path) -> Result<String, Failure> {
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,6 +6,8 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::problem::{KeyPath, Mark, Problem};
+
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;
 
@@ -60,79 +62,186 @@ pub struct Point {
     pub label: String,
     /// Its value, where the axis is a number.
     pub value: Option<f64>,
-    /// Dotted keys and the values they get.
-    pub set: Vec<(String, Value)>,
+    /// The keys it sets.
+    pub set: Vec<Setting>,
 }
 
-/// Why an axis makes no sense; `key` is relative to the `sweep` array.
+/// A key that a point sets.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SweepError {
-    /// Dotted path from the root of the document.
-    pub key: String,
-    /// What was found and what was expected.
-    pub problem: String,
+pub struct Setting {
+    /// The key that is changed.
+    pub key: KeyPath,
+    /// The value it gets.
+    pub value: Value,
+    /// Where the file names the key.
+    pub key_place: KeyPath,
+    /// Where the file says the value.
+    pub value_place: KeyPath,
 }
+
+impl Setting {
+    /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
+    pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
+        let name = problem.mark == Mark::Name;
+        let place = if name { &self.key_place } else { &self.value_place };
+        // Where the point itself names the key, its name is underlined and not its value.
+        let mark = if name && self.key_place == self.value_place { Mark::Name } else { Mark::Value };
+        let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
+        let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, self.value);
+        // "to −1: `key` is −1" would say it twice.
+        if !problem.found.starts_with(&format!("`{}` is", self.key)) {
+            found = format!("{found}: {}", problem.found);
+        }
+        Problem { key: place.clone(), mark, found, ..problem }
+    }
+}
+
+/// Keys that belong to the study as a whole; a sweep of them would say nothing.
+const FIXED: [&str; 7] = ["question", "analysis", "seed", "replicates", "sweep", "published", "output"];
 
 impl AxisWire {
     /// Checks an axis; `index` is its place in the `sweep` array.
-    pub fn resolve(&self, index: usize) -> Result<Axis, SweepError> {
-        let error = |key: &str, problem: String| SweepError { key: format!("sweep.{index}{key}"), problem };
-        let points = match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
-            (Some(key), Some(values), None, None, None) => values.iter().map(|value| Point::of(key, value.clone())).collect(),
+    pub fn resolve(&self, index: usize) -> Result<Axis, Problem> {
+        let place = KeyPath::dotted("sweep").child(index);
+        let single =
+            |key: &str, value: Value, value_place: KeyPath| Point::of(key, value, place.child("key"), value_place);
+        let mut points: Vec<Point> = match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
+            (Some(key), Some(values), None, None, None) => values
+                .iter()
+                .enumerate()
+                .map(|(i, value)| single(key, value.clone(), place.child("values").child(i)))
+                .collect(),
             (Some(key), None, Some(range), None, None) => {
-                let values = range.values().map_err(|problem| error(".linear", problem))?;
-                values.map(|value| Point::of(key, Value::Float(value))).collect()
+                let place = place.child("linear");
+                range.linear(&place)?.map(|value| single(key, Value::Float(value), place.clone())).collect()
             }
             (Some(key), None, None, Some(range), None) => {
-                if range.from <= 0.0 || range.to <= 0.0 {
-                    return Err(error(".log", format!("a logarithmic range from {} to {}: both ends have to be positive", range.from, range.to)));
-                }
-                let logs = RangeWire { from: range.from.ln(), to: range.to.ln(), points: range.points };
-                let values = logs.values().map_err(|problem| error(".log", problem))?;
-                values.map(|value| Point::of(key, Value::Float(value.exp()))).collect()
+                let place = place.child("log");
+                range.log(&place)?.map(|value| single(key, Value::Float(value), place.clone())).collect()
             }
-            (None, None, None, None, Some(points)) => points
-                .iter()
-                .map(|point| Point {
-                    label: point.label.clone(),
-                    value: None,
-                    set: point.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect(),
-                })
-                .collect::<Vec<_>>(),
+            (None, None, None, None, Some(points)) => {
+                points.iter().enumerate().map(|(i, point)| point.resolve(&place.child("points").child(i))).collect()
+            }
             _ => {
-                return Err(error(
-                    "",
-                    "expected `key` with one of `values`, `linear`, `log`, or `points` alone".into(),
+                return Err(Problem::name(
+                    place,
+                    "this sweep does not say what it changes and how",
+                    "expected `key` with one of `values`, `linear` and `log`, or `points` alone",
+                    "for instance `key = \"sensor.heading-noise-deg\"` and `values = [0.01, 0.1, 1.0]`",
                 ));
             }
         };
         if points.is_empty() {
-            return Err(error("", "an axis without points: give at least one value".into()));
+            return Err(Problem::name(
+                place,
+                "this sweep has no points",
+                "expected at least one",
+                "add a value, or remove the sweep",
+            ));
         }
-        let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| format!("axis {}", index + 1));
+        for setting in points.iter().flat_map(|point| &point.set) {
+            let first = setting.key.parts().first().map_or("", String::as_str);
+            if first.is_empty() || FIXED.contains(&first) {
+                let found = match first {
+                    "" => "the sweep names no key".to_owned(),
+                    _ => format!("the sweep changes `{}`, which is the same for the whole study", setting.key),
+                };
+                return Err(Problem {
+                    mark: if setting.key_place == setting.value_place { Mark::Name } else { Mark::Value },
+                    ..Problem::value(
+                        setting.key_place.clone(),
+                        found,
+                        "expected a key of the trial or of a method",
+                        "for instance `sensor.heading-noise-deg`, `ship.first-order.T-s`, `identifier.0.method.srivc.max-iterations`",
+                    )
+                });
+            }
+        }
+        distinguish(&mut points);
+        let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| "point".to_owned());
+        let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
+        labels.sort_unstable();
+        if let Some(twice) = labels.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(Problem::name(
+                place,
+                format!("two points of this sweep are called `{}`", twice[0]),
+                "expected points with names of their own",
+                "remove one of them, or give it another label",
+            ));
+        }
         Ok(Axis { name, points })
     }
 }
 
+impl PointWire {
+    fn resolve(&self, place: &KeyPath) -> Point {
+        let set = self.set.iter().map(|(key, value)| {
+            let place = place.child("set").child(key);
+            Setting { key: KeyPath::dotted(key), value: value.clone(), key_place: place.clone(), value_place: place }
+        });
+        Point { label: self.label.clone(), value: None, set: set.collect() }
+    }
+}
+
 impl RangeWire {
-    fn values(self) -> Result<impl Iterator<Item = f64>, String> {
-        if self.points < 2 || !self.from.is_finite() || !self.to.is_finite() {
-            return Err(format!("{} points from {} to {}: expected two points or more between finite ends", self.points, self.from, self.to));
+    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, Problem> {
+        if !(self.from.is_finite() && self.to.is_finite()) {
+            return Err(self.problem(place, "expected finite ends"));
         }
-        let step = (self.to - self.from) / (self.points - 1) as f64;
-        Ok((0..self.points).map(move |k| if k + 1 == self.points { self.to } else { self.from + k as f64 * step }))
+        if !(2..=MOST_CELLS).contains(&self.points) {
+            return Err(self.problem(place, &format!("expected 2 to {MOST_CELLS} points")));
+        }
+        let Self { from, to, points } = *self;
+        let step = (to - from) / (points - 1) as f64;
+        Ok((0..points).map(move |k| if k + 1 == points { to } else { from + k as f64 * step }))
+    }
+
+    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, Problem> {
+        if !(self.from > 0.0 && self.to > 0.0) {
+            return Err(self.problem(place, "expected both ends of a logarithmic range to be above 0"));
+        }
+        let Self { from, to, points } = *self;
+        // Between the ends, which are exact: evenly spaced shares of the range of the logarithm.
+        let ratio = (to / from).ln();
+        let exact = move |k: usize| match k {
+            0 => from,
+            k if k + 1 == points => to,
+            k => from * (ratio * k as f64 / (points - 1) as f64).exp(),
+        };
+        Ok(self.linear(place)?.enumerate().map(move |(k, _)| exact(k)))
+    }
+
+    fn problem(&self, place: &KeyPath, expected: &str) -> Problem {
+        let found = format!("a range of {} points from {} to {}", self.points, self.from, self.to);
+        Problem::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
     }
 }
 
 impl Point {
-    fn of(key: &str, value: Value) -> Self {
+    fn of(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
         let number = value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
         let label = match (&value, number) {
             (_, Some(number)) => trim(number),
             (Value::String(text), None) => text.clone(),
             (other, None) => other.to_string(),
         };
-        Self { label, value: number, set: vec![(key.to_owned(), value)] }
+        let set = vec![Setting { key: KeyPath::dotted(key), value, key_place, value_place }];
+        Self { label, value: number, set }
+    }
+}
+
+/// Gives numbers all their digits where four are too few to tell points apart.
+fn distinguish(points: &mut [Point]) {
+    let mut labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
+    labels.sort_unstable();
+    let before = labels.len();
+    labels.dedup();
+    if labels.len() < before {
+        for point in points {
+            if let Some(value) = point.value {
+                point.label = value.to_string();
+            }
+        }
     }
 }
 
@@ -144,10 +253,30 @@ fn trim(number: f64) -> String {
 }
 
 /// Every combination of points, the first axis slowest; one empty combination when there is no axis.
-pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, SweepError> {
+///
+/// Fails when there are too many, and when two axes change the same key.
+pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
     if count > MOST_CELLS {
-        return Err(SweepError { key: "sweep".into(), problem: format!("{count} cells: at most {MOST_CELLS} are accepted") });
+        let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
+        return Err(Problem::name(
+            KeyPath::dotted("sweep"),
+            format!("the sweeps make {} = {count} cells", sizes.join(" × ")),
+            format!("expected at most {MOST_CELLS} cells"),
+            "use fewer points, or fewer sweeps",
+        ));
+    }
+    for (index, axis) in axes.iter().enumerate() {
+        let settings = |axis: &Axis| axis.points.iter().flat_map(|point| point.set.clone()).collect::<Vec<Setting>>();
+        let before: Vec<Setting> = axes[..index].iter().flat_map(settings).collect();
+        if let Some(again) = settings(axis).iter().find(|own| before.iter().any(|other| other.key == own.key)) {
+            return Err(Problem::name(
+                KeyPath::dotted("sweep").child(index),
+                format!("two sweeps change `{}`", again.key),
+                "expected every sweep to change keys of its own",
+                "remove one of them, or join them into one sweep with `points`",
+            ));
+        }
     }
     let mut cells: Vec<Vec<&Point>> = vec![Vec::new()];
     for axis in axes {
@@ -159,37 +288,46 @@ pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, SweepError> {
     Ok(cells)
 }
 
-/// Sets a dotted key in a document, making tables on the way; numbers in the path index arrays.
+/// Sets a key in a document, making tables on the way; numbers in the path count the entries of lists from 0.
 ///
-/// Fails with a sentence when the path leads through something that is neither table nor array.
-pub fn set(document: &mut Table, key: &str, value: Value) -> Result<(), String> {
+/// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
+pub fn set(document: &mut Table, setting: &Setting) -> Result<(), Problem> {
+    let fault =
+        |problem: String, expected: String| Problem::name(setting.key.clone(), problem, expected, "change the key");
     let mut place = document;
-    let mut parts = key.split('.').peekable();
+    let mut parts = setting.key.parts().iter().peekable();
     while let Some(part) = parts.next() {
         if parts.peek().is_none() {
-            place.insert(part.to_owned(), value);
+            place.insert(part.clone(), setting.value.clone());
             return Ok(());
         }
-        let mut next = place.entry(part.to_owned()).or_insert_with(|| Value::Table(Table::new()));
+        let mut next = place.entry(part.clone()).or_insert_with(|| Value::Table(Table::new()));
         while let Value::Array(items) = next {
-            let index = parts.next().unwrap_or_default();
+            let index = parts.next().map_or("", String::as_str);
             let length = items.len();
-            next = index
-                .parse()
-                .ok()
-                .and_then(|index: usize| items.get_mut(index))
-                .ok_or_else(|| format!("`{part}` is an array of {length}: expected an index below that, found `{index}`"))?;
+            next = index.parse().ok().and_then(|index: usize| items.get_mut(index)).ok_or_else(|| {
+                fault(
+                    format!("`{part}` has {length} entries, and `{index}` is none of them"),
+                    format!("expected a number from 0 to {}", length.saturating_sub(1)),
+                )
+            })?;
+            if parts.peek().is_none() {
+                *next = setting.value.clone();
+                return Ok(());
+            }
         }
-        place = next.as_table_mut().ok_or_else(|| format!("`{part}` is a value, not a table: nothing can be set below it"))?;
+        place = next
+            .as_table_mut()
+            .ok_or_else(|| fault(format!("`{part}` is a value"), "nothing can be set below a value".to_owned()))?;
     }
-    Err("an empty key".into())
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn axis(text: &str) -> Result<Axis, SweepError> {
+    fn axis(text: &str) -> Result<Axis, Problem> {
         toml::from_str::<AxisWire>(text).expect("well formed").resolve(0)
     }
 
@@ -201,6 +339,17 @@ mod tests {
         assert_eq!(log.points[1].label, "0.1");
         assert!(axis("key = \"a\"\nlog = { from = 0.0, to = 1.0, points = 3 }").is_err());
         assert!(axis("key = \"a\"").is_err());
+        assert!(axis("key = \"a\"\nlinear = { from = 0.0, to = 1.0, points = 1000000000000000 }").is_err());
+        assert!(axis("key = \"seed\"\nvalues = [1, 2]").is_err(), "a seed is not part of the design");
+    }
+
+    #[test]
+    fn points_can_be_told_apart() {
+        let near = axis("key = \"a\"\nvalues = [1.00001, 1.00002]").expect("two values");
+        assert_eq!([&near.points[0].label, &near.points[1].label], ["1.00001", "1.00002"]);
+        assert!(axis("key = \"a\"\nvalues = [1, 1.0]").is_err(), "the same value twice");
+        let once = axis("key = \"a\"\nvalues = [1]").expect("one value");
+        assert!(product(&[once.clone(), once]).is_err(), "the same key twice");
     }
 
     #[test]
@@ -210,18 +359,26 @@ mod tests {
             .expect("valid");
         let axes = [two, named];
         let cells = product(&axes).expect("few");
-        let labels: Vec<Vec<&str>> = cells.iter().map(|cell| cell.iter().map(|point| point.label.as_str()).collect()).collect();
+        let labels: Vec<Vec<&str>> =
+            cells.iter().map(|cell| cell.iter().map(|point| point.label.as_str()).collect()).collect();
         assert_eq!(labels, [["1", "p"], ["1", "q"], ["2", "p"], ["2", "q"]]);
     }
 
     #[test]
     fn sets_keys_in_tables_and_arrays() {
         let mut document: Table = "x = 1\n[[identifier]]\nsrivc = {}".parse().expect("well formed");
-        set(&mut document, "sensor.noise", Value::Float(0.5)).expect("makes the table");
-        set(&mut document, "identifier.0.srivc.n", Value::Integer(3)).expect("indexes the array");
+        let mut set = |key: &str, value: Value| {
+            let place = KeyPath::default();
+            super::set(
+                &mut document,
+                &Setting { key: KeyPath::dotted(key), value, key_place: place.clone(), value_place: place },
+            )
+        };
+        set("sensor.noise", Value::Float(0.5)).expect("makes the table");
+        set("identifier.0.srivc.n", Value::Integer(3)).expect("indexes the array");
+        assert!(set("x.y", Value::Integer(1)).is_err());
+        assert!(set("identifier.4.x", Value::Integer(1)).is_err());
         assert_eq!(document["sensor"]["noise"].as_float(), Some(0.5));
         assert_eq!(document["identifier"][0]["srivc"]["n"].as_integer(), Some(3));
-        assert!(set(&mut document, "x.y", Value::Integer(1)).is_err());
-        assert!(set(&mut document, "identifier.4.x", Value::Integer(1)).is_err());
     }
 }

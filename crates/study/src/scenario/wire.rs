@@ -80,38 +80,38 @@ pub struct SecondOrderWire {
 
 /// An effect added to a response ship: one key, the id of the effect.
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "snake_case")]
+#[serde(rename_all = "snake_case")]
 pub enum EffectWire {
-    SecondOrder {
-        #[serde(rename = "T2-s")]
-        T2_s: f64,
-        #[serde(rename = "T3-s")]
-        T3_s: f64,
-    },
+    SecondOrder(SwayCouplingWire),
     NonlinearDamping(DampingWire),
     WindMoment(WindMomentWire),
-    #[serde(rename_all = "kebab-case")]
-    SpeedLoss {
-        /// Rate of loss for a squared yaw rate of 1 deg²/s².
-        loss_s_per_deg2: f64,
-        recovery_s: f64,
-        #[serde(default = "two")]
-        gain_exponent: f64,
-    },
+    SpeedLoss(SpeedLossWire),
     SteeringLag(LagWire),
-    RudderSaturation {
-        #[serde(rename = "c3-per-deg2")]
-        c3_per_deg2: f64,
-    },
+    RudderSaturation(SaturationWire),
     RudderDeadband(DeadBandWire),
-    #[serde(rename_all = "kebab-case")]
-    PortStarboardAsymmetry { gain_share: f64 },
-    #[serde(rename_all = "kebab-case")]
-    MomentDrift { rudder_deg_per_s: f64 },
-    #[serde(rename_all = "kebab-case")]
-    TransientDisturbance { rudder_deg: f64, centre_s: f64, duration_s: f64 },
-    #[serde(rename_all = "kebab-case")]
-    WaveYaw { sd_deg: f64, frequency_rad_s: f64, damping: f64 },
+    PortStarboardAsymmetry(AsymmetryWire),
+    MomentDrift(DriftWire),
+    TransientDisturbance(TransientWire),
+    WaveYaw(WavesWire),
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SwayCouplingWire {
+    #[serde(rename = "T2-s")]
+    pub T2_s: f64,
+    #[serde(rename = "T3-s")]
+    pub T3_s: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SpeedLossWire {
+    /// Rate of loss for a squared yaw rate of 1 deg²/s².
+    pub loss_s_per_deg2: f64,
+    pub recovery_s: f64,
+    #[serde(default = "two")]
+    pub gain_exponent: f64,
 }
 
 fn two() -> f64 {
@@ -120,6 +120,32 @@ fn two() -> f64 {
 
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
+pub struct SaturationWire {
+    #[serde(rename = "c3-per-deg2")]
+    pub c3_per_deg2: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct AsymmetryWire {
+    pub gain_share: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct DriftWire {
+    pub rudder_deg_per_s: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct TransientWire {
+    pub rudder_deg: f64,
+    pub centre_s: f64,
+    pub duration_s: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
 pub enum DampingWire {
     #[serde(rename = "n3-s2-per-deg2")]
     Cubic(f64),
@@ -137,21 +163,21 @@ pub struct WindMomentWire {
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub enum LagWire {
     DeadTimeS(f64),
     FirstOrderS(f64),
 }
 
 #[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub enum DeadBandWire {
     BacklashDeg(f64),
     DeadBandDeg(f64),
 }
 
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case")]
 pub enum ManoeuvreWire {
     ZigZag(ZigZagWire),
     TurningCircle(TurningCircleWire),
@@ -315,7 +341,7 @@ pub struct SquallWire {
     pub edge_s: f64,
 }
 
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct WavesWire {
     pub sd_deg: f64,

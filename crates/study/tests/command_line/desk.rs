@@ -1,0 +1,131 @@
+//! Running the binary as a user does: a folder of its own, the exit code, and what it says.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use ship::Ship;
+use ship::angle::{from_deg, to_deg};
+use simulate::manoeuvre::ZigZagEnd;
+use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
+
+/// A folder that goes away, and the program run in it.
+pub struct Desk {
+    folder: tempfile::TempDir,
+}
+
+/// What a run gave.
+pub struct Run {
+    /// Exit code.
+    pub code: Option<i32>,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+impl Desk {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().expect("a temporary folder") }
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Writes a file and returns its name.
+    pub fn file<'a>(&self, name: &'a str, content: impl AsRef<[u8]>) -> &'a str {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().expect("inside the folder")).expect("a folder");
+        std::fs::write(path, content).expect("a file");
+        name
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Run {
+        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_study"))
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .output()
+            .expect("the program starts");
+        Run {
+            code: status.code(),
+            out: String::from_utf8(stdout).expect("UTF-8"),
+            err: String::from_utf8(stderr).expect("UTF-8"),
+        }
+    }
+
+    pub fn json(&self, name: &str) -> serde_json::Value {
+        let text = std::fs::read_to_string(self.path(name)).expect("the file is there");
+        serde_json::from_str(&text).expect("JSON")
+    }
+}
+
+impl Run {
+    /// The run went well.
+    pub fn is_done(&self) -> &Self {
+        assert_eq!(self.code, Some(0), "{}\n{}", self.out, self.err);
+        self
+    }
+
+    /// The run ended with `code`, nothing on standard output, and one message that holds every one of `parts`.
+    pub fn is_refused(&self, code: i32, parts: &[&str]) {
+        assert_eq!(self.code, Some(code), "{}\n{}", self.out, self.err);
+        assert_eq!(self.out, "", "an error is no result");
+        let messages = self.err.lines().filter(|line| line.starts_with("error")).count();
+        assert!(self.err.starts_with("error: ") && messages == 1, "one message expected:\n{}", self.err);
+        assert!(!self.err.contains("panicked") && !self.err.contains("RUST_BACKTRACE"), "{}", self.err);
+        for part in parts {
+            assert!(self.err.contains(part), "{part:?} is not in the message:\n{}", self.err);
+        }
+    }
+}
+
+/// A 10/10 zig-zag of YUKUN as a CSV record of time, heading and rudder: 300 s at 1 Hz, perfect instruments, rudder rate
+/// 2.5 deg/s.
+pub fn zig_zag_csv() -> String {
+    zig_zag_csv_of(&ship::ships::find("yukun").expect("it is in the registry"))
+}
+
+/// The same with another ship.
+pub fn zig_zag_csv_of(ship: &Ship) -> String {
+    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Record);
+    let simulation = Simulation {
+        gear: SteeringGear::with_rate(from_deg(2.5)),
+        recording: Recording { duration: Some(300.0), ..Recording::default() },
+        ..Simulation::new(Vessel::ship(ship), manoeuvre)
+    };
+    let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a plain zig-zag");
+    let trial = &simulated.trial;
+    let rows = trial.time().iter().zip(trial.heading()).zip(trial.rudder());
+    let rows = rows.map(|((t, psi), delta)| format!("{t},{},{}\n", to_deg(*psi), to_deg(*delta)));
+    ["t_s,heading_deg,rudder_deg\n".to_owned()].into_iter().chain(rows).collect()
+}
+
+/// The record with one column changed; the function gets the number of the row, from 0.
+pub fn with_column(csv: &str, name: &str, change: impl Fn(usize, f64) -> String) -> String {
+    let header = csv.lines().next().expect("a header");
+    let place = header.split(',').position(|column| column == name).expect("the column is there");
+    let rows = csv.lines().skip(1).enumerate().map(|(row, line)| {
+        let cells = line.split(',').enumerate().map(|(column, cell)| match column == place {
+            true => change(row, cell.parse().expect("a number")),
+            false => cell.to_owned(),
+        });
+        cells.collect::<Vec<String>>().join(",")
+    });
+    [header.to_owned()].into_iter().chain(rows).map(|line| line + "\n").collect()
+}
+
+/// The folder of measured records, or `None` after saying that the test is skipped.
+pub fn measured() -> Option<PathBuf> {
+    let folder = std::env::var_os("TRIAL_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    if folder.is_dir() {
+        return folder.canonicalize().ok();
+    }
+    println!("skipped: no measured records at {}", folder.display());
+    None
+}
+
+/// A file or folder of the repository.
+pub fn of_repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}

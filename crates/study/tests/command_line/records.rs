@@ -1,0 +1,349 @@
+//! Records, good and bad: `study fit`.
+
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
+
+const METHODS: [&str; 7] = [
+    "fourier-published",
+    "fourier-projected",
+    "characteristic-points",
+    "least-squares",
+    "integral-least-squares",
+    "output-error",
+    "srivc",
+];
+
+fn refused(content: impl AsRef<[u8]>, parts: &[&str]) {
+    let desk = Desk::new();
+    desk.file("run.csv", content);
+    desk.run(&["fit", "run.csv"]).is_refused(2, &[&["run.csv"], parts].concat());
+    assert!(!desk.path("run-fit").exists(), "nothing is written for a record that is refused");
+}
+
+#[test]
+fn a_broken_table_is_refused_with_line_and_column() {
+    let good = zig_zag_csv();
+    refused(with_column(&good, "rudder_deg", |_, _| String::new()), &["`rudder_deg`", "no value"]);
+    refused(good.replace("rudder_deg", "ruder"), &["line 1", "rudder angle", "rudder_deg", "`ruder`", "rename"]);
+    let word = with_column(&good, "heading_deg", |row, psi| if row == 40 { "abc".into() } else { psi.to_string() });
+    refused(word, &["line 42", "`heading_deg`", "`abc`", "expected a number", "correct the cell"]);
+    let back = with_column(&good, "t_s", |row, t| if row == 40 { "12".into() } else { t.to_string() });
+    refused(back, &["line 42", "time runs backwards", "12 s after 39 s", "sort or cut"]);
+    refused(good.lines().take(4).collect::<Vec<_>>().join("\n"), &["3 of 3 rows", "at least 8"]);
+    refused(with_column(&good, "heading_deg", |_, _| "NaN".into()), &["`heading_deg`", "no value"]);
+    refused("", &["empty", "t_s,heading_deg,rudder_deg"]);
+    refused("t_s,heading_deg,rudder_deg\n", &["no row of numbers after line 1"]);
+    refused([0x50, 0x4b, 0x03, 0x04, 0x00, 0x00], &["zero byte", "CSV"]);
+}
+
+#[test]
+fn a_record_that_contradicts_itself_is_refused_with_the_cure() {
+    let good = zig_zag_csv();
+    let radians = |_: usize, angle: f64| angle.to_radians().to_string();
+    refused(
+        with_column(&good, "heading_deg", |_, _| "45".into()),
+        &["heading stays", "expected the heading to answer"],
+    );
+    refused(with_column(&good, "heading_deg", radians), &["radians", "heading_rad"]);
+    refused(with_column(&good, "rudder_deg", radians), &["radians", "rudder_rad"]);
+    refused(good.replace("heading_deg", "heading_rad"), &["degrees", "heading_deg"]);
+    refused(with_column(&good, "rudder_deg", |_, delta| (-delta).to_string()), &["flipped", "flip = true"]);
+    refused(with_column(&good, "rudder_deg", |_, delta| (1e300 * delta).to_string()), &["the rudder reaches"]);
+}
+
+#[test]
+fn a_ship_that_was_not_steered_cannot_be_identified() {
+    let good = zig_zag_csv();
+    let still = with_column(&good, "rudder_deg", |_, _| "0".into());
+    refused(
+        with_column(&still, "heading_deg", |row, _| (0.1 * (row as f64 * 1.7).sin()).to_string()),
+        &["no method can identify this record", "not excited", "rudder is put to both sides"],
+    );
+    refused(with_column(&still, "heading_deg", |_, _| "12".into()), &["nothing moves"]);
+    // A turning circle of which the beginning is missing: the rudder never moves.
+    let hard_over = with_column(&good, "rudder_deg", |_, _| "35".into());
+    refused(
+        with_column(&hard_over, "heading_deg", |row, _| (0.7 * row as f64).to_string()),
+        &["not excited", "stays at 35"],
+    );
+}
+
+#[test]
+fn a_turning_circle_gives_what_it_can() {
+    let desk = Desk::new();
+    let (mut rate, mut heading, mut rudder) = (0.0, 0.0, 0.0);
+    let mut table = String::from("t_s,heading_deg,rudder_deg\n");
+    for t in 0..600 {
+        writeln!(table, "{t},{heading:.4},{rudder}").expect("memory can be written");
+        rate += (0.02 * rudder - rate) / 16.0;
+        heading += rate;
+        rudder = if t < 20 { 0.0_f64 } else { 35.0_f64.min(rudder + 2.5) };
+    }
+    desk.file("turn.csv", table);
+    let run = desk.run(&["fit", "turn.csv"]);
+    assert!(run.is_done().out.contains("failed: "), "{}", run.out);
+    assert!(run.out.contains("characteristic-points failed: needs at least"), "{}", run.out);
+    assert!(run.out.contains("not a zig-zag"), "{}", run.out);
+    let fit = desk.json("turn-fit/fit.json");
+    let status = |id: &str| {
+        fit["methods"].as_array().expect("methods").iter().find(|m| m["method"] == id).expect(id)["status"].clone()
+    };
+    assert_eq!((status("output-error"), status("characteristic-points")), ("ok".into(), "failed".into()));
+    assert!(fit["zigzag"].is_null());
+    let only = desk.run(&["fit", "turn.csv", "--method", "characteristic-points"]);
+    only.is_refused(2, &["turn.csv: characteristic-points cannot identify this record", "help: "]);
+}
+
+#[test]
+fn a_record_of_ten_million_rows_is_refused_before_it_fills_the_memory() {
+    let desk = Desk::new();
+    let mut table = Vec::from("t,heading_deg,rudder_deg\n");
+    table.extend(b"7,8,9\n".repeat(10_000_000));
+    desk.file("long.csv", table);
+    desk.file("long.trial.toml", "[table]\ntime-step-s = 0.1\n[[column]]\nname = \"t\"\nignore = true\n");
+    desk.run(&["fit", "long.csv"]).is_refused(2, &["long.csv", "rows", "every = "]);
+}
+
+#[test]
+fn a_path_that_is_no_record_is_refused() {
+    let desk = Desk::new();
+    desk.file("good.csv", zig_zag_csv());
+    desk.file("folder/x", "");
+    desk.file("scenario.toml", "question = \"?\"");
+    desk.file("other.trial.toml", "[ship]\nlength-m = 100\nspeed-kn = 10\n");
+    let refused = |arguments: &[&str], parts: &[&str]| desk.run(&[&["fit"], arguments].concat()).is_refused(2, parts);
+    refused(&["missing.csv"], &["missing.csv: there is no such file"]);
+    refused(&["folder"], &["folder: this is a directory"]);
+    refused(&["scenario.toml"], &["scenario.toml: this is a TOML file and no record", "study scenario.toml"]);
+    refused(&["other.trial.toml"], &["other.trial.toml", "name the table"]);
+    refused(&["good.csv", "--method", "magic"], &["--method magic", "output-error"]);
+    refused(&["good.csv", "--validate", "missing.csv"], &["missing.csv: there is no such file"]);
+    refused(&["good.csv", "missing.csv"], &["missing.csv: there is no such file"]);
+    refused(&["good.csv", "--columns", "missing.toml"], &["missing.toml", "No such file"]);
+}
+
+#[test]
+fn a_broken_sidecar_is_refused_with_its_line() {
+    let desk = Desk::new();
+    desk.file("good.csv", zig_zag_csv());
+    for (text, parts) in [
+        ("[tabel]\n", &["line 1", "`tabel`", "`table`"][..]),
+        ("[table\n", &["line 1", "unclosed"][..]),
+        ("\n[[column]]\nname = \"psi\"\nis = \"heading_deg\"\n", &["line 2", "`psi`", "`heading_deg`"][..]),
+        ("[ship]\nlength-m = -7\nspeed-kn = 1\n", &["line 2", "-7", "above zero"][..]),
+    ] {
+        desk.file("odd.toml", text);
+        desk.run(&["fit", "good.csv", "--columns", "odd.toml"]).is_refused(2, &[&["odd.toml"], parts].concat());
+        desk.file("good.trial.toml", text);
+        desk.run(&["fit", "good.csv"]).is_refused(2, &[&["good.trial.toml"], parts].concat());
+    }
+}
+
+#[test]
+fn a_good_record_gives_a_table_figures_and_json() {
+    let desk = Desk::new();
+    desk.file("run 1.csv", zig_zag_csv());
+    let run = desk.run(&["fit", "run 1.csv"]);
+    for method in METHODS {
+        assert!(run.is_done().out.contains(method), "{method}\n{}", run.out);
+    }
+    assert!(run.out.contains("overshoots") && run.out.contains("run 1-fit"), "{}", run.out);
+    for figure in ["trial", "fit", "replays"] {
+        for kind in ["png", "svg"] {
+            assert!(desk.path("run 1-fit").join(figure).with_extension(kind).is_file(), "{figure}.{kind}");
+        }
+    }
+    let fit = desk.json("run 1-fit/fit.json");
+    assert_eq!(fit["schema"], "fit/1");
+    let trial = &fit["trials"][0];
+    assert_eq!(
+        (&trial["file"], &trial["samples"], &trial["duration_s"]),
+        (&"run 1.csv".into(), &301.into(), &300.0.into())
+    );
+    assert_eq!(trial["sha256"].as_str().map(str::len), Some(64));
+    let methods = fit["methods"].as_array().expect("a list");
+    let ids: Vec<&str> = methods.iter().filter_map(|method| method["method"].as_str()).collect();
+    assert_eq!(ids, METHODS);
+    let exact = methods.iter().find(|method| method["method"] == "output-error").expect("it is there");
+    assert_eq!(
+        (&exact["status"], &exact["reason"], &exact["course_unstable"]),
+        (&"ok".into(), &().into(), &false.into())
+    );
+    // The record is noise-free and of first order: K = 0.1 1/s, T = 16.3 s (ship::ships::yukun); its rows are 1 s apart, so the
+    // corners of the rudder between them are lost.
+    for (name, truth, tolerance) in [("K_per_s", 0.1, 1e-3), ("T_s", 16.3, 0.2), ("delta_r_deg", 0.0, 0.05)] {
+        let quantity = &exact["parameters"][name];
+        let value = quantity["value"].as_f64().expect("a number");
+        assert!((value - truth).abs() < tolerance, "{name} = {value}");
+        assert!(
+            quantity["sd"].is_number() && quantity["ci95"].as_array().is_some_and(|ends| ends.len() == 2),
+            "{quantity}"
+        );
+    }
+    assert!(exact["heading_rmse_deg"].as_f64().is_some_and(|rmse| rmse < 0.1), "{}", exact["heading_rmse_deg"]);
+    assert!(exact["validation"].as_array().is_some_and(Vec::is_empty) && exact["diagnostics"].is_object());
+    let zigzag = &fit["zigzag"];
+    for key in ["initial_turning_time_s", "period_s"] {
+        assert!(zigzag[key].is_number(), "{key}");
+    }
+    assert!(
+        zigzag["overshoots_deg"].as_array().is_some_and(|overshoots| overshoots.len() > 3) && zigzag["imo"].is_array()
+    );
+}
+
+#[test]
+fn a_course_unstable_ship_is_called_so() {
+    let desk = Desk::new();
+    let ship = ship::ships::user::first_order(-0.1, -40.0, 0.0, None).expect("K and T have the same sign");
+    desk.file("unstable.csv", zig_zag_csv_of(&ship));
+    let run = desk.run(&["fit", "unstable.csv", "--method", "output-error"]);
+    assert!(run.is_done().out.contains("course-unstable"), "{}", run.out);
+    let method = &desk.json("unstable-fit/fit.json")["methods"][0];
+    assert_eq!(method["course_unstable"], true);
+    let t = method["parameters"]["T_s"]["value"].as_f64().expect("a number");
+    assert!((t + 40.0).abs() < 1.0, "T = {t} s, simulated with -40 s");
+}
+
+#[test]
+fn options_of_fit_do_what_they_say() {
+    let desk = Desk::new();
+    let good = zig_zag_csv();
+    desk.file("a/run.csv", &good);
+    desk.file(
+        "b/run.csv",
+        with_column(&good, "heading_deg", |row, psi| (psi + 0.01 * (row as f64 * 2.3).sin()).to_string()),
+    );
+    desk.file("run.trial.toml", "[ship]\nlength-m = 105.0\nspeed-kn = 16.7\n");
+    let run = desk.run(&[
+        "fit",
+        "a/run.csv",
+        "b/run.csv",
+        "--validate",
+        "b/run.csv",
+        "--method",
+        "srivc",
+        "--method",
+        "output-error",
+        "--columns",
+        "run.trial.toml",
+        "--out",
+        "both",
+        "--threads",
+        "1",
+    ]);
+    let fit = desk.json("both/fit.json");
+    assert_eq!(fit["trials"].as_array().map(Vec::len), Some(2));
+    assert_eq!(fit["methods"].as_array().map(Vec::len), Some(2));
+    let validation = &fit["methods"][0]["validation"][0];
+    assert_eq!(validation["file"], "b/run.csv");
+    assert!(validation["heading_rmse_deg"].is_number());
+    assert!(
+        fit["zigzag"]["imo"].as_array().is_some_and(|imo| imo.iter().any(|criterion| criterion["verdict"] == "pass"))
+    );
+    // Records of the same name: three figures of each kind, and the table says which is which.
+    for name in ["fit.png", "fit-run-2.png", "fit-run-3.png", "replays-run-3.svg"] {
+        assert!(desk.path("both").join(name).is_file(), "{name}");
+    }
+    assert!(run.is_done().out.contains("run-3 is b/run.csv") && run.out.contains("on run-3"), "{}", run.out);
+    assert!(run.err.contains("validates nothing"), "{}", run.err);
+
+    let quiet = desk.run(&["fit", "a/run.csv", "--quiet", "--out", "quiet"]);
+    assert_eq!(quiet.is_done().out, "");
+    let bytes = |folder: &str| std::fs::read(desk.path(folder).join("fit.json")).expect("fit.json");
+    desk.run(&["fit", "a/run.csv", "--quiet", "--out", "one", "--threads", "1"]).is_done();
+    assert_eq!(bytes("quiet"), bytes("one"), "the same numbers whatever the number of threads");
+
+    let csv = desk.run(&["fit", "a/run.csv", "--format", "csv", "--out", "csv"]);
+    let lines: Vec<&str> = csv.is_done().out.lines().collect();
+    assert!(lines[0].starts_with("method,K [1/s],") && lines.len() == 1 + METHODS.len(), "{}", csv.out);
+    let latex = desk.run(&["fit", "a/run.csv", "--format", "latex", "--out", "latex"]);
+    assert!(
+        latex.is_done().out.starts_with("\\begin{table}") && latex.out.ends_with("\\end{table}\n"),
+        "{}",
+        latex.out
+    );
+    let markdown = desk.run(&["fit", "a/run.csv", "--format", "markdown", "--out", "markdown"]);
+    assert!(markdown.is_done().out.starts_with("| method"), "{}", markdown.out);
+}
+
+#[test]
+fn any_file_name_and_line_ending_will_do() {
+    let desk = Desk::new();
+    desk.file("船 10°.csv", zig_zag_csv().replace('\n', "\r\n"));
+    desk.run(&["fit", "船 10°.csv", "--method", "srivc"]).is_done();
+    assert!(desk.path("船 10°-fit/fit.json").is_file());
+}
+
+#[test]
+fn a_result_folder_that_cannot_be_made_is_a_failure_of_the_work() {
+    let desk = Desk::new();
+    desk.file("good.csv", zig_zag_csv());
+    desk.file("in-the-way", "");
+    desk.run(&["fit", "good.csv", "--out", "in-the-way"]).is_refused(1, &["in-the-way", "--out"]);
+}
+
+/// A reader that stops early (`study list effects | head -1`) is no reason to complain.
+#[test]
+fn a_closed_pipe_ends_the_output_quietly() {
+    let desk = Desk::new();
+    desk.file("good.csv", zig_zag_csv());
+    for arguments in [&["list", "effects"][..], &["fit", "good.csv", "--method", "srivc"][..]] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_study"))
+            .args(arguments)
+            .current_dir(desk.path(""))
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        drop(child.stdout.take());
+        let errors = BufReader::new(child.stderr.take().expect("piped"));
+        let errors: Vec<String> = errors.lines().map(|line| line.expect("UTF-8")).collect();
+        assert!(child.wait().expect("it ends").success(), "{errors:?}");
+        assert!(!errors.iter().any(|line| line.contains("panicked") || line.starts_with("error")), "{errors:?}");
+    }
+}
+
+#[test]
+fn every_measured_record_can_be_identified() {
+    let Some(data) = measured() else { return };
+    let desk = Desk::new();
+    for (set, record) in [
+        ("esso_osaka", "zigzag_13_57_45"),
+        ("kvlcc2_hsva", "zigzag_20_10_s"),
+        ("kvlcc2_hsva", "zigzag_10_10_s"),
+        ("kvlcc2_marin", "zigzag_20"),
+        ("kvlcc2_marin", "turning_35"),
+    ] {
+        let path = data.join(set).join(record).with_extension("csv").display().to_string();
+        let run = desk.run(&["fit", &path]);
+        assert!(run.is_done().out.contains("output-error"), "{record}\n{}", run.out);
+        assert!(desk.path(&format!("{record}-fit")).join("fit.json").is_file(), "{record}");
+    }
+}
+
+/// Raw files as their authors wrote them, through the sidecars of the repository: named, and beside the table.
+#[test]
+fn raw_records_are_read_through_their_sidecars() {
+    let Some(data) = measured() else { return };
+    let desk = Desk::new();
+    for name in [
+        "HSVA_CPMC_KVLCC2_Z_20_10_S.dat",
+        "MARIN_FREE_KVLCC2_zz_20_m.dat",
+        "esso_osaka_zigzag_31-Jul-2020_13_57_45.csv",
+    ] {
+        let stem = name.rsplit_once('.').expect("an extension").0;
+        let raw = data.join("raw").join(name);
+        let sidecar = of_repository("scenarios/measured").join(format!("{stem}.trial.toml"));
+        let raw_text = raw.display().to_string();
+        desk.run(&["fit", &raw_text, "--columns", &sidecar.display().to_string(), "--out", "named", "--quiet"])
+            .is_done();
+        desk.file(name, std::fs::read(&raw).expect("readable"));
+        desk.file(&format!("{stem}.trial.toml"), std::fs::read(&sidecar).expect("readable"));
+        desk.run(&["fit", name, "--out", "beside", "--quiet"]).is_done();
+        let methods = |folder: &str| desk.json(&format!("{folder}/fit.json"))["methods"].clone();
+        assert_eq!(methods("named"), methods("beside"), "{name}");
+    }
+}

@@ -1,0 +1,386 @@
+//! Scenarios, good and bad; lists, reports and usage.
+
+use crate::desk::{Desk, of_repository, zig_zag_csv};
+
+const GOOD: &str = "\
+question = \"Does it run?\"
+seed = 1
+replicates = 2
+
+[ship.yukun]
+
+[manoeuvre.zig-zag]
+rudder-deg = 10.0
+heading-deg = 20.0
+
+[steering-gear]
+rate-deg-s = 2.5
+
+[recording]
+sampling-s = 1.0
+duration-s = 270.0
+after-execute = 1
+
+[sensor]
+heading-noise-deg = 0.1
+
+[[identifier]]
+method.output-error = {}
+
+[[identifier]]
+method.least-squares = {}
+";
+
+/// The scenario with one piece replaced.
+fn changed(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    GOOD.replacen(from, to, 1)
+}
+
+fn refused(text: &str, line: usize, parts: &[&str]) {
+    let desk = Desk::new();
+    desk.file("case.toml", text);
+    let run = desk.run(&["check", "case.toml"]);
+    run.is_refused(2, parts);
+    assert!(run.err.contains(&format!("--> case.toml:{line}:")), "expected line {line}:\n{}", run.err);
+    assert!(run.err.contains("= help: "), "what to do is missing:\n{}", run.err);
+}
+
+#[test]
+fn a_misspelt_key_is_shown_with_the_one_that_was_meant() {
+    for (from, to, line, meant) in [
+        ("replicates", "replicate", 3, "`replicates`"),
+        ("rudder-deg", "ruder-deg", 8, "`rudder-deg`"),
+        ("rate-deg-s", "rate-deg", 12, "`rate-deg-s`"),
+        ("sampling-s", "sampling", 15, "`sampling-s`"),
+        ("heading-noise-deg", "heading-nois-deg", 20, "`heading-noise-deg`"),
+        ("[sensor]", "[senser]", 19, "`sensor`"),
+        ("method.output-error", "methd.output-error", 23, "`method`"),
+        ("output-error = {}", "output-error = { iteration = 3 }", 23, "`iterations`"),
+        ("[sensor]", "[sensor]\ndrop-out.probabilty = 0.1", 20, "`probability`"),
+        ("[ship.yukun]", "[ship.first-order]\nK-per = 0.1\nT-s = 16.0", 6, "`K-per-s`"),
+        ("[sensor]", "[disturbance.wind]\nmoment = 1.0\n[sensor]", 20, "`moment-deg`"),
+        ("[sensor]", "[[effect]]\nspeed_loss = { recovery = 20 }\n[sensor]", 20, "`recovery-s`"),
+        ("[sensor]", "[published]\nK-pers = 0.1\n[sensor]", 20, "`K-per-s`"),
+        ("[sensor]", "[output]\nshow-case = true\n[sensor]", 20, "`showcase`"),
+    ] {
+        refused(&changed(from, to), line, &["no such key here", "did you mean", meant]);
+    }
+    let sweep = |text: &str| format!("{GOOD}[[sweep]]\n{text}\n");
+    refused(&sweep("ky = \"sensor.heading-noise-deg\""), 28, &["`key`"]);
+    refused(&sweep("points = [{ lable = \"a\", set = {} }]"), 28, &["`lable`", "`label`"]);
+}
+
+#[test]
+fn an_unknown_name_is_shown_with_the_known_ones() {
+    refused(&changed("output-error", "output-eror"), 23, &["no method is called `output-eror`", "`output-error`"]);
+    refused(&changed("zig-zag", "zigzag"), 7, &["no manoeuvre is called `zigzag`", "`zig-zag`"]);
+    refused(&changed("yukun", "yukum"), 5, &["no ship is called `yukum`", "`yukun`"]);
+    let effect = changed("[sensor]", "[[effect]]\nrudder_dedband.backlash-deg = 1.0\n[sensor]");
+    refused(&effect, 20, &["no effect is called `rudder_dedband`", "`rudder_deadband`"]);
+    let side = changed("heading-deg = 20.0", "heading-deg = 20.0\nfirst = \"left\"");
+    refused(&side, 10, &["is the text \"left\"", "`starboard`"]);
+}
+
+#[test]
+fn a_value_of_the_wrong_kind_is_shown_with_what_was_expected() {
+    for (from, to, line, found, expected) in [
+        ("10.0", "\"ten\"", 8, "is the text \"ten\"", "expected a number"),
+        ("seed = 1", "seed = 1.5", 2, "`seed` is 1.5", "expected a whole number"),
+        ("seed = 1", "seed = -1", 2, "`seed` is -1", "expected a whole number, 0 or above"),
+        ("seed = 1", "seed = 2020-01-01", 2, "the date 2020-01-01", "expected a whole number"),
+        ("\"Does it run?\"", "3", 1, "`question` is 3", "expected a text in quotes"),
+        ("[ship.yukun]", "[ship]\nyukun = 3", 6, "`ship.yukun` is 3", "expected a table"),
+        ("method.output-error = {}", "method = \"output-error\"", 23, "\"output-error\"", "`method.output-error = {}`"),
+    ] {
+        refused(&changed(from, to), line, &[found, expected]);
+    }
+    let ship = changed("[ship.yukun]\n", "").replace("seed = 1", "seed = 1\nship = \"yukun\"");
+    refused(&ship, 3, &["`ship` is the text \"yukun\"", "[ship.yukun]"]);
+    refused(&changed("[sensor]", "[effect]\nx = 1\n[sensor]"), 19, &["`effect` is a table", "[[effect]]"]);
+}
+
+#[test]
+fn a_missing_key_is_named_where_it_belongs() {
+    for (line_of_text, line, key) in [
+        ("question = \"Does it run?\"\n", 1, "`question`"),
+        ("sampling-s = 1.0\n", 14, "`sampling-s`"),
+        ("heading-deg = 20.0\n", 7, "`heading-deg`"),
+    ] {
+        refused(&changed(line_of_text, ""), line, &[key, "here"]);
+    }
+    refused(
+        &changed("duration-s = 270.0\n", ""),
+        14,
+        &["`recording.duration-s` is missing", "nothing else ends the run"],
+    );
+    let methods = GOOD.find("[[identifier]]").expect("there are methods");
+    refused(&GOOD[..methods], 1, &["`identifier`", "method.output-error"]);
+    refused(
+        &changed("seed = 1", "seed = 1\nidentifier = []").split("[[identifier]]").collect::<Vec<_>>()[0],
+        3,
+        &["names no method"],
+    );
+    refused(&changed("[ship.yukun]", "[ship.first-order]\nK-per-s = 0.1"), 5, &["`ship.first-order` has no key `T-s`"]);
+    refused(
+        &changed("[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 20.0", "[manoeuvre]"),
+        7,
+        &["`manoeuvre` names nothing", "`zig-zag`"],
+    );
+}
+
+#[test]
+fn a_value_out_of_range_is_shown_with_the_range() {
+    for (from, to, line, found, expected) in [
+        ("rate-deg-s = 2.5", "rate-deg-s = -2.5", 12, "is -2.5", "expected a number above 0"),
+        ("sampling-s = 1.0", "sampling-s = 0.0", 15, "`recording.sampling-s` is 0", "expected a number above 0"),
+        ("sampling-s = 1.0", "sampling-s = inf", 15, "is inf", "expected a finite number"),
+        ("rudder-deg = 10.0", "rudder-deg = nan", 8, "is NaN", "expected a finite number"),
+        ("noise-deg = 0.1", "noise-deg = nan", 20, "is NaN", "expected a finite number"),
+        ("rate-deg-s = 2.5", "maximum-deg = 5.0", 8, "rudder-deg` is 10", "expected at most 5"),
+        ("rudder-deg = 10.0", "rudder-deg = 100", 8, "is 100", "expected at most 90"),
+        ("replicates = 2", "replicates = 0", 3, "`replicates` is 0", "expected at least 1"),
+        ("replicates = 2", "replicates = 9000000000000000000", 3, "9000000000000000000", "expected at most"),
+        ("replicates = 2", "replicates = 99999999999999999999", 3, "not valid TOML", "too many digits"),
+        ("duration-s = 270.0", "duration-s = 1e18", 16, "1000000000000000000", "expected at most 10000000"),
+        ("after-execute = 1", "after-execute = 0", 17, "is 0", "count the executes from 1"),
+        (
+            "output-error = {}",
+            "output-error.iterations = 0",
+            23,
+            "output-error.iterations` is 0",
+            "expected at least 1",
+        ),
+        ("[sensor]", "[sensor]\ndrop-out.probability = 1.5", 20, "is 1.5", "expected a number from 0 to 1"),
+    ] {
+        refused(&changed(from, to), line, &[found, expected]);
+    }
+    let ship = |numbers: &str| changed("[ship.yukun]", &format!("[ship.first-order]\n{numbers}"));
+    refused(&ship("K-per-s = -0.1\nT-s = 16.0"), 6, &["K-per-s` is -0.1", "sign"]);
+    refused(&ship("K-per-s = 0.1\nT-s = 0.0"), 7, &["T-s` is 0.0", "other than zero"]);
+    refused(
+        &ship("K-per-s = 0.1\nT-s = 16.0\nlength-m = 100.0"),
+        8,
+        &["`length-m` without `speed-kn`", "leave both out"],
+    );
+}
+
+#[test]
+fn what_contradicts_itself_is_refused() {
+    refused(&changed("least-squares", "output-error"), 25, &["two methods are called `output-error`", "label"]);
+    let both = changed("heading-deg = 20.0", "heading-deg = 20.0\nexecutes = 5\nduration-s = 100.0");
+    refused(&both, 11, &["both `executes` and `duration-s`", "leave out"]);
+    refused(
+        &changed("after-execute = 1", "offset-s = 1.0"),
+        17,
+        &["`after-execute` is missing", "add `after-execute = 1`"],
+    );
+    let late = changed("heading-deg = 20.0", "heading-deg = 20.0\nexecutes = 3")
+        .replace("after-execute = 1", "after-execute = 4");
+    refused(&late, 18, &["after-execute` is 4", "ends after execute 3", "expected at most 3"]);
+    refused(&changed("[ship.yukun]", "[ship.yukun]\n[ship.mariner]"), 5, &["2 ships", "exactly one"]);
+    refused(
+        &changed("[ship.yukun]", "[ship.yukun]\nK-per-s = 0.1"),
+        5,
+        &["`yukun` has settings", "[ship.first-order]"],
+    );
+    refused(
+        &changed("output-error = {}", "output-error = {}\nmethod.srivc = {}"),
+        23,
+        &["2 things at once", "keep one"],
+    );
+    let hull =
+        changed("yukun", "kvlcc2").replace("[sensor]", "[[effect]]\nmoment_drift.rudder-deg-per-s = 0.01\n[sensor]");
+    refused(&hull, 19, &["`kvlcc2`, a hull", "response models"]);
+    let effect = |text: &str| changed("[sensor]", &format!("[[effect]]\n{text}\n[sensor]"));
+    refused(&effect("rudder_deadband.backlash-deg = -1.0"), 20, &["backlash-deg` is -1", "from 0 to 8.594"]);
+    refused(&effect("rudder_deadband.backlash-deg = nan"), 20, &["backlash-deg` is NaN"]);
+    refused(&effect("wind_moment = { rudder-deg = 50.0, from-deg = 45.0 }"), 20, &["rudder-deg` is 50", "34.38"]);
+}
+
+#[test]
+fn a_faulty_sweep_is_shown_at_its_place() {
+    let refused = |text: &str, line: usize, parts: &[&str]| refused(&format!("{GOOD}[[sweep]]\n{text}\n"), line, parts);
+    refused(
+        "key = \"sensor.heading-nose-deg\"\nvalues = [0.1]",
+        28,
+        &["has no key `heading-nose-deg`", "`heading-noise-deg`"],
+    );
+    refused("key = \"sensor.heading-noise-deg\"\nvalues = [0.1, -0.2]", 29, &["to -0.2", "0 or above"]);
+    refused("key = \"sensor.heading-noise-deg\"\nvalues = [0.1, \"x\"]", 29, &["to \"x\"", "expected a number"]);
+    refused("key = \"identifier.7.label\"\nvalues = [\"a\"]", 28, &["`7`", "from 0 to 1"]);
+    refused("key = \"seed\"\nvalues = [1, 2]", 28, &["`seed`", "the whole study"]);
+    refused("key = \"a\"\nvalues = [1]\nlog = { from = 1, to = 2, points = 3 }", 27, &["`points` alone"]);
+    let noise = "key = \"sensor.heading-noise-deg\"\n";
+    refused(&format!("{noise}values = []"), 27, &["no points"]);
+    refused(&format!("{noise}values = [1, 1]"), 27, &["two points", "`1`"]);
+    refused(&format!("{noise}log = {{ from = 0, to = 1, points = 10 }}"), 29, &["from 0 to 1", "above 0"]);
+    refused(&format!("{noise}log = {{ from = 0.1, to = 1, points = 1000000000000000 }}"), 29, &["2 to 100000 points"]);
+    let wide = "linear = { from = 0.1, to = 1, points = 1000 }";
+    refused(
+        &format!("{noise}{wide}\n[[sweep]]\nkey = \"recording.sampling-s\"\n{wide}"),
+        27,
+        &["1000 × 1000 = 1000000 cells"],
+    );
+    refused(&format!("{noise}values = [1]\n[[sweep]]\n{noise}values = [2]"), 30, &["two sweeps change"]);
+    refused(
+        "points = [{ label = \"a\", set = {} }, { label = \"b\", set = { \"recording.sampling-s\" = 0 } }]",
+        28,
+        &["`recording.sampling-s` to 0", "above 0"],
+    );
+}
+
+#[test]
+fn text_that_is_no_toml_is_shown_where_it_stops_to_be() {
+    refused(&changed("10.0", "= 10.0"), 8, &["not valid TOML"]);
+    refused(&changed("[recording]", "[recording"), 14, &["not valid TOML"]);
+    refused(&changed("seed = 1", "seed = 1\nseed = 2"), 3, &["duplicate key"]);
+    refused("", 1, &["nothing in this scenario"]);
+    refused("# only a note\n", 1, &["nothing in this scenario"]);
+}
+
+#[test]
+fn a_path_that_is_no_scenario_is_refused() {
+    let desk = Desk::new();
+    desk.file("record.csv", zig_zag_csv());
+    desk.file("binary.toml", [0x71, 0x20, 0xff, 0xfe, 0x00]);
+    desk.file("folder/x", "");
+    for run in ["check", "run"] {
+        let refused = |name: &str, parts: &[&str]| match run {
+            "check" => desk.run(&["check", name]).is_refused(2, parts),
+            _ => desk.run(&[name]).is_refused(2, parts),
+        };
+        refused("missing.toml", &["missing.toml: there is no such file", "TOML"]);
+        refused("folder", &["folder: this is a folder"]);
+        refused("binary.toml", &["binary.toml: line 1", "0xff", "UTF-8"]);
+        refused("record.csv", &["record.csv:1", "study fit"]);
+    }
+    assert!(!desk.path("results").exists(), "nothing is written for a scenario that is refused");
+}
+
+#[test]
+fn the_record_of_a_replay_is_read_with_the_scenario() {
+    let replay = |file: &str| {
+        changed(
+            "[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 20.0",
+            &format!("[manoeuvre.replay]\nfile = \"{file}\""),
+        )
+    };
+    refused(&replay("nope.csv"), 8, &["nope.csv", "no such file"]);
+    refused(&replay("."), 8, &["directory"]);
+    let desk = Desk::new();
+    desk.file("studies/case.toml", replay("../record.csv"));
+    desk.file("record.csv", zig_zag_csv());
+    desk.run(&["check", "studies/case.toml"]).is_done();
+}
+
+#[test]
+fn line_endings_byte_order_marks_and_whole_numbers_do_no_harm() {
+    let desk = Desk::new();
+    desk.file("plain.toml", GOOD);
+    desk.file("windows.toml", GOOD.replace('\n', "\r\n"));
+    desk.file("mark.toml", format!("\u{feff}{GOOD}"));
+    desk.file("船 10°.toml", changed("10.0", "10"));
+    let run = desk.run(&["check", "plain.toml", "windows.toml", "mark.toml", "船 10°.toml"]);
+    assert_eq!(run.is_done().out.lines().count(), 4);
+    assert!(run.out.contains("船 10°.toml: 1 cell, 2 methods, 2 trials each"), "{}", run.out);
+    refused(&changed("rate-deg-s = 2.5", "rate-deg-s = -2.5").replace('\n', "\r\n"), 12, &["is -2.5"]);
+}
+
+#[test]
+fn check_names_what_is_right_and_what_is_wrong() {
+    let desk = Desk::new();
+    desk.file("good.toml", GOOD);
+    desk.file("bad.toml", changed("yukun", "titanic"));
+    let run = desk.run(&["check", "bad.toml", "good.toml"]);
+    assert_eq!(run.code, Some(2));
+    assert!(run.out.starts_with("good.toml: "), "{}", run.out);
+    assert!(run.err.contains("titanic"), "{}", run.err);
+}
+
+#[test]
+fn every_scenario_of_the_repository_is_right() {
+    let desk = Desk::new();
+    let mut files: Vec<String> = std::fs::read_dir(of_repository("scenarios"))
+        .expect("the folder is there")
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .map(|path| path.display().to_string())
+        .collect();
+    files.sort();
+    assert!(!files.is_empty());
+    let arguments: Vec<&str> = ["check"].into_iter().chain(files.iter().map(String::as_str)).collect();
+    assert_eq!(desk.run(&arguments).is_done().out.lines().count(), files.len());
+}
+
+#[test]
+fn a_scenario_runs_and_its_report_is_made_again() {
+    let desk = Desk::new();
+    desk.file("small.toml", GOOD);
+    let run = desk.run(&["small.toml"]);
+    assert!(run.is_done().out.contains("output-error"), "{}", run.out);
+    let page = std::fs::read(desk.path("results/small/report.md")).expect("the report is there");
+    std::fs::remove_file(desk.path("results/small/report.md")).expect("it was there");
+    desk.run(&["report", "results/small"]).is_done();
+    assert_eq!(std::fs::read(desk.path("results/small/report.md")).expect("it is there again"), page);
+    for file in ["rows.parquet", "summary.csv", "manifest.toml"] {
+        assert!(desk.path("results/small").join(file).is_file(), "{file}");
+    }
+    let other = desk.run(&["small.toml", "--out", "one", "--threads", "1", "--quiet"]);
+    assert_eq!(other.is_done().out, "");
+    let rows = |folder: &str| std::fs::read(desk.path(folder).join("rows.parquet")).expect("rows");
+    assert_eq!(rows("results/small"), rows("one"), "the same rows whatever the number of threads");
+    desk.run(&["small.toml", "--out", "two", "--seed", "2", "--quiet"]).is_done();
+    assert_ne!(rows("one"), rows("two"));
+}
+
+#[test]
+fn a_folder_that_is_no_study_cannot_be_reported() {
+    let desk = Desk::new();
+    desk.file("folder/x", "");
+    desk.run(&["report", "folder"]).is_refused(2, &["folder", "finished study"]);
+    desk.run(&["report", "missing"]).is_refused(2, &["missing", "finished study"]);
+}
+
+#[test]
+fn a_result_folder_that_cannot_be_made_is_a_failure_of_the_work() {
+    let desk = Desk::new();
+    desk.file("small.toml", GOOD);
+    desk.file("in-the-way", "");
+    desk.run(&["small.toml", "--out", "in-the-way"]).is_refused(1, &["in-the-way"]);
+}
+
+#[test]
+fn lists_name_everything_in_every_format() {
+    let desk = Desk::new();
+    for (what, name) in [
+        ("identifiers", "output-error"),
+        ("effects", "backlash-deg"),
+        ("ships", "kvlcc2"),
+        ("manoeuvres", "zig-zag"),
+        ("sensors", "heading-noise-deg"),
+    ] {
+        for format in ["text", "markdown", "csv", "latex"] {
+            let run = desk.run(&["list", what, "--format", format]);
+            assert!(run.is_done().out.contains(name), "{what} {format}\n{}", run.out);
+            assert_eq!(run.err, "");
+        }
+    }
+}
+
+#[test]
+fn wrong_usage_is_exit_code_2() {
+    let desk = Desk::new();
+    desk.file("small.toml", GOOD);
+    assert_eq!(desk.run(&[]).code, Some(2));
+    for (arguments, part) in [
+        (&["list", "fish"][..], "identifiers"),
+        (&["small.toml", "--threads", "0"][..], "--threads"),
+        (&["small.toml", "--seed", "-1"][..], "whole number from 0"),
+        (&["small.toml", "--out", ""][..], "--out"),
+        (&["small.toml", "--format", "pdf"][..], "latex"),
+        (&["fit"][..], "TRIAL"),
+    ] {
+        desk.run(arguments).is_refused(2, &[part]);
+    }
+}
