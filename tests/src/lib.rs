@@ -1,1 +1,12 @@
-//! Shared support of the tests.
+//! Support shared by the tests of the whole workspace: published numbers held against ours, and records to test methods
+//! with. What a single crate can show about itself is tested there.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | every number that is held against a published one | [`validation`] |
+//! | simulated records, and what can be done to a record | [`records`] |
+//! | measured records, which are not part of the project | [`measured`] |
+
+pub mod measured;
+pub mod records;
+pub mod validation;

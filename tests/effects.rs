@@ -1,0 +1,141 @@
+//! One contract for every effect, with the simulator in the loop: a zig-zag is steered with the effect in the ship.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use kempf_tests::records::zig_zag;
+use ship::angle::{from_deg, to_deg};
+use ship::effects::{self, Effect, Parameter};
+use ship::{Particulars, Response, ResponseModel};
+use simulate::{Manoeuvre, Side, Simulated, StreamKey, Vessel};
+
+/// The identifiers users and files rely on.
+const IDS: [&str; 12] = [
+    "second_order",
+    "nonlinear_damping",
+    "wind_moment",
+    "speed_loss",
+    "steering_lag",
+    "rudder_saturation",
+    "rudder_deadband",
+    "port_starboard_asymmetry",
+    "moment_drift",
+    "transient_disturbance",
+    "wave_yaw",
+    "sway_coupling_measured",
+];
+
+/// K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg, the bias to the side of `sign`.
+fn base(sign: f64) -> Vec<f64> {
+    vec![1.0 / 16.3, 0.1 / 16.3, sign * from_deg(0.5)]
+}
+
+fn with_effect(effect: &Arc<dyn Effect>, sign: f64, value: fn(&Parameter) -> f64) -> Response {
+    let mut parameters = base(sign);
+    parameters.extend(effect.parameters().iter().map(|p| if p.odd { sign * value(p) } else { value(p) }));
+    ResponseModel::new(vec![Arc::clone(effect)]).with(parameters)
+}
+
+/// A 10/10 zig-zag of 300 s, first execute to the side of `sign`.
+fn steer(response: Response, sign: f64) -> Simulated {
+    let vessel = Vessel::response(response).with_particulars(Particulars { length: 105.0, speed: 8.6 });
+    let mut simulation = zig_zag(vessel, 10.0, 10.0, from_deg(2.5), 300.0);
+    if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
+        zig_zag.first = if sign < 0.0 { Side::Port } else { Side::Starboard };
+    }
+    simulation
+        .run(&StreamKey { seed: 7, cell: 0, replicate: 0 })
+        .expect("a zig-zag with a typical effect comes to its end")
+}
+
+fn name(effect: &Arc<dyn Effect>) -> String {
+    format!("{} ({})", effect.id(), effect.form())
+}
+
+/// Largest distance of two headings, deg.
+fn apart_deg(left: &[f64], right: &[f64]) -> f64 {
+    assert_eq!(left.len(), right.len());
+    left.iter().zip(right).map(|(left, right)| to_deg((left - right).abs())).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_twelve_identifiers_of_the_contract_are_all_there() {
+    let found: BTreeSet<&str> = effects::all().iter().map(|effect| effect.id()).collect();
+    assert_eq!(found, BTreeSet::from(IDS));
+    let forms: BTreeSet<String> = effects::all().iter().map(name).collect();
+    assert_eq!(forms.len(), effects::all().len(), "no form twice");
+    assert!(effects::all().iter().all(|effect| effect.equation().contains('=')));
+}
+
+#[test]
+fn neutral_and_typical_values_lie_within_the_bounds() {
+    for effect in effects::all() {
+        assert!(!effect.parameters().is_empty());
+        for p in effect.parameters() {
+            let what = format!("{}: {}", name(&effect), p.symbol);
+            assert!(p.lowest < p.highest, "{what}");
+            assert!((p.lowest..=p.highest).contains(&p.neutral), "{what} neutral");
+            assert!((p.lowest..=p.highest).contains(&p.typical), "{what} typical");
+            // The mirror image of a value that changes sign has to be allowed as well.
+            assert!(!p.odd || (p.neutral == 0.0 && p.lowest == -p.highest), "{what} is odd");
+            assert!(!p.symbol.is_empty() && !p.unit.is_empty());
+        }
+        let moved = effect.parameters().iter().any(|p| p.typical != p.neutral);
+        assert!(moved, "{}: typical is not absent", name(&effect));
+    }
+}
+
+#[test]
+fn a_typical_effect_keeps_a_zig_zag_finite_and_is_seen_unless_it_needs_a_channel() {
+    let plain = steer(ResponseModel::first_order().with(base(1.0)), 1.0);
+    for effect in effects::all() {
+        let simulated = steer(with_effect(&effect, 1.0, |p| p.typical), 1.0);
+        let truth = &simulated.truth;
+        let columns = [&truth.heading, &truth.yaw_rate, &truth.yaw_acceleration, &truth.rudder];
+        assert!(columns.iter().all(|column| column.iter().all(|x| x.is_finite())), "{}", name(&effect));
+        assert!(truth.executes.len() >= 4, "{}: {} executes", name(&effect), truth.executes.len());
+        let seen = apart_deg(simulated.trial.heading(), plain.trial.heading());
+        // Forms made from measured channels have nothing to act on: the simulator measures with its own instruments only.
+        assert_eq!(seen > 0.01, !effect.form().starts_with("measured"), "{}: moved by {seen} deg", name(&effect));
+    }
+}
+
+/// Reversals depend on the heading, so rounding in the integration moves them: 1e-6 deg after 300 s.
+#[test]
+fn a_neutral_effect_is_no_effect() {
+    let plain = steer(ResponseModel::first_order().with(base(1.0)), 1.0);
+    for effect in effects::all() {
+        let neutral = steer(with_effect(&effect, 1.0, |p| p.neutral), 1.0);
+        let apart = apart_deg(neutral.trial.heading(), plain.trial.heading());
+        assert!(apart < 1e-6, "{}: {apart} deg", name(&effect));
+    }
+}
+
+#[test]
+fn the_mirror_image_of_a_zig_zag_is_a_zig_zag_of_the_mirrored_ship() {
+    for effect in effects::all() {
+        let starboard = steer(with_effect(&effect, 1.0, |p| p.typical), 1.0);
+        let port = steer(with_effect(&effect, -1.0, |p| p.typical), -1.0);
+        let mirrored: Vec<f64> = port.truth.heading.iter().map(|psi| -psi).collect();
+        let apart = apart_deg(&starboard.truth.heading, &mirrored);
+        assert!(apart < 1e-9, "{}: {apart} deg", name(&effect));
+        assert_eq!(starboard.truth.executes.len(), port.truth.executes.len());
+    }
+}
+
+#[test]
+fn values_at_the_bounds_do_not_break_the_equations() {
+    for effect in effects::all() {
+        for value in [|p: &Parameter| p.lowest, |p: &Parameter| p.highest] {
+            let response = with_effect(&effect, 1.0, value);
+            let dynamics: &dyn ship::Dynamics = &response;
+            let mut state = vec![0.0; dynamics.dimension()];
+            dynamics.approach(0.1, 0.01, &mut state);
+            let mut rate = state.clone();
+            let input = ship::Input { rudder: from_deg(10.0), ..ship::Input::default() };
+            dynamics.rates(0.0, &state, &input, &mut rate);
+            assert!(rate.iter().all(|x| x.is_finite()), "{}: {rate:?}", name(&effect));
+            assert!(dynamics.largest_step() > 0.0 && dynamics.dead_time().is_finite());
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Simulated zig-zag records of a first-order ship, and what can be done to a record: exchange its sides, shift its clock or
+//! its compass, lose rows. A record made here is what a method sees; nothing here identifies.
+
+use ship::FirstOrder;
+use ship::angle::from_deg;
+use simulate::manoeuvre::{ZigZag, ZigZagEnd};
+use simulate::recording::Start;
+use simulate::{Manoeuvre, Side, Simulated, Simulation, SteeringGear, StreamKey, Vessel};
+use trial::{Channel, Columns, Trial};
+
+/// Where a record begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Begin {
+    /// At the first execute, the ship running straight.
+    Rest,
+    /// 1.2 s after the second execute, in the middle of the trial.
+    Mid,
+}
+
+/// A zig-zag of a first-order ship and its record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Case {
+    /// The ship.
+    pub ship: FirstOrder,
+    /// Rudder angle, deg.
+    pub rudder_deg: f64,
+    /// Heading at which the rudder is reversed, deg.
+    pub heading_deg: f64,
+    /// Rudder rate, deg/s; infinite for a rudder that jumps.
+    pub rate_deg_s: f64,
+    /// Side of the first execute.
+    pub first: Side,
+    /// Where the record begins.
+    pub begin: Begin,
+    /// Length of the record, s.
+    pub duration_s: f64,
+    /// Time between rows, s.
+    pub period_s: f64,
+    /// Standard deviation of white heading noise, deg.
+    pub noise_deg: f64,
+}
+
+impl Default for Case {
+    /// 10/10 of K = 0.1 1/s, T = 16.3 s at 2.5 deg/s, 271 rows at 1 s from rest, no noise.
+    fn default() -> Self {
+        Self {
+            ship: FirstOrder::from_indices(0.1, 16.3, 0.0),
+            rudder_deg: 10.0,
+            heading_deg: 10.0,
+            rate_deg_s: 2.5,
+            first: Side::Starboard,
+            begin: Begin::Rest,
+            duration_s: 270.0,
+            period_s: 1.0,
+            noise_deg: 0.0,
+        }
+    }
+}
+
+impl Case {
+    /// The trial as a specification.
+    pub fn simulation(&self) -> Simulation {
+        let mut simulation = zig_zag(
+            Vessel::first_order(self.ship),
+            self.rudder_deg,
+            self.heading_deg,
+            from_deg(self.rate_deg_s),
+            self.duration_s,
+        );
+        if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
+            zig_zag.first = self.first;
+        }
+        if self.begin == Begin::Mid {
+            simulation.recording.start = Start::Execute { number: 2, offset: 1.2 };
+        }
+        simulation.recording.period = self.period_s;
+        simulation.sensors.heading.noise = from_deg(self.noise_deg);
+        simulation
+    }
+
+    /// The record and the truth behind it.
+    ///
+    /// # Panics
+    /// When the ship never makes its executes: a mistake of the test.
+    pub fn run(&self, replicate: u64) -> Simulated {
+        let key = StreamKey { seed: 1957, cell: 0, replicate };
+        self.simulation().run(&key).expect("the ship of a case reaches its executes")
+    }
+
+    /// The record.
+    pub fn trial(&self, replicate: u64) -> Trial {
+        self.run(replicate).trial
+    }
+}
+
+/// A zig-zag (angles in deg, `rate` in rad/s), starboard first, recorded once a second for `duration` s.
+pub fn zig_zag(vessel: Vessel, rudder_deg: f64, heading_deg: f64, rate: f64, duration: f64) -> Simulation {
+    let (rudder, heading) = (from_deg(rudder_deg), from_deg(heading_deg));
+    let manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first: Side::Starboard, end: ZigZagEnd::Record });
+    let mut simulation = Simulation::new(vessel, manoeuvre);
+    simulation.gear = SteeringGear::with_rate(rate);
+    simulation.recording.duration = Some(duration);
+    simulation
+}
+
+/// The record with other columns; its heading and rudder are in the map under their channels.
+fn altered(trial: &Trial, alter: impl FnOnce(&mut Columns)) -> Trial {
+    let mut channels: std::collections::BTreeMap<Channel, Vec<f64>> =
+        trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
+    channels.insert(Channel::Rudder, trial.rudder().to_vec());
+    let mut columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+    alter(&mut columns);
+    let made = Trial::new(trial.name(), trial.origin().clone(), columns).expect("the altered record is a record");
+    let made = made.with_noise(trial.noise());
+    match trial.particulars() {
+        Some(particulars) => made.with_particulars(particulars),
+        None => made,
+    }
+}
+
+/// Port and starboard exchanged.
+pub fn mirrored(trial: &Trial) -> Trial {
+    altered(trial, |columns| {
+        for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::Sway] {
+            columns.channels.get_mut(&channel).into_iter().flatten().for_each(|value| *value = -*value);
+        }
+    })
+}
+
+/// The clock set forward by `by` s.
+pub fn delayed(trial: &Trial, by: f64) -> Trial {
+    altered(trial, |columns| columns.time.iter_mut().for_each(|t| *t += by))
+}
+
+/// The compass turned by `by` rad.
+pub fn turned(trial: &Trial, by: f64) -> Trial {
+    altered(trial, |columns| {
+        columns.channels.get_mut(&Channel::Heading).into_iter().flatten().for_each(|psi| *psi += by);
+    })
+}
+
+/// The headings of the rows for which `lost` holds replaced by NaN.
+pub fn without_headings(trial: &Trial, lost: impl Fn(usize) -> bool) -> Trial {
+    altered(trial, |columns| {
+        let heading = columns.channels.get_mut(&Channel::Heading).into_iter().flatten().enumerate();
+        heading.filter(|(row, _)| lost(*row)).for_each(|(_, psi)| *psi = f64::NAN);
+    })
+}
+
+/// The rows for which `lost` holds left out.
+pub fn without_rows(trial: &Trial, lost: impl Fn(usize) -> bool) -> Trial {
+    altered(trial, |columns| {
+        for column in std::iter::once(&mut columns.time).chain(columns.channels.values_mut()) {
+            let mut row = 0;
+            column.retain(|_| {
+                row += 1;
+                !lost(row - 1)
+            });
+        }
+    })
+}
+
+/// A record of `rows` rows at 1 s with the rudder amidships and a heading that wanders by less than 0.1 deg.
+pub fn straight_run(rows: usize) -> Trial {
+    let time: Vec<f64> = (0..rows).map(|row| row as f64).collect();
+    let heading = time.iter().map(|t| 0.3 + from_deg(0.05) * (0.7 * t).sin()).collect();
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, vec![0.0; rows])].into();
+    let origin = trial::Origin::Simulated { scenario: "straight run".into(), cell: 0, replicate: 0 };
+    Trial::new("straight run", origin, Columns { time, channels, unknown: Vec::new() })
+        .expect("a straight run is a record")
+}
