@@ -18,7 +18,7 @@ const WORK: [(&str, usize, f64, &str); 7] = [
     ("characteristic-points", 1, 0.0, "direct"),
     ("least-squares", 1, 0.0, "direct"),
     ("integral-least-squares", 1, 0.0, "direct"),
-    ("output-error", 535, 0.3, "converged"),
+    ("output-error", 122, 0.3, "converged"),
     ("srivc", 5, 0.0, "converged"),
 ];
 

@@ -67,7 +67,10 @@ pub struct OutputError {
 const SLOWEST: f64 = 0.02;
 
 /// Relative step at which the polish stops.
-const TOLERANCE: f64 = 1e-11;
+const TOLERANCE: f64 = 1e-10;
+
+/// Halvings after which a step that does not lead down is taken for rounding.
+const MOST_HALVINGS: usize = 12;
 
 /// Unknowns of the base that all trials share: 1/T, K/T, δ_r.
 const SHARED: usize = 3;
@@ -108,26 +111,21 @@ impl OutputError {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
         for iterations in 1..=self.settings.iterations {
+            let converged = Minimum { inverse_time, rss, stop: StopReason::Converged, iterations };
             let mut step = profile.newton_step(inverse_time);
-            let accepted = (0..40).find_map(|_| {
-                let trial = profile.evaluate(inverse_time + step).filter(|&trial| trial <= rss);
-                if trial.is_none() {
+            if step.abs() <= TOLERANCE * (inverse_time.abs() + resolution) {
+                return Some(converged);
+            }
+            let lower = (0..MOST_HALVINGS).find_map(|_| {
+                let lower = profile.evaluate(inverse_time + step).filter(|&lower| lower < rss);
+                if lower.is_none() {
                     step *= 0.5;
                 }
-                trial
+                lower
             });
-            let settled = step.abs() <= TOLERANCE * (inverse_time.abs() + resolution);
-            match accepted {
-                Some(lower) => (inverse_time, rss) = (inverse_time + step, lower),
-                // No step downhill is left: a minimum to rounding.
-                None => {
-                    profile.evaluate(inverse_time)?;
-                    return Some(Minimum { inverse_time, rss, stop: StopReason::Converged, iterations });
-                }
-            }
-            if settled {
-                return Some(Minimum { inverse_time, rss, stop: StopReason::Converged, iterations });
-            }
+            // No step downhill is left: a minimum to rounding.
+            let Some(lower) = lower else { return Some(converged) };
+            (inverse_time, rss) = (inverse_time + step, lower);
         }
         Some(Minimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: self.settings.iterations })
     }
@@ -398,6 +396,18 @@ mod tests {
         let gappy = Trial::new("gappy", full.origin().clone(), columns).expect("a valid record");
         let estimate = method().identify(&[gappy]).expect("noise-free");
         assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
+    }
+
+    /// A heading that swings by itself, at another frequency than the rudder: no K can be read off it.
+    #[test]
+    fn a_heading_that_does_not_answer_the_rudder_is_refused() {
+        let steered = Case { start: Start::Rest, ..Case::default() }.trial();
+        let heading = steered.time().iter().map(|t| 0.2 * (0.71 * t).sin()).collect();
+        let channels = [(Channel::Heading, heading), (Channel::Rudder, steered.rudder().to_vec())].into();
+        let columns = Columns { time: steered.time().to_vec(), channels, unknown: vec![] };
+        let adrift = Trial::new("adrift", steered.origin().clone(), columns).expect("a valid record");
+        let error = method().identify(&[adrift]).expect_err("the rudder does nothing");
+        assert_eq!(error.kind(), "no-rudder-effect", "{error}");
     }
 
     #[test]
