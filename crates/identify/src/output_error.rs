@@ -78,6 +78,9 @@ const SHARED: usize = 3;
 /// Fewest headings of one trial.
 const FEWEST_ROWS: usize = 12;
 
+/// Rows of every trial that the scan looks at.
+const SCANNED_ROWS: usize = 200;
+
 /// Standard deviations by which K/T has to exceed zero: below, the rudder is not shown to act and δ_r means nothing.
 const SIGNIFICANT: f64 = 2.0;
 
@@ -148,8 +151,10 @@ impl Identifier for OutputError {
             trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let grid = self.grid(&tracks, trials);
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
+        // The scan only has to find the valleys, for which some rows do; the polish takes all.
+        let mut coarse = Profile::new(tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect());
+        let scan: Vec<Option<f64>> = grid.iter().map(|&a| coarse.evaluate(a)).collect();
         let mut profile = Profile::new(tracks);
-        let scan: Vec<Option<f64>> = grid.iter().map(|&a| profile.evaluate(a)).collect();
         let height = |k: usize| scan.get(k).copied().flatten().unwrap_or(f64::INFINITY);
         let valleys = (0..grid.len()).filter(|&k| {
             height(k).is_finite()
@@ -202,7 +207,7 @@ impl Identifier for OutputError {
             uncertainty,
             robust: Some(robust_covariance),
             stop: if range_end { StopReason::RangeLimit } else { minimum.stop },
-            evaluations: profile.evaluations(),
+            evaluations: coarse.evaluations() + profile.evaluations(),
             diagnostics: vec![
                 ("heading_rmse_deg", to_deg((minimum.rss / observations as f64).sqrt())),
                 ("r_squared", 1.0 - minimum.rss / profile.total_sum_of_squares()),

@@ -94,6 +94,19 @@ impl Track {
         Self { time: trial.time()[first..=last].to_vec(), rudder: trial.rudder()[first..=last].to_vec(), seat, heading }
     }
 
+    /// About `rows` of the observed rows, evenly spread, the first included: enough to see where a minimum lies. The
+    /// rudder between them is taken as linear, so its corners are cut.
+    pub fn thinned(&self, rows: usize) -> Self {
+        let every = (self.len() / rows).max(1);
+        let kept: Vec<usize> = self.observed().step_by(every).collect();
+        Self {
+            time: kept.iter().map(|&row| self.time[row]).collect(),
+            rudder: kept.iter().map(|&row| self.rudder[row]).collect(),
+            seat: (0..kept.len()).map(Some).collect(),
+            heading: self.heading.iter().copied().step_by(every).collect(),
+        }
+    }
+
     /// Number of observed rows.
     pub fn len(&self) -> usize {
         self.heading.len()
