@@ -107,11 +107,14 @@ impl Identifier for IntegralLeastSquares {
         // δ_r = (b δ_r)/b.
         let to_base = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -beta / (b * b), 1.0 / b) * solution.inverse;
         let base = |matrix: Matrix3<f64>| to_base * matrix * to_base.transpose();
-        let covariance = |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
+        let covariance =
+            |matrix| Covariance { matrix: base(matrix), degrees_of_freedom: Some(noise.degrees_of_freedom) };
         let robust = noise.variance.map(|_| covariance(newey_west(&noise.scores) * noise.finite_sample));
         let equations = pieces.iter().map(|piece| piece.time.len()).sum::<usize>();
         let (uncertainty, warning) = match (noise.variance, &robust) {
-            (Some(variance), Some(robust)) => judge(covariance(noise.influence * variance), robust, noise.lag1, equations),
+            (Some(variance), Some(robust)) => {
+                judge(covariance(noise.influence * variance), robust, noise.lag1, equations)
+            }
             _ => (Uncertainty::None { reason: "no more equations than unknowns" }, None),
         };
         let mut diagnostics = vec![

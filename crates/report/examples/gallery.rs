@@ -211,7 +211,11 @@ fn intervals_figure(theme: &Theme) -> Figure {
     let estimate =
         |value: f64, half: Option<f64>| Some(PointEstimate { value, interval: half.map(|h| [value - h, value + h]) });
     let estimates = GUESSES.iter().enumerate().map(|(i, (method, k, t))| match i {
-        0 => MethodEstimate { origin: Origin::Method((*method).into()), k_per_s: estimate(0.31, None), t_s: estimate(-4.0, None) },
+        0 => MethodEstimate {
+            origin: Origin::Method((*method).into()),
+            k_per_s: estimate(0.31, None),
+            t_s: estimate(-4.0, None),
+        },
         2 => MethodEstimate { origin: Origin::Method((*method).into()), k_per_s: None, t_s: None },
         _ => {
             let half = if i == 3 { 8.0 } else { 1.0 };

@@ -1,7 +1,6 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others.
 
 mod figures;
-mod table;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -75,7 +74,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     figures::draw(&records, &answers, zigzag.as_ref().ok(), &folder)?;
 
     if !common.quiet {
-        let table = table::of(&file.methods, &names[trials.len()..]);
+        let table = present::methods::table(&file.methods, &names[trials.len()..]);
         let table = present::render(&table, common.format);
         let mut notes = renamed(&records) + &reasons(&file.methods);
         match (&zigzag, &file.zigzag) {

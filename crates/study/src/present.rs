@@ -1,12 +1,13 @@
 //! Tables of what was found, for the screen, `report.md` and other programs.
 
+pub mod methods;
+
 use report::figures::Reference;
 use report::number::{self, MISSING};
 use report::{Column, Table};
 
 use crate::cli::Format;
 use crate::engine::CellFacts;
-use crate::json::{MethodEntry, Status, Value};
 use crate::showcase::Showcase;
 use crate::statistics::Figure;
 use crate::summary::{Errors, MethodSummary};
@@ -21,64 +22,9 @@ pub fn render(table: &Table, format: Format) -> String {
     }
 }
 
-/// One row per method: K, T and δ_r with intervals, and the error of the replay.
-pub fn methods(entries: &[MethodEntry]) -> Table {
-    let validated: Vec<String> =
-        entries.first().map(|entry| entry.validation.iter().map(|v| v.file.clone()).collect()).unwrap_or_default();
-    let mut columns = vec![
-        Column::left("method"),
-        Column::decimal("K").unit("1/s"),
-        Column::left("95 % interval"),
-        Column::decimal("T").unit("s"),
-        Column::left("95 % interval"),
-        Column::decimal("δ_r").unit("deg"),
-        Column::left("95 % interval"),
-        Column::decimal("heading error").unit("deg"),
-    ];
-    columns.extend(validated.iter().map(|file| Column::decimal(format!("error on {}", stem(file))).unit("deg")));
-    columns.push(Column::left("remark"));
-    let mut table = Table::new(columns);
-    for entry in entries {
-        let mut cells = vec![entry.method.clone()];
-        match &entry.parameters {
-            Some(parameters) => {
-                for value in [&parameters.k_per_s, &parameters.t_s, &parameters.delta_r_deg] {
-                    cells.extend([estimate(value), number::interval(value.ci95)]);
-                }
-            }
-            None => cells.extend((0..6).map(|_| MISSING.to_owned())),
-        }
-        cells.push(number::optional(entry.heading_rmse_deg, 3));
-        cells.extend(entry.validation.iter().map(|validation| number::optional(validation.heading_rmse_deg, 3)));
-        cells.push(remark(entry));
-        table.push(cells);
-    }
-    table
-}
-
-/// A value with as many digits as its error deserves, five significant ones where it has none.
-fn estimate(value: &Value) -> String {
-    match (value.value, value.ci95) {
-        (Some(number), Some([low, high])) if high > low => {
-            let decimals = (1.0 - (0.5 * (high - low)).log10().floor()).clamp(0.0, 9.0) as usize;
-            number::fixed(number, decimals)
-        }
-        (Some(number), _) => number::significant(number, 4),
-        (None, _) => MISSING.to_owned(),
-    }
-}
-
-fn remark(entry: &MethodEntry) -> String {
-    match (&entry.status, &entry.reason, entry.course_unstable) {
-        (Status::Failed, Some(reason), _) => format!("failed: {reason}"),
-        (_, _, true) => "course-unstable".to_owned(),
-        _ => String::new(),
-    }
-}
-
 /// The table of a showcase: the methods, and below them the truth and the published values.
 pub fn showcase(showcase: &Showcase) -> Table {
-    let mut table = methods(&showcase.methods);
+    let mut table = methods::table(&showcase.methods, &[]);
     let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
     for (name, reference) in references {
         if let Some(Reference { k_per_s, t_s }) = reference {
@@ -87,10 +33,6 @@ pub fn showcase(showcase: &Showcase) -> Table {
         }
     }
     table
-}
-
-fn stem(file: &str) -> String {
-    std::path::Path::new(file).file_stem().map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// One row per cell and method: errors over the replicates.
@@ -146,9 +88,10 @@ pub fn summary_in_brief(summaries: &[MethodSummary], facts: &[CellFacts], axes: 
 
 fn error_cells(errors: &Errors) -> [String; 6] {
     let interval = |figure: Option<Figure>| {
-        figure.and_then(|figure| figure.ci95).map_or_else(|| MISSING.to_owned(), |[low, high]| {
-            format!("[{}, {}]", number::fixed(low, 2), number::fixed(high, 2))
-        })
+        figure.and_then(|figure| figure.ci95).map_or_else(
+            || MISSING.to_owned(),
+            |[low, high]| format!("[{}, {}]", number::fixed(low, 2), number::fixed(high, 2)),
+        )
     };
     let percent = |figure: Option<Figure>| number::optional(figure.map(|figure| 100.0 * figure.value), 1);
     [
@@ -175,7 +118,13 @@ pub fn failures(summaries: &[MethodSummary], facts: &[CellFacts]) -> Vec<String>
                 summary.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
             let place = facts[summary.cell].labels.join(", ");
             let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
-            format!("{place}{}: {} of {} failed ({})", summary.method, summary.failed(), summary.trials, reasons.join(", "))
+            format!(
+                "{place}{}: {} of {} failed ({})",
+                summary.method,
+                summary.failed(),
+                summary.trials,
+                reasons.join(", ")
+            )
         })
         .collect()
 }

@@ -107,10 +107,8 @@ pub fn write(path: &Path, rows: &[Row]) -> Result<(), Failure> {
         SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties)).on("write", &unfinished)?;
     let mut group = writer.next_row_group().on("write", &unfinished)?;
     for column in &COLUMNS {
-        let mut target = group
-            .next_column()
-            .on("write", &unfinished)?
-            .expect("the file has as many columns as its schema");
+        let mut target =
+            group.next_column().on("write", &unfinished)?.expect("the file has as many columns as its schema");
         match column {
             Column::Count(_, get) => {
                 let values: Vec<i64> = rows.iter().map(|row| get(row) as i64).collect();
@@ -140,8 +138,9 @@ fn presence(rows: &[Row], present: impl Fn(&Row) -> bool) -> Vec<i16> {
 
 /// Reads the rows of a finished study.
 pub fn read(path: &Path) -> Result<Vec<Row>, Failure> {
-    let file = File::open(path)
-        .map_err(|error| Failure::input(format!("failed to open {}: {error}; give the folder of a finished study", path.display())))?;
+    let file = File::open(path).map_err(|error| {
+        Failure::input(format!("failed to open {}: {error}; give the folder of a finished study", path.display()))
+    })?;
     let reader = SerializedFileReader::new(file).on("read", path)?;
     let mut rows = Vec::new();
     for record in reader.get_row_iter(None).on("read", path)? {
@@ -203,7 +202,8 @@ mod tests {
             stop: Some("converged".into()),
             ..Row::default()
         };
-        let failed = Row { cell: 3, replicate: 8, method: "srivc".into(), reason: Some("not excited".into()), ..Row::default() };
+        let failed =
+            Row { cell: 3, replicate: 8, method: "srivc".into(), reason: Some("not excited".into()), ..Row::default() };
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("rows.parquet");
         let rows = vec![good, failed];

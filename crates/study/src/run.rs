@@ -19,6 +19,7 @@ use crate::present;
 use crate::rows;
 use crate::scenario::sweep::Axis;
 use crate::scenario::{MethodName, Scenario};
+use crate::screen;
 use crate::showcase::{self, Showcase};
 use crate::summary::{self, MethodSummary};
 
@@ -80,23 +81,29 @@ pub fn report(folder: &Path, common: &Common) -> Result<(), Failure> {
     let page = folder.join("report.md");
     fs::write(&page, markdown(&manifest, &design, &summaries, &showcases, &plan)).on("write", &page)?;
 
-    let out = common.out.clone().unwrap_or_else(|| folder.to_path_buf());
-    if !common.quiet {
-        println!("{}: {}\n", manifest.name, design.question);
-        for showcase in &showcases {
-            println!("{}", if showcase.title.is_empty() { "first trial" } else { &showcase.title });
-            println!("{}", present::render(&present::showcase(showcase), common.format));
+    match common.format {
+        _ if common.quiet => Ok(()),
+        Format::Text => {
+            let lines = on_screen(&manifest, &design, &summaries, &showcases);
+            screen::say(&format!("{lines}\nreport: {}", page.display()))
         }
-        if showcases.is_empty() || common.format != Format::Text || rows.iter().any(|row| row.replicate > 0) {
-            let table = present::summary_in_brief(&summaries, &design.cells, &design.axes);
-            println!("{}", present::render(&table, common.format));
-        }
-        for failure in present::failures(&summaries, &design.cells) {
-            println!("{failure}");
-        }
-        println!("report: {}", out.join("report.md").display());
+        // Another program reads the table: nothing else may stand beside it.
+        format => screen::say(present::render(&summary_table, format).trim_end()),
     }
-    Ok(())
+}
+
+/// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
+fn on_screen(manifest: &Manifest, design: &Design, summaries: &[MethodSummary], showcases: &[Showcase]) -> String {
+    let mut text = format!("{}: {}\n\n", manifest.name, design.question);
+    for showcase in showcases {
+        let title = if showcase.title.is_empty() { "first trial" } else { &showcase.title };
+        text += &format!("{title}\n{}\n", present::showcase(showcase).to_text());
+    }
+    text += &present::summary_in_brief(summaries, &design.cells, &design.axes).to_text();
+    for failure in present::failures(summaries, &design.cells) {
+        text += &format!("\n{failure}");
+    }
+    text
 }
 
 fn write_json<T: Serialize>(path: &Path, value: &T) -> Result<(), Failure> {
@@ -138,13 +145,25 @@ impl<'a> Plan<'a> {
                 all.push((stem("trial"), "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.", Box::new(|theme| figures::zigzag_trial(data, theme))));
             }
             if let Some(data) = &showcase.fourier_fit {
-                all.push((stem("fourier-fit"), "The Fourier series fitted to the heading, and what it leaves.", Box::new(|theme| figures::curve_fit(data, theme))));
+                all.push((
+                    stem("fourier-fit"),
+                    "The Fourier series fitted to the heading, and what it leaves.",
+                    Box::new(|theme| figures::curve_fit(data, theme)),
+                ));
             }
             if let Some(data) = &showcase.derivatives {
                 all.push((stem("derivatives"), "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a good acceleration.", Box::new(|theme| figures::derivatives(data, theme))));
             }
-            all.push((stem("replays"), "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.", Box::new(|theme| figures::replays(&showcase.replays, theme))));
-            all.push((stem("intervals"), "K and T of every method with 95 % intervals, beside the truth and the published values.", Box::new(|theme| figures::intervals(&showcase.intervals, theme))));
+            all.push((
+                stem("replays"),
+                "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
+                Box::new(|theme| figures::replays(&showcase.replays, theme)),
+            ));
+            all.push((
+                stem("intervals"),
+                "K and T of every method with 95 % intervals, beside the truth and the published values.",
+                Box::new(|theme| figures::intervals(&showcase.intervals, theme)),
+            ));
         }
         if let Some(data) = &self.errors {
             all.push(("errors".to_owned(), "Root mean square error of K and T against the swept quantity, with 95 % bootstrap intervals and the Cramér–Rao bound. A curve that is flat to the left is bias, one that follows the bound is noise.", Box::new(|theme| figures::error_curves(data, theme))));

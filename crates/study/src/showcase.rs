@@ -48,7 +48,13 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell
         .methods
         .iter()
-        .map(|method| json::entry(&method.label, method.identify(trial, &engine::key(scenario, index, 0)), std::slice::from_ref(trial)))
+        .map(|method| {
+            json::entry(
+                &method.label,
+                method.identify(trial, &engine::key(scenario, index, 0)),
+                std::slice::from_ref(trial),
+            )
+        })
         .collect();
     let title = |what: &str| match cell.labels.is_empty() {
         true => Some(what.to_owned()),
@@ -132,9 +138,7 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
         check_yaw: zigzag
             .overshoots
             .iter()
-            .map(|overshoot| {
-                span(zigzag.executes[overshoot.execute].time.value, overshoot.time_to_check_yaw.value)
-            })
+            .map(|overshoot| span(zigzag.executes[overshoot.execute].time.value, overshoot.time_to_check_yaw.value))
             .collect(),
         period: cycle_start.zip(zigzag.period).map(|(execute, period)| span(execute.time.value, period.value)),
     }
@@ -261,12 +265,8 @@ impl FourierFit {
 
     fn curve_fit(&self, trial: &Trial) -> CurveFit {
         let start = start_of(trial);
-        let residual: Vec<f64> = trial
-            .time()
-            .iter()
-            .zip(trial.heading())
-            .map(|(t, psi)| psi - self.curve.heading(t - start))
-            .collect();
+        let residual: Vec<f64> =
+            trial.time().iter().zip(trial.heading()).map(|(t, psi)| psi - self.curve.heading(t - start)).collect();
         CurveFit {
             title: None,
             measured: curve(trial.time(), trial.heading()),

@@ -102,7 +102,8 @@ fn reported_errors_are_those_of_repetition() {
         for seed in 0..DRAWS {
             let trial = Case { noise_deg, seed, bias_deg: 0.5, ..Case::default() }.trial();
             let estimate = method.identify(&[trial]).expect("identified");
-            let residual = estimate.diagnostics.iter().find(|(name, _)| *name == "residual_sd_deg").expect("reported").1;
+            let residual =
+                estimate.diagnostics.iter().find(|(name, _)| *name == "residual_sd_deg").expect("reported").1;
             truncation = truncation.max(residual / noise_deg);
             for (column, quantity) in columns.iter_mut().zip([estimate.K(), estimate.T(), estimate.rudder_bias()]) {
                 column.push([quantity.value, quantity.sd.expect("a covariance")]);

@@ -62,10 +62,19 @@ fn all(n: usize, gap: usize, theme: &Theme) -> Vec<(&'static str, Figure)> {
         yaw_rate: curve.clone(),
         yaw_acceleration: curve.clone(),
     };
-    let replay = |method| Replay { origin: Origin::Method(method), heading: curve.clone(), residual: curve.clone(), rms_deg: Some(undefined) };
+    let replay = |method| Replay {
+        origin: Origin::Method(method),
+        heading: curve.clone(),
+        residual: curve.clone(),
+        rms_deg: Some(undefined),
+    };
     let point =
         |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01 + 0.0 * undefined]) });
-    let estimate = |(i, method)| MethodEstimate { origin: Origin::Method(method), k_per_s: point(0.1 + 0.3 * (i / 6) as f64), t_s: None };
+    let estimate = |(i, method)| MethodEstimate {
+        origin: Origin::Method(method),
+        k_per_s: point(0.1 + 0.3 * (i / 6) as f64),
+        t_s: None,
+    };
     let error = |x: f64| ErrorPoint { x, y: undefined * x, interval: Some([-1.0, 2.0 * x]) };
     let cell = |row| ErrorCell {
         row,

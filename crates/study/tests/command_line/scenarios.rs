@@ -117,7 +117,7 @@ fn a_missing_key_is_named_where_it_belongs() {
     let methods = GOOD.find("[[identifier]]").expect("there are methods");
     refused(&GOOD[..methods], 1, &["`identifier`", "method.output-error"]);
     refused(
-        &changed("seed = 1", "seed = 1\nidentifier = []").split("[[identifier]]").collect::<Vec<_>>()[0],
+        changed("seed = 1", "seed = 1\nidentifier = []").split("[[identifier]]").collect::<Vec<_>>()[0],
         3,
         &["names no method"],
     );

@@ -1,5 +1,5 @@
-//! The table of `study fit` for the screen: as narrow as the numbers allow, every estimate beside its 95 % interval, a failed
-//! method as a row with its reason. All digits are in `fit.json`.
+//! The table of the answers of all methods: as narrow as the numbers allow, every estimate beside its 95 % interval, a failed
+//! method as a row with its reason. All digits are in the stored JSON.
 
 use report::number::{self, MISSING};
 use report::{Column, Table};
@@ -7,7 +7,7 @@ use report::{Column, Table};
 use crate::json::{MethodEntry, Status, Value};
 
 /// One row per method; `validated` names the records of the validation columns.
-pub fn of(entries: &[MethodEntry], validated: &[String]) -> Table {
+pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     let remarks = entries.iter().any(|entry| !remark(entry).is_empty());
     let mut columns = vec![Column::left("method")];
     for (symbol, unit) in [("K", "1/s"), ("T", "s"), ("δ_r", "deg")] {
@@ -37,12 +37,14 @@ pub fn of(entries: &[MethodEntry], validated: &[String]) -> Table {
 }
 
 /// Most significant digits shown.
-const DIGITS: i32 = 4;
+const DIGITS: i32 = 5;
 
-/// A value and its interval, with the digits the interval supports and no more than four significant ones.
+/// A value and its interval, with the digits the interval supports and no more than five significant ones.
 fn estimate(quantity: &Value) -> [String; 2] {
     let Some(value) = quantity.value else { return [MISSING.to_owned(), MISSING.to_owned()] };
-    let Some([low, high]) = quantity.ci95 else { return [number::significant(value, 4), MISSING.to_owned()] };
+    let Some([low, high]) = quantity.ci95 else {
+        return [number::significant(value, DIGITS as usize), MISSING.to_owned()];
+    };
     let magnitude = |number: f64| if number == 0.0 { 0 } else { number.abs().log10().floor() as i32 };
     let largest = value.abs().max(low.abs()).max(high.abs());
     let half_width = 0.5 * (high - low);
@@ -67,10 +69,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_follow_the_interval_and_stop_at_four() {
+    fn digits_follow_the_interval_and_stop_at_five() {
         let shown = |value, ci95| estimate(&Value { value: Some(value), sd: None, ci95 });
         assert_eq!(shown(0.18713, Some([0.166, 0.215])), ["0.187", "[0.166, 0.215]"]);
-        assert_eq!(shown(0.1748075, Some([0.1748052, 0.1748099])), ["0.1748", "[0.1748, 0.1748]"]);
+        assert_eq!(shown(0.1748075, Some([0.1748052, 0.1748099])), ["0.17481", "[0.17481, 0.17481]"]);
         assert_eq!(shown(-0.7, Some([-5.83, 4.42])), ["−0.7", "[−5.8, 4.4]"]);
         assert_eq!(shown(2662.0, None), ["2662", "–"]);
         assert_eq!(shown(148.2, Some([142.0, 154.0])), ["148.2", "[142.0, 154.0]"]);
@@ -79,7 +81,7 @@ mod tests {
     #[test]
     fn a_failed_method_is_a_row_with_its_reason() {
         let failed = MethodEntry::failed("srivc", &IdentifyError::NoTrial);
-        let text = of(&[failed], &[]).to_text();
+        let text = table(&[failed], &[]).to_text();
         assert!(text.contains("srivc") && text.contains("failed: no trial"), "{text}");
     }
 }
