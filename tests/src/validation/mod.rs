@@ -6,6 +6,7 @@
 //! code with this workspace.
 
 pub mod characteristic_points;
+pub mod estimators;
 pub mod first_order;
 pub mod fourier;
 pub mod hulls;
@@ -126,6 +127,7 @@ pub fn sections() -> Vec<Section> {
         characteristic_points::section(),
         hulls::section(),
         zig_zags_of_hulls::section(),
+        estimators::section(),
         information::bound(),
         information::efficiency(),
     ]

@@ -43,7 +43,7 @@ const DIGITS: i32 = 5;
 fn estimate(quantity: &Value) -> [String; 2] {
     let Some(value) = quantity.value else { return [MISSING.to_owned(), MISSING.to_owned()] };
     let Some([low, high]) = quantity.ci95 else {
-        return [number::significant(value, DIGITS as usize), MISSING.to_owned()];
+        return [number::significant(value, DIGITS as usize - 1), MISSING.to_owned()];
     };
     let magnitude = |number: f64| if number == 0.0 { 0 } else { number.abs().log10().floor() as i32 };
     let largest = value.abs().max(low.abs()).max(high.abs());
