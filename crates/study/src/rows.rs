@@ -59,7 +59,7 @@ enum Column {
     Text(&'static str, fn(&Row) -> Option<&str>),
 }
 
-const COLUMNS: [Column; 19] = [
+const COLUMNS: [Column; 18] = [
     Column::Count("cell", |row| row.cell),
     Column::Count("replicate", |row| row.replicate),
     Column::Text("method", |row| Some(&row.method)),
@@ -78,7 +78,6 @@ const COLUMNS: [Column; 19] = [
     Column::Number("heading_rmse_deg", |row| row.heading_rmse_deg),
     Column::Number("evaluations", |row| row.evaluations.map(|count| count as f64)),
     Column::Text("stop", |row| row.stop.as_deref()),
-    Column::Number("failed", |row| Some(f64::from(u8::from(row.reason.is_some())))),
 ];
 
 impl Column {

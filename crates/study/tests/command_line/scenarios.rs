@@ -384,3 +384,13 @@ fn wrong_usage_is_exit_code_2() {
         desk.run(arguments).is_refused(2, &[part]);
     }
 }
+
+/// The scenario that the README shows, as a reader would copy it.
+#[test]
+fn the_scenario_of_the_readme_is_right() {
+    let readme = std::fs::read_to_string(of_repository("README.md")).expect("the README");
+    let (_, rest) = readme.split_once("```toml\n").expect("the README shows a scenario");
+    let (scenario, _) = rest.split_once("```").expect("the block ends");
+    let desk = Desk::new();
+    desk.run(&["check", desk.file("readme.toml", scenario)]).is_done();
+}
