@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::failure::Failure;
-use crate::{check, fit, list, run, screen};
+use crate::{check, fit, list, publish, run, screen};
 
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
 #[derive(Debug, Parser)]
@@ -152,7 +152,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         (Some(Command::List { what, common }), _) => list::run(what, &common),
         (Some(Command::Report { folder, common }), _) => {
             use_threads(&common)?;
-            run::report(&folder, &common)
+            publish::report(&folder, &common)
         }
     }
 }

@@ -16,7 +16,6 @@ use trial::{Origin, Reading, Trial, ZigZag, imo};
 use crate::cli::{Common, FitRequest, Format};
 use crate::failure::{Failure, OnPath, result_folder};
 use crate::json::{self, CriterionEntry, FitFile, MethodEntry, TrialEntry, Validation, ZigZagEntry};
-use crate::run::folder_of;
 use crate::{present, progress, screen};
 use figures::Drawn;
 
@@ -52,7 +51,8 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     }
 
     let zigzag = ZigZag::of(&trials[0]);
-    let folder = folder_of(common, trials[0].name(), "fit");
+    let default = || PathBuf::from(format!("{}-fit", trials[0].name()));
+    let folder = common.out.clone().unwrap_or_else(default);
     result_folder(&folder)?;
     let file = FitFile {
         schema: "fit/1".into(),

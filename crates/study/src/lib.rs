@@ -6,8 +6,8 @@
 //! |---|---|
 //! | scenario files | [`scenario`] |
 //! | running a design | [`engine`] |
-//! | what is stored | [`rows`], [`manifest`], [`showcase`] |
-//! | what is said about it | [`summary`], [`present`] |
+//! | what is stored | [`store`], [`rows`], [`manifest`], [`showcase`] |
+//! | what is said about it | [`summary`], [`present`], [`publish`] |
 //! | measured records | [`fit`] |
 //! | commands and exit codes | [`cli`], [`failure`], [`screen`] |
 
@@ -21,10 +21,12 @@ pub mod list;
 pub mod manifest;
 pub mod present;
 mod progress;
+pub mod publish;
 pub mod rows;
 pub mod run;
 pub mod scenario;
 pub mod screen;
 pub mod showcase;
 pub mod statistics;
+pub mod store;
 pub mod summary;

@@ -12,7 +12,7 @@ use trial::{Trial, ZigZag};
 
 use crate::failure::Failure;
 use crate::json::MethodEntry;
-use crate::run::write_figure;
+use crate::publish::drawings::write_figure;
 use crate::showcase::{curve, zigzag_figure};
 
 /// Rows a figure can show.

@@ -76,6 +76,11 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The same cell; its trials carry the name of the scenario.
+    fn named(self, scenario: &str) -> Self {
+        Self { simulation: Simulation { scenario: scenario.to_owned(), ..self.simulation }, ..self }
+    }
+
     /// Labels of the points joined, or nothing when there is no axis.
     pub fn title(&self) -> String {
         self.labels.join(", ")
@@ -158,6 +163,7 @@ impl Scenario {
         let cells: Vec<Cell> = combinations
             .iter()
             .map(|points| swept(&document, points, &base, &folder))
+            .map(|cell| cell.map(|cell| cell.named(name)))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
         let sha256 = hex(&Sha256::digest(text.as_bytes()));
