@@ -9,7 +9,7 @@ use std::path::Path;
 use report::Theme;
 
 use crate::cli::{Common, Format};
-use crate::failure::{Failure, OnPath};
+use crate::failure::{Failure, OnPath, result_folder};
 use crate::present;
 use crate::screen;
 use crate::store::Stored;
@@ -17,8 +17,12 @@ use crate::summary::{self, MethodSummary};
 use drawings::{Drawing, write_all};
 
 /// Makes `summary.csv`, the figures and `report.md`, and prints the tables.
-pub fn report(folder: &Path, common: &Common) -> Result<(), Failure> {
-    let stored = Stored::read(folder)?;
+///
+/// They go where the rows are, or to `--out`.
+pub fn report(rows: &Path, common: &Common) -> Result<(), Failure> {
+    let stored = Stored::read(rows)?;
+    let folder = common.out.as_deref().unwrap_or(rows);
+    result_folder(folder)?;
     let design = &stored.design;
     let summaries = summary::summarise(&stored.rows, &design.cells);
     let summary_table = present::summary(&summaries, &design.cells, &design.axes);

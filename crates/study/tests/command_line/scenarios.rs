@@ -323,6 +323,8 @@ fn a_scenario_runs_and_its_report_is_made_again() {
     std::fs::remove_file(desk.path("results/small/report.md")).expect("it was there");
     desk.run(&["report", "results/small"]).is_done();
     assert_eq!(std::fs::read(desk.path("results/small/report.md")).expect("it is there again"), page);
+    desk.run(&["report", "results/small", "--out", "elsewhere", "--quiet"]).is_done();
+    assert_eq!(std::fs::read(desk.path("elsewhere/report.md")).expect("it is where it was asked for"), page);
     for file in ["rows.parquet", "summary.csv", "manifest.toml"] {
         assert!(desk.path("results/small").join(file).is_file(), "{file}");
     }

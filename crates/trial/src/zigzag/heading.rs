@@ -17,15 +17,21 @@ const WIDENING: f64 = 1.5;
 /// Factors by which a local fit is widened until it holds enough headings.
 const WIDENINGS: [f64; 5] = [1.0, 1.5, 2.25, 3.4, 5.1];
 
+/// Most local fits made to learn one number of a whole record.
+const MOST_FITS: usize = 2000;
+
 /// Robust standard deviation of the white noise of a sampled signal, in the unit of the signal.
 ///
 /// Every value is compared with the cubic fitted to the samples within `half_width` (s) of it; the result is 1.4826
 /// times the median absolute residual, each residual divided by √(1 − leverage). Jumps and outliers in less than a few
 /// tenths of the rows do not matter. NaN values are skipped. `None` when fewer than 8 windows hold 6 values or more.
 pub fn noise_sd(time: &[f64], value: &[f64], half_width: f64) -> Option<f64> {
+    // A median over some rows is as good; over all of a densely sampled record it would cost their square.
+    let every = time.len().div_ceil(MOST_FITS);
     let mut residuals: Vec<f64> = time
         .iter()
         .zip(value)
+        .step_by(every)
         .filter(|(_, y)| y.is_finite())
         .filter_map(|(&t, &y)| {
             let fit = Cubic::fit(time, value, t, half_width).filter(|fit| fit.samples >= 6)?;
@@ -113,7 +119,9 @@ impl Heading {
     pub fn largest_rate(&self, from: f64, to: f64) -> Option<Quantity> {
         let reach = WIDENING * self.half_width;
         let (start, end) = (self.time[0] + reach, self.time[self.time.len() - 1] - reach);
-        self.rows(from.max(start), to.min(end))
+        let rows = self.rows(from.max(start), to.min(end));
+        let every = rows.len().div_ceil(MOST_FITS).max(1);
+        rows.step_by(every)
             .filter_map(|row| self.rate_at(self.time[row]))
             .map(|rate| Quantity { value: rate.value.abs(), ..rate })
             .max_by(|a, b| a.value.total_cmp(&b.value))
@@ -123,8 +131,10 @@ impl Heading {
     ///
     /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit: the peak was not seen.
     pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
-        let highest = self
-            .rows(from, to)
+        let rows = self.rows(from, to);
+        let every = rows.len().div_ceil(MOST_FITS).max(1);
+        let highest = rows
+            .step_by(every)
             .filter_map(|row| Some((row, side * self.local(self.time[row], self.half_width)?.value(self.time[row]))))
             .max_by(|a, b| a.1.total_cmp(&b.1))?
             .0;
