@@ -21,6 +21,19 @@ pub enum IdentifyError {
         /// Range of the heading, deg.
         heading_deg: f64,
     },
+    /// Times or angles beyond any manoeuvre, whose powers overflow.
+    #[error(
+        "{trial} is no manoeuvre: it lasts {duration_s:.1e} s and its angles reach {angle_rad:.1e} rad; look at the units \
+         of its columns"
+    )]
+    OutOfRange {
+        /// Name of the trial.
+        trial: String,
+        /// Time from the first to the last heading, s.
+        duration_s: f64,
+        /// Largest heading or rudder angle, rad.
+        angle_rad: f64,
+    },
     /// Fewer samples than the method needs.
     #[error("needs at least {needed} samples, {trial} has {found}")]
     TooFewSamples {
@@ -92,6 +105,7 @@ impl IdentifyError {
         match self {
             Self::NoTrial => "no-trial",
             Self::NotExcited { .. } => "not-excited",
+            Self::OutOfRange { .. } => "out-of-range",
             Self::TooFewSamples { .. } => "too-few-samples",
             Self::TooFewPoints { .. } => "too-few-points",
             Self::NoChannel { .. } => "no-channel",

@@ -1,5 +1,7 @@
 //! A record as methods want it: the rows with a heading, and the rudder integrated exactly up to them.
 
+use std::ops::RangeInclusive;
+
 use ship::angle::to_deg;
 use trial::Trial;
 
@@ -7,6 +9,13 @@ use crate::error::IdentifyError;
 
 /// Smallest range of rudder and heading, deg, that counts as steering.
 const SMALLEST_RANGE_DEG: f64 = 0.5;
+
+/// Shortest and longest record, s: from a tank model to thirty years. Methods use powers of the time up to the eighth and
+/// number frequencies by its ratio to the interval, which have to stay in the range of floating point.
+const DURATION_S: RangeInclusive<f64> = 1e-6..=1e9;
+
+/// Largest angle, rad: a heading that has turned 160 000 times.
+const LARGEST_ANGLE: f64 = 1e6;
 
 /// The observed rows of a trial. All columns have the same length; time starts at 0.
 #[derive(Debug, Clone, Default)]
@@ -26,7 +35,8 @@ pub struct Samples {
 impl Samples {
     /// Takes the observed rows of a trial.
     ///
-    /// Fails with [`IdentifyError::NotExcited`] when rudder or heading move over less than half a degree, and with
+    /// Fails with [`IdentifyError::NotExcited`] when rudder or heading move over less than half a degree, with
+    /// [`IdentifyError::OutOfRange`] when times or angles are none of a manoeuvre, and with
     /// [`IdentifyError::TooFewSamples`] when there are fewer than `needed` rows.
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
         let mut samples = Self::default();
@@ -57,6 +67,12 @@ impl Samples {
         if found < needed {
             return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, found });
         }
+        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, angle| most.max(angle.abs()));
+        // The rudder between observed rows is integrated and simulated with.
+        let (duration_s, angle_rad) = (samples.time[found - 1], largest(&samples.heading).max(largest(delta)));
+        if !DURATION_S.contains(&duration_s) || angle_rad > LARGEST_ANGLE {
+            return Err(IdentifyError::OutOfRange { trial: trial.name().into(), duration_s, angle_rad });
+        }
         let (rudder_deg, heading_deg) = (range_deg(&samples.rudder), range_deg(&samples.heading));
         if rudder_deg < SMALLEST_RANGE_DEG || heading_deg < SMALLEST_RANGE_DEG {
             return Err(IdentifyError::NotExcited { trial: trial.name().into(), rudder_deg, heading_deg });
@@ -86,4 +102,32 @@ impl Samples {
 fn range_deg(values: &[f64]) -> f64 {
     let (lo, hi) = values.iter().fold((f64::MAX, f64::MIN), |(lo, hi), &x| (lo.min(x), hi.max(x)));
     to_deg(hi - lo)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::registry;
+    use crate::testing::{Case, record};
+
+    /// Any finite number makes a valid trial; a search over frequencies or an iteration need not end on its squares.
+    #[test]
+    fn what_overflows_is_refused_by_every_method() {
+        let trial = Case::default().trial();
+        let stretched = |by: f64| trial.time().iter().map(|t| t * by).collect::<Vec<f64>>();
+        let grown = |column: &[f64], by: f64| column.iter().map(|x| x * by).collect::<Vec<f64>>();
+        let (time, heading, rudder) = (trial.time().to_vec(), trial.heading().to_vec(), trial.rudder().to_vec());
+        let absurd = [
+            record("age of the universe", stretched(1e300), heading.clone(), rudder.clone()),
+            record("instant", stretched(1e-300), heading.clone(), rudder.clone()),
+            record("heading", time.clone(), grown(&heading, 1e200), rudder.clone()),
+            record("rudder", time, heading, grown(&rudder, 1e150)),
+        ];
+        let methods = registry::defaults().into_iter().map(|settings| settings.build().expect("valid defaults"));
+        for method in methods {
+            for trial in &absurd {
+                let error = method.identify(std::slice::from_ref(trial)).expect_err("no manoeuvre");
+                assert_eq!(error.kind(), "out-of-range", "{}: {error}", method.id());
+            }
+        }
+    }
 }
