@@ -15,7 +15,7 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
-use crate::profile::Profile;
+use crate::profile::{Profile, invert};
 use crate::settings::SettingsError;
 use crate::track::{Coefficients, Track};
 use crate::{Identifier, robust};
@@ -74,6 +74,9 @@ const MOST_HALVINGS: usize = 12;
 
 /// Unknowns of the base that all trials share: 1/T, K/T, δ_r.
 const SHARED: usize = 3;
+
+/// Largest condition number of the scaled Jacobian: beyond, 1/T, K/T and δ_r cannot be told apart.
+const CONDITION_LIMIT: f64 = 1e6;
 
 /// Fewest headings of one trial.
 const FEWEST_ROWS: usize = 12;
@@ -173,8 +176,7 @@ impl Identifier for OutputError {
             }
         }
         let Some((minimum, at_end)) = best else {
-            // No 1/T of the scan gave a rudder that turns the ship to its own side.
-            return Err(IdentifyError::NotAShip { inverse_time: f64::NAN, gain: profile.steering().0 });
+            return Err(refusal(&mut coarse, &grid, f64::INFINITY));
         };
         let inverse_time = minimum.inverse_time;
         profile.evaluate(inverse_time);
@@ -186,22 +188,24 @@ impl Identifier for OutputError {
         let observations = profile.observations();
         let freedom = observations as f64 - (SHARED + 2 * trials.len()) as f64;
         let variance = minimum.rss / freedom;
-        let inverse =
-            information.try_inverse().ok_or(IdentifyError::Singular { condition: f64::INFINITY, limit: 1e15 })?;
+        // Ships that turn the wrong way have their best fit with b > 0 where the rudder hardly counts.
+        let (inverse, condition) =
+            invert(&information, CONDITION_LIMIT).map_err(|condition| refusal(&mut coarse, &grid, condition))?;
         let white = to_response(&(inverse * variance), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
         if gain < SIGNIFICANT * gain_sd {
             return Err(IdentifyError::NoRudderEffect { gain, sd: gain_sd });
         }
         let scores = profile.scores();
-        let robust_covariance = to_response(&(inverse * robust::newey_west(&scores) * inverse), &response, freedom);
+        // What the fit took from the residual it left: the factor that turns a mean square into the variance above.
+        let long_run = robust::newey_west(&scores) * (observations as f64 / freedom);
+        let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
         let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, observations);
         let mut warnings = Vec::from_iter(warning);
         if response.is_course_unstable() {
             warnings.push("course-unstable: 1/T is negative, K and T are negative".into());
         }
-        let condition = profile.condition(inverse_time);
         Ok(Estimate {
             response,
             uncertainty,
@@ -219,6 +223,16 @@ impl Identifier for OutputError {
             ],
             warnings,
         })
+    }
+}
+
+/// Why there is no answer: the best fit of the scan, whatever the sign of its K/T, is no ship; or the columns are
+/// parallel.
+fn refusal(profile: &mut Profile, grid: &[f64], condition: f64) -> IdentifyError {
+    let fits = grid.iter().filter_map(|&a| profile.fit(a).map(|rss| (rss, a, profile.steering().0)));
+    match fits.min_by(|one, other| one.0.total_cmp(&other.0)) {
+        Some((_, inverse_time, gain)) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
+        _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
     }
 }
 
@@ -246,7 +260,8 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd:
     }
     let mut profile = Profile::new(vec![track]);
     let information = profile.information_at(truth.inverse_T, &[coefficients])?;
-    let covariance = information.try_inverse()? * heading_sd.powi(2);
+    let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
+    let covariance = inverse * heading_sd.powi(2);
     Some(Covariance { degrees_of_freedom: None, ..to_response(&covariance, truth, 1.0) })
 }
 
@@ -254,7 +269,7 @@ pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd:
 mod tests {
     use super::*;
     use crate::estimate::Uncertainty;
-    use crate::testing::{Case, Start};
+    use crate::testing::{Case, Start, record};
     use approx::assert_relative_eq;
     use ship::angle::from_deg;
     use ship::first_order::Transition;
@@ -413,6 +428,56 @@ mod tests {
         let adrift = Trial::new("adrift", steered.origin().clone(), columns).expect("a valid record");
         let error = method().identify(&[adrift]).expect_err("the rudder does nothing");
         assert_eq!(error.kind(), "no-rudder-effect", "{error}");
+    }
+
+    /// Twenty seconds in much noise: the best fit may be a T of a hundredth of a second, whose information is singular to
+    /// rounding. It must not come with intervals of no width.
+    #[test]
+    fn what_rounding_decides_is_refused() {
+        let mut refused = 0;
+        for seed in 0..300 {
+            let case = Case { samples: 20, noise_deg: 1.5, start: Start::Rest, seed, ..Case::default() };
+            match method().identify(&[case.trial()]) {
+                Ok(estimate) => {
+                    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { panic!("has a covariance") };
+                    assert!(covariance.matrix.diagonal().min() > 0.0, "{}", covariance.matrix);
+                }
+                Err(error) => refused += usize::from(error.kind() == "singular"),
+            }
+        }
+        assert!(refused > 0);
+    }
+
+    /// A rudder of which nothing but the sign is wrong is no course-unstable ship with a T of no time at all: the refusal
+    /// tells the best fit, to within a step of the scan (33 %).
+    #[test]
+    fn a_rudder_of_the_wrong_sign_is_refused() {
+        for case in [
+            Case::default(),
+            Case { noise_deg: 0.3, start: Start::Rest, ..Case::default() },
+            Case { heading_deg: 20.0, ..Case::default() },
+        ] {
+            let steered = case.trial();
+            let opposite = steered.rudder().iter().map(|delta| -delta).collect();
+            let trial = record("sign", steered.time().to_vec(), steered.heading().to_vec(), opposite);
+            let error = method().identify(&[trial]).expect_err("the rudder turns the ship to the other side");
+            let IdentifyError::NotAShip { inverse_time, gain } = error else { panic!("{error}") };
+            assert_relative_eq!(inverse_time, 1.0 / 16.3, max_relative = 0.33);
+            assert_relative_eq!(gain, -0.1 / 16.3, max_relative = 0.33);
+        }
+    }
+
+    /// Both methods have the same answer for white noise and the same sandwich: on few rows what the fit took from the
+    /// residual counts.
+    #[test]
+    fn the_robust_covariance_is_that_of_the_instrumental_variables() {
+        let trial = [Case { samples: 15, period_s: 8.0, noise_deg: 0.2, ..Case::default() }.trial()];
+        let instruments = crate::srivc::Settings::default().build().expect("valid");
+        let [one, other] = [method().identify(&trial), instruments.identify(&trial)]
+            .map(|estimate| estimate.expect("steered").robust.expect("a robust covariance").matrix);
+        for i in 0..3 {
+            assert_relative_eq!(one[(i, i)], other[(i, i)], max_relative = 1e-5);
+        }
     }
 
     #[test]

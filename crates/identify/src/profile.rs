@@ -51,8 +51,14 @@ impl Profile {
         Self { parts, steering: Vector2::zeros(), evaluations: 0 }
     }
 
-    /// Sum of squares (rad²) of the best fit with this 1/T; `None` when the columns are dependent or b ≤ 0.
+    /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` when the columns are dependent or b ≤ 0.
     pub fn evaluate(&mut self, inverse_time: f64) -> Option<f64> {
+        let rss = self.fit(inverse_time)?;
+        (self.steering[0] > 0.0).then_some(rss)
+    }
+
+    /// The same for whatever b is.
+    pub fn fit(&mut self, inverse_time: f64) -> Option<f64> {
         self.evaluations += 1;
         let (mut gram, mut moment) = (Matrix2::zeros(), Vector2::zeros());
         for part in &mut self.parts {
@@ -72,8 +78,7 @@ impl Profile {
             }
             rss += dot(&part.residual, &part.residual);
         }
-        // Written so that an overflow is refused too.
-        (self.steering[0] > 0.0 && rss.is_finite()).then_some(rss)
+        rss.is_finite().then_some(rss)
     }
 
     /// Kaufman's step of 1/T from the point last evaluated.
@@ -170,15 +175,6 @@ impl Profile {
             })
             .sum()
     }
-
-    /// Condition number of the Jacobian of (1/T, b, b δ_r) with its columns scaled, at the point last evaluated.
-    pub fn condition(&mut self, inverse_time: f64) -> f64 {
-        let information = self.information(inverse_time);
-        let scale = information.diagonal().map(|value| value.sqrt().recip());
-        let scaled = Matrix3::from_fn(|i, j| information[(i, j)] * scale[i] * scale[j]);
-        let eigenvalues = scaled.symmetric_eigenvalues();
-        (eigenvalues.max() / eigenvalues.min().max(0.0)).sqrt()
-    }
 }
 
 impl Part {
@@ -214,6 +210,26 @@ impl Part {
         let heading = mean(&rest) - yaw_rate * mean(&self.columns.homogeneous);
         Coefficients { anchor: State { heading, yaw_rate }, ..free }
     }
+}
+
+/// Inverse of an [`information`](Profile::information) and the condition number of the Jacobian behind it, its columns
+/// scaled. The error is the condition number where it exceeds `limit`: the digits of the inverse are then rounding, and
+/// what it calls a variance may be negative.
+pub(crate) fn invert(information: &Matrix3<f64>, limit: f64) -> Result<(Matrix3<f64>, f64), f64> {
+    let scale = information.diagonal().map(|value| value.sqrt().recip());
+    let scaled = |matrix: &Matrix3<f64>| Matrix3::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    let correlation = scaled(information);
+    // A column that vanished or overflowed; the search for eigenvalues need not end.
+    if correlation.iter().any(|value| !value.is_finite()) {
+        return Err(f64::INFINITY);
+    }
+    let eigenvalues = correlation.symmetric_eigenvalues();
+    let condition = (eigenvalues.max() / eigenvalues.min().max(0.0)).sqrt();
+    if condition > limit {
+        return Err(condition);
+    }
+    let inverse = correlation.cholesky().ok_or(condition)?.inverse();
+    Ok((scaled(&inverse), condition))
 }
 
 fn dot(x: &[f64], y: &[f64]) -> f64 {
