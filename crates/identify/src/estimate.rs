@@ -174,11 +174,18 @@ fn index_T(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     Quantity { value: response.T(), sd: sd.is_finite().then_some(sd), ci95 }
 }
 
+/// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded when the interval of
+/// b = K/T holds zero: a rudder that does not act has no bias.
 fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
-    let sd = covariance.matrix[(2, 2)].max(0.0).sqrt();
-    let reach = covariance.quantile95() * sd;
-    let value = response.rudder_bias;
-    Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
+    let (b, value) = (response.K_over_T, response.rudder_bias);
+    let m = &covariance.matrix;
+    let z2 = covariance.quantile95().powi(2);
+    // (x b)² = z² (b² s_δδ − 2 x b s_bδ + x² s_bb), a quadratic in the distance x from the estimate.
+    let (p, q, c) = (b * b - z2 * m[(1, 1)], -z2 * b * m[(1, 2)], -z2 * b * b * m[(2, 2)]);
+    let root = (q * q - p * c).max(0.0).sqrt();
+    let ci95 = (p > 0.0 && value.is_finite()).then(|| [value + (q - root) / p, value + (q + root) / p]);
+    let sd = m[(2, 2)].max(0.0).sqrt();
+    Quantity { value, sd: sd.is_finite().then_some(sd), ci95 }
 }
 
 #[cfg(test)]
@@ -204,6 +211,31 @@ mod tests {
         let K = index_K(&response, &covariance);
         let [lo, hi] = K.ci95.expect("bounded");
         assert_relative_eq!(0.5 * (lo + hi), 0.1, max_relative = 1e-6);
+    }
+
+    /// Both ends of the interval of δ_r solve the equation of Fieller (1954) for the ratio of b δ_r to b, and there are
+    /// none when b may be zero.
+    #[test]
+    fn the_bias_of_a_rudder_that_hardly_acts_is_not_known() {
+        let response = FirstOrder { inverse_T: 0.06, K_over_T: 6e-3, rudder_bias: 0.02 };
+        let known_to = |sd_b: f64| {
+            let mut covariance = covariance(1e-3, sd_b);
+            let cross = -0.3 * sd_b * covariance.matrix[(2, 2)].sqrt();
+            (covariance.matrix[(1, 2)], covariance.matrix[(2, 1)]) = (cross, cross);
+            covariance
+        };
+        let hardly = known_to(2e-3);
+        let b = response.K_over_T;
+        let Quantity { value, ci95, .. } = bias(&response, &hardly);
+        let m = &hardly.matrix;
+        for end in ci95.expect("b is three standard deviations from zero") {
+            let x = end - value;
+            let variance = b * b * m[(2, 2)] - 2.0 * x * b * m[(1, 2)] + x * x * m[(1, 1)];
+            assert_relative_eq!((x * b).powi(2), 1.959964f64.powi(2) * variance, max_relative = 1e-5);
+        }
+        assert_eq!(bias(&response, &known_to(4e-3)).ci95, None);
+        let [lo, hi] = bias(&response, &known_to(1e-6)).ci95.expect("bounded");
+        assert_relative_eq!(hi - lo, 2.0 * 1.959964 * 1e-4, max_relative = 1e-3);
     }
 
     #[test]
