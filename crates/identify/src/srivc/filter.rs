@@ -24,6 +24,20 @@ pub(super) struct Point {
     pub starts: Vec<State>,
 }
 
+impl Point {
+    /// The point that lies at `share` of the way to another.
+    pub fn towards(&self, other: &Self, share: f64) -> Self {
+        let between = |from: f64, to: f64| from + share * (to - from);
+        let (from, to) = (&self.shared, &other.shared);
+        let shared = Shared { a: between(from.a, to.a), b: between(from.b, to.b), bias: between(from.bias, to.bias) };
+        let start = |(from, to): (&State, &State)| State {
+            heading: between(from.heading, to.heading),
+            yaw_rate: between(from.yaw_rate, to.yaw_rate),
+        };
+        Self { shared, starts: self.starts.iter().zip(&other.starts).map(start).collect() }
+    }
+}
+
 /// The filters of one record, at one row.
 ///
 /// With F = 1/(s (s + â)) and lp = 1/(s + â), the signals are F 1/s = φ₂(t) and its derivative φ₁(t) in `unit`, F δ in

@@ -44,6 +44,9 @@ use record::Record;
 /// Fewest observed headings of a trial: twice the unknowns of a single one.
 const FEWEST_ROWS: usize = 10;
 
+/// Smallest share of a step that is taken when the iteration sways.
+const SHORTEST_STEP: f64 = 0.05;
+
 /// Settings of [`Srivc`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
@@ -166,19 +169,33 @@ impl Srivc {
     }
 
     /// Iterates to the fixed point; also tells the number of iterations.
+    ///
+    /// Where the residual is large and no noise, as with a rudder that is put over between two rows, whole steps go to
+    /// and fro about the fixed point and die out slowly or not at all. From the first step back that is longer than half
+    /// the one before, steps are shortened by their secant in a (Irons and Tuck 1969).
     fn iterate(&self, records: &[Record], start: Solution) -> Result<(Solution, usize), IdentifyError> {
         let mut solution = start;
         let mut step = f64::INFINITY;
+        let (mut share, mut before, mut sways): (f64, f64, bool) = (1.0, 0.0, false);
         for iteration in 1..=self.settings.max_iterations {
-            let last = solution.point.shared;
-            solution = self.solve(records, &solution.point, Left::Instruments)?;
+            let last = solution.point;
+            solution = self.solve(records, &last, Left::Instruments)?;
             let now = solution.point.shared;
+            let change = now.a - last.shared.a;
+            sways |= change * before < -0.5 * before * before;
+            if sways {
+                share = (share * before / (before - change)).clamp(SHORTEST_STEP, 1.0);
+            }
+            before = change;
             let gram = solution.blocks.iter().map(|block| block.instruments).sum::<Matrix3<f64>>();
             let size = |theta: Vector3<f64>| theta.dot(&(gram * theta)).max(0.0).sqrt();
-            step = size(Vector3::new(now.a - last.a, now.b - last.b, now.bias - last.bias))
+            step = size(Vector3::new(change, now.b - last.shared.b, now.bias - last.shared.bias))
                 / size(Vector3::new(0.0, now.b, now.bias));
             if step <= self.settings.relative_step {
                 return Ok((solution, iteration));
+            }
+            if share < 1.0 {
+                solution.point = last.towards(&solution.point, share);
             }
         }
         Err(IdentifyError::NotConverged { iterations: self.settings.max_iterations, step })

@@ -27,8 +27,6 @@ pub(super) struct Record {
     pub rows: Vec<Row>,
     /// Number of observed headings.
     pub observed: usize,
-    /// Length, s.
-    pub duration: f64,
 }
 
 impl Record {
@@ -61,7 +59,7 @@ impl Record {
             last = row;
             observed += 1;
         }
-        Self { rows, observed, duration: time[last] - time[first] }
+        Self { rows, observed }
     }
 
     /// The same record with time running backwards: ψ'' + a ψ' = b (δ + δ_r) keeps b and δ_r and turns a into −a.
@@ -89,7 +87,6 @@ mod tests {
         let rudder = (0..12).map(|row| 0.1 * f64::from(row)).collect();
         let record = Record::new(&record("gaps", time, heading, rudder));
         assert_eq!((record.rows.len(), record.observed), (10, 8));
-        assert_abs_diff_eq!(record.duration, 0.9, epsilon = 1e-12);
         for (index, row) in record.rows.iter().enumerate() {
             assert_abs_diff_eq!(row.rudder, 0.1 * (index + 1) as f64, epsilon = 1e-12);
             assert_abs_diff_eq!(row.heading, 0.01 * index as f64, epsilon = 1e-12);

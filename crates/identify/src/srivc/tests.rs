@@ -306,6 +306,32 @@ fn gaps_and_uneven_sampling_do_not_bias() {
     assert_recovers(&estimate, &case.ship(), 1e-7);
 }
 
+/// A rudder put over between two rows leaves a residual of degrees, about which whole steps sway; the fixed point is that
+/// of the output error all the same.
+#[test]
+fn settles_where_whole_steps_sway() {
+    for (K, T, period_s, seed) in [(0.08, 147.0, 20.7, 0), (0.16, 48.0, 6.75, 1), (0.073, 81.6, 5.9, 2)] {
+        let case = Case {
+            K,
+            T,
+            heading_deg: 5.0,
+            rate_deg_s: 100.0,
+            samples: 260,
+            period_s,
+            noise_deg: 0.1,
+            start: Start::At(2.0 * T),
+            seed,
+            ..Case::default()
+        };
+        let trial = [case.trial()];
+        let found = srivc().identify(&trial).expect("settles").response;
+        let output_error = crate::output_error::Settings { iterations: 500, ..Default::default() };
+        let least = output_error.build().expect("valid").identify(&trial).expect("steered").response;
+        assert_relative_eq!(found.inverse_T, least.inverse_T, max_relative = 1e-5);
+        assert_relative_eq!(found.K_over_T, least.K_over_T, max_relative = 1e-5);
+    }
+}
+
 /// Port and starboard: the mirrored record has the same K and T and the opposite rudder bias.
 #[test]
 fn mirrored_steering_mirrors_the_bias_only() {
