@@ -22,7 +22,7 @@ use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, check_condition_limit};
 use points::{BaseCourse, Points};
 
 /// Which points are used, and how.
@@ -92,9 +92,7 @@ impl Settings {
                 return refused(key, angle, "an angle");
             }
         }
-        if self.condition_limit.is_nan() || self.condition_limit <= 1.0 {
-            return refused("condition-limit", self.condition_limit, "a number above 1");
-        }
+        check_condition_limit(self.condition_limit)?;
         Ok(CharacteristicPoints { settings: self })
     }
 }

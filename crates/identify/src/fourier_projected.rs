@@ -23,7 +23,7 @@ use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, Response, white_variance};
 use crate::fourier::{self, Basis, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, check_condition_limit};
 
 /// Fewest observed rows of a trial.
 const FEWEST_ROWS: usize = 20;
@@ -129,9 +129,7 @@ impl Settings {
         if !(self.trim_share >= 0.0 && self.trim_share < 0.5) {
             return Err(SettingsError::new("trim-share", self.trim_share, "0 to below 0.5"));
         }
-        if self.condition_limit <= 1.0 || self.condition_limit.is_nan() {
-            return Err(SettingsError::new("condition-limit", self.condition_limit, "a number above 1"));
-        }
+        check_condition_limit(self.condition_limit)?;
         self.fundamental.check()?;
         Ok(FourierProjected { settings: self })
     }

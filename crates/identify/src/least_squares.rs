@@ -17,7 +17,7 @@ use crate::linear::LeastSquares as Solution;
 use crate::robust::newey_west;
 use crate::samples::Samples;
 use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 
 /// Bias of 1/T by noise, as a share, from which on a reader is warned.
 const WARN_OF_BIAS: f64 = 0.02;
@@ -72,15 +72,8 @@ impl Settings {
         if let Some(smoothing) = &self.smoothing {
             smoothing.check()?;
         }
-        if let Some(gap) = self.longest_gap_s
-            && (gap.is_nan() || gap <= 0.0)
-        {
-            return Err(SettingsError { key: "longest-gap-s", found: gap.to_string(), expected: "a positive time" });
-        }
-        if self.condition_limit.is_nan() || self.condition_limit <= 1.0 {
-            let found = self.condition_limit.to_string();
-            return Err(SettingsError { key: "condition-limit", found, expected: "a number above 1" });
-        }
+        check_longest_gap(self.longest_gap_s)?;
+        check_condition_limit(self.condition_limit)?;
         Ok(LeastSquares { settings: self })
     }
 }

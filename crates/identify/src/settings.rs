@@ -20,3 +20,17 @@ impl SettingsError {
         Self { key, found: found.to_string(), expected }
     }
 }
+
+/// Refuses a `condition-limit` that no equations can keep.
+pub(crate) fn check_condition_limit(limit: f64) -> Result<(), SettingsError> {
+    // Written so that NaN is refused too.
+    if limit > 1.0 { Ok(()) } else { Err(SettingsError::new("condition-limit", limit, "a number above 1")) }
+}
+
+/// Refuses a `longest-gap-s` that is no time.
+pub(crate) fn check_longest_gap(gap_s: Option<f64>) -> Result<(), SettingsError> {
+    match gap_s {
+        Some(gap) if gap.is_nan() || gap <= 0.0 => Err(SettingsError::new("longest-gap-s", gap, "a positive time")),
+        _ => Ok(()),
+    }
+}
