@@ -21,7 +21,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
 use crate::robust::{judge, newey_west};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 use noise::Noise;
 
 /// Fewest headings in a stretch between gaps that can say more than its own initial state.
@@ -54,15 +54,8 @@ impl Settings {
     ///
     /// Fails when the gap is not positive or the condition limit is not above 1.
     pub fn build(self) -> Result<IntegralLeastSquares, SettingsError> {
-        if let Some(gap) = self.longest_gap_s
-            && (gap.is_nan() || gap <= 0.0)
-        {
-            return Err(SettingsError { key: "longest-gap-s", found: gap.to_string(), expected: "a positive time" });
-        }
-        if self.condition_limit.is_nan() || self.condition_limit <= 1.0 {
-            let found = self.condition_limit.to_string();
-            return Err(SettingsError { key: "condition-limit", found, expected: "a number above 1" });
-        }
+        check_longest_gap(self.longest_gap_s)?;
+        check_condition_limit(self.condition_limit)?;
         Ok(IntegralLeastSquares { settings: self })
     }
 }
@@ -235,30 +228,27 @@ impl<'a> Piece<'a> {
     }
 }
 
-/// Calls `visit(k, ∫(value − value₀))` for every row: cubic Hermite interpolation with three-point slopes.
+/// Calls `visit(k, ∫(value − value₀))` for every row: cubic Hermite interpolation, the slope of a row being that of the
+/// chord between its neighbours.
 ///
-/// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24.
+/// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24. On
+/// unequal ones a parabola through three rows would give a smoother slope, but it leans on the shorter interval: where
+/// two rows nearly coincide, the noise of their difference over next to nothing would be integrated over the long one.
 /// `time` and `value` have the same length, at least 3.
 fn integrate(time: &[f64], value: &[f64], mut visit: impl FnMut(usize, f64)) {
     let last = time.len() - 1;
-    let chord = |k: usize| (value[k + 1] - value[k]) / (time[k + 1] - time[k]);
-    let mut now = chord(0);
-    let mut slope = now + (now - chord(1)) * (time[1] - time[0]) / (time[2] - time[0]);
+    let chord = |from: usize, to: usize| (value[to] - value[from]) / (time[to] - time[from]);
+    // At the ends a parabola: its chord is the mean of its slopes.
+    let beyond = |chord: f64, slope: f64| 2.0 * chord - slope;
+    let mut slope = beyond(chord(0, 1), chord(0, 2));
     let mut total = 0.0;
     visit(0, total);
     for k in 0..last {
         let h = time[k + 1] - time[k];
-        let (next, next_slope) = if k + 1 < last {
-            let next = chord(k + 1);
-            let h_next = time[k + 2] - time[k + 1];
-            (next, (now * h_next + next * h) / (h + h_next))
-        } else {
-            // The parabola through the last three rows: its chord is the mean of its slopes.
-            (now, 2.0 * now - slope)
-        };
-        total += h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next_slope));
+        let next = if k + 1 < last { chord(k, k + 2) } else { beyond(chord(k, last), slope) };
+        total += h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next));
         visit(k + 1, total);
-        (now, slope) = (next, next_slope);
+        slope = next;
     }
 }
 

@@ -149,6 +149,18 @@ fn uneven_rows_and_missing_headings_do_no_harm() {
     }
 }
 
+/// Logs joined row by row: intervals of 0.01 to 7 s without order. The noise of two rows that nearly coincide must not be
+/// taken for a slope.
+#[test]
+fn rows_that_nearly_coincide_do_no_harm() {
+    for seed in 0..10 {
+        let case = Case { period_s: 0.01, samples: 27001, noise_deg: 0.3, seed, ..Case::default() };
+        let estimate = identify(&[rows(&case, |k| (k * k * 31 + k * 17) % 10007 < 100)]);
+        let [k, t] = errors(&estimate, &case);
+        assert!(k.abs() < 2.0 && t.abs() < 2.0, "K {k:+.2} %, T {t:+.2} %");
+    }
+}
+
 #[test]
 fn a_long_gap_starts_a_new_stretch() {
     let case = Case { samples: 401, noise_deg: 0.1, ..Case::default() };
