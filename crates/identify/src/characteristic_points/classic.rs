@@ -189,7 +189,7 @@ fn covariance(gain: &Gain, rises: &[Interval], time: f64, squares: f64) -> Resul
 
 /// K and T of the swings to either side apart, K without the first swing, scatter of T; what does not exist is left out.
 fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &Gain) -> Vec<(&'static str, f64)> {
-    let gain_of = |chosen: &dyn Fn(&Interval) -> bool| {
+    let gain_of = |swings: &[Interval], chosen: &dyn Fn(&Interval) -> bool| {
         let chosen: Vec<&Interval> = swings.iter().filter(|swing| chosen(swing)).collect();
         let squares: f64 = chosen.iter().map(|swing| swing.rudder * swing.rudder).sum();
         let product = |swing: &&Interval| (swing.heading - gain.gain_bias * swing.duration) * swing.rudder;
@@ -203,15 +203,12 @@ fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &Gain) -> Vec<(&'s
     let each: Vec<f64> = rises.iter().map(|rise| rise.rate_moment(gain) / rise.rate).collect();
     let range =
         each.iter().copied().fold(f64::NEG_INFINITY, f64::max) - each.iter().copied().fold(f64::INFINITY, f64::min);
-    let later = swings.get(1..).filter(|later| !later.is_empty()).map(|later| {
-        let squares: f64 = later.iter().map(|swing| swing.rudder * swing.rudder).sum();
-        later.iter().map(|s| (s.heading - gain.gain_bias * s.duration) * s.rudder).sum::<f64>() / squares
-    });
+    let later = swings.get(1..).unwrap_or_default();
     [
         ("condition", Some(gain.condition)),
-        ("K_to_starboard_per_s", gain_of(&|swing| swing.heading > 0.0)),
-        ("K_to_port_per_s", gain_of(&|swing| swing.heading < 0.0)),
-        ("K_without_first_swing_per_s", later),
+        ("K_to_starboard_per_s", gain_of(swings, &|swing| swing.heading > 0.0)),
+        ("K_to_port_per_s", gain_of(swings, &|swing| swing.heading < 0.0)),
+        ("K_without_first_swing_per_s", gain_of(later, &|_| true)),
         ("T_to_starboard_s", time_of(1.0)),
         ("T_to_port_s", time_of(-1.0)),
         ("T_range_s", Some(range)),
@@ -219,4 +216,21 @@ fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &Gain) -> Vec<(&'s
     .into_iter()
     .filter_map(|(name, value)| Some((name, value?)))
     .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// After the first swing the rudder is amidships: what the others say of K does not exist.
+    #[test]
+    fn swings_without_a_rudder_have_no_gain_of_their_own() {
+        let swing = |rudder, heading| Interval { duration: 20.0, rudder, heading, rate: 0.0 };
+        let swings = [swing(3.0, 0.3), swing(0.0, -0.1), swing(0.0, 0.05)];
+        let rises = [Interval { rate: 0.01, ..swing(1.0, 0.1) }];
+        let gain = Gain { gain: 0.1, gain_bias: 0.0, covariance: None, condition: 1.0 };
+        let found = diagnostics(&swings, &rises, &gain);
+        assert!(found.iter().all(|(_, value)| value.is_finite()), "{found:?}");
+        assert!(!found.iter().any(|(name, _)| *name == "K_without_first_swing_per_s"), "{found:?}");
+    }
 }
