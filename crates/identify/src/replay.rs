@@ -11,7 +11,7 @@ use trial::Trial;
 use crate::linear::LeastSquares;
 use crate::track::{Coefficients, Columns, Track};
 
-/// Condition number above which the initial yaw rate is left at the value of least norm.
+/// Condition number above which no initial yaw rate is fitted: it is taken to be zero.
 const CONDITION_LIMIT: f64 = 1e9;
 
 /// A replay of a record.
@@ -33,7 +33,7 @@ pub struct Replay {
 
 /// Replays the rudder of `trial` through `response` with the best initial state.
 ///
-/// `None` when the replay is not finite (a response with infinite or undefined parameters) or the record is too short to fit two initial values.
+/// `None` when the replay is not finite, as for a response with infinite or undefined parameters.
 pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let a = response.inverse_T;
     let track = Track::unchecked(trial);
