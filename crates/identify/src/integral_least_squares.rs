@@ -69,7 +69,9 @@ impl Settings {
 ///
 /// The covariance is that of white heading noise n seen through the equation, e = n + a ∫n, with the variance of n
 /// estimated from the residual. The robust covariance (Newey and West 1987) takes the noise that was found, row by row,
-/// so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts.
+/// so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts. Nor does either count the
+/// bias by the noise of ∫ψ, a regressor, which pulls 1/T towards zero where headings come too rarely: with an interval
+/// beyond T / 2 the interval of T holds the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
 ///
 /// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is
 /// not positive. A negative 1/T is an answer: the ship is course-unstable.
