@@ -9,6 +9,7 @@ use trial::{Channel, Columns};
 
 use crate::display::Reading;
 use crate::disturbance::{Wind, gusting_speed};
+use crate::gear::RudderPath;
 use crate::propagate::Sample;
 use crate::run::Wake;
 use crate::sensor::{DropOut, Loses, Sensors, quantise};
@@ -29,6 +30,8 @@ pub(crate) struct Scene<'a> {
     pub jitter: &'a [f64],
     /// Rudder, executes and readings of the helmsman.
     pub wake: &'a Wake,
+    /// The rudder as somebody rebuilds it from the orders; `None` where it is recorded.
+    pub assumed: Option<&'a RudderPath>,
     /// Rudder order before the first execute, rad; `None` where nobody gave orders.
     pub first_order: Option<f64>,
     /// The wind, where it blows.
@@ -50,13 +53,17 @@ pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: Waves, key: &Stream
     let jitter = |row: usize| scene.jitter.get(row).copied().unwrap_or(0.0);
 
     let mut rng = key.rng(Purpose::Rudder);
-    let rudder = scene.stamps.iter().enumerate().map(|(row, &stamp)| {
+    let feedback = |(row, &stamp): (usize, &f64)| {
         let noise = if sensors.rudder.noise > 0.0 { sensors.rudder.noise * normal(&mut rng) } else { 0.0 };
         quantise(scene.wake.path.at(stamp + jitter(row)) + noise, sensors.rudder.quantum)
-    });
+    };
+    let rudder = match scene.assumed {
+        None => scene.stamps.iter().enumerate().map(feedback).collect(),
+        Some(path) => scene.stamps.iter().map(|&stamp| path.at(stamp)).collect(),
+    };
 
     let mut channels = BTreeMap::new();
-    channels.insert(Channel::Rudder, rudder.collect());
+    channels.insert(Channel::Rudder, rudder);
     if let Some(first) = scene.first_order {
         let order = |(row, &stamp): (usize, &f64)| order_at(&scene.wake.executes, first, stamp + jitter(row));
         channels.insert(Channel::RudderOrder, scene.stamps.iter().enumerate().map(order).collect());

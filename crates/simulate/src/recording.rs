@@ -21,6 +21,19 @@ pub enum Start {
     },
 }
 
+/// Where the rudder column of the record comes from.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum RudderColumn {
+    /// The rudder feedback.
+    #[default]
+    Feedback,
+    /// Nobody recorded the rudder: its angles are rebuilt from the orders of the helm and a rate somebody assumes.
+    Orders {
+        /// Rate assumed, rad/s; infinite for a rudder that jumps.
+        assumed_rate: f64,
+    },
+}
+
 /// The specification of the record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recording {
@@ -31,12 +44,14 @@ pub struct Recording {
     /// Time from first to last row, s; `None` for until the end of the manoeuvre. A manoeuvre that is over earlier ends
     /// the record.
     pub duration: Option<f64>,
+    /// Where its rudder column comes from.
+    pub rudder: RudderColumn,
 }
 
 impl Default for Recording {
     /// The whole run, once a second.
     fn default() -> Self {
-        Self { start: Start::Run, period: 1.0, duration: None }
+        Self { start: Start::Run, period: 1.0, duration: None, rudder: RudderColumn::Feedback }
     }
 }
 
@@ -64,6 +79,9 @@ impl Recording {
         if let Start::Execute { number, offset } = self.start {
             error::positive("recording.start.execute", number as f64)?;
             error::not_negative("recording.start.offset", offset)?;
+        }
+        if let RudderColumn::Orders { assumed_rate } = self.rudder {
+            error::positive_or_infinite("recording.rudder.assumed_rate", assumed_rate)?;
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ use crate::helm::{Helm, Helmsman, Watches};
 use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
 use crate::measure::{self, Scene};
 use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator, Sample};
-use crate::recording::{Recording, Start, Tap};
+use crate::recording::{Recording, RudderColumn, Start, Tap};
 use crate::run::{Progress, Run};
 use crate::sensor::Sensors;
 use crate::stream::StreamKey;
@@ -245,6 +245,18 @@ impl Simulation {
         self.write(key, rows, instruments, &wake)
     }
 
+    /// The rudder as it is rebuilt from the orders; `None` where it is recorded, or followed a record without orders.
+    fn assumed_path(&self, executes: &[Execute]) -> Option<RudderPath> {
+        let RudderColumn::Orders { assumed_rate } = self.recording.rudder else { return None };
+        if matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
+            return None;
+        }
+        let gear = SteeringGear::with_rate(assumed_rate);
+        let mut path = RudderPath::standing(self.approach.rudder);
+        executes.iter().for_each(|execute| path.order(execute.time, execute.order, &gear));
+        Some(path)
+    }
+
     fn write(
         &self,
         key: &StreamKey,
@@ -259,11 +271,13 @@ impl Simulation {
             tap.samples.truncate(count);
         }
         let stamps: Vec<f64> = rows.samples.iter().map(|sample| sample.time).collect();
+        let assumed = self.assumed_path(&wake.executes);
         let scene = Scene {
             stamps: &stamps,
             samples: instruments.as_ref().map_or(&rows.samples, |tap| &tap.samples),
             jitter: instruments.as_ref().map_or(&[], |tap| &tap.jitter),
             wake,
+            assumed: assumed.as_ref(),
             first_order: (!matches!(self.manoeuvre, Manoeuvre::Replay(_))).then_some(self.approach.rudder),
             wind: self.disturbances.wind,
             particulars: self.vessel.particulars(),

@@ -10,9 +10,9 @@ use trial::Channel;
 use super::{KEY, zig_zag};
 use crate::disturbance::{GaussMarkov, Wind};
 use crate::helm::Watches;
-use crate::recording::Start;
+use crate::recording::{RudderColumn, Start};
 use crate::sensor::{Bursts, Loses, YawRateSensor};
-use crate::{Simulated, Simulation, Vessel};
+use crate::{Recording, Simulated, Simulation, Vessel};
 
 const ROWS: f64 = 2001.0;
 
@@ -294,4 +294,25 @@ fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
         assert_abs_diff_eq!(*yaw_acceleration, 1e-3 * from - 0.05 * r, epsilon = 1e-15);
     }
     assert!(trial.channel(Channel::Speed).expect("the ship has a speed").iter().all(|speed| *speed == 6.0));
+}
+
+#[test]
+fn a_rudder_rebuilt_from_orders_is_as_right_as_its_rate() {
+    let trial = || zig_zag(10.0, 20.0, 2.5, 300.0);
+    let rudder = |column: RudderColumn| {
+        let recording = Recording { rudder: column, ..trial().recording };
+        let simulated = Simulation { recording, ..trial() }.run(&KEY).expect("a plain zig-zag");
+        (simulated.trial.time().to_vec(), simulated.trial.rudder().to_vec(), simulated.truth.executes)
+    };
+    let (time, feedback, executes) = rudder(RudderColumn::Feedback);
+    let (_, same, _) = rudder(RudderColumn::Orders { assumed_rate: trial().gear.rate });
+    let (_, jumping, _) = rudder(RudderColumn::Orders { assumed_rate: f64::INFINITY });
+    for (row, &t) in time.iter().enumerate() {
+        assert_abs_diff_eq!(same[row], feedback[row], epsilon = 1e-12);
+        let ordered = executes.iter().rfind(|execute| execute.time <= t).map_or(0.0, |execute| execute.order);
+        assert_abs_diff_eq!(jumping[row], ordered, epsilon = 1e-12);
+    }
+    assert!(jumping.iter().zip(&feedback).any(|(a, b)| (a - b).abs() > 0.05), "the ramps differ");
+    let refused = Recording { rudder: RudderColumn::Orders { assumed_rate: 0.0 }, ..Recording::default() };
+    assert!(Simulation { recording: refused, ..trial() }.run(&KEY).is_err());
 }
