@@ -267,6 +267,7 @@ fn error_figure(theme: &Theme, x_scale: Scale) -> Figure {
             rows: ["K", "T"].map(|name| format!("rms error of {} [%]", symbol(name))).into(),
             columns: vec!["10°/10° zig-zag".into(), "20°/20° zig-zag".into()],
             cells: vec![cell(0, 0), cell(0, 1), cell(1, 0), cell(1, 1)],
+            reference: None,
         },
         theme,
     )

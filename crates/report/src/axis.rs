@@ -22,6 +22,8 @@ enum Scale {
     },
     /// One unit per name; the first name at 0, counted from the top of a vertical axis.
     Names(Vec<String>),
+    /// The same, counted from the left of a horizontal axis.
+    Columns(Vec<String>),
 }
 
 /// One axis of a panel.
@@ -83,6 +85,11 @@ impl Axis {
         Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Names(names) }
     }
 
+    /// A list of short names along a horizontal axis, one unit each, the first at the left.
+    pub(crate) fn columns(names: Vec<String>) -> Self {
+        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Columns(names) }
+    }
+
     /// Where the axis is broken, as a fraction.
     pub(crate) fn break_at(&self) -> Option<f64> {
         matches!(self.scale, Scale::Log { zero: true }).then_some(BREAK_AT)
@@ -95,7 +102,7 @@ impl Axis {
             return None;
         }
         match &self.scale {
-            Scale::Linear(_) => Some((value - self.lo) / (self.hi - self.lo)),
+            Scale::Linear(_) | Scale::Columns(_) => Some((value - self.lo) / (self.hi - self.lo)),
             Scale::Names(_) => Some(1.0 - (value - self.lo) / (self.hi - self.lo)),
             Scale::Log { zero } if value > 0.0 => {
                 let along = (value / self.lo).log10() / (self.hi / self.lo).log10();
@@ -111,7 +118,7 @@ impl Axis {
         match &self.scale {
             Scale::Linear(steps) => self.linear_ticks(count, *steps),
             Scale::Log { zero } => self.log_ticks(count, *zero),
-            Scale::Names(names) => {
+            Scale::Names(names) | Scale::Columns(names) => {
                 let at = |i: usize| self.fraction(i as f64).expect("an index is finite");
                 Ticks { major: names.iter().enumerate().map(|(i, n)| (at(i), n.clone())).collect(), minor: vec![] }
             }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::PAD;
+use super::{PAD, Reference95};
 use crate::axis::Axis;
 use crate::clip::{self, Place};
 use crate::figure::Figure;
@@ -74,6 +74,9 @@ pub struct ErrorCurves {
     pub columns: Vec<String>,
     /// The panels; one outside `rows` and `columns` is not drawn.
     pub cells: Vec<ErrorCell>,
+    /// A value to compare with, in every panel.
+    #[serde(default)]
+    pub reference: Option<Reference95>,
 }
 
 /// Draws the panels: rows share the vertical, columns the horizontal axis.
@@ -89,6 +92,9 @@ pub fn error_curves(data: &ErrorCurves, theme: &Theme) -> Figure {
     let panels = sheet.grid(Grid { heads: heads.collect(), ..Grid::new(columns.collect(), rows.collect()) });
     for cell in data.cells.iter().filter(|cell| cell.column < count) {
         let Some(panel) = panels.get(cell.row * count + cell.column) else { continue };
+        if let Some(reference) = &data.reference {
+            reference.horizontal(panel, &mut sheet.scene, theme);
+        }
         for curve in &cell.curves {
             let index = origins.iter().position(|o| **o == curve.origin).unwrap_or(0);
             // Methods of equal error would hide each other's bars, so each stands a little aside.
@@ -142,6 +148,7 @@ fn x_axis(data: &ErrorCurves, column: usize) -> Axis {
 fn y_axis(data: &ErrorCurves, row: usize) -> Axis {
     let points = points(data, |cell| cell.row == row);
     let mut values: Vec<f64> = points.iter().map(|p| p.y).collect();
+    values.extend(data.reference.iter().flat_map(|reference| [reference.value, reference.band[0], reference.band[1]]));
     // The lower end of an interval of an error can come close to zero and would stretch a logarithmic axis by decades;
     // such a bar is cut at the frame.
     let lowest = values.iter().copied().filter(|y| *y > 0.0).fold(f64::INFINITY, f64::min);

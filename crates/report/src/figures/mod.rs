@@ -3,21 +3,34 @@
 
 mod curve_fit;
 mod derivatives;
+mod dots;
+mod ecdf;
 mod error_curves;
+mod heat_map;
 mod intervals;
 mod record_fit;
 mod replays;
+mod scatter;
+mod violins;
 mod zigzag_trial;
 
 pub use curve_fit::{CurveFit, curve_fit};
 pub use derivatives::{Derivatives, MotionCurves, derivatives};
+pub use dots::{Dot, DotColumn, DotPlot, dots};
+pub use ecdf::{Ecdf, EcdfCurve, EcdfPanel, ecdf};
 pub use error_curves::{ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
+pub use heat_map::{HeatMap, HeatPanel, heat_map};
 pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
 pub use record_fit::{Fit, RecordFit, record_fit};
 pub use replays::{Replay, Replays, replays};
+pub use scatter::{Ellipse, KtPanel, KtScatter, scatter};
+pub use violins::{Violin, ViolinPanel, Violins, violins};
 pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial, zigzag_trial};
 
+use serde::{Deserialize, Serialize};
+
 use crate::axis::Axis;
+use crate::clip::Rect;
 use crate::curve::Curve;
 use crate::layout::Side;
 use crate::legend::{Entry, Sample};
@@ -71,10 +84,54 @@ fn record_entry(label: &str, theme: &Theme, heading: &Curve) -> Entry {
     Entry::new(sample, label)
 }
 
+/// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reference95 {
+    /// The value.
+    pub value: f64,
+    /// The band.
+    pub band: [f64; 2],
+}
+
+impl Reference95 {
+    fn stroke(theme: &Theme) -> Stroke {
+        Stroke::solid(INK, 0.8 * theme.line)
+    }
+
+    /// Across a panel whose horizontal axis it belongs to.
+    fn vertical(&self, panel: &Panel, scene: &mut Scene, theme: &Theme) {
+        let Rect { x, y, .. } = panel.rect;
+        let inside = |value: f64| panel.across(value).map(|place| place.clamp(x, panel.rect.right()));
+        if let (Some(left), Some(right)) = (inside(self.band[0]), inside(self.band[1])) {
+            let bottom = panel.rect.bottom();
+            scene.fill(Layer::Grid, [(left, y), (right, y), (right, bottom), (left, bottom)], RECORD, 0.22);
+        }
+        panel.vertical(scene, Layer::Grid, self.value, Self::stroke(theme));
+    }
+
+    /// Across a panel whose vertical axis it belongs to.
+    fn horizontal(&self, panel: &Panel, scene: &mut Scene, theme: &Theme) {
+        let Rect { x, y, .. } = panel.rect;
+        let inside = |value: f64| panel.up(value).map(|place| place.clamp(y, panel.rect.bottom()));
+        if let (Some(low), Some(high)) = (inside(self.band[0]), inside(self.band[1])) {
+            let right = panel.rect.right();
+            scene.fill(Layer::Grid, [(x, low), (right, low), (right, high), (x, high)], RECORD, 0.22);
+        }
+        panel.horizontal(scene, Layer::Grid, self.value, Self::stroke(theme));
+    }
+}
+
+/// The line errors scatter about where they run across.
+fn zero_upright(panel: &Panel, scene: &mut Scene, theme: &Theme) {
+    panel.vertical(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
+}
+
 /// The line a residual scatters about.
 fn zero_line(panel: &Panel, scene: &mut Scene, theme: &Theme) {
     panel.horizontal(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
 }
 
+#[cfg(test)]
+mod study_tests;
 #[cfg(test)]
 mod tests;

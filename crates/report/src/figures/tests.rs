@@ -117,7 +117,8 @@ fn numbers<'a>(svg: &'a str, attribute: &str) -> Vec<&'a str> {
     svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
-fn check(name: &str, figure: &Figure) {
+/// What every figure has to keep.
+pub(super) fn check(name: &str, figure: &Figure) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
     let (width, height) = figure.size();

@@ -1,0 +1,147 @@
+//! Values of several methods in named rows: errors, coverage or failures at the named points of a study, or a ranking with the
+//! methods themselves as rows. Names stand where they can be long.
+
+use serde::{Deserialize, Serialize};
+
+use super::error_curves::Scale;
+use super::{PAD, Reference95};
+use crate::axis::Axis;
+use crate::dimension::Dimensions;
+use crate::figure::Figure;
+use crate::layout::{Grid, Sheet, Side};
+use crate::legend::{Entry, Sample};
+use crate::palette::{Look, Origin};
+use crate::panel::Panel;
+use crate::scene::{Layer, Scene, Stroke};
+use crate::theme::Theme;
+use crate::ticks::Steps;
+
+/// One value with its interval.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Dot {
+    /// Whose value; decides how the marker looks.
+    pub origin: Origin,
+    /// The value.
+    pub x: f64,
+    /// 95 % interval of the value.
+    pub interval: Option<[f64; 2]>,
+    /// An outline: a second value of the same method.
+    pub hollow: bool,
+}
+
+/// One panel: values of all rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DotColumn {
+    /// Title with unit of its axis.
+    pub x_title: String,
+    /// Division of its axis.
+    pub scale: Scale,
+    /// A value to compare with.
+    pub reference: Option<Reference95>,
+    /// Per row, in the order of [`DotPlot::names`].
+    pub rows: Vec<Vec<Dot>>,
+}
+
+/// What [`dots`] draws.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct DotPlot {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// Names of the rows, from the top.
+    pub names: Vec<String>,
+    /// The panels, side by side.
+    pub columns: Vec<DotColumn>,
+    /// Whether rows are methods, so that no key is needed.
+    pub rows_are_methods: bool,
+    /// A remark under the figure.
+    pub note: Option<String>,
+}
+
+/// Draws the panels side by side, or above each other when the figure is narrow.
+pub fn dots(data: &DotPlot, theme: &Theme) -> Figure {
+    let mut sheet = Sheet::new(theme, data.title.as_deref());
+    if !data.rows_are_methods {
+        let entries: Vec<Entry> =
+            origins(data).iter().map(|origin| Entry::new(Sample::Marker(origin.look()), origin.label())).collect();
+        sheet.legend(&entries);
+    }
+    let most = data.columns.iter().flat_map(|column| &column.rows).map(Vec::len).max().unwrap_or(1);
+    let lines = if data.rows_are_methods { 1.0 } else { most.max(1) as f64 };
+    let row = (0.62 * lines + 1.1) * theme.tick_font;
+    let side = || (Side::new(Axis::names(data.names.clone()), ""), (data.names.len().max(1) as f64 + 0.2) * row);
+    let columns = data.columns.iter().map(|column| Side::new(axis(column), column.x_title.clone()));
+    let panels: Vec<Panel> = match theme.is_narrow() {
+        true => columns.flat_map(|column| sheet.grid(Grid::new(vec![column], vec![side()]))).collect(),
+        false => sheet.grid(Grid::new(columns.collect(), vec![side()])),
+    };
+    for (panel, column) in panels.iter().zip(&data.columns) {
+        if let Some(reference) = &column.reference {
+            reference.vertical(panel, &mut sheet.scene, theme);
+        }
+        for (row, dots) in column.rows.iter().enumerate() {
+            draw_row(panel, &mut sheet.scene, theme, row, dots, data.rows_are_methods);
+        }
+    }
+    if let Some(note) = &data.note {
+        sheet.note(note);
+    }
+    sheet.finish()
+}
+
+/// Everyone who appears, in the order of appearance.
+fn origins(data: &DotPlot) -> Vec<&Origin> {
+    let mut found: Vec<&Origin> = Vec::new();
+    for dot in data.columns.iter().flat_map(|column| &column.rows).flatten() {
+        if !found.contains(&&dot.origin) {
+            found.push(&dot.origin);
+        }
+    }
+    found
+}
+
+fn axis(column: &DotColumn) -> Axis {
+    let dots = || column.rows.iter().flatten();
+    let reference =
+        column.reference.iter().flat_map(|reference| [reference.value, reference.band[0], reference.band[1]]);
+    let mut values: Vec<f64> = dots().map(|dot| dot.x).chain(reference).collect();
+    let lowest = values.iter().copied().filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
+    // As for curves: an interval that reaches down to nearly zero must not stretch a logarithmic axis by decades.
+    let ends = dots().filter_map(|dot| dot.interval).flatten();
+    values.extend(ends.filter(|end| column.scale == Scale::Linear || *end > 0.5 * lowest));
+    match column.scale {
+        Scale::Linear => Axis::covering(values, PAD, Steps::Decimal),
+        Scale::Log => Axis::log_covering(values),
+    }
+}
+
+fn draw_row(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, dots: &[Dot], together: bool) {
+    let lines = if together { 1 } else { dots.len() };
+    for (line, dot) in dots.iter().enumerate() {
+        // Methods of one row stand below each other, so that their bars do not hide each other.
+        let aside = if together { 0.0 } else { (line as f64 - (lines - 1) as f64 / 2.0) * 0.62 * theme.tick_font };
+        let (Some(x), Some(y)) = (panel.across(dot.x), panel.up(row as f64)) else { continue };
+        let y = y + aside;
+        let look = Look { hollow: dot.hollow || dot.origin.look().hollow, ..dot.origin.look() };
+        if let Some([low, high]) = dot.interval {
+            let end =
+                |value: f64, edge: f64| panel.across(value).unwrap_or(edge).clamp(panel.rect.x, panel.rect.right());
+            let (left, right) = (end(low.min(high), panel.rect.x), end(low.max(high), panel.rect.right()));
+            scene.line(Layer::Data, [(left, y), (right, y)], Stroke::solid(look.colour, 0.8 * theme.line));
+        }
+        if panel.rect.contains((x, y)) {
+            scene.marker(Layer::Data, (x, y), theme.marker, &look);
+        } else {
+            let (edge, direction) = if x > panel.rect.x { (panel.rect.right(), 1.0) } else { (panel.rect.x, -1.0) };
+            Dimensions::head(scene, (edge, y), (direction, 0.0), 0.6 * theme.small_font, look.colour);
+        }
+    }
+    // A line between rows with several methods keeps them together.
+    if !together
+        && row > 0
+        && let (Some(above), Some(own)) = (panel.up(row as f64 - 1.0), panel.up(row as f64))
+    {
+        let y = 0.5 * (above + own);
+        let stroke = Stroke { opacity: 0.35, ..Stroke::solid(crate::palette::INK, 0.6 * theme.thin) };
+        scene.line(Layer::Grid, [(panel.rect.x, y), (panel.rect.right(), y)], stroke);
+    }
+}
