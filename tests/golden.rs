@@ -7,7 +7,7 @@ use std::path::Path;
 use identify::registry;
 use kempf_tests::records::Case;
 use study::scenario::Scenario;
-use study::{engine, summary};
+use study::{collect, summary};
 
 /// Method, evaluations, share by which they may differ on another machine, why it stopped. Counts of methods without a search
 /// are exact. The search for the Fourier fundamental and the polish of output error end where steps drown in rounding, and
@@ -85,17 +85,13 @@ const TABLE: [(&str, [f64; 5]); 5] = [
 fn a_small_study_has_the_table_it_had() {
     let scenario = Scenario::parse(Path::new("golden.toml"), "golden", SCENARIO.to_owned(), None)
         .unwrap_or_else(|failure| panic!("{}", failure.message));
-    let table = summary::summarise(&engine::run(&scenario, true), &engine::facts(&scenario));
+    let (design, rows) = collect::in_memory(&scenario);
+    let table = summary::summarise(&rows, &design).methods;
     assert_eq!(table.len(), TABLE.len());
     for (line, (method, expected)) in table.iter().zip(TABLE) {
-        assert_eq!((line.method.as_str(), line.trials, line.failed()), (method, 6, 0));
-        let found = [
-            line.k.median_percent,
-            line.k.rms_percent,
-            line.t.median_percent,
-            line.t.rms_percent,
-            line.heading_rmse_deg,
-        ];
+        let record = &line.record;
+        assert_eq!((design.methods[line.method].label.as_str(), record.trials, record.failed()), (method, 6, 0));
+        let found = [record.k.median, record.k.rms, record.t.median, record.t.rms, record.heading_rmse_deg];
         let found = found.map(|figure| figure.expect("every trial was identified").value);
         let agree = found.iter().zip(&expected).all(|(found, expected)| (found - expected).abs() < 1e-7);
         assert!(agree, "{method}: {found:?}, was {expected:?}");

@@ -10,8 +10,11 @@ use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::{Mmg, Parameters, Propeller, Rudder};
 use simulate::{StreamKey, Truth, Vessel};
+use study::plan::Task;
+use study::rows::{Layout, Row, Writer};
 use study::scenario::Scenario;
-use study::{engine, rows};
+use study::store::Design;
+use study::{collect, engine};
 
 /// Scale of the KVLCC2 model of HSVA; time goes with its square root.
 const FROUDE: f64 = 45.714;
@@ -154,9 +157,15 @@ values = [10.0, 20.0]
         .unwrap_or_else(|failure| panic!("{}", failure.message))
 }
 
-fn bytes(folder: &Path, name: &str, rows: &[rows::Row]) -> Vec<u8> {
+fn bytes(folder: &Path, name: &str, (design, rows): (Design, Vec<Row>)) -> Vec<u8> {
     let path = folder.join(name);
-    rows::write(&path, rows).unwrap_or_else(|failure| panic!("{}", failure.message));
+    let layout = Layout::of(&design);
+    Writer::create(&path, &layout)
+        .and_then(|mut writer| {
+            writer.push(rows)?;
+            writer.finish()
+        })
+        .unwrap_or_else(|failure| panic!("{}", failure.message));
     std::fs::read(&path).expect("the file was written")
 }
 
@@ -165,8 +174,8 @@ fn rows_have_the_same_bytes_on_any_number_of_threads() {
     let (scenario, folder) = (scenario(5), tempfile::tempdir().expect("a temporary folder"));
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool of threads");
-        let rows = pool.install(|| engine::run(&scenario, true));
-        bytes(folder.path(), &format!("{threads}.parquet"), &rows)
+        let study = pool.install(|| collect::in_memory(&scenario));
+        bytes(folder.path(), &format!("{threads}.parquet"), study)
     };
     let one = on(1);
     assert!(one.len() > 1000, "{} bytes", one.len());
@@ -175,18 +184,18 @@ fn rows_have_the_same_bytes_on_any_number_of_threads() {
 
 #[test]
 fn a_longer_study_begins_with_the_shorter_one() {
-    let (short, long) = (engine::run(&scenario(2), true), engine::run(&scenario(4), true));
-    let first: Vec<&rows::Row> = long.iter().filter(|row| row.replicate < 2).collect();
+    let (short, long) = (collect::in_memory(&scenario(2)).1, collect::in_memory(&scenario(4)).1);
+    let first: Vec<&Row> = long.iter().filter(|row| row.replicate < 2).collect();
     assert_eq!(short.len(), 2 * 2 * 7);
     assert_eq!(short.iter().collect::<Vec<_>>(), first);
-    assert!(short.iter().any(|row| row.reason.is_none()));
+    assert!(short.iter().any(|row| row.failure.is_none()));
 }
 
 #[test]
 fn any_trial_can_be_made_alone_and_in_any_order() {
     let scenario = scenario(4);
     let heading = |cell: usize, replicate: u64| -> Vec<u64> {
-        let simulated = engine::simulate(&scenario, cell, replicate).expect("a noisy zig-zag");
+        let simulated = engine::simulate(&scenario, Task { cell, replicate }).expect("a noisy zig-zag");
         simulated.trial.heading().iter().map(|psi| psi.to_bits()).collect()
     };
     let places: Vec<(usize, u64)> = (0..2).flat_map(|cell| (0..4).map(move |replicate| (cell, replicate))).collect();

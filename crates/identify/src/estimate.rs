@@ -19,6 +19,9 @@ pub enum StopReason {
 }
 
 impl StopReason {
+    /// All reasons.
+    pub const ALL: [Self; 4] = [Self::Direct, Self::Converged, Self::IterationLimit, Self::RangeLimit];
+
     /// The word used in tables and JSON.
     pub fn as_str(self) -> &'static str {
         match self {

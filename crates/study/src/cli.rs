@@ -5,8 +5,11 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use report::Theme;
+
 use crate::failure::Failure;
-use crate::{check, fit, list, publish, run, screen};
+use crate::plan::Shard;
+use crate::{check, fit, list, merge, overview, publish, run, screen};
 
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
 #[derive(Debug, Parser)]
@@ -18,7 +21,44 @@ struct Cli {
     #[arg(value_name = "SCENARIO.toml")]
     scenario: Option<PathBuf>,
     #[command(flatten)]
+    request: RunRequest,
+    #[command(flatten)]
     common: Common,
+}
+
+/// How a scenario is run.
+#[derive(Debug, Clone, Args)]
+pub struct RunRequest {
+    /// Run part I of N only, into a folder of its own; `study merge` joins the parts
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Discard rows of an earlier run in the folder instead of going on with them
+    #[arg(long)]
+    pub restart: bool,
+    /// How figures are drawn
+    #[command(flatten)]
+    pub style: Style,
+}
+
+/// How figures are drawn.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Style {
+    /// Draw figures for print, MM millimetres wide [default: for a screen]
+    #[arg(long, value_name = "MM")]
+    pub paper: Option<f64>,
+    /// Resolution of figures for print
+    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper")]
+    pub dpi: f64,
+}
+
+impl Style {
+    /// The theme of the figures. Fails when no page carries it.
+    pub fn theme(&self) -> Result<Theme, Failure> {
+        match self.paper {
+            None => Ok(Theme::screen()),
+            Some(width_mm) => Theme::paper(width_mm, self.dpi).map_err(Failure::input),
+        }
+    }
 }
 
 /// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
@@ -89,6 +129,26 @@ enum Command {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         #[command(flatten)]
+        style: Style,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Write one page over all published studies of a folder
+    Overview {
+        /// Folder that holds the folders of studies
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Join the shards of one study
+    Merge {
+        /// Folders written with --shard, all of them, in any order
+        #[arg(required = true, value_name = "DIR")]
+        folders: Vec<PathBuf>,
+        #[command(flatten)]
+        style: Style,
+        #[command(flatten)]
         common: Common,
     },
 }
@@ -141,7 +201,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
     match (cli.command, cli.scenario) {
         (None, Some(scenario)) => {
             use_threads(&cli.common)?;
-            run::run(&scenario, &cli.common)
+            run::run(&scenario, &cli.request, &cli.common)
         }
         (None, None) => Err(Failure::input("no scenario is named; try `study scenarios/yukun.toml` or `study --help`")),
         (Some(Command::Fit { request, common }), _) => {
@@ -150,9 +210,14 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         }
         (Some(Command::Check { scenarios }), _) => check::run(&scenarios),
         (Some(Command::List { what, common }), _) => list::run(what, &common),
-        (Some(Command::Report { folder, common }), _) => {
+        (Some(Command::Report { folder, style, common }), _) => {
             use_threads(&common)?;
-            publish::report(&folder, &common)
+            publish::report(&folder, &style, &common)
+        }
+        (Some(Command::Overview { folder, common }), _) => overview::run(&folder, &common),
+        (Some(Command::Merge { folders, style, common }), _) => {
+            use_threads(&common)?;
+            merge::merge(&folders, &style, &common)
         }
     }
 }

@@ -1,89 +1,192 @@
-//! The engine: every cell and replicate simulated once, every method on the same trial, rows in their order.
+//! The engine: one trial simulated, every method on that same trial, one row each. Which trials there are, and in what
+//! order, is decided in [`crate::plan`]; where rows go in [`crate::unfinished`].
 //!
-//! Trials run in parallel and are collected by index, so the rows do not depend on the number of threads.
+//! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
+
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
 
 use identify::replay::replay;
-use identify::{Estimate, output_error};
-use indicatif::ParallelProgressIterator;
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use identify::{Estimate, Identifier, output_error};
+use nalgebra::{Matrix2, Matrix2x3};
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use ship::first_order::State;
-use simulate::{SimulateError, Simulated, StreamKey};
+use simulate::recording::RudderColumn;
+use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKey};
 use trial::Trial;
 
-use crate::progress;
-use crate::rows::Row;
-use crate::scenario::{Cell, Scenario};
+use crate::plan::Task;
+use crate::rows::{Bound, Row};
+use crate::scenario::{Cell, Scenario, Specification, Specimen};
+use crate::store::CellFacts;
 
-/// What is known of a cell without its rows.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CellFacts {
-    /// Labels of its points, one an axis.
-    pub labels: Vec<String>,
-    /// Values of its points, where an axis is a number.
-    pub values: Vec<Option<f64>>,
-    /// Cramér–Rao bound on the sd of K, per cent of the truth.
-    pub bound_k_percent: Option<f64>,
-    /// Cramér–Rao bound on the sd of T, per cent of the truth.
-    pub bound_t_percent: Option<f64>,
+/// Rows of one trial, and what they took.
+pub struct Outcome {
+    /// One row per method, in the order of the scenario.
+    pub rows: Vec<Row>,
+    /// Time to simulate, and of every method.
+    pub timing: Timing,
+}
+
+/// Wall time of one trial.
+pub struct Timing {
+    /// Index of the cell.
+    pub cell: u64,
+    /// To simulate it.
+    pub simulation: Duration,
+    /// Of every method that was asked, in the order of the scenario; empty where the trial could not be simulated.
+    pub methods: Vec<Duration>,
 }
 
 /// Key of all that is random in one trial.
-pub fn key(scenario: &Scenario, cell: usize, replicate: u64) -> StreamKey {
-    StreamKey { seed: scenario.seed, cell: cell as u64, replicate }
+pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
+    StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
 }
 
-/// Simulates one trial of a cell.
-pub fn simulate(scenario: &Scenario, cell: usize, replicate: u64) -> Result<Simulated, SimulateError> {
-    scenario.cells[cell].simulation.run(&key(scenario, cell, replicate))
+/// Simulates one trial.
+pub fn simulate(scenario: &Scenario, task: Task) -> Result<Simulated, String> {
+    let key = key(scenario, task);
+    let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
+    specimen.specification.simulation.run(&key).map_err(|error| error.to_string())
 }
 
-/// Runs everything and returns the rows: cell by cell, replicate by replicate, method by method.
-pub fn run(scenario: &Scenario, quiet: bool) -> Vec<Row> {
-    let replicates = scenario.replicates as usize;
-    let tasks = scenario.cells.len() * replicates;
-    (0..tasks)
-        .into_par_iter()
-        .progress_with(progress::bar(tasks as u64, quiet))
-        .map(|task| one_trial(scenario, task / replicates, (task % replicates) as u64))
-        .collect::<Vec<Vec<Row>>>()
-        .into_iter()
-        .flatten()
-        .collect()
+/// What the trials of a cell are held against.
+struct Yardstick {
+    /// K, T and δ_r that a method should find.
+    truth: Option<FirstOrder>,
+    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T, %².
+    bound: Option<(Bound, Matrix2<f64>)>,
+    /// Undisturbed second manoeuvre, perfectly recorded.
+    validation: Option<Trial>,
 }
 
-fn one_trial(scenario: &Scenario, index: usize, replicate: u64) -> Vec<Row> {
-    let cell = &scenario.cells[index];
-    let blank = |method: &str| Row {
-        cell: index as u64,
-        replicate,
-        method: method.to_owned(),
-        true_k_per_s: cell.truth.map(|truth| truth.K()),
-        true_t_s: cell.truth.map(|truth| truth.T()),
-        ..Row::default()
-    };
-    match simulate(scenario, index, replicate) {
-        Err(error) => cell
-            .methods
-            .iter()
-            .map(|method| Row { reason: Some(format!("simulation: {error}")), ..blank(&method.label) })
-            .collect(),
-        Ok(simulated) => cell
-            .methods
-            .iter()
-            .map(|method| match method.identify(&simulated.trial, &key(scenario, index, replicate)) {
-                Err(error) => Row { reason: Some(error.kind().to_owned()), ..blank(&method.label) },
-                Ok(estimate) => row(blank(&method.label), &simulated.trial, &estimate),
-            })
-            .collect(),
+impl Yardstick {
+    fn of(specimen: &Specimen, simulated: &Simulated, key: &StreamKey) -> Self {
+        let Specification { simulation, validation, truth } = &*specimen.specification;
+        let truth = truth.or_else(|| nearest_first_order(simulation, key));
+        let sd = simulation.sensors.declared_noise().heading;
+        let bound = truth.zip(sd).and_then(|(truth, sd)| bound(simulated, &truth, sd));
+        let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
+        Self { truth, bound, validation: validation.map(|simulated| simulated.trial) }
     }
 }
 
-fn row(blank: Row, trial: &Trial, estimate: &Estimate) -> Row {
+/// The first-order response that comes nearest to the undisturbed, perfectly recorded trial of a ship that is none.
+fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<FirstOrder> {
+    let calm = Simulation {
+        disturbances: Disturbances::default(),
+        sensors: Sensors::default(),
+        recording: Recording { rudder: RudderColumn::Feedback, ..simulation.recording },
+        ..simulation.clone()
+    };
+    let trial = calm.run(key).ok()?.trial;
+    let method = output_error::Settings::default().build().ok()?;
+    Some(method.identify(std::slice::from_ref(&trial)).ok()?.response)
+}
+
+/// Cramér–Rao bound of a trial for white heading noise of `sd`, rad.
+fn bound(simulated: &Simulated, truth: &FirstOrder, sd: f64) -> Option<(Bound, Matrix2<f64>)> {
+    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
+    let covariance = output_error::cramer_rao(&simulated.trial, truth, initial, sd)?;
+    let (a, b) = (truth.inverse_T, truth.K_over_T);
+    // Gradients of ln K = ln b − ln a and ln T = −ln a.
+    let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
+    let relative = gradient * covariance.matrix * gradient.transpose();
+    let bound = Bound {
+        k_per_s: relative[(0, 0)].sqrt() * truth.K().abs(),
+        t_s: relative[(1, 1)].sqrt() * truth.T().abs(),
+        k_over_t_per_s2: covariance.matrix[(1, 1)].sqrt(),
+    };
+    let finite = [bound.k_per_s, bound.t_s, bound.k_over_t_per_s2].iter().all(|sd| sd.is_finite());
+    finite.then_some((bound, relative * 1e4))
+}
+
+/// Runs trials of one study; what all trials of a cell share is made once.
+pub struct Bench<'a> {
+    scenario: &'a Scenario,
+    first_cell: usize,
+    yardsticks: Vec<OnceLock<Yardstick>>,
+}
+
+impl<'a> Bench<'a> {
+    /// A bench for trials of these cells.
+    pub fn new(scenario: &'a Scenario, cells: std::ops::RangeInclusive<usize>) -> Self {
+        let yardsticks = cells.clone().map(|_| OnceLock::new()).collect();
+        Self { scenario, first_cell: *cells.start(), yardsticks }
+    }
+
+    /// Runs one trial.
+    pub fn run(&self, task: Task) -> Outcome {
+        let cell = &self.scenario.cells[task.cell];
+        let key = key(self.scenario, task);
+        let start = Instant::now();
+        let specimen = match cell.specimen(&key) {
+            Ok(specimen) => specimen,
+            Err(refusal) => return nothing(cell, task, None, start.elapsed(), &format!("specification: {refusal}")),
+        };
+        let simulated = specimen.specification.simulation.run(&key);
+        let simulation = start.elapsed();
+        let drawn: Option<Arc<[f64]>> = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
+        let simulated = match simulated {
+            Ok(simulated) => simulated,
+            Err(error) => return nothing(cell, task, drawn, simulation, &format!("simulation: {error}")),
+        };
+        let own;
+        let yardstick = if cell.is_fixed() {
+            self.yardsticks[task.cell - self.first_cell].get_or_init(|| self.shared(task.cell))
+        } else {
+            own = Yardstick::of(&specimen, &simulated, &key);
+            &own
+        };
+        let blank = Row {
+            true_k_per_s: yardstick.truth.map(|truth| truth.K()),
+            true_t_s: yardstick.truth.map(|truth| truth.T()),
+            bound: yardstick.bound.map(|(bound, _)| bound),
+            ..empty(task, drawn)
+        };
+        let mut rows = Vec::with_capacity(cell.methods.len());
+        let mut methods = Vec::with_capacity(cell.methods.len());
+        for (index, method) in cell.methods.iter().enumerate() {
+            let start = Instant::now();
+            let answer = method.identify(&simulated.trial, &key);
+            methods.push(start.elapsed());
+            let blank = Row { method: index, ..blank.clone() };
+            rows.push(match answer {
+                Err(error) => Row { failure: Some(error.kind().into()), ..blank },
+                Ok(estimate) => answered(blank, &simulated.trial, yardstick.validation.as_ref(), &estimate),
+            });
+        }
+        Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+    }
+
+    /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial asks.
+    fn shared(&self, cell: usize) -> Yardstick {
+        let key = key(self.scenario, Task { cell, replicate: 0 });
+        let nothing = Yardstick { truth: None, bound: None, validation: None };
+        let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return nothing };
+        match specimen.specification.simulation.run(&key) {
+            Ok(simulated) => Yardstick::of(&specimen, &simulated, &key),
+            Err(_) => Yardstick { truth: specimen.specification.truth, ..nothing },
+        }
+    }
+}
+
+fn empty(task: Task, drawn: Option<Arc<[f64]>>) -> Row {
+    Row { cell: task.cell as u64, replicate: task.replicate, drawn, ..Row::default() }
+}
+
+/// A trial that could not be made: a row for every method all the same.
+fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
+    let blank = Row { failure: Some(reason.into()), ..empty(task, drawn) };
+    let rows = (0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect();
+    Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }
+}
+
+fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
     let (k, t, bias) = (estimate.K(), estimate.T(), estimate.rudder_bias());
     let finite = |value: f64| value.is_finite().then_some(value);
+    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| replay.heading_rmse_deg);
     Row {
         k_per_s: finite(k.value),
         k_ci95_per_s: k.ci95,
@@ -91,35 +194,23 @@ fn row(blank: Row, trial: &Trial, estimate: &Estimate) -> Row {
         t_ci95_s: t.ci95,
         rudder_bias_deg: finite(to_deg(bias.value)),
         rudder_bias_ci95_deg: bias.ci95.map(|ends| ends.map(to_deg)),
-        heading_rmse_deg: replay(trial, &estimate.response).map(|replay| replay.heading_rmse_deg),
+        heading_rmse_deg: error(trial),
+        validation_rmse_deg: validation.and_then(error),
         evaluations: Some(estimate.evaluations as u64),
-        stop: Some(estimate.stop.as_str().to_owned()),
+        stop: Some(estimate.stop.as_str()),
         ..blank
     }
 }
 
-/// Facts of every cell, the bound from its first trial.
-pub fn facts(scenario: &Scenario) -> Vec<CellFacts> {
-    (0..scenario.cells.len())
-        .into_par_iter()
-        .map(|index| {
-            let cell = &scenario.cells[index];
-            let bound = cell.truth.and_then(|truth| bound_percent(scenario, index, cell, &truth));
-            CellFacts {
-                labels: cell.labels.clone(),
-                values: cell.values.clone(),
-                bound_k_percent: bound.map(|(k, _)| k),
-                bound_t_percent: bound.map(|(_, t)| t),
-            }
-        })
-        .collect()
-}
-
-/// Cramér–Rao sd of K and T in per cent; `None` without heading noise or without a trial.
-fn bound_percent(scenario: &Scenario, index: usize, cell: &Cell, truth: &FirstOrder) -> Option<(f64, f64)> {
-    let simulated = simulate(scenario, index, 0).ok()?;
-    let sd = cell.simulation.sensors.declared_noise().heading?;
-    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
-    let (k, t) = output_error::cramer_rao(&simulated.trial, truth, initial, sd)?.indices(truth);
-    Some((100.0 * k.sd? / k.value.abs(), 100.0 * t.sd? / t.value.abs()))
+/// What is known of a cell without its rows.
+pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
+    let bound = || Bench::new(scenario, cell..=cell).shared(cell).bound;
+    let about = &scenario.cells[cell];
+    let bound = about.is_fixed().then(bound).flatten();
+    CellFacts {
+        labels: about.labels.clone(),
+        values: about.values.clone(),
+        bound_percent2: bound
+            .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),
+    }
 }

@@ -13,12 +13,17 @@
 
 pub mod check;
 pub mod cli;
+pub mod collect;
 pub mod engine;
 pub mod failure;
 pub mod fit;
+mod interrupt;
 pub mod json;
 pub mod list;
 pub mod manifest;
+pub mod merge;
+pub mod overview;
+pub mod plan;
 pub mod present;
 mod progress;
 pub mod publish;
@@ -28,5 +33,8 @@ pub mod scenario;
 pub mod screen;
 pub mod showcase;
 pub mod statistics;
+pub mod stopping;
 pub mod store;
 pub mod summary;
+pub mod timings;
+pub mod unfinished;

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 use std::process::Command;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
 use crate::failure::{Failure, OnPath};
-use crate::scenario::Scenario;
+use crate::plan::Shard;
+use crate::scenario::{Scenario, identity};
 
-/// The manifest of a finished study.
+/// The manifest of a study or a shard of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Manifest {
@@ -17,8 +17,12 @@ pub struct Manifest {
     pub name: String,
     /// Seed that was used.
     pub seed: u64,
+    /// Which part of the study this is.
+    pub shard: Shard,
     /// SHA-256 of the scenario text.
     pub scenario_sha256: String,
+    /// SHA-256 of all that decides the rows: the scenario without its prose, and the files it reads.
+    pub design_sha256: String,
     /// Version of the program.
     pub version: String,
     /// Git revision of the program's source, where git can tell.
@@ -49,29 +53,91 @@ const LOCK: &str = include_str!("../../../Cargo.lock");
 /// Crates whose version is part of a result's identity.
 const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
 
+/// First line of the file.
+const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n";
+
 impl Manifest {
-    /// The manifest of a scenario that has just run.
-    pub fn new(scenario: &Scenario, wall_time: Duration) -> Self {
+    /// The manifest of a scenario that is about to run.
+    pub fn new(scenario: &Scenario, shard: Shard) -> Self {
         Self {
             name: scenario.name.clone(),
             seed: scenario.seed,
+            shard,
             scenario_sha256: scenario.sha256.clone(),
+            design_sha256: scenario.design_sha256.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             git_revision: git_revision(),
             machine: Machine {
                 target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
                 threads: rayon::current_num_threads(),
-                wall_time_s: (wall_time.as_secs_f64() * 1e3).round() / 1e3,
+                wall_time_s: 0.0,
             },
             crates: NUMERIC.iter().flat_map(|name| locked(name)).collect(),
             scenario: scenario.text.clone(),
         }
     }
 
+    /// The manifest of the whole study, from those of all its shards; the wall time is that of all machines together.
+    ///
+    /// # Panics
+    /// When there is no shard.
+    pub fn joined<'a>(shards: impl IntoIterator<Item = &'a Self>) -> Self {
+        let join = |mut whole: Self, next: Self| {
+            whole.machine.wall_time_s += next.machine.wall_time_s;
+            whole
+        };
+        let whole = shards.into_iter().cloned().reduce(join).expect("a study has at least one shard");
+        Self { shard: Shard::WHOLE, ..whole }
+    }
+
+    /// What makes the rows of another manifest other rows, in words; empty when they are the same.
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let mut differences = Vec::new();
+        if self.design_sha256 != other.design_sha256 {
+            let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::design_of);
+            let designs = design(self).zip(design(other));
+            let found = designs.map_or_else(Vec::new, |(own, theirs)| identity::differences(&own, &theirs));
+            match found.is_empty() {
+                true => differences.push("a record that the scenario replays has changed".to_owned()),
+                false => differences.extend(found.iter().map(ToString::to_string)),
+            }
+        }
+        if self.seed != other.seed {
+            differences.push(format!("seed: {} there, {} here", self.seed, other.seed));
+        }
+        if self.shard != other.shard {
+            differences.push(format!("shard: {} there, {} here", self.shard, other.shard));
+        }
+        differences
+    }
+
+    /// The same for shards of one study, which have to come from one program too.
+    pub fn differences_of_study(&self, other: &Self) -> Vec<String> {
+        let of = |shard: Shard| Shard { number: 1, ..shard };
+        let mut differences = Self { shard: of(self.shard), ..self.clone() }
+            .differences(&Self { shard: of(other.shard), ..other.clone() });
+        if self.version != other.version {
+            differences.push(format!("version: {} there, {} here", self.version, other.version));
+        }
+        let missing = |own: &Self, theirs: &Self| {
+            own.crates.iter().filter(|name| !theirs.crates.contains(name)).cloned().collect::<Vec<_>>().join(", ")
+        };
+        if self.crates != other.crates {
+            differences.push(format!("crates: {} there, {} here", missing(self, other), missing(other, self)));
+        }
+        differences
+    }
+
     /// Writes the manifest.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
-        let text = toml::to_string(self).on("describe the run in", path)?;
-        std::fs::write(path, text).on("write", path)
+        let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
+        let text = toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", path)?;
+        std::fs::write(path, REPEAT.to_owned() + &text).on("write", path)
+    }
+
+    /// The manifest in a text that is one.
+    pub fn of_text(text: &str) -> Option<Self> {
+        toml::from_str(text).ok()
     }
 
     /// Reads the manifest of a finished study.

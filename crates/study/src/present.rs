@@ -7,10 +7,10 @@ use report::number::{self, MISSING};
 use report::{Column, Table};
 
 use crate::cli::Format;
-use crate::engine::CellFacts;
 use crate::showcase::Showcase;
 use crate::statistics::Figure;
-use crate::summary::{Errors, MethodSummary};
+use crate::store::Design;
+use crate::summary::{Errors, Record, Summary};
 
 /// Renders a table in the format the user asked for.
 pub fn render(table: &Table, format: Format) -> String {
@@ -35,96 +35,195 @@ pub fn showcase(showcase: &Showcase) -> Table {
     table
 }
 
-/// One row per cell and method: errors over the replicates.
-pub fn summary(summaries: &[MethodSummary], facts: &[CellFacts], axes: &[String]) -> Table {
-    let mut columns: Vec<Column> = axes.iter().map(|axis| Column::left(axis.clone())).collect();
-    columns.push(Column::left("method"));
-    columns.push(Column::right("trials"));
-    columns.push(Column::right("failed"));
-    for index in ["K", "T"] {
-        columns.push(Column::decimal(format!("{index} median error")).unit("%"));
-        columns.push(Column::left("95 %"));
-        columns.push(Column::decimal(format!("{index} rms error")).unit("%"));
-        columns.push(Column::left("95 %"));
-        columns.push(Column::decimal(format!("{index} coverage")).unit("%"));
-        columns.push(Column::decimal(format!("{index} sd/bound")));
+/// Every figure of every method in every cell, for other programs: `summary.csv`. An interval is two columns.
+pub fn summary(summary: &Summary, design: &Design) -> Table {
+    let mut columns = head(design);
+    columns.extend(["trials", "failed"].map(Column::right));
+    for index in ["K", "T", "K/T"] {
+        columns.extend(ERRORS.iter().flat_map(|(name, unit, _)| with_ends(&format!("{index} {name}"), unit)));
     }
-    columns.push(Column::decimal("heading error").unit("deg"));
+    columns.extend(
+        ["failure rate", "heading error", "validation error", "validation error 90 %"]
+            .into_iter()
+            .zip(["%", "deg", "deg", "deg"])
+            .flat_map(|(name, unit)| with_ends(name, unit)),
+    );
+    columns.push(Column::decimal("evaluations"));
     let mut table = Table::new(columns);
-    for summary in summaries {
-        let mut cells: Vec<String> = facts[summary.cell].labels.clone();
-        cells.extend([summary.method.clone(), summary.trials.to_string(), summary.failed().to_string()]);
-        for errors in [&summary.k, &summary.t] {
-            cells.extend(error_cells(errors));
+    for line in &summary.methods {
+        let record = &line.record;
+        let mut cells = place(design, line.cell, line.method);
+        cells.extend([record.trials.to_string(), record.failed().to_string()]);
+        for errors in [&record.k, &record.t, &record.k_over_t] {
+            cells.extend(ERRORS.iter().flat_map(|(.., get)| all_digits(get(errors))));
         }
-        cells.push(figure(summary.heading_rmse_deg, 3));
+        let percent = record.failure_rate.map(|rate| rate.times(100.0));
+        for figure in [percent, record.heading_rmse_deg, record.validation_rmse_deg, record.high_validation_rmse_deg] {
+            cells.extend(all_digits(figure));
+        }
+        cells.push(number::optional(record.evaluations, 1));
         table.push(cells);
     }
     table
 }
 
-/// The same in the width of a screen: failures, median and rms errors, coverage.
-pub fn summary_in_brief(summaries: &[MethodSummary], facts: &[CellFacts], axes: &[String]) -> Table {
-    let mut columns: Vec<Column> = axes.iter().map(|axis| Column::left(axis.clone())).collect();
-    columns.extend([Column::left("method"), Column::right("failed")]);
+/// A figure of [`Errors`]: its name, unit, and how to get it.
+type ErrorFigure = (&'static str, &'static str, fn(&Errors) -> Option<Figure>);
+
+const ERRORS: [ErrorFigure; 13] = [
+    ("mean error", "%", |errors| errors.mean),
+    ("median error", "%", |errors| errors.median),
+    ("sd", "%", |errors| errors.sd),
+    ("rms error", "%", |errors| errors.rms),
+    ("MAD", "%", |errors| errors.mad),
+    ("2.5 % quantile", "%", |errors| errors.quantiles[0]),
+    ("25 % quantile", "%", |errors| errors.quantiles[1]),
+    ("75 % quantile", "%", |errors| errors.quantiles[2]),
+    ("97.5 % quantile", "%", |errors| errors.quantiles[3]),
+    ("90 % of sizes", "%", |errors| errors.high_size),
+    ("coverage", "%", |errors| errors.coverage.map(|share| share.times(100.0))),
+    ("quoting intervals", "%", |errors| errors.quoting.map(|share| share.times(100.0))),
+    ("sd/bound", "", |errors| errors.sd_over_bound),
+];
+
+fn head(design: &Design) -> Vec<Column> {
+    design.axes.iter().map(|axis| Column::left(axis.clone())).chain([Column::left("method")]).collect()
+}
+
+fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
+    let labels = design.cells[cell].labels.iter().cloned();
+    labels.chain([design.methods[method].label.clone()]).collect()
+}
+
+fn with_ends(name: &str, unit: &'static str) -> [Column; 3] {
+    ["", " lower 95", " upper 95"].map(|end| {
+        let column = Column::decimal(format!("{name}{end}"));
+        if unit.is_empty() { column } else { column.unit(unit) }
+    })
+}
+
+/// A figure and the ends of its interval with the digits of a machine.
+fn all_digits(figure: Option<Figure>) -> [String; 3] {
+    let text = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), |value| number::significant(value, 6));
+    let ends = figure.and_then(|figure| figure.ci95);
+    [text(figure.map(|figure| figure.value)), text(ends.map(|ends| ends[0])), text(ends.map(|ends| ends[1]))]
+}
+
+/// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over the
+/// bound, and the validation error where there is one.
+pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
+    let records = || summary.methods.iter().map(|line| &line.record);
+    let validated = records().any(|record| record.validation_rmse_deg.is_some());
+    let mut columns = head(design);
+    columns.push(Column::right("failed"));
     for index in ["K", "T"] {
         columns.push(Column::decimal(format!("{index} median")).unit("%"));
         columns.push(Column::decimal(format!("{index} rms")).unit("%"));
         columns.push(Column::left("95 %"));
         columns.push(Column::right("coverage").unit("%"));
+        columns.push(Column::decimal("sd/bound"));
+    }
+    if validated {
+        columns.push(Column::decimal("validation").unit("deg"));
     }
     let mut table = Table::new(columns);
-    for summary in summaries {
-        let mut cells: Vec<String> = facts[summary.cell].labels.clone();
-        cells.extend([summary.method.clone(), format!("{}/{}", summary.failed(), summary.trials)]);
-        for errors in [&summary.k, &summary.t] {
-            let [median, _, rms, interval, coverage, _] = error_cells(errors);
-            cells.extend([median, rms, interval, coverage]);
+    for line in &summary.methods {
+        let mut cells = place(design, line.cell, line.method);
+        cells.extend(brief(&line.record));
+        if validated {
+            cells.push(significant(line.record.validation_rmse_deg));
         }
         table.push(cells);
     }
     table
 }
 
-fn error_cells(errors: &Errors) -> [String; 6] {
-    let interval = |figure: Option<Figure>| {
-        figure.and_then(|figure| figure.ci95).map_or_else(
-            || MISSING.to_owned(),
-            |[low, high]| format!("[{}, {}]", number::fixed(low, 2), number::fixed(high, 2)),
-        )
-    };
-    let percent = |figure: Option<Figure>| number::optional(figure.map(|figure| 100.0 * figure.value), 1);
-    [
-        figure(errors.median_percent, 2),
-        interval(errors.median_percent),
-        figure(errors.rms_percent, 2),
-        interval(errors.rms_percent),
-        percent(errors.coverage),
-        figure(errors.sd_over_bound, 3),
-    ]
+fn brief(record: &Record) -> Vec<String> {
+    let mut cells = vec![format!("{}/{}", record.failed(), record.trials)];
+    for errors in [&record.k, &record.t] {
+        cells.push(fixed(errors.median, 2));
+        cells.push(fixed(errors.rms, 2));
+        cells.push(interval(errors.rms, 2));
+        cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
+        cells.push(fixed(errors.sd_over_bound, 2));
+    }
+    cells
 }
 
-fn figure(figure: Option<Figure>, decimals: usize) -> String {
+/// One row per method over all cells.
+pub fn overall(summary: &Summary, design: &Design) -> Table {
+    let mut columns = vec![Column::left("method"), Column::right("failed")];
+    for index in ["K", "T"] {
+        columns.push(Column::decimal(format!("{index} median size")).unit("%"));
+        columns.push(Column::left("95 %"));
+        columns.push(Column::decimal("90 %").unit("%"));
+        columns.push(Column::right("coverage").unit("%"));
+    }
+    columns.push(Column::decimal("validation").unit("deg"));
+    let mut table = Table::new(columns);
+    for (method, overall) in design.methods.iter().zip(&summary.overall) {
+        let record = &overall.record;
+        let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
+        for errors in [&record.k, &record.t] {
+            cells.push(significant(errors.median_size));
+            cells.push(interval(errors.median_size, 3));
+            cells.push(significant(errors.high_size));
+            cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
+        }
+        cells.push(significant(record.validation_rmse_deg));
+        table.push(cells);
+    }
+    table
+}
+
+/// Every method against the reference on the same trials: `pairs.csv`.
+pub fn pairs(summary: &Summary, design: &Design) -> Table {
+    let mut columns = head(design);
+    columns.extend([Column::left("reference"), Column::right("trials")]);
+    for index in ["K", "T"] {
+        columns.extend(with_ends(&format!("{index} rms difference"), "%"));
+        columns.extend(with_ends(&format!("{index} rms ratio"), ""));
+        columns.extend(with_ends(&format!("{index} closer"), "%"));
+    }
+    let mut table = Table::new(columns);
+    for line in &summary.pairs {
+        let mut cells = place(design, line.cell, line.method);
+        cells.extend([design.methods[summary.reference].label.clone(), line.trials.to_string()]);
+        for comparison in [&line.k, &line.t] {
+            cells.extend(all_digits(comparison.rms_difference));
+            cells.extend(all_digits(comparison.rms_ratio));
+            cells.extend(all_digits(comparison.closer.map(|share| share.times(100.0))));
+        }
+        table.push(cells);
+    }
+    table
+}
+
+fn fixed(figure: Option<Figure>, decimals: usize) -> String {
     number::optional(figure.map(|figure| figure.value), decimals)
 }
 
+fn significant(figure: Option<Figure>) -> String {
+    figure.map_or_else(|| MISSING.to_owned(), |figure| number::significant(figure.value, 3))
+}
+
+fn interval(figure: Option<Figure>, decimals: usize) -> String {
+    figure.and_then(|figure| figure.ci95).map_or_else(
+        || MISSING.to_owned(),
+        |[low, high]| format!("[{}, {}]", number::fixed(low, decimals), number::fixed(high, decimals)),
+    )
+}
+
 /// Reasons of failed trials with their counts, one line a cell and method.
-pub fn failures(summaries: &[MethodSummary], facts: &[CellFacts]) -> Vec<String> {
-    summaries
-        .iter()
-        .filter(|summary| !summary.failures.is_empty())
-        .map(|summary| {
-            let reasons: Vec<String> =
-                summary.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
-            let place = facts[summary.cell].labels.join(", ");
-            let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
-            format!(
-                "{place}{}: {} of {} failed ({})",
-                summary.method,
-                summary.failed(),
-                summary.trials,
-                reasons.join(", ")
-            )
-        })
-        .collect()
+pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
+    let line = |cell: usize, method: usize, record: &Record| {
+        let reasons: Vec<String> =
+            record.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
+        let place = design.cells[cell].labels.join(", ");
+        let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
+        let method = &design.methods[method].label;
+        format!("{place}{method}: {} of {} failed ({})", record.failed(), record.trials, reasons.join(", "))
+    };
+    let failing = summary.methods.iter().filter(|line| !line.record.failures.is_empty());
+    failing.map(|summary| line(summary.cell, summary.method, &summary.record)).collect()
 }

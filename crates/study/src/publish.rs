@@ -1,71 +1,97 @@
 //! `study report DIR`: tables and figures of a finished study, from what is stored and nothing else.
 
+mod charts;
 pub mod drawings;
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use report::Theme;
-
-use crate::cli::{Common, Format};
+use crate::cli::{Common, Format, Style};
 use crate::failure::{Failure, OnPath, result_folder};
 use crate::present;
 use crate::screen;
 use crate::store::Stored;
-use crate::summary::{self, MethodSummary};
+use crate::summary::{Summary, Tally};
 use drawings::{Drawing, write_all};
 
-/// Makes `summary.csv`, the figures and `report.md`, and prints the tables.
+/// Makes the tables, the figures and `report.md`, and prints the tables.
 ///
 /// They go where the rows are, or to `--out`.
-pub fn report(rows: &Path, common: &Common) -> Result<(), Failure> {
+pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure> {
+    let theme = style.theme()?;
     let stored = Stored::read(rows)?;
     let folder = common.out.as_deref().unwrap_or(rows);
     result_folder(folder)?;
     let design = &stored.design;
-    let summaries = summary::summarise(&stored.rows, &design.cells);
-    let summary_table = present::summary(&summaries, &design.cells, &design.axes);
-    let csv = folder.join("summary.csv");
-    fs::write(&csv, summary_table.to_csv()).on("write", &csv)?;
-
-    let drawings = drawings::of(&stored, &summaries);
-    write_all(&drawings, &Theme::screen(), folder)?;
-    let path = folder.join("report.md");
-    fs::write(&path, page(&stored, &summaries, &drawings)).on("write", &path)?;
+    let mut tally = Tally::new(design);
+    stored.rows(|row| {
+        tally.add(&row);
+        Ok(())
+    })?;
+    let summary = tally.finish();
+    let (full, brief) = (present::summary(&summary, design), present::summary_in_brief(&summary, design));
+    let write = |name: &str, text: String| {
+        let path = folder.join(name);
+        fs::write(&path, text).on("write", &path)
+    };
+    write("summary.csv", full.to_csv())?;
+    write("summary.md", brief.to_markdown())?;
+    write("summary.tex", brief.to_latex())?;
+    if design.methods.len() > 1 {
+        write("pairs.csv", present::pairs(&summary, design).to_csv())?;
+    }
+    let drawings = drawings::of(&stored, &summary);
+    write_all(&drawings, &theme, folder)?;
+    write("report.md", page(&stored, &summary, &drawings))?;
 
     match common.format {
         _ if common.quiet => Ok(()),
-        Format::Text => screen::say(&format!("{}\nreport: {}", on_screen(&stored, &summaries), path.display())),
+        Format::Text => {
+            screen::say(&format!("{}\nreport: {}", on_screen(&stored, &summary), folder.join("report.md").display()))
+        }
         // Another program reads the table: nothing else may stand beside it.
-        format => screen::say(present::render(&summary_table, format).trim_end()),
+        Format::Csv => screen::say(full.to_csv().trim_end()),
+        format => screen::say(present::render(&brief, format).trim_end()),
     }
 }
 
+/// Cells whose lines go on the screen; more are in the files.
+const SHOWN_CELLS: usize = 12;
+
 /// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
-fn on_screen(stored: &Stored, summaries: &[MethodSummary]) -> String {
+fn on_screen(stored: &Stored, summary: &Summary) -> String {
     let Stored { manifest, design, showcases, .. } = stored;
-    let mut text = format!("{}: {}\n\n", manifest.name, design.question);
+    let mut text = format!("{}: {}\n\n", manifest.name, design.question.trim());
     for showcase in showcases {
         let title = if showcase.title.is_empty() { "first trial" } else { &showcase.title };
         text += &format!("{title}\n{}\n", present::showcase(showcase).to_text());
     }
-    text += &present::summary_in_brief(summaries, &design.cells, &design.axes).to_text();
-    for failure in present::failures(summaries, &design.cells) {
-        text += &format!("\n{failure}");
+    if design.cells.len() <= SHOWN_CELLS {
+        text += &present::summary_in_brief(summary, design).to_text();
+    } else {
+        text += &format!("over all {} cells, which are in the report one by one\n", design.cells.len());
+        text += &present::overall(summary, design).to_text();
+    }
+    let failures = present::failures(summary, design);
+    failures.iter().take(SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
+    if failures.len() > SHOWN_CELLS {
+        text += &format!("\n… and {} lines more in the report", failures.len() - SHOWN_CELLS);
     }
     text
 }
 
 /// `report.md`.
-fn page(stored: &Stored, summaries: &[MethodSummary], drawings: &[Drawing]) -> String {
-    let Stored { manifest, design, showcases, .. } = stored;
+fn page(stored: &Stored, summary: &Summary, drawings: &[Drawing]) -> String {
+    let Stored { manifest, design, showcases, timings, .. } = stored;
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
     let figure = |drawing: &Drawing| format!("![{0}]({1}.png)\n\n*{0}*\n", drawing.caption, drawing.stem);
     line(&format!("# {}\n\n**{}**\n", manifest.name, design.question.trim()));
-    if !design.analysis.trim().is_empty() {
-        line(&format!("{}\n", design.analysis.trim()));
+    for prose in [&design.finding, &design.analysis] {
+        if !prose.trim().is_empty() {
+            line(&format!("{}\n", prose.trim()));
+        }
     }
     for (index, showcase) in showcases.iter().enumerate() {
         let title = if showcase.title.is_empty() { "The first trial" } else { &showcase.title };
@@ -78,17 +104,34 @@ fn page(stored: &Stored, summaries: &[MethodSummary], drawings: &[Drawing]) -> S
     }
     line("## Over all trials\n");
     drawings.iter().filter(|drawing| drawing.showcase.is_none()).for_each(|drawing| line(&figure(drawing)));
-    line(&present::summary(summaries, &design.cells, &design.axes).to_markdown());
+    if design.cells.len() > 1 {
+        line("### All cells together\n");
+        line(&present::overall(summary, design).to_markdown());
+        line("### Cell by cell\n");
+    }
+    line(&present::summary_in_brief(summary, design).to_markdown());
     line(
-        "Median error with the distribution-free interval, rms error with a bootstrap interval, share of quoted 95 % intervals \
-         that hold the truth, and standard deviation over the Cramér–Rao bound.\n",
+        "Errors of K and T are relative to the truth. *median*, *rms*: median and root mean square error, with a bootstrap \
+         interval; *coverage*: share of quoted 95 % intervals that hold the truth; *sd/bound*: standard deviation over the \
+         Cramér–Rao bound; *validation*: median error of the heading on a manoeuvre no method has seen. All figures with all \
+         intervals are in `summary.csv`, comparisons on the same trials in `pairs.csv`, times in `timings.csv`.\n",
     );
-    for failure in present::failures(summaries, &design.cells) {
+    let times: Vec<String> = design
+        .methods
+        .iter()
+        .enumerate()
+        .filter_map(|(index, method)| Some((method, timings.mean_us(index)?)))
+        .map(|(method, (mean, error))| format!("{} {:.0} ± {:.0}", method.label, mean, 1.96 * error))
+        .collect();
+    if !times.is_empty() {
+        line(&format!("Mean time of an identification on this run's machine, µs: {}.\n", times.join(", ")));
+    }
+    for failure in present::failures(summary, design) {
         line(&format!("- {failure}"));
     }
     line(&format!(
         "\nMade by `study` {} from the scenario in `manifest.toml` with seed {}; `study report` rebuilds this page from the \
-         stored rows.",
+         stored rows, `study manifest.toml --out DIR` runs it again.",
         manifest.version, manifest.seed
     ));
     page

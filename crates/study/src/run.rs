@@ -1,36 +1,42 @@
-//! `study SCENARIO.toml`: run, store, publish what is stored.
+//! `study SCENARIO.toml`: run what is missing, then publish what is stored.
 
-use std::path::Path;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
-use crate::cli::Common;
-use crate::engine;
+use crate::cli::{Common, RunRequest};
+use crate::collect::collect;
 use crate::failure::{Failure, result_folder};
-use crate::manifest::Manifest;
+use crate::plan::Shard;
 use crate::publish;
 use crate::scenario::Scenario;
-use crate::showcase;
-use crate::store::{Design, Stored};
+use crate::screen;
 
-/// Runs a scenario, stores what it gives and publishes it, as `study report` would.
-pub fn run(path: &Path, common: &Common) -> Result<(), Failure> {
+/// Runs a scenario, or a shard of it, and publishes it as `study report` would.
+pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
-    let folder = common.out.clone().unwrap_or_else(|| Path::new("results").join(&scenario.name));
+    let shard = request.shard.unwrap_or(Shard::WHOLE);
+    let folder = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard));
     result_folder(&folder)?;
-    let start = Instant::now();
-    let rows = engine::run(&scenario, common.quiet);
-    let design = Design {
-        question: scenario.question.clone(),
-        analysis: scenario.analysis.clone(),
-        axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
-        methods: scenario.method_names(),
-        cells: engine::facts(&scenario),
-    };
-    let shown = if scenario.showcase { scenario.cells.len() } else { 0 };
-    let showcases = (0..shown).into_par_iter().filter_map(|cell| showcase::of_cell(&scenario, cell)).collect();
-    let manifest = Manifest::new(&scenario, start.elapsed());
-    Stored { manifest, rows, design, showcases }.write(&folder)?;
-    publish::report(&folder, common)
+    collect(&scenario, shard, &folder, request.restart, common.quiet)?;
+    if shard == Shard::WHOLE {
+        return publish::report(&folder, &request.style, common);
+    }
+    match common.quiet {
+        true => Ok(()),
+        false => screen::say(&format!(
+            "shard {shard} of {} is in {}; `study merge` joins all {}",
+            scenario.name,
+            folder.display(),
+            shard.of
+        )),
+    }
+}
+
+fn default_folder(name: &str, shard: Shard) -> PathBuf {
+    let whole = Path::new("results").join(name);
+    match shard {
+        Shard::WHOLE => whole,
+        Shard { number, of } => {
+            whole.join("shards").join(format!("{number:0width$}-of-{of}", width = of.to_string().len()))
+        }
+    }
 }

@@ -16,6 +16,7 @@ use trial::{Trial, ZigZag};
 
 use crate::engine;
 use crate::json::{self, MethodEntry, Value};
+use crate::plan::Task;
 use crate::scenario::{Cell, Method, MethodName, Published, Scenario};
 
 /// The first trial of one cell.
@@ -43,7 +44,9 @@ const POINTS_PER_ROW: usize = 4;
 /// The showcase of a cell; `None` when its first trial could not be simulated.
 pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let cell = &scenario.cells[index];
-    let simulated = engine::simulate(scenario, index, 0).ok()?;
+    let first = Task { cell: index, replicate: 0 };
+    let simulated = engine::simulate(scenario, first).ok()?;
+    let truth_of_ship = cell.specimen(&engine::key(scenario, first)).ok()?.specification.truth;
     let (trial, truth) = (&simulated.trial, &simulated.truth);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell
         .methods
@@ -51,7 +54,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         .map(|method| {
             json::entry(
                 &method.label,
-                method.identify(trial, &engine::key(scenario, index, 0)),
+                method.identify(trial, &engine::key(scenario, first)),
                 std::slice::from_ref(trial),
             )
         })
@@ -80,7 +83,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             truth: None,
             replays: replay_curves(trial, &answers, |label| origin(&names, label)),
         },
-        intervals: intervals(title("K and T"), &answers, &names, cell.truth.as_ref(), &scenario.published),
+        intervals: intervals(title("K and T"), &answers, &names, truth_of_ship.as_ref(), &scenario.published),
         methods: answers.into_iter().map(|(entry, _)| entry).collect(),
     })
 }

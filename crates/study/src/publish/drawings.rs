@@ -3,28 +3,38 @@
 use std::path::Path;
 
 use rayon::prelude::*;
-use report::figures::{self, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale};
-use report::{Figure, Origin, Theme};
+use report::figures;
+use report::{Figure, Theme};
 
-use crate::engine::CellFacts;
+use super::charts::{self, Quantity};
 use crate::failure::{Failure, OnPath};
-use crate::showcase::{self, Showcase};
-use crate::store::{Design, Stored};
-use crate::summary::MethodSummary;
+use crate::showcase::Showcase;
+use crate::store::Stored;
+use crate::summary::Summary;
 
 /// A figure that can be drawn.
 pub struct Drawing<'a> {
     /// Stem of its files.
     pub stem: String,
     /// What is to be seen.
-    pub caption: &'static str,
+    pub caption: String,
     /// The showcase it belongs to; `None` when it is about all trials.
     pub showcase: Option<usize>,
     draw: Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>,
 }
 
+impl<'a> Drawing<'a> {
+    fn new(
+        stem: impl Into<String>,
+        caption: impl Into<String>,
+        draw: impl Fn(&Theme) -> Figure + Sync + Send + 'a,
+    ) -> Self {
+        Self { stem: stem.into(), caption: caption.into(), showcase: None, draw: Box::new(draw) }
+    }
+}
+
 /// All figures, in the order of the report.
-pub fn of<'a>(stored: &'a Stored, summaries: &[MethodSummary]) -> Vec<Drawing<'a>> {
+pub fn of<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
     let mut prefixes: Vec<String> = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
@@ -36,56 +46,125 @@ pub fn of<'a>(stored: &'a Stored, summaries: &[MethodSummary]) -> Vec<Drawing<'a
         drawings.extend(of_showcase(index, &prefix, showcase));
         prefixes.push(prefix);
     }
-    drawings.extend(error_curves(&stored.design, summaries).map(|data| Drawing {
-        stem: "errors".into(),
-        caption: "Root mean square error of K and T against the swept quantity, with 95 % bootstrap intervals and the \
-                  Cramér–Rao bound. A curve that is flat to the left is bias, one that follows the bound is noise.",
-        showcase: None,
-        draw: Box::new(move |theme| figures::error_curves(&data, theme)),
-    }));
+    drawings.extend(of_summary(stored, summary));
+    drawings
+}
+
+/// What a person should see in the charts of one quantity.
+fn reading(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Rms => {
+            "Root mean square error of K and T with 95 % bootstrap intervals, and the Cramér–Rao bound. A curve that is flat to \
+             the left is bias, one that follows the bound is noise."
+        }
+        Quantity::Coverage => {
+            "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals. Inside the grey band a method is as \
+             honest as this number of trials can tell; below it, it is too sure. Methods that quote no interval are missing."
+        }
+        Quantity::Failures => {
+            "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The reasons are \
+             listed below."
+        }
+        Quantity::Validation => {
+            "Median error of the heading on the validation manoeuvre, its rudder replayed through the answer: what K and T are \
+             worth for prediction. Where all methods agree, the error is that of the model."
+        }
+    }
+}
+
+fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+    let design = &stored.design;
+    let mut drawings = Vec::new();
+    for quantity in Quantity::ALL {
+        for chart in charts::over_axes(design, summary, quantity) {
+            let place = chart.group.as_ref().map_or_else(String::new, |group| format!(" Here: {group}."));
+            let stem = match &chart.group {
+                Some(group) => format!("{}-{}", quantity.stem(), slug(group)),
+                None => quantity.stem().to_owned(),
+            };
+            let caption = format!("{}{place}", reading(quantity));
+            drawings.push(Drawing::new(stem, caption, move |theme| chart.draw(theme)));
+        }
+    }
+    for (stem, data) in charts::heat_maps(design, summary) {
+        let caption = format!("{} of every method over both axes: dark is good.", data.value_title);
+        drawings.push(Drawing::new(stem, caption, move |theme| figures::heat_map(&data, theme)));
+    }
+    if let Some((data, first)) = charts::ranking(design, summary) {
+        let caption = format!(
+            "Methods by the size of their error of T over all trials: median (filled) and the size that 90 % of the answers do \
+             not exceed (hollow), with 95 % intervals. Trials without an answer do not count here. First: {first}."
+        );
+        drawings.push(Drawing::new("ranking", caption, move |theme| figures::dots(&data, theme)));
+    }
+    if let Some(data) = charts::ecdf(design, summary) {
+        let caption = "Share of all trials whose error is within a size. Further left is better; a line that levels off below one \
+                       belongs to a method that fails.";
+        drawings.push(Drawing::new("ecdf", caption, move |theme| figures::ecdf(&data, theme)));
+    }
+    let of_cell = |name: &str, cell: usize| {
+        let title = design.cells[cell].labels.join(", ");
+        match design.cells.len() {
+            1 => (name.to_owned(), String::new()),
+            _ => (format!("{name}-{}", slug(&title)), format!(" Here: {title}.")),
+        }
+    };
+    for (cell, data) in charts::violins(design, summary) {
+        let (stem, place) = of_cell("violins", cell);
+        let caption = "Distribution of the errors. A violin beside zero is bias, a long one is scatter.";
+        drawings.push(Drawing::new(stem, format!("{caption}{place}"), move |theme| figures::violins(&data, theme)));
+    }
+    for (cell, data) in charts::scatters(design, summary) {
+        let (stem, place) = of_cell("scatter", cell);
+        let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust \
+                       standard deviations drawn in) beside that of the Cramér–Rao bound.";
+        drawings.push(Drawing::new(stem, format!("{caption}{place}"), move |theme| figures::scatter(&data, theme)));
+    }
     drawings
 }
 
 fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Drawing<'a>> {
-    let drawing = |name: &str, caption, draw: Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>| Drawing {
-        stem: if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") },
-        caption,
-        showcase: Some(index),
-        draw,
-    };
     let mut drawings = Vec::new();
+    let mut add = |name: &str, caption: &str, draw: Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>| {
+        drawings.push(Drawing {
+            stem: if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") },
+            caption: caption.to_owned(),
+            showcase: Some(index),
+            draw,
+        });
+    };
     if let Some(data) = &showcase.trial {
-        drawings.push(drawing(
+        add(
             "trial",
             "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
             Box::new(|theme| figures::zigzag_trial(data, theme)),
-        ));
+        );
     }
     if let Some(data) = &showcase.fourier_fit {
-        drawings.push(drawing(
+        add(
             "fourier-fit",
             "The Fourier series fitted to the heading, and what it leaves.",
             Box::new(|theme| figures::curve_fit(data, theme)),
-        ));
+        );
     }
     if let Some(data) = &showcase.derivatives {
-        drawings.push(drawing(
+        add(
             "derivatives",
             "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a \
              good acceleration.",
             Box::new(|theme| figures::derivatives(data, theme)),
-        ));
+        );
     }
-    drawings.push(drawing(
+    add(
         "replays",
         "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
         Box::new(|theme| figures::replays(&showcase.replays, theme)),
-    ));
-    drawings.push(drawing(
+    );
+    add(
         "intervals",
         "K and T of every method with 95 % intervals, beside the truth and the published values.",
         Box::new(|theme| figures::intervals(&showcase.intervals, theme)),
-    ));
+    );
     drawings
 }
 
@@ -110,66 +189,6 @@ pub fn slug(title: &str) -> String {
         }
     }
     slug.trim_end_matches('-').to_owned()
-}
-
-/// Error against the last axis that is a number; another axis makes the columns. `None` when there is no such axis, or more than one other.
-fn error_curves(design: &Design, summaries: &[MethodSummary]) -> Option<ErrorCurves> {
-    let is_number = |axis: usize| design.cells.iter().all(|cell| cell.values[axis].is_some());
-    let x = (0..design.axes.len()).rev().find(|&axis| is_number(axis))?;
-    let others: Vec<usize> = (0..design.axes.len()).filter(|&axis| axis != x).collect();
-    if others.len() > 1 {
-        return None;
-    }
-    let head = |cell: &CellFacts| others.first().map_or_else(String::new, |&axis| cell.labels[axis].clone());
-    let mut columns: Vec<String> = Vec::new();
-    for cell in &design.cells {
-        if !columns.contains(&head(cell)) {
-            columns.push(head(cell));
-        }
-    }
-    let mut cells = Vec::new();
-    for (column, name) in columns.iter().enumerate() {
-        let own: Vec<usize> = (0..design.cells.len()).filter(|&cell| head(&design.cells[cell]) == *name).collect();
-        for row in 0..2 {
-            let errors = |summary: &MethodSummary| if row == 0 { summary.k } else { summary.t };
-            let mut curves: Vec<ErrorCurve> = design
-                .methods
-                .iter()
-                .map(|method| ErrorCurve {
-                    origin: showcase::origin(&design.methods, &method.label),
-                    points: own
-                        .iter()
-                        .filter_map(|&cell| {
-                            let summary = summaries.iter().find(|s| s.cell == cell && s.method == method.label)?;
-                            let rms = errors(summary).rms_percent?;
-                            Some(ErrorPoint { x: design.cells[cell].values[x]?, y: rms.value, interval: rms.ci95 })
-                        })
-                        .collect(),
-                })
-                .collect();
-            let bound = |cell: &CellFacts| if row == 0 { cell.bound_k_percent } else { cell.bound_t_percent };
-            curves.push(ErrorCurve {
-                origin: Origin::Bound,
-                points: own
-                    .iter()
-                    .filter_map(|&cell| {
-                        let facts = &design.cells[cell];
-                        Some(ErrorPoint { x: facts.values[x]?, y: bound(facts)?, interval: None })
-                    })
-                    .collect(),
-            });
-            cells.push(ErrorCell { row, column, curves });
-        }
-    }
-    Some(ErrorCurves {
-        title: None,
-        x_title: design.axes[x].clone(),
-        x_scale: Scale::Log,
-        y_scale: Scale::Log,
-        rows: vec!["rms error of K [%]".into(), "rms error of T [%]".into()],
-        columns,
-        cells,
-    })
 }
 
 #[cfg(test)]

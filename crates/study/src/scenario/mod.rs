@@ -4,15 +4,19 @@
 //! what is wrong and where, [`Scenario`] what the engine accepts. A value of [`Scenario`] has been checked in every cell
 //! of the design.
 
+mod draw;
 mod effect;
+pub mod identity;
 mod locate;
 mod problem;
 mod reader;
 mod resolve;
 mod specification;
+mod stop;
 pub mod sweep;
 mod wire;
 
+use std::borrow::Cow;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -21,14 +25,17 @@ use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use ship::FirstOrder;
-use simulate::{Purpose, Simulation, StreamKey};
-use toml::Table;
+use simulate::{Purpose, StreamKey};
+use toml::{Table, Value};
 use trial::Trial;
 
 use crate::failure::Failure;
+use crate::manifest::Manifest;
+use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
-use problem::{KeyPath, Problem};
+use problem::{KeyPath, Problem, suggestion};
+pub use resolve::Specification;
+pub use stop::{Index, StopFigure, StopRule};
 use sweep::Axis;
 use wire::ScenarioWire;
 
@@ -67,25 +74,128 @@ pub struct Cell {
     pub labels: Vec<String>,
     /// Values of its points, where an axis is a number.
     pub values: Vec<Option<f64>>,
-    /// How a trial is made.
-    pub simulation: Simulation,
-    /// The truth, where the ship is exactly first order.
-    pub truth: Option<FirstOrder>,
     /// The methods, all on the same trial.
     pub methods: Vec<Method>,
+    /// How a trial is made; drawn values are in the middle of their distributions.
+    specification: Specification,
+    /// How a trial with drawn values is made.
+    drawn: Option<Drawn>,
 }
+
+/// What a trial with drawn values is made from.
+struct Drawn {
+    draws: Vec<Draw>,
+    /// The document of the cell, as far as it says how a trial is made.
+    document: Table,
+    folder: PathBuf,
+}
+
+/// How one trial is made.
+pub struct Specimen<'a> {
+    /// The specification, whole.
+    pub specification: Cow<'a, Specification>,
+    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`].
+    pub drawn: Vec<f64>,
+}
+
+/// Drawn values that make no trial.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refusal(String);
 
 impl Cell {
     /// The same cell; its trials carry the name of the scenario.
-    fn named(self, scenario: &str) -> Self {
-        Self { simulation: Simulation { scenario: scenario.to_owned(), ..self.simulation }, ..self }
+    fn named(mut self, scenario: &str) -> Self {
+        self.specification.name(scenario);
+        self
     }
 
     /// Labels of the points joined, or nothing when there is no axis.
     pub fn title(&self) -> String {
         self.labels.join(", ")
     }
+
+    /// Whether all its trials have one specification.
+    pub fn is_fixed(&self) -> bool {
+        self.drawn.is_none()
+    }
+
+    /// How the trial of `key` is made.
+    ///
+    /// Fails when drawn values make no trial, which only a distribution without ends can do.
+    pub fn specimen(&self, key: &StreamKey) -> Result<Specimen<'_>, Refusal> {
+        let Some(drawn) = &self.drawn else {
+            return Ok(Specimen { specification: Cow::Borrowed(&self.specification), drawn: Vec::new() });
+        };
+        let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
+        let mut specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
+        specification.name(&self.specification.simulation.scenario);
+        Ok(Specimen { specification: Cow::Owned(specification), drawn: values })
+    }
 }
+
+impl Drawn {
+    /// Draws for a cell, each tried in the middle and at the ends of its range, and the specification in the middle of all;
+    /// `None` where nothing is drawn.
+    ///
+    /// Fails with the draw at fault and what is wrong with the trial.
+    fn new(draws: &[Draw], document: &Table, folder: &Path) -> Result<Option<(Self, Specification)>, (usize, Problem)> {
+        if draws.is_empty() {
+            return Ok(None);
+        }
+        let drawn = Self { draws: draws.to_vec(), document: trial_of(document), folder: folder.to_owned() };
+        let middle: Vec<f64> = draws.iter().map(|draw| draw.extremes()[0]).collect();
+        let blamed = |index: usize, problem: Problem| {
+            let of_key = draws.iter().position(|draw| draw.key.meets(&problem.key));
+            (of_key.unwrap_or(index), problem)
+        };
+        for (index, draw) in draws.iter().enumerate() {
+            for value in draw.extremes() {
+                let mut values = middle.clone();
+                values[index] = value;
+                drawn.specification(&values).map_err(|problem| blamed(index, problem))?;
+            }
+        }
+        let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
+        Ok(Some((drawn, specification)))
+    }
+
+    fn specification(&self, values: &[f64]) -> Result<Specification, Problem> {
+        let mut document = self.document.clone();
+        for (draw, &value) in self.draws.iter().zip(values) {
+            sweep::set(&mut document, &draw.setting(value))?;
+        }
+        resolve::specification(&reader::document(&document)?, &self.folder)
+    }
+}
+
+/// The parts of a document that say how a trial is made, and empty ones where a document needs more.
+fn trial_of(document: &Table) -> Table {
+    let mut trial: Table = document
+        .iter()
+        .filter(|(key, _)| !NOT_OF_TRIALS.contains(&key.as_str()))
+        .map(|(key, value)| (key.clone(), value.clone()))
+        .collect();
+    trial.insert("question".into(), Value::String(String::new()));
+    trial.insert("seed".into(), Value::Integer(0));
+    trial.insert("identifier".into(), Value::Array(Vec::new()));
+    trial
+}
+
+/// Parts of a scenario that do not say how a trial is made.
+const NOT_OF_TRIALS: [&str; 11] = [
+    "question",
+    "analysis",
+    "finding",
+    "seed",
+    "replicates",
+    "stop",
+    "identifier",
+    "draw",
+    "sweep",
+    "published",
+    "output",
+];
 
 /// Values of other authors, shown beside the results.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,8 +224,22 @@ pub struct Scenario {
     pub cells: Vec<Cell>,
     /// Values of other authors.
     pub published: Published,
+    /// The answer in one sentence.
+    pub finding: String,
     /// Whether the first replicate of every cell is shown in detail.
     pub showcase: bool,
+    /// Stem of the figure that stands for the study on an overview.
+    pub figure: Option<String>,
+    /// Cells whose errors are shown one by one.
+    pub detail: Vec<usize>,
+    /// Keys that are drawn anew in every trial.
+    pub draws: Vec<String>,
+    /// When a cell has had enough trials.
+    pub stop: Option<StopRule>,
+    /// All that decides the rows, the seed of the command line apart.
+    pub design: Table,
+    /// SHA-256 of that and of the files it reads.
+    pub design_sha256: String,
     /// The file as it was read.
     pub text: String,
     /// SHA-256 of the file, hexadecimal.
@@ -123,11 +247,14 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads and resolves a file.
+    /// Reads and resolves a file; of a manifest the scenario in it, with the seed it was run with.
     ///
     /// Fails with a message that names the file, the line and the key, what was found and what was expected.
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
+        if let Some(manifest) = Manifest::of_text(&text) {
+            return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
+        }
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         Self::parse(path, &name, text, seed)
     }
@@ -149,8 +276,10 @@ impl Scenario {
         }
         let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
         let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-        // The document as written has to make sense by itself: a sweep changes it, it does not complete it.
-        let base = resolve::cell(&wire, &folder).map_err(&fail)?;
+        // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
+        resolve::specification(&wire, &folder).map_err(&fail)?;
+        let methods = resolve::methods(&wire.identifier).map_err(&fail)?;
+        let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose().map_err(&fail)?;
         let axes: Vec<Axis> = wire
             .sweep
             .iter()
@@ -160,25 +289,38 @@ impl Scenario {
             .map_err(&fail)?;
         let combinations = sweep::product(&axes).map_err(&fail)?;
         check_size(wire.replicates, combinations.len()).map_err(&fail)?;
+        check_draws(&wire.draw, &axes).map_err(&fail)?;
         let cells: Vec<Cell> = combinations
             .iter()
-            .map(|points| swept(&document, points, &base, &folder))
+            .map(|points| swept(&document, points, &methods, &folder))
             .map(|cell| cell.map(|cell| cell.named(name)))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
-        let sha256 = hex(&Sha256::digest(text.as_bytes()));
+        // A study of one cell is about that cell.
+        let detail = match cells.len() {
+            1 => vec![0],
+            _ => detail(&wire.output.detail, &cells).map_err(&fail)?,
+        };
+        let design = identity::design_of(&document);
         Ok(Self {
             name: name.to_owned(),
             question: wire.question,
             analysis: wire.analysis,
             seed: seed.unwrap_or(wire.seed),
             replicates: wire.replicates,
+            draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
             axes,
             cells,
             published: Published { k_per_s: wire.published.K_per_s, t_s: wire.published.T_s },
+            finding: wire.finding,
             showcase: wire.output.showcase,
+            figure: wire.output.figure,
+            detail,
+            stop,
+            design_sha256: sha256_of(&design, &folder),
+            design,
+            sha256: hex(&Sha256::digest(text.as_bytes())),
             text,
-            sha256,
         })
     }
 
@@ -221,16 +363,72 @@ fn check_size(replicates: u64, cells: usize) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Draws and sweeps change different keys, and no key twice.
+fn check_draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
+    for (index, draw) in draws.iter().enumerate() {
+        let own = KeyPath::dotted(draw.key());
+        let place = KeyPath::dotted("draw").child(index).child("key");
+        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).meets(&own));
+        let by_sweep =
+            axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.meets(&own));
+        if by_draw || by_sweep {
+            return Err(Problem::value(
+                place,
+                format!("`{own}` is drawn, and {} changes it too", if by_draw { "another draw" } else { "a sweep" }),
+                "expected a key that nothing else changes",
+                "remove one of them; a sweep can change the numbers of a draw, for instance `draw.0.normal.sd`",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Indices of the cells with these titles.
+fn detail(titles: &[String], cells: &[Cell]) -> Result<Vec<usize>, Problem> {
+    let known: Vec<String> = cells.iter().map(Cell::title).collect();
+    let place = |(index, title): (usize, &String)| {
+        known.iter().position(|known| known == title).ok_or_else(|| {
+            let key = KeyPath::dotted("output.detail").child(index);
+            let shown = &known[..known.len().min(20)];
+            Problem::value(
+                key,
+                format!("no cell is called {title:?}"),
+                "expected labels of points, joined by commas",
+                suggestion(title, shown),
+            )
+        })
+    };
+    titles.iter().enumerate().map(place).collect()
+}
+
+/// SHA-256 of a design and of the records it replays.
+fn sha256_of(design: &Table, folder: &Path) -> String {
+    let mut digest = Sha256::new_with_prefix(design.to_string());
+    let mut tables = vec![design];
+    while let Some(table) = tables.pop() {
+        for (key, value) in table {
+            match value {
+                Value::Table(inner) => tables.push(inner),
+                // A file that is not there has been refused, or belongs to a point that is never resolved with it.
+                Value::String(file) if key == "file" => digest.update(fs::read(folder.join(file)).unwrap_or_default()),
+                Value::Array(items) => tables.extend(items.iter().filter_map(Value::as_table)),
+                _ => {}
+            }
+        }
+    }
+    hex(&digest.finalize())
+}
+
 /// One cell of the design: the document with the keys of its points changed, resolved like any scenario.
-fn swept(document: &Table, points: &[&sweep::Point], base: &Cell, folder: &Path) -> Result<Cell, Problem> {
+fn swept(document: &Table, points: &[&sweep::Point], base: &[Method], folder: &Path) -> Result<Cell, Problem> {
     let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     let settings = || points.iter().flat_map(|point| &point.set);
+    let cell = (labels.len() > 1).then(|| labels.join(", "));
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of several.
     let blame = |problem: Problem| {
         let of_key = settings().rfind(|setting| setting.key.meets(&problem.key));
-        let setting = of_key.or_else(|| settings().next_back());
-        match setting {
-            Some(setting) => setting.blamed(problem, (labels.len() > 1).then(|| labels.join(", ")).as_deref()),
+        match of_key.or_else(|| settings().next_back()) {
+            Some(setting) => setting.blamed(problem, cell.as_deref()),
             None => problem,
         }
     };
@@ -239,8 +437,9 @@ fn swept(document: &Table, points: &[&sweep::Point], base: &Cell, folder: &Path)
         sweep::set(&mut changed, setting).map_err(blame)?;
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
-    let resolved = resolve::cell(&wire, folder).map_err(blame)?;
-    if resolved.methods.iter().map(|method| &method.label).ne(base.methods.iter().map(|method| &method.label)) {
+    let specification = resolve::specification(&wire, folder).map_err(blame)?;
+    let methods = resolve::methods(&wire.identifier).map_err(blame)?;
+    if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
         return Err(blame(Problem::value(
             KeyPath::dotted("identifier"),
             "the methods are not the same in every cell",
@@ -248,8 +447,21 @@ fn swept(document: &Table, points: &[&sweep::Point], base: &Cell, folder: &Path)
             "sweep settings only, and name every method once in an [[identifier]] of its own",
         )));
     }
+    let draws: Vec<Draw> = wire
+        .draw
+        .iter()
+        .enumerate()
+        .map(|(index, draw)| draw.resolve(index))
+        .collect::<Result<_, _>>()
+        .map_err(|problem| if points.is_empty() { problem } else { blame(problem) })?;
+    let drawn =
+        Drawn::new(&draws, &changed, folder).map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
+    let (drawn, specification) = match drawn {
+        Some((drawn, specification)) => (Some(drawn), specification),
+        None => (None, specification),
+    };
     let values = points.iter().map(|point| point.value).collect();
-    Ok(Cell { labels, values, ..resolved })
+    Ok(Cell { labels, values, methods, specification, drawn })
 }
 
 /// A file that is not TOML, at the place where it stops to be.

@@ -8,11 +8,11 @@ use ship::angle::{KNOT, from_deg};
 use ship::linear::SecondOrderIndices;
 use ship::narrow_band::NarrowBand;
 use ship::ships::user::ShipError;
-use ship::{Particulars, Ship, ships};
+use ship::{FirstOrder, Particulars, Ship, ships};
 use simulate::disturbance::{GaussMarkov, Squall, Wind};
 use simulate::helm::Watches;
 use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
-use simulate::recording::Start;
+use simulate::recording::{RudderColumn, Start};
 use simulate::sensor::{Bursts, Clock, DropOut, HeadingSensor, Loses, RudderSensor, YawRateSensor};
 use simulate::{
     Approach, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, Side, Simulation, SteeringGear, Vessel,
@@ -20,10 +20,30 @@ use simulate::{
 
 use super::problem::{KeyPath, Problem, suggestion};
 use super::wire::*;
-use super::{Cell, Method, effect, reader, specification};
+use super::{Method, effect, reader, specification};
 
-/// Resolves one cell; labels and values of the design are filled in by the caller.
-pub fn cell(wire: &ScenarioWire, folder: &Path) -> Result<Cell, Problem> {
+/// Everything about a trial but its chance.
+#[derive(Debug, Clone)]
+pub struct Specification {
+    /// How a trial is made.
+    pub simulation: Simulation,
+    /// A second manoeuvre of the same ship, in a calm and perfectly recorded.
+    pub validation: Option<Simulation>,
+    /// The truth, where the ship is exactly first order.
+    pub truth: Option<FirstOrder>,
+}
+
+impl Specification {
+    /// Trials carry the name of their scenario.
+    pub fn name(&mut self, scenario: &str) {
+        for simulation in [Some(&mut self.simulation), self.validation.as_mut()].into_iter().flatten() {
+            simulation.scenario = scenario.to_owned();
+        }
+    }
+}
+
+/// Resolves everything about a trial.
+pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification, Problem> {
     let ship = effect::added(ship(&wire.ship)?, &wire.effect)?;
     let simulation = Simulation {
         gear: gear(&wire.steering_gear, &ship),
@@ -34,22 +54,67 @@ pub fn cell(wire: &ScenarioWire, folder: &Path) -> Result<Cell, Problem> {
             rudder: from_deg(wire.approach.rudder_deg),
             lead_in: wire.approach.lead_in_s,
         },
-        recording: recording(&wire.recording)?,
+        recording: recording(&wire.recording, "recording")?,
         sensors: sensors(&wire.sensor)?,
         disturbances: disturbances(&wire.disturbance),
-        ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, folder)?)
+        ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, "manoeuvre", folder)?)
     };
     simulation
         .validate()
         .map_err(|error| specification::problem(&error, &wire.manoeuvre, wire.recording.sampling_s))?;
     start_is_reached(&simulation)?;
-    Ok(Cell {
-        labels: Vec::new(),
-        values: Vec::new(),
-        truth: ship.first_order(),
-        simulation,
-        methods: methods(&wire.identifier)?,
-    })
+    orders_are_given(&simulation)?;
+    let validation =
+        wire.validation.as_ref().map(|second| validation(second, wire, &simulation, folder)).transpose()?;
+    Ok(Specification { validation, truth: ship.first_order(), simulation })
+}
+
+/// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so that
+/// the error of a replay is that of the response.
+fn validation(
+    wire: &ValidationWire,
+    first: &ScenarioWire,
+    trial: &Simulation,
+    folder: &Path,
+) -> Result<Simulation, Problem> {
+    let recording = match &wire.recording {
+        Some(own) => recording(own, "validation.recording")?,
+        None => Recording { start: Start::Run, rudder: RudderColumn::Feedback, ..trial.recording },
+    };
+    let simulation = Simulation {
+        recording,
+        disturbances: Disturbances::default(),
+        sensors: Sensors::default(),
+        manoeuvre: manoeuvre(&wire.manoeuvre, "validation.manoeuvre", folder)?,
+        ..trial.clone()
+    };
+    // What both share has been checked with the first manoeuvre, so what is wrong now is of the second.
+    let of_second = |problem: Problem| Problem {
+        key: problem.key.parts().iter().fold(KeyPath::dotted("validation"), |key, part| key.child(part)),
+        found: format!("in the validation manoeuvre, {}", problem.found),
+        ..problem
+    };
+    let sampling_s = wire.recording.as_ref().unwrap_or(&first.recording).sampling_s;
+    simulation
+        .validate()
+        .map_err(|error| specification::problem(&error, &wire.manoeuvre, sampling_s))
+        .and_then(|()| start_is_reached(&simulation))
+        .and_then(|()| orders_are_given(&simulation))
+        .map_err(of_second)?;
+    Ok(simulation)
+}
+
+/// A rudder column can be rebuilt only where orders are given.
+fn orders_are_given(simulation: &Simulation) -> Result<(), Problem> {
+    match (&simulation.manoeuvre, simulation.recording.rudder) {
+        (Manoeuvre::Replay(_), RudderColumn::Orders { .. }) => Err(Problem::value(
+            KeyPath::dotted("recording.rudder"),
+            "`recording.rudder` is \"orders\", and a replayed rudder follows none",
+            "expected \"feedback\"",
+            "leave the key out",
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
@@ -73,7 +138,8 @@ fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
         "first-order" => {
             let own: FirstOrderWire = reader::table(table, &key)?;
             let particulars = particulars(&key, own.length_m, own.speed_kn)?;
-            ships::user::first_order(own.K_per_s, own.T_s, from_deg(own.rudder_bias_deg), particulars)
+            let (k, t) = indices(&own, &key, particulars)?;
+            ships::user::first_order(k, t, from_deg(own.rudder_bias_deg), particulars)
                 .map_err(|error| not_a_ship(&key, table, &error))
         }
         "second-order" => {
@@ -98,10 +164,43 @@ fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
     }
 }
 
+/// K (1/s) and T (s), given as they are or without dimension.
+fn indices(own: &FirstOrderWire, key: &KeyPath, particulars: Option<Particulars>) -> Result<(f64, f64), Problem> {
+    match (own.K_per_s, own.T_s, own.K_prime, own.T_prime, particulars) {
+        (Some(k), Some(t), None, None, _) => Ok((k, t)),
+        (None, None, Some(k), Some(t), Some(Particulars { length, speed })) => {
+            Ok((k * speed / length, t * length / speed))
+        }
+        (None, None, Some(_), Some(_), None) => Err(Problem::name(
+            key.clone(),
+            format!("`{key}` has K' and T' without length and speed"),
+            "expected `length-m` and `speed-kn` as well",
+            "add both, or give `K-per-s` and `T-s`",
+        )),
+        (Some(_), None, None, None, _) => Err(missing(key, "T-s")),
+        (None, Some(_), None, None, _) | (None, None, None, None, _) => Err(missing(key, "K-per-s")),
+        (None, None, Some(_), None, _) => Err(missing(key, "T-prime")),
+        (None, None, None, Some(_), _) => Err(missing(key, "K-prime")),
+        _ => Err(Problem::name(
+            key.clone(),
+            format!("`{key}` gives K and T both with and without dimension"),
+            "expected `K-per-s` and `T-s`, or `K-prime` and `T-prime`",
+            "give one pair and leave out the other",
+        )),
+    }
+}
+
+fn missing(key: &KeyPath, name: &str) -> Problem {
+    let found = format!("`{key}` has no key `{name}`");
+    Problem::name(key.clone(), found, format!("expected `{name}` here"), format!("add a line `{name} = …`"))
+}
+
 /// Numbers that make no ship, with the key of the number where there is one.
 fn not_a_ship(key: &KeyPath, table: &toml::Table, error: &ShipError) -> Problem {
     let ShipError::Value { symbol, reason, .. } = error;
     let own = match *symbol {
+        "K" if table.contains_key("K-prime") => "K-prime",
+        "T" if table.contains_key("T-prime") => "T-prime",
         "K" => "K-per-s",
         "T" => "T-s",
         "T1" => "T1-s",
@@ -161,10 +260,13 @@ fn side(wire: SideWire) -> Side {
     }
 }
 
-fn manoeuvre(wire: &ManoeuvreWire, folder: &Path) -> Result<Manoeuvre, Problem> {
-    let both = |key: &str, one: &str, other: &str| {
+/// The manoeuvre at `place`.
+fn manoeuvre(wire: &ManoeuvreWire, place: &str, folder: &Path) -> Result<Manoeuvre, Problem> {
+    let place = KeyPath::dotted(place);
+    let both = |name: &str, one: &str, other: &str| {
+        let key = place.child(name);
         Problem::name(
-            KeyPath::dotted(key).child(other),
+            key.child(other),
             format!("`{key}` has both `{one}` and `{other}`"),
             "expected one end of the manoeuvre",
             format!("leave out `{one}` or `{other}`"),
@@ -176,7 +278,7 @@ fn manoeuvre(wire: &ManoeuvreWire, folder: &Path) -> Result<Manoeuvre, Problem> 
                 (Some(executes), None) => ZigZagEnd::Executes(executes),
                 (None, Some(duration)) => ZigZagEnd::Duration(duration),
                 (None, None) => ZigZagEnd::Record,
-                (Some(_), Some(_)) => return Err(both("manoeuvre.zig-zag", "executes", "duration-s")),
+                (Some(_), Some(_)) => return Err(both("zig-zag", "executes", "duration-s")),
             };
             Manoeuvre::ZigZag(ZigZag {
                 rudder: from_deg(zig_zag.rudder_deg),
@@ -189,10 +291,10 @@ fn manoeuvre(wire: &ManoeuvreWire, folder: &Path) -> Result<Manoeuvre, Problem> 
             let end = match (turn.duration_s, turn.heading_change_deg) {
                 (Some(duration), None) => TurnEnd::Duration(duration),
                 (None, Some(change)) => TurnEnd::HeadingChange(from_deg(change)),
-                (Some(_), Some(_)) => return Err(both("manoeuvre.turning-circle", "duration-s", "heading-change-deg")),
+                (Some(_), Some(_)) => return Err(both("turning-circle", "duration-s", "heading-change-deg")),
                 (None, None) => {
                     return Err(Problem::name(
-                        KeyPath::dotted("manoeuvre.turning-circle"),
+                        place.child("turning-circle"),
                         "nothing ends the turning circle",
                         "expected `duration-s` or `heading-change-deg` here",
                         "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
@@ -210,7 +312,7 @@ fn manoeuvre(wire: &ManoeuvreWire, folder: &Path) -> Result<Manoeuvre, Problem> 
         ManoeuvreWire::Replay(replay) => {
             let path = folder.join(&replay.file);
             let reading = trial::reader::read(&path).map_err(|error| {
-                let key = KeyPath::dotted("manoeuvre.replay.file");
+                let key = place.child("replay").child("file");
                 let advice = "give a record that `study fit` can read, relative to this file";
                 Problem::value(key, format!("the record to replay: {error}"), "expected a record with a rudder", advice)
             })?;
@@ -238,7 +340,35 @@ fn helmsman(wire: &HelmsmanWire) -> Helmsman {
     Helmsman { watches, reaction_time: wire.reaction_time_s }
 }
 
-fn recording(wire: &RecordingWire) -> Result<Recording, Problem> {
+/// The recording at `place`.
+fn recording(wire: &RecordingWire, place: &str) -> Result<Recording, Problem> {
+    let place = KeyPath::dotted(place);
+    let rudder = match (wire.rudder, wire.assumed_rudder_rate_deg_s) {
+        (RudderWire::Feedback, None) => RudderColumn::Feedback,
+        (RudderWire::Orders, Some(rate)) if rate > 0.0 => RudderColumn::Orders { assumed_rate: from_deg(rate) },
+        (RudderWire::Orders, Some(rate)) => {
+            let key = place.child("assumed-rudder-rate-deg-s");
+            let found = format!("`{key}` is {rate}");
+            let expected = "expected a number above 0, or inf for a rudder that jumps";
+            return Err(Problem::value(key, found, expected, "give the rate the analyst assumes, for instance 2.5"));
+        }
+        (RudderWire::Orders, None) => {
+            return Err(Problem::name(
+                place.child("rudder"),
+                format!("`{place}.rudder` is \"orders\", and nothing says how fast the rudder is taken to move"),
+                "expected `assumed-rudder-rate-deg-s` as well",
+                "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
+            ));
+        }
+        (RudderWire::Feedback, Some(_)) => {
+            return Err(Problem::name(
+                place.child("assumed-rudder-rate-deg-s"),
+                format!("`{place}` has an assumed rate for a rudder that is recorded"),
+                "a rate is assumed for `rudder = \"orders\"` only",
+                "add `rudder = \"orders\"`, or leave the rate out",
+            ));
+        }
+    };
     let start = match (wire.after_execute, wire.offset_s) {
         (Some(number), offset) => Start::Execute { number, offset: offset.unwrap_or(0.0) },
         (None, None) => Start::Run,
@@ -251,7 +381,7 @@ fn recording(wire: &RecordingWire) -> Result<Recording, Problem> {
             ));
         }
     };
-    Ok(Recording { start, period: wire.sampling_s, duration: wire.duration_s })
+    Ok(Recording { start, period: wire.sampling_s, duration: wire.duration_s, rudder })
 }
 
 fn sensors(wire: &SensorWire) -> Result<Sensors, Problem> {
@@ -317,7 +447,8 @@ fn disturbances(wire: &DisturbanceWire) -> Disturbances {
     }
 }
 
-fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
+/// The methods, all with names of their own.
+pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {

@@ -43,6 +43,8 @@ struct RangeWire {
 #[serde(deny_unknown_fields)]
 struct PointWire {
     label: String,
+    /// Where it lies on an axis of numbers.
+    value: Option<f64>,
     set: Table,
 }
 
@@ -97,7 +99,8 @@ impl Setting {
 }
 
 /// Keys that belong to the study as a whole; a sweep of them would say nothing.
-const FIXED: [&str; 7] = ["question", "analysis", "seed", "replicates", "sweep", "published", "output"];
+const FIXED: [&str; 9] =
+    ["question", "analysis", "finding", "seed", "replicates", "stop", "sweep", "published", "output"];
 
 impl AxisWire {
     /// Checks an axis; `index` is its place in the `sweep` array.
@@ -179,7 +182,7 @@ impl PointWire {
             let place = place.child("set").child(key);
             Setting { key: KeyPath::dotted(key), value: value.clone(), key_place: place.clone(), value_place: place }
         });
-        Point { label: self.label.clone(), value: None, set: set.collect() }
+        Point { label: self.label.clone(), value: self.value, set: set.collect() }
     }
 }
 

@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use identify::IdentifierSettings;
 use serde::Deserialize;
 
+use super::draw::DrawWire;
+use super::stop::StopFigure;
 use super::sweep::AxisWire;
 
 /// A whole scenario file.
@@ -16,9 +18,13 @@ pub struct ScenarioWire {
     pub question: String,
     #[serde(default)]
     pub analysis: String,
+    /// The answer in one sentence.
+    #[serde(default)]
+    pub finding: String,
     pub seed: u64,
     #[serde(default = "one")]
     pub replicates: u64,
+    pub stop: Option<StopWire>,
     /// One key: the id of a ship of the registry, `first-order` or `second-order`.
     pub ship: BTreeMap<String, toml::Table>,
     #[serde(default)]
@@ -35,7 +41,10 @@ pub struct ScenarioWire {
     pub sensor: SensorWire,
     #[serde(default)]
     pub disturbance: DisturbanceWire,
+    pub validation: Option<ValidationWire>,
     pub identifier: Vec<IdentifierWire>,
+    #[serde(default)]
+    pub draw: Vec<DrawWire>,
     #[serde(default)]
     pub sweep: Vec<AxisWire>,
     #[serde(default)]
@@ -48,13 +57,44 @@ fn one() -> u64 {
     1
 }
 
+/// When a cell has had enough trials; `replicates` is then the most.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct StopWire {
+    pub figure: StopFigure,
+    /// Label of a method; all of them when left out.
+    pub method: Option<String>,
+    /// Per cent of K or T; points of per cent for a coverage.
+    pub standard_error: f64,
+    #[serde(default = "hundred")]
+    pub every: u64,
+}
+
+fn hundred() -> u64 {
+    100
+}
+
+/// A second manoeuvre, which no method sees.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ValidationWire {
+    pub manoeuvre: ManoeuvreWire,
+    /// That of the trial, from the start of the run, when left out.
+    pub recording: Option<RecordingWire>,
+}
+
+/// K and T in SI, or without dimension: K' = K L/U, T' = T U/L.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct FirstOrderWire {
     #[serde(rename = "K-per-s")]
-    pub K_per_s: f64,
+    pub K_per_s: Option<f64>,
     #[serde(rename = "T-s")]
-    pub T_s: f64,
+    pub T_s: Option<f64>,
+    #[serde(rename = "K-prime")]
+    pub K_prime: Option<f64>,
+    #[serde(rename = "T-prime")]
+    pub T_prime: Option<f64>,
     #[serde(default)]
     pub rudder_bias_deg: f64,
     pub length_m: Option<f64>,
@@ -269,6 +309,19 @@ pub struct RecordingWire {
     /// Number of the execute after which the record starts; the beginning of the run when left out.
     pub after_execute: Option<usize>,
     pub offset_s: Option<f64>,
+    #[serde(default)]
+    pub rudder: RudderWire,
+    /// Of a rudder column that is rebuilt from orders.
+    pub assumed_rudder_rate_deg_s: Option<f64>,
+}
+
+/// What stands in the rudder column.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RudderWire {
+    #[default]
+    Feedback,
+    Orders,
 }
 
 #[derive(Debug, Clone, Default, Deserialize)]
@@ -367,9 +420,13 @@ pub struct PublishedWire {
     pub T_s: Option<f64>,
 }
 
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct OutputWire {
     /// Figures of the first replicate of every cell: trial, fit, derivatives, replays, intervals.
     pub showcase: bool,
+    /// Stem of the figure that stands for the study on an overview.
+    pub figure: Option<String>,
+    /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
+    pub detail: Vec<String>,
 }

@@ -1,7 +1,7 @@
 //! Running the binary as a user does: a folder of its own, the exit code, and what it says.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
@@ -51,6 +51,21 @@ impl Desk {
             out: String::from_utf8(stdout).expect("UTF-8"),
             err: String::from_utf8(stderr).expect("UTF-8"),
         }
+    }
+
+    /// Starts the program and does not wait for it.
+    pub fn start(&self, arguments: &[&str]) -> Child {
+        Command::new(env!("CARGO_BIN_EXE_study"))
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts")
+    }
+
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     pub fn json(&self, name: &str) -> serde_json::Value {

@@ -2,5 +2,6 @@
 //! exit code, the one message, and what lies on disk afterwards; what the numbers mean is tested elsewhere.
 
 mod desk;
+mod monte_carlo;
 mod records;
 mod scenarios;

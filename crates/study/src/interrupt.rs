@@ -1,0 +1,43 @@
+//! Ctrl-C and termination by a scheduler: while trials are run, the first one asks to stop between two trials, so that all
+//! rows so far are kept; a second one, or one at any other time, ends the program at once.
+
+use std::sync::Once;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static LISTENING: AtomicBool = AtomicBool::new(false);
+static ASKED: AtomicBool = AtomicBool::new(false);
+static INSTALLED: Once = Once::new();
+
+/// Exit code of a program that was interrupted: the work was not done.
+const INTERRUPTED: i32 = 1;
+
+/// While this lives, an interruption is a request.
+pub struct Listener(());
+
+impl Listener {
+    /// Listens from now on. Where no handler can be installed, an interruption ends the program, as without one.
+    pub fn new() -> Self {
+        INSTALLED.call_once(|| {
+            let handler = || {
+                let first = !ASKED.swap(true, Ordering::SeqCst);
+                if !(first && LISTENING.load(Ordering::SeqCst)) {
+                    std::process::exit(INTERRUPTED);
+                }
+            };
+            let _ = ctrlc::set_handler(handler);
+        });
+        LISTENING.store(true, Ordering::SeqCst);
+        Self(())
+    }
+
+    /// Whether to stop.
+    pub fn is_asked(&self) -> bool {
+        ASKED.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        LISTENING.store(false, Ordering::SeqCst);
+    }
+}

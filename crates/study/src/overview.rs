@@ -1,0 +1,102 @@
+//! `study overview DIR`: one page over all published studies of a folder, each with its question, its answer in a sentence
+//! and the figure that stands for it. Made from the manifests, so it needs no rows.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use toml::Table;
+
+use crate::cli::Common;
+use crate::failure::{Failure, OnPath};
+use crate::manifest::Manifest;
+use crate::screen;
+use crate::store;
+
+/// Name of the page.
+const PAGE: &str = "README.md";
+
+/// One published study.
+struct Study {
+    name: String,
+    question: String,
+    finding: String,
+    figure: Option<String>,
+}
+
+/// Writes `README.md` beside the folders of the studies, or to `--out`.
+pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
+    let studies = studies(folder)?;
+    let path = common.out.as_deref().unwrap_or(folder).join(PAGE);
+    fs::write(&path, page(&studies)).on("write", &path)?;
+    if common.quiet { Ok(()) } else { screen::say(&format!("{} studies: {}", studies.len(), path.display())) }
+}
+
+/// The studies of a folder in the order of their names.
+fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
+    let entries = fs::read_dir(folder).map_err(|error| {
+        Failure::input(format!("{}: {error}; give the folder that holds the folders of studies", folder.display()))
+    })?;
+    let mut folders: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    folders.sort();
+    let studies: Vec<Study> = folders
+        .iter()
+        .filter(|folder| folder.join(store::MANIFEST).is_file())
+        .map(|folder| study(folder))
+        .collect::<Result<_, _>>()?;
+    if studies.is_empty() {
+        let problem = format!("no folder in it holds a {}", store::MANIFEST);
+        return Err(Failure::input(format!("{}: {problem}; run a scenario first", folder.display())));
+    }
+    Ok(studies)
+}
+
+fn study(folder: &Path) -> Result<Study, Failure> {
+    let manifest = Manifest::read(&folder.join(store::MANIFEST))?;
+    let scenario: Table = manifest.scenario.parse().map_err(|error: toml::de::Error| {
+        let path = folder.join(store::MANIFEST);
+        Failure::input(format!("{}: its scenario is not TOML ({}); run it again", path.display(), error.message()))
+    })?;
+    let text = |key: &str| scenario.get(key).and_then(|value| value.as_str()).unwrap_or_default().trim().to_owned();
+    let named = scenario.get("output").and_then(|output| output.get("figure")).and_then(|value| value.as_str());
+    let figure = named.map(|stem| format!("{stem}.png")).filter(|file| folder.join(file).is_file());
+    // A link needs the name of the folder, which --out may have made another than that of the scenario.
+    let name = folder.file_name().map_or_else(|| manifest.name.clone(), |name| name.to_string_lossy().into_owned());
+    Ok(Study { name, question: text("question"), finding: text("finding"), figure })
+}
+
+fn page(studies: &[Study]) -> String {
+    let mut page = String::from(
+        "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
+         whole report,\nthe table as CSV, Markdown and LaTeX, and a manifest from which `study NAME/manifest.toml --out DIR` \
+         runs it again.\n",
+    );
+    for Study { name, question, finding, figure } in studies {
+        write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");
+        if !finding.is_empty() {
+            write!(page, "\n{finding}\n").expect("writing to a string does not fail");
+        }
+        if let Some(figure) = figure {
+            write!(page, "\n![{question}]({name}/{figure})\n").expect("writing to a string does not fail");
+        }
+    }
+    page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_study_without_a_figure_is_listed_too() {
+        let study = |figure: Option<&str>| Study {
+            name: "noise".into(),
+            question: "How much?".into(),
+            finding: "Little.".into(),
+            figure: figure.map(str::to_owned),
+        };
+        let page = page(&[study(Some("errors.png")), study(None)]);
+        assert_eq!(page.matches("## [noise](noise/report.md)\n\n**How much?**\n\nLittle.\n").count(), 2);
+        assert_eq!(page.matches("![How much?](noise/errors.png)").count(), 1);
+    }
+}

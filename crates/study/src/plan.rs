@@ -1,0 +1,201 @@
+//! Which trials a study runs, in what order, which of them belong to a shard, and when a cell has had enough of them.
+//!
+//! The order is cell by cell and replicate by replicate. Without a stopping rule a shard is a run of consecutive trials,
+//! with one it is a run of whole cells, because a rule looks at all the trials of a cell so far. What a rule sees is fixed
+//! by the rows alone, so the same trials are run whatever the number of threads, interruptions and shards.
+
+use std::fmt;
+use std::ops::Range;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::rows::Row;
+use crate::scenario::Scenario;
+use crate::stopping::Verdict;
+
+/// One trial of a design.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Task {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the replicate in the cell.
+    pub replicate: u64,
+}
+
+/// Part `number` of `of` parts of a study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub struct Shard {
+    /// From 1.
+    pub number: u64,
+    /// How many there are.
+    pub of: u64,
+}
+
+impl Shard {
+    /// The whole study.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// The part of `count` things that belongs to this shard: consecutive ones, as even as can be.
+    fn part(self, count: u64) -> Range<u64> {
+        let end = |number: u64| (u128::from(count) * u128::from(number) / u128::from(self.of)) as u64;
+        end(self.number - 1)..end(self.number)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((number, of)) if number >= 1 && number <= of => Ok(Self { number, of }),
+            _ => Err("expected I/N with I from 1 to N, for instance 3/16".to_owned()),
+        }
+    }
+}
+
+impl From<Shard> for String {
+    fn from(shard: Shard) -> Self {
+        shard.to_string()
+    }
+}
+
+impl TryFrom<String> for Shard {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+/// The trials of a study or a shard of it, handed out in order.
+pub struct Plan<'a> {
+    scenario: &'a Scenario,
+    /// First trial of the part.
+    first: Task,
+    /// Trial after its last.
+    end: Task,
+    /// Next trial that is not yet handed out.
+    next: Task,
+    /// What the stopping rule has seen of the cell of `next`.
+    verdict: Option<Verdict>,
+}
+
+impl<'a> Plan<'a> {
+    /// The plan of a shard, at its beginning.
+    pub fn new(scenario: &'a Scenario, shard: Shard) -> Self {
+        let cells = scenario.cells.len() as u64;
+        let at =
+            |trial: u64| Task { cell: (trial / scenario.replicates) as usize, replicate: trial % scenario.replicates };
+        let whole = |cell: u64| Task { cell: cell as usize, replicate: 0 };
+        let (first, end) = match &scenario.stop {
+            None => {
+                let trials = shard.part(cells * scenario.replicates);
+                (at(trials.start), at(trials.end))
+            }
+            Some(_) => {
+                let cells = shard.part(cells);
+                (whole(cells.start), whole(cells.end))
+            }
+        };
+        let verdict = scenario.stop.as_ref().map(|rule| Verdict::new(rule, scenario.labels().count()));
+        Self { scenario, first, end, next: first, verdict }
+    }
+
+    /// Most trials the plan may still hand out.
+    pub fn left(&self) -> u64 {
+        self.number(self.end) - self.number(self.next.min(self.end))
+    }
+
+    /// Most trials of the whole part.
+    pub fn most(&self) -> u64 {
+        self.number(self.end) - self.number(self.first)
+    }
+
+    /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have to
+    /// have been shown to [`Plan::saw`].
+    pub fn next(&mut self, most: u64) -> Vec<Task> {
+        if let (Some(verdict), Some(rule)) = (&self.verdict, &self.scenario.stop) {
+            let looked = self.next.replicate > 0 && self.next.replicate.is_multiple_of(rule.every);
+            if looked && verdict.is_met() {
+                self.next = Task { cell: self.next.cell + 1, replicate: 0 };
+            }
+        }
+        let mut tasks = Vec::new();
+        while (tasks.len() as u64) < most && self.next < self.end {
+            tasks.push(self.next);
+            self.next = self.after(self.next);
+            // The rule looks at the rows so far before it says what comes next; at the end of a cell too.
+            if self.scenario.stop.as_ref().is_some_and(|rule| self.next.replicate.is_multiple_of(rule.every)) {
+                break;
+            }
+        }
+        tasks
+    }
+
+    /// Takes note of a row, in order: of a trial handed out, or stored before by an earlier session.
+    pub fn saw(&mut self, row: &Row) {
+        if let Some(verdict) = &mut self.verdict {
+            verdict.see(row);
+        }
+    }
+
+    /// Goes on after a stored trial; the rows of its cell have to have been shown to [`Plan::saw`].
+    pub fn resume_after(&mut self, task: Task) {
+        self.next = self.after(task);
+    }
+
+    fn after(&self, task: Task) -> Task {
+        let replicate = task.replicate + 1;
+        match replicate < self.scenario.replicates {
+            true => Task { replicate, ..task },
+            false => Task { cell: task.cell + 1, replicate: 0 },
+        }
+    }
+
+    /// Hands out a trial again, and all after it.
+    pub fn go_back_to(&mut self, task: Task) {
+        self.next = task;
+    }
+
+    /// Whether a trial belongs to this part.
+    pub fn holds(&self, task: Task) -> bool {
+        self.first <= task && task < self.end
+    }
+
+    fn number(&self, task: Task) -> u64 {
+        task.cell as u64 * self.scenario.replicates + task.replicate
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shards_are_disjoint_even_and_whole() {
+        for (count, of) in [(1000, 7), (5, 8), (1, 1), (10_000_000_000, 10_000)] {
+            let parts: Vec<Range<u64>> = (1..=of).map(|number| Shard { number, of }.part(count)).collect();
+            assert_eq!((parts[0].start, parts[of as usize - 1].end), (0, count));
+            assert!(parts.windows(2).all(|pair| pair[0].end == pair[1].start));
+            let sizes = parts.iter().map(|part| part.end - part.start);
+            assert!(sizes.clone().max().unwrap_or(0) - sizes.min().unwrap_or(0) <= 1);
+        }
+    }
+
+    #[test]
+    fn shards_are_written_as_fractions() {
+        assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
+        for wrong in ["0/3", "4/3", "3", "a/b", "1/0", "-1/2", "1/2/3"] {
+            assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+use std::path::Path;
+
+use super::*;
+use crate::scenario::MethodName;
+use crate::store::{CellFacts, Design};
+
+fn design() -> Design {
+    let cell = |noise: f64, trial: &str| CellFacts {
+        labels: vec![noise.to_string(), trial.to_owned()],
+        values: vec![Some(noise), None],
+        bound_percent2: None,
+    };
+    let method = |label: &str| MethodName { label: label.into(), id: label.into() };
+    Design {
+        question: String::new(),
+        analysis: String::new(),
+        finding: String::new(),
+        figure: None,
+        detail: Vec::new(),
+        axes: vec!["noise [°]".into(), "trial".into()],
+        methods: vec![method("output-error"), method("srivc")],
+        draws: vec!["ship.first-order.K-per-s".into()],
+        cells: vec![cell(0.1, "10/10"), cell(0.5, "10/10")],
+    }
+}
+
+fn good(replicate: u64) -> Row {
+    Row {
+        cell: 1,
+        replicate,
+        method: 0,
+        true_k_per_s: Some(0.1),
+        true_t_s: Some(16.3),
+        bound: Some(Bound { k_per_s: 1e-4, t_s: 2e-2, k_over_t_per_s2: 3e-6 }),
+        k_per_s: Some(0.1001 + replicate as f64 * 1e-9),
+        k_ci95_per_s: Some([0.0999, 0.1003]),
+        t_s: Some(16.31),
+        rudder_bias_deg: Some(-0.2),
+        rudder_bias_ci95_deg: Some([-0.3, -0.1]),
+        heading_rmse_deg: Some(0.1),
+        validation_rmse_deg: Some(0.2),
+        evaluations: Some(90),
+        stop: Some("converged"),
+        drawn: Some([0.1].into()),
+        ..Row::default()
+    }
+}
+
+fn failed(replicate: u64) -> Row {
+    Row {
+        cell: 1,
+        replicate,
+        method: 1,
+        failure: Some("not-excited".into()),
+        drawn: Some([0.1].into()),
+        ..Row::default()
+    }
+}
+
+fn write(path: &Path, layout: &Layout, pieces: impl IntoIterator<Item = Vec<Row>>) {
+    let mut writer = Writer::create(path, layout).expect("created");
+    pieces.into_iter().for_each(|rows| writer.push(rows).expect("written"));
+    writer.finish().expect("finished");
+}
+
+fn read(path: &Path, layout: &Layout) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let reader = Reader::open(path, layout).expect("opened");
+    reader
+        .for_each(|row| {
+            rows.push(row);
+            Ok(())
+        })
+        .expect("read");
+    rows
+}
+
+#[test]
+fn rows_come_back_as_they_went() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("rows.parquet");
+    let layout = Layout::of(&design());
+    let rows = vec![good(7), failed(7)];
+    write(&path, &layout, [rows.clone()]);
+    assert_eq!(read(&path, &layout), rows);
+    assert!(!path.with_extension("tmp").exists());
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_pieces() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let layout = Layout::of(&design());
+    let (one, many) = (folder.path().join("one.parquet"), folder.path().join("many.parquet"));
+    // More than a row group, and more than a batch of the reader.
+    let rows: Vec<Row> = (0..35_000).flat_map(|replicate| [good(replicate), failed(replicate)]).collect();
+    write(&one, &layout, [rows.clone()]);
+    write(&many, &layout, rows.chunks(7919).map(<[Row]>::to_vec));
+    assert!(std::fs::read(&one).expect("there") == std::fs::read(&many).expect("there"));
+    assert!(read(&many, &layout) == rows);
+}
+
+#[test]
+fn rows_of_another_study_are_refused() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("rows.parquet");
+    write(&path, &Layout::of(&design()), [vec![good(0)]]);
+    let refused = |design: &Design| {
+        let layout = Layout::of(design);
+        let mut reader = Reader::open(&path, &layout)?;
+        reader.next_rows().map(drop)
+    };
+    let other_axis = Design { axes: vec!["sampling [s]".into(), "trial".into()], ..design() };
+    let message = refused(&other_axis).expect_err("another axis").message;
+    assert!(message.contains("rows.parquet") && message.contains("axis.sampling [s]"), "{message}");
+    let other_method = Design { methods: design().methods.split_off(1), ..design() };
+    let message = refused(&other_method).expect_err("another method").message;
+    assert!(message.contains("output-error"), "{message}");
+    std::fs::write(&path, "no Parquet").expect("written");
+    assert!(refused(&design()).is_err());
+}
+
+#[test]
+fn axes_and_draws_are_columns() {
+    let names: Vec<String> = Layout::of(&design()).names().collect();
+    assert_eq!(names[..COLUMNS.len()], COLUMNS.map(|column| column.name));
+    assert_eq!(names[COLUMNS.len()..], ["axis.noise [°]", "axis.trial", "draw.ship.first-order.K-per-s"]);
+}
+
+#[test]
+fn errors_are_relative_to_the_truth() {
+    let row =
+        Row { k_per_s: Some(0.11), t_s: Some(-16.3), true_k_per_s: Some(0.1), true_t_s: Some(16.3), ..Row::default() };
+    let near = |found: Option<f64>, expected: f64| (found.expect("a truth") - expected).abs() < 1e-12;
+    assert!(near(row.k_error(), 0.1) && near(row.t_error(), -2.0) && near(row.k_over_t_error(), -2.1));
+    assert_eq!(Row { true_k_per_s: None, ..row.clone() }.k_error(), None);
+    assert_eq!(Row { t_s: Some(0.0), ..row }.k_over_t_error(), None, "an infinite error is none");
+}
+
+#[test]
+fn every_column_is_documented() {
+    let page = include_str!("../../../../docs/results.md");
+    for Column { name, meaning, .. } in &COLUMNS {
+        assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
+    }
+}

@@ -1,0 +1,115 @@
+//! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one give
+//! the same rows; where they differ, the keys say how.
+
+use std::fmt;
+
+use toml::{Table, Value};
+
+/// Keys that a person reads and the engine does not.
+const PROSE: [&str; 5] = ["question", "analysis", "finding", "published", "output"];
+
+/// The document without prose and presentation; comments and layout are gone by themselves.
+pub fn design_of(document: &Table) -> Table {
+    document
+        .iter()
+        .filter(|(key, _)| !PROSE.contains(&key.as_str()))
+        .map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
+}
+
+/// A key with different values in two documents; `None` where it has none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    key: String,
+    there: Option<Value>,
+    here: Option<Value>,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown = |value: &Option<Value>| value.as_ref().map_or_else(|| "nothing".to_owned(), shortened);
+        write!(f, "`{}`: {} there, {} here", self.key, shown(&self.there), shown(&self.here))
+    }
+}
+
+/// Most letters of a value in a message.
+const LONGEST: usize = 60;
+
+fn shortened(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
+/// Keys in which two documents differ, with dots, entries of lists counted from 0.
+pub fn differences(there: &Table, here: &Table) -> Vec<Difference> {
+    let mut found = Vec::new();
+    compare("", Some(&Value::Table(there.clone())), Some(&Value::Table(here.clone())), &mut found);
+    found
+}
+
+fn compare(key: &str, there: Option<&Value>, here: Option<&Value>, found: &mut Vec<Difference>) {
+    let below = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+    match (there, here) {
+        (Some(Value::Table(one)), Some(Value::Table(other))) => {
+            let only = other.keys().filter(|name| !one.contains_key(*name));
+            for name in one.keys().chain(only) {
+                compare(&below(name), one.get(name), other.get(name), found);
+            }
+        }
+        (Some(Value::Array(one)), Some(Value::Array(other))) => {
+            for index in 0..one.len().max(other.len()) {
+                compare(&below(&index.to_string()), one.get(index), other.get(index), found);
+            }
+        }
+        (Some(one), Some(other)) if same(one, other) => {}
+        (there, here) => found.push(Difference { key: key.to_owned(), there: there.cloned(), here: here.cloned() }),
+    }
+}
+
+/// 1 and 1.0 are the same number.
+fn same(one: &Value, other: &Value) -> bool {
+    let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
+    match (number(one), number(other)) {
+        (Some(one), Some(other)) => one.to_bits() == other.to_bits(),
+        _ => one == other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(text: &str) -> Table {
+        text.parse().expect("well formed")
+    }
+
+    #[test]
+    fn differences_name_keys_and_both_values() {
+        let there =
+            document("seed = 1\nsensor.heading-noise-deg = 0.1\nidentifier = [{ method.srivc = {} }]\n[ship.yukun]");
+        let here =
+            document("seed = 1.0\nsensor.heading-noise-deg = 0.2\nidentifier = []\nstop.every = 20\n[ship.yukun]");
+        let found: Vec<String> = differences(&there, &here).iter().map(ToString::to_string).collect();
+        assert_eq!(
+            found,
+            [
+                "`identifier.0`: { method = { srivc = {} } } there, nothing here",
+                "`sensor.heading-noise-deg`: 0.1 there, 0.2 here",
+                "`stop`: nothing there, { every = 20 } here"
+            ]
+        );
+        assert!(differences(&there, &there).is_empty());
+    }
+
+    #[test]
+    fn prose_and_presentation_are_not_part_of_a_design() {
+        let bare = document("seed = 1\n[ship.yukun]");
+        let told = document(
+            "# Why?\nquestion = \"?\"\nanalysis = \"!\"\nseed    = 1\n[ship.yukun]\n[output]\nshowcase = true",
+        );
+        assert_eq!(design_of(&bare), design_of(&told));
+    }
+}

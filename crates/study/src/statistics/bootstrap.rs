@@ -1,0 +1,116 @@
+//! The bootstrap over batches (Efron 1979): which batches a resample holds is drawn once and used for every figure, so that
+//! figures of two methods are resampled together.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+use super::sums::Moments;
+use super::{FEWEST, Figure};
+
+/// Resamples: enough for the 2.5 and 97.5 % points to two digits.
+const RESAMPLES: usize = 1000;
+
+/// A fixed seed: the same rows give the same interval.
+const SEED: u64 = 1979;
+
+/// How often each batch is in each resample.
+#[derive(Debug, Clone)]
+pub struct Resamples {
+    batches: usize,
+    /// [`RESAMPLES`] times `batches` counts.
+    counts: Vec<u8>,
+}
+
+impl Resamples {
+    /// Resamples of so many batches.
+    pub fn new(batches: usize) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+        let mut counts = vec![0u8; RESAMPLES * batches];
+        for resample in counts.chunks_mut(batches.max(1)) {
+            for _ in 0..batches {
+                let drawn: usize = rng.random_range(0..batches);
+                resample[drawn] = resample[drawn].saturating_add(1);
+            }
+        }
+        Self { batches, counts }
+    }
+
+    /// Number of batches.
+    pub fn batches(&self) -> usize {
+        self.batches
+    }
+
+    /// Several statistics of the same sums, each with a percentile interval; none for what is undefined, and no interval for
+    /// fewer than six values.
+    pub fn figures<const N: usize>(
+        &self,
+        batches: &[Moments],
+        statistics: impl Fn(&Moments) -> [Option<f64>; N],
+    ) -> [Option<Figure>; N] {
+        let whole = batches.iter().fold(Moments::default(), |sum, batch| plus(sum, batch, 1.0));
+        let values = statistics(&whole);
+        if whole.count < FEWEST as f64 || batches.len() > self.batches {
+            return values.map(|value| value.map(|value| Figure { value, ci95: None }));
+        }
+        let mut resampled: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(RESAMPLES));
+        for counts in self.counts.chunks_exact(self.batches) {
+            let total =
+                batches.iter().zip(counts).fold(Moments::default(), |sum, (batch, &n)| plus(sum, batch, n.into()));
+            for (all, value) in resampled.iter_mut().zip(statistics(&total)) {
+                all.extend(value.filter(|value| value.is_finite()));
+            }
+        }
+        std::array::from_fn(|k| {
+            let sorted = &mut resampled[k];
+            sorted.sort_by(f64::total_cmp);
+            let value = values[k]?;
+            let end = |p: f64| sorted[((sorted.len() - 1) as f64 * p).round() as usize];
+            // A statistic that most resamples do not have is not known.
+            let ci95 = (sorted.len() > RESAMPLES / 2).then(|| [end(0.025), end(0.975)]);
+            Some(Figure { value, ci95 })
+        })
+    }
+}
+
+fn plus(sum: Moments, batch: &Moments, times: f64) -> Moments {
+    Moments {
+        count: sum.count + times * batch.count,
+        first: sum.first + times * batch.first,
+        second: sum.second + times * batch.second,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::{BATCHES, Sums};
+    use rand_distr::StandardNormal;
+
+    /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a batch is
+    /// one value or several.
+    #[test]
+    fn intervals_cover_what_they_say() {
+        for (size, fewest) in [(200, 0.91), (2000, 0.92)] {
+            let resamples = Resamples::new(BATCHES.min(size));
+            let samples = 400;
+            let mut rng = ChaCha8Rng::seed_from_u64(5);
+            let covered = (0..samples).filter(|_| {
+                let mut sums = Sums::default();
+                (0..size as u64).for_each(|replicate| sums.add(replicate, rng.sample::<f64, _>(StandardNormal)));
+                let [sd] = resamples.figures(sums.batches(), |total| [sums.sd(total)]);
+                let [lo, hi] = sd.and_then(|figure| figure.ci95).expect("enough values");
+                lo <= 1.0 && 1.0 <= hi
+            });
+            let share = covered.count() as f64 / f64::from(samples);
+            assert!((fewest..0.985).contains(&share), "{size}: {share}");
+        }
+    }
+
+    #[test]
+    fn few_values_have_no_interval() {
+        let mut sums = Sums::default();
+        (0..5).for_each(|replicate| sums.add(replicate, replicate as f64));
+        let [mean, none] = Resamples::new(5).figures(sums.batches(), |total| [sums.mean(total), None]);
+        assert_eq!((mean, none), (Some(Figure { value: 2.0, ci95: None }), None));
+    }
+}

@@ -1,0 +1,56 @@
+//! Figures over replicates, each with its own Monte-Carlo uncertainty, in memory that does not grow with the number of
+//! replicates: [`Sample`] for everything that depends on order, [`Sums`] for everything that depends on moments.
+
+mod bootstrap;
+mod sample;
+mod sums;
+
+pub use bootstrap::Resamples;
+pub use sample::{Ordered, Sample};
+pub use sums::{BATCHES, Moments, PairSums, Sums};
+
+/// A figure with a 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figure {
+    /// The figure.
+    pub value: f64,
+    /// Its 95 % interval, where the sample is large enough for one.
+    pub ci95: Option<[f64; 2]>,
+}
+
+impl Figure {
+    /// The figure in another unit; `factor` is above zero.
+    pub fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, ci95: self.ci95.map(|ends| ends.map(|end| end * factor)) }
+    }
+}
+
+/// Two-sided 95 % quantile of the standard normal distribution.
+const Z95: f64 = 1.959_963_984_540_054;
+
+/// Fewest values of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
+const FEWEST: u64 = 6;
+
+/// A share with Wilson's interval (1927); `None` of nothing.
+pub fn share(count: u64, of: u64) -> Option<Figure> {
+    if of == 0 {
+        return None;
+    }
+    let (n, z2) = (of as f64, Z95 * Z95);
+    let p = count as f64 / n;
+    let centre = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
+    let reach = Z95 / (1.0 + z2 / n) * (p * (1.0 - p) / n + z2 / (4.0 * n * n)).sqrt();
+    Some(Figure { value: p, ci95: Some([(centre - reach).max(0.0), (centre + reach).min(1.0)]) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_have_the_interval_of_wilson() {
+        let [lo, hi] = share(8, 10).and_then(|figure| figure.ci95).expect("not empty");
+        assert!((lo - 0.490).abs() < 1e-3 && (hi - 0.943).abs() < 1e-3);
+        assert_eq!(share(0, 0), None);
+    }
+}

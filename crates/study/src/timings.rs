@@ -1,0 +1,177 @@
+//! How long simulation and identification took: the one result that depends on the machine, kept apart from the rows.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::Timing;
+use crate::failure::{Failure, OnPath};
+use crate::store::Design;
+
+/// Name of the simulation among the methods.
+const SIMULATION: &str = "(simulation)";
+
+/// Times of one method in one cell: `timings.csv` has one line each.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Line {
+    cell: u64,
+    method: String,
+    trials: u64,
+    mean_us: f64,
+    sd_us: f64,
+    shortest_us: f64,
+}
+
+/// Running moments of a time, µs (Welford 1962).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Moments {
+    count: f64,
+    mean: f64,
+    /// Sum of squared deviations.
+    second: f64,
+    shortest: f64,
+}
+
+impl Default for Moments {
+    fn default() -> Self {
+        Self { count: 0.0, mean: 0.0, second: 0.0, shortest: f64::INFINITY }
+    }
+}
+
+impl Moments {
+    fn add(&mut self, time: f64) {
+        self.join(&Self { count: 1.0, mean: time, second: 0.0, shortest: time });
+    }
+
+    /// Chan, Golub and LeVeque (1983).
+    fn join(&mut self, other: &Self) {
+        let count = self.count + other.count;
+        if count == 0.0 {
+            return;
+        }
+        let step = other.mean - self.mean;
+        self.mean += step * other.count / count;
+        self.second += other.second + step * step * self.count * other.count / count;
+        self.count = count;
+        self.shortest = self.shortest.min(other.shortest);
+    }
+
+    fn sd(&self) -> f64 {
+        if self.count > 1.0 { (self.second / (self.count - 1.0)).sqrt() } else { 0.0 }
+    }
+}
+
+/// Times of a study or a part of it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Timings {
+    /// Per cell seen, in order: the simulation, then the methods.
+    cells: Vec<(u64, Vec<Moments>)>,
+    methods: usize,
+}
+
+impl Timings {
+    /// No times of so many methods.
+    pub fn new(methods: usize) -> Self {
+        Self { cells: Vec::new(), methods }
+    }
+
+    /// Takes note of one trial.
+    pub fn add(&mut self, timing: &Timing) {
+        let moments = self.of_cell(timing.cell);
+        let microseconds = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
+        moments[0].add(microseconds(&timing.simulation));
+        moments[1..].iter_mut().zip(&timing.methods).for_each(|(moments, time)| moments.add(microseconds(time)));
+    }
+
+    /// Joins the times of another part.
+    pub fn join(&mut self, other: &Self) {
+        for (cell, theirs) in &other.cells {
+            self.of_cell(*cell).iter_mut().zip(theirs).for_each(|(own, their)| own.join(their));
+        }
+    }
+
+    fn of_cell(&mut self, cell: u64) -> &mut [Moments] {
+        // Cells come in order, nearly always the last one.
+        let place = match self.cells.last() {
+            Some((last, _)) if *last == cell => self.cells.len() - 1,
+            _ => match self.cells.binary_search_by_key(&cell, |(cell, _)| *cell) {
+                Ok(place) => place,
+                Err(place) => {
+                    self.cells.insert(place, (cell, vec![Moments::default(); 1 + self.methods]));
+                    place
+                }
+            },
+        };
+        &mut self.cells[place].1
+    }
+
+    /// Mean time of a method over all its trials, µs, with its standard error; `None` when it was never asked.
+    pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
+        let mut all = Moments::default();
+        self.cells.iter().filter_map(|(_, moments)| moments.get(1 + method)).for_each(|moments| all.join(moments));
+        (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
+    }
+
+    /// Writes `timings.csv`.
+    pub fn write(&self, path: &Path, design: &Design) -> Result<(), Failure> {
+        let mut file = csv::Writer::from_path(path).on("create", path)?;
+        let names = || std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()));
+        for (cell, moments) in &self.cells {
+            for (method, moments) in names().zip(moments).filter(|(_, moments)| moments.count > 0.0) {
+                let line = Line {
+                    cell: *cell,
+                    method: method.to_owned(),
+                    trials: moments.count as u64,
+                    mean_us: moments.mean,
+                    sd_us: moments.sd(),
+                    shortest_us: moments.shortest,
+                };
+                file.serialize(line).on("write", path)?;
+            }
+        }
+        file.flush().on("write", path)
+    }
+
+    /// Reads `timings.csv`; methods the design does not have are left out.
+    pub fn read(path: &Path, design: &Design) -> Result<Self, Failure> {
+        let refuse =
+            |error: csv::Error| Failure::input(format!("{}: {error}; expected times of a study", path.display()));
+        let mut timings = Self::new(design.methods.len());
+        for line in csv::Reader::from_path(path).map_err(refuse)?.deserialize() {
+            let line: Line = line.map_err(refuse)?;
+            let place = match line.method.as_str() {
+                SIMULATION => Some(0),
+                label => design.methods.iter().position(|method| method.label == label).map(|place| place + 1),
+            };
+            if let Some(place) = place {
+                timings.of_cell(line.cell)[place] = Moments {
+                    count: line.trials as f64,
+                    mean: line.mean_us,
+                    second: line.sd_us.powi(2) * (line.trials.saturating_sub(1)) as f64,
+                    shortest: line.shortest_us,
+                };
+            }
+        }
+        Ok(timings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_parts_have_the_moments_of_the_whole() {
+        let times = [3.0, 5.0, 4.0, 10.0, 8.0];
+        let of = |times: &[f64]| {
+            let mut moments = Moments::default();
+            times.iter().for_each(|&time| moments.add(time));
+            moments
+        };
+        let mut joined = of(&times[..2]);
+        joined.join(&of(&times[2..]));
+        let whole = of(&times);
+        assert!((joined.mean - 6.0).abs() < 1e-12 && (joined.sd() - 8.5_f64.sqrt()).abs() < 1e-12);
+        assert!((joined.second - whole.second).abs() < 1e-12 && joined.shortest == 3.0);
+    }
+}

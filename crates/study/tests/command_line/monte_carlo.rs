@@ -1,0 +1,199 @@
+//! Monte-Carlo studies as a user runs them: interrupted, continued, split and joined, always with the same rows.
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::desk::Desk;
+
+/// A study of some seconds in two cells.
+fn scenario(replicates: u32) -> String {
+    format!(
+        r#"
+question = "How precise is the output error?"
+seed = 3
+replicates = {replicates}
+
+[ship.yukun]
+
+[manoeuvre.zig-zag]
+rudder-deg = 10.0
+heading-deg = 10.0
+
+[steering-gear]
+rate-deg-s = 2.5
+
+[recording]
+sampling-s = 1.0
+duration-s = 200.0
+
+[sensor]
+heading-noise-deg = 0.1
+
+[[sweep]]
+key = "sensor.heading-noise-deg"
+values = [0.1, 0.5]
+
+[[identifier]]
+method.output-error = {{}}
+
+[[identifier]]
+method.integral-least-squares = {{}}
+"#
+    )
+}
+
+const ROWS: &str = "whole/rows.parquet";
+
+/// The rows of an uninterrupted run.
+fn uninterrupted(desk: &Desk) -> Vec<u8> {
+    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
+    desk.bytes(ROWS)
+}
+
+/// Number of parts stored so far.
+fn parts(desk: &Desk, folder: &str) -> usize {
+    let parts = std::fs::read_dir(desk.path(folder).join("unfinished")).into_iter().flatten().flatten();
+    parts.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet")).count()
+}
+
+#[test]
+fn a_killed_run_goes_on_and_ends_with_the_same_bytes() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(6000));
+    let whole = uninterrupted(&desk);
+    // Killed before the first part, and then some time after one more part is stored, wherever that falls.
+    let mut stored = vec![0];
+    for (round, wait) in [15, 40, 0, 90, 5].into_iter().enumerate() {
+        let threads = ["1", "2", "3"][round % 3];
+        let mut run = desk.start(&["study.toml", "--out", "killed", "--quiet", "--threads", threads]);
+        let is_over = |run: &mut std::process::Child| run.try_wait().expect("it can be asked").is_some();
+        while round > 0 && parts(&desk, "killed") <= stored[round] && !is_over(&mut run) {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        std::thread::sleep(Duration::from_millis(wait));
+        if is_over(&mut run) {
+            break;
+        }
+        run.kill().expect("it is ours to kill");
+        run.wait().expect("it ends");
+        if desk.path("killed/rows.parquet").exists() {
+            break;
+        }
+        stored.push(parts(&desk, "killed"));
+    }
+    assert!(stored.is_sorted(), "nothing that was stored is lost: {stored:?}");
+    assert!(stored.len() > 3, "the study was over before it was killed three times: {stored:?}");
+    desk.run(&["study.toml", "--out", "killed", "--quiet", "--threads", "2"]).is_done();
+    assert!(whole == desk.bytes("killed/rows.parquet"), "the rows differ from those of an uninterrupted run");
+    assert!(!desk.path("killed/unfinished").exists());
+}
+
+#[test]
+fn a_damaged_part_is_run_again() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(1500));
+    let whole = uninterrupted(&desk);
+    let mut run = desk.start(&["study.toml", "--out", "damaged", "--quiet", "--threads", "2"]);
+    while parts(&desk, "damaged") < 2 && run.try_wait().expect("it can be asked").is_none() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.kill().expect("it is ours to kill");
+    run.wait().expect("it ends");
+    let part = "damaged/unfinished/00000001.parquet";
+    let bytes = desk.bytes(part);
+    desk.file(part, &bytes[..bytes.len() / 2]);
+    let run = desk.run(&["study.toml", "--out", "damaged", "--quiet"]);
+    run.is_done();
+    assert!(run.err.contains("00000001.parquet") && run.err.contains("run again"), "{}", run.err);
+    assert!(whole == desk.bytes("damaged/rows.parquet"));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_within_a_second_and_keeps_the_rows() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(100_000));
+    let run = desk.start(&["study.toml", "--out", "stopped", "--quiet", "--threads", "2"]);
+    while parts(&desk, "stopped") < 1 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let asked = Instant::now();
+    let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().expect("a Unix system has kill");
+    assert!(sent.success());
+    let output = run.wait_with_output().expect("it ends");
+    assert!(asked.elapsed() < Duration::from_secs(1), "{:?}", asked.elapsed());
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.starts_with("error: stopped after ") && message.contains("the same command goes on"), "{message}");
+    desk.run(&["report", "stopped"]).is_refused(2, &["stopped", "not finished", "run it again"]);
+}
+
+#[test]
+fn shards_in_any_order_are_the_whole() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(50));
+    let whole = uninterrupted(&desk);
+    for shard in ["2/3", "1/3", "3/3"] {
+        desk.run(&["study.toml", "--quiet", "--shard", shard]).is_done();
+    }
+    let folders = ["results/study/shards/3-of-3", "results/study/shards/1-of-3", "results/study/shards/2-of-3"];
+    let merge = |folders: &[&str], out: &str| desk.run(&[&["merge"], folders, &["--out", out, "--quiet"]].concat());
+    merge(&folders, "joined").is_done();
+    assert!(whole == desk.bytes("joined/rows.parquet"));
+    for file in ["summary.csv", "cells.json", "errors.png"] {
+        assert!(desk.bytes(&format!("whole/{file}")) == desk.bytes(&format!("joined/{file}")), "{file}");
+    }
+    merge(&folders[..2], "x").is_refused(2, &["1 of 3 shards are missing", "2/3"]);
+    merge(&[folders[0], folders[0]], "x").is_refused(2, &["both shard 3/3"]);
+    merge(&["whole", folders[0]], "x").is_refused(2, &["not shards of one study", "shard"]);
+    merge(&["nowhere"], "x").is_refused(2, &["nowhere", "no finished shard"]);
+    desk.file("other.toml", scenario(50).replace("0.5]", "0.7]"));
+    desk.run(&["other.toml", "--quiet", "--shard", "2/3", "--out", "foreign"]).is_done();
+    merge(&[folders[0], folders[1], "foreign"], "x").is_refused(2, &["not shards of one study", "sweep.0.values"]);
+    desk.run(&["study.toml", "--shard", "4/3"]).is_refused(2, &["4/3", "expected I/N"]);
+}
+
+#[test]
+fn a_folder_belongs_to_one_study() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(20));
+    let rows = uninterrupted(&desk);
+    let again = |name: &str, options: &[&str]| desk.run(&[&[name, "--out", "whole", "--quiet"], options].concat());
+
+    desk.file("other.toml", scenario(20).replace("duration-s = 200.0", "duration-s = 250.0"));
+    again("other.toml", &[]).is_refused(2, &["whole", "recording.duration-s", "200", "250", "--out", "--restart"]);
+    again("study.toml", &["--seed", "4"]).is_refused(2, &["seed: 3 there, 4 here"]);
+    assert!(rows == desk.bytes(ROWS), "a refusal changes nothing");
+
+    // Prose and layout are not part of a study; the report follows them, the rows stay.
+    let told = scenario(20).replace("seed = 3", "# why three\nseed = 3\nanalysis = \"It is precise.\"");
+    desk.file("told.toml", told);
+    again("told.toml", &[]).is_done();
+    assert!(rows == desk.bytes(ROWS));
+    assert!(String::from_utf8_lossy(&desk.bytes("whole/report.md")).contains("It is precise."));
+
+    again("other.toml", &["--restart"]).is_done();
+    assert!(rows != desk.bytes(ROWS));
+}
+
+#[test]
+fn a_manifest_repeats_its_study() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(10));
+    desk.run(&["study.toml", "--out", "whole", "--quiet", "--seed", "12"]).is_done();
+    desk.run(&["whole/manifest.toml", "--out", "again", "--quiet"]).is_done();
+    assert!(desk.bytes(ROWS) == desk.bytes("again/rows.parquet"));
+}
+
+#[test]
+fn two_runs_do_not_share_a_folder() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(100_000));
+    let mut first = desk.start(&["study.toml", "--out", "shared", "--quiet", "--threads", "1"]);
+    while parts(&desk, "shared") < 1 {
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    desk.run(&["study.toml", "--out", "shared", "--quiet"]).is_refused(1, &["another study is running", "shared"]);
+    first.kill().expect("it is ours to kill");
+    first.wait().expect("it ends");
+}
