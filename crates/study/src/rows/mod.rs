@@ -1,4 +1,4 @@
-//! Rows of a study: one per trial and method, a failed fit included. [`columns`] says how a row looks to other programs,
+//! Rows of a study: one per trial and method, a failed fit included. `columns` says how a row looks to other programs,
 //! [`file`] stores rows as Parquet and reads them back a few at a time.
 //!
 //! Nothing that depends on the clock or the machine is in a row, so a file has the same bytes for the same scenario and
