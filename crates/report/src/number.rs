@@ -10,6 +10,9 @@ const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
 /// More decimals than this say nothing about a double.
 const MAX_DECIMALS: i32 = 15;
 
+/// Width of a 95 % interval in standard deviations, about.
+const STANDARD_DEVIATIONS: f64 = 4.0;
+
 /// `value` with `decimals` decimals, a true minus sign and no negative zero; [`MISSING`] when it is not finite.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
@@ -56,12 +59,19 @@ pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
 pub fn interval(bounds: Option<[f64; 2]>) -> String {
     match bounds {
         Some([lo, hi]) if lo.is_finite() && hi.is_finite() => {
-            // An interval of 95 % is about four standard deviations wide.
-            let sd = (hi - lo).abs() / 4.0;
+            let sd = (hi - lo).abs() / STANDARD_DEVIATIONS;
             let decimals = if sd > 0.0 { decimals_of_uncertainty(sd) } else { decimals_for(lo, 5) };
             format!("[{}, {}]", fixed(lo, decimals), fixed(hi, decimals))
         }
         _ => MISSING.into(),
+    }
+}
+
+/// A value with as many decimals as [`interval`] gives the ends of its interval; four significant digits without one.
+pub fn supported(value: f64, bounds: Option<[f64; 2]>) -> String {
+    match bounds.map(|[lo, hi]| (hi - lo) / STANDARD_DEVIATIONS) {
+        Some(sd) if sd.is_finite() && sd > 0.0 => fixed(value, decimals_of_uncertainty(sd)),
+        _ => significant(value, 4),
     }
 }
 
@@ -125,6 +135,10 @@ mod tests {
         assert_eq!(interval(Some([1.0, 1.0])), "[1.0000, 1.0000]");
         assert_eq!(interval(None), "–");
         assert_eq!(interval(Some([f64::NAN, 1.0])), "–");
+        assert_eq!(supported(0.078_12, Some([0.077_79, 0.078_45])), "0.07812");
+        assert_eq!(supported(0.003, Some([-0.2, 0.2])), "0.00");
+        assert_eq!(supported(0.078_12, Some([0.5, 0.5])), "0.07812");
+        assert_eq!(supported(0.078_12, None), "0.07812");
         assert_eq!(optional(None, 2), "–");
         assert_eq!(optional(Some(-1.005), 1), "−1.0");
     }

@@ -59,10 +59,29 @@ fn study(folder: &Path) -> Result<Study, Failure> {
     })?;
     let text = |key: &str| scenario.get(key).and_then(|value| value.as_str()).unwrap_or_default().trim().to_owned();
     let named = scenario.get("output").and_then(|output| output.get("figure")).and_then(|value| value.as_str());
-    let figure = named.map(|stem| format!("{stem}.png")).filter(|file| folder.join(file).is_file());
+    let figure = named.map(|stem| figure(folder, stem)).transpose()?;
     // A link needs the name of the folder, which --out may have made another than that of the scenario.
     let name = folder.file_name().map_or_else(|| manifest.name.clone(), |name| name.to_string_lossy().into_owned());
     Ok(Study { name, question: text("question"), finding: text("finding"), figure })
+}
+
+/// File of the figure that a scenario names.
+fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
+    let file = format!("{stem}.png");
+    if folder.join(&file).is_file() {
+        return Ok(file);
+    }
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut known: Vec<String> = entries
+        .filter(|path| path.extension().is_some_and(|extension| extension == "png"))
+        .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
+        .collect();
+    known.sort();
+    Err(Failure::input(format!(
+        "{}: the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {}",
+        folder.display(),
+        known.join(", ")
+    )))
 }
 
 fn page(studies: &[Study]) -> String {

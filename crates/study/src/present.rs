@@ -131,7 +131,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
         let mut cells = place(design, line.cell, line.method);
         cells.extend(brief(&line.record));
         if validated {
-            cells.push(significant(line.record.validation_rmse_deg));
+            cells.push(supported(line.record.validation_rmse_deg));
         }
         table.push(cells);
     }
@@ -141,9 +141,9 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
 fn brief(record: &Record) -> Vec<String> {
     let mut cells = vec![format!("{}/{}", record.failed(), record.trials)];
     for errors in [&record.k, &record.t] {
-        cells.push(fixed(errors.median, 2));
-        cells.push(fixed(errors.rms, 2));
-        cells.push(interval(errors.rms, 2));
+        cells.push(supported(errors.median));
+        cells.push(supported(errors.rms));
+        cells.push(interval(errors.rms));
         cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
         cells.push(fixed(errors.sd_over_bound, 2));
     }
@@ -165,12 +165,12 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
         let record = &overall.record;
         let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
         for errors in [&record.k, &record.t] {
-            cells.push(significant(errors.median_size));
-            cells.push(interval(errors.median_size, 3));
-            cells.push(significant(errors.high_size));
+            cells.push(supported(errors.median_size));
+            cells.push(interval(errors.median_size));
+            cells.push(supported(errors.high_size));
             cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
         }
-        cells.push(significant(record.validation_rmse_deg));
+        cells.push(supported(record.validation_rmse_deg));
         table.push(cells);
     }
     table
@@ -203,15 +203,12 @@ fn fixed(figure: Option<Figure>, decimals: usize) -> String {
     number::optional(figure.map(|figure| figure.value), decimals)
 }
 
-fn significant(figure: Option<Figure>) -> String {
-    figure.map_or_else(|| MISSING.to_owned(), |figure| number::significant(figure.value, 3))
+fn supported(figure: Option<Figure>) -> String {
+    figure.map_or_else(|| MISSING.to_owned(), |figure| number::supported(figure.value, figure.ci95))
 }
 
-fn interval(figure: Option<Figure>, decimals: usize) -> String {
-    figure.and_then(|figure| figure.ci95).map_or_else(
-        || MISSING.to_owned(),
-        |[low, high]| format!("[{}, {}]", number::fixed(low, decimals), number::fixed(high, decimals)),
-    )
+fn interval(figure: Option<Figure>) -> String {
+    number::interval(figure.and_then(|figure| figure.ci95))
 }
 
 /// Reasons of failed trials with their counts, one line a cell and method.

@@ -7,6 +7,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
+use report::number;
+
 use crate::cli::{Common, Format, Style};
 use crate::failure::{Failure, OnPath, result_folder};
 use crate::present;
@@ -121,10 +123,13 @@ fn page(stored: &Stored, summary: &Summary, drawings: &[Drawing]) -> String {
         .iter()
         .enumerate()
         .filter_map(|(index, method)| Some((method, timings.mean_us(index)?)))
-        .map(|(method, (mean, error))| format!("{} {:.0} ± {:.0}", method.label, mean, 1.96 * error))
+        .map(|(method, (mean, error))| format!("{} {}", method.label, number::with_uncertainty(mean, Some(error))))
         .collect();
     if !times.is_empty() {
-        line(&format!("Mean time of an identification on this run's machine, µs: {}.\n", times.join(", ")));
+        line(&format!(
+            "Mean time of an identification on this run's machine with its standard error, µs: {}.\n",
+            times.join(", ")
+        ));
     }
     for failure in present::failures(summary, design) {
         line(&format!("- {failure}"));

@@ -122,9 +122,9 @@ impl Timings {
                     cell: *cell,
                     method: method.to_owned(),
                     trials: moments.count as u64,
-                    mean_us: moments.mean,
-                    sd_us: moments.sd(),
-                    shortest_us: moments.shortest,
+                    mean_us: to_the_nanosecond(moments.mean),
+                    sd_us: to_the_nanosecond(moments.sd()),
+                    shortest_us: to_the_nanosecond(moments.shortest),
                 };
                 file.serialize(line).on("write", path)?;
             }
@@ -154,6 +154,11 @@ impl Timings {
         }
         Ok(timings)
     }
+}
+
+/// What a clock tells, of a time in µs.
+fn to_the_nanosecond(time: f64) -> f64 {
+    (time * 1e3).round() / 1e3
 }
 
 #[cfg(test)]

@@ -15,11 +15,43 @@ pub(super) fn render(table: &Table) -> String {
     out
 }
 
-/// A cell with the minus sign that other programs read as one.
+/// A cell with minus signs and powers of ten as other programs read them: `-1.3e-12` for `−1.3×10⁻¹²`.
 fn readable(cell: &str) -> String {
-    quote(&cell.replace('−', "-"))
+    let plain = cell.replace('−', "-");
+    let Some((mantissa, exponent)) = plain.split_once("×10") else { return quote(&plain) };
+    let digits: Option<String> = exponent.chars().map(from_superscript).collect();
+    match digits.filter(|digits| !digits.is_empty()) {
+        Some(digits) => format!("{mantissa}e{digits}"),
+        None => quote(&plain),
+    }
+}
+
+fn from_superscript(c: char) -> Option<char> {
+    Some(match c {
+        '⁻' => '-',
+        '¹' => '1',
+        '²' => '2',
+        '³' => '3',
+        '⁰' | '⁴'..='⁹' => char::from_u32(c as u32 - '⁰' as u32 + '0' as u32)?,
+        _ => return None,
+    })
 }
 
 fn quote(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number;
+
+    #[test]
+    fn numbers_can_be_read_back() {
+        for value in [-1.331_63e-12, 4.5e23, -0.25, 2.0e-4, 0.0, 1.0e-100] {
+            let text = readable(&number::significant(value, 6));
+            assert_eq!(text.parse(), Ok(value), "{text}");
+        }
+        assert_eq!(readable("5×10 m, −3"), "\"5×10 m, -3\"");
+    }
 }

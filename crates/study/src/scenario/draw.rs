@@ -113,50 +113,58 @@ impl DrawWire {
 
     /// The distribution, where it lives, and its name.
     fn shape(&self, place: &KeyPath) -> Result<(Shape, [f64; 2], &'static str), Problem> {
-        let normal = |mean: f64, sd: f64| Normal::new(mean, sd).ok().filter(|_| mean.is_finite() && sd > 0.0);
-        let uniform = |from: f64, to: f64| {
-            let uniform = Uniform::new_inclusive(from, to).ok().filter(|_| from < to);
-            uniform.map(|uniform| Law::Uniform { uniform, ends: [from, to] })
-        };
-        let (name, of_logarithm, law, support, expected) =
-            match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
-                (Some(NormalWire { mean, sd }), None, None, None) => {
-                    let all = [f64::NEG_INFINITY, f64::INFINITY];
-                    (
-                        "normal",
-                        false,
-                        normal(mean, sd).map(Law::Normal),
-                        all,
-                        "expected a finite mean and an sd above 0",
-                    )
-                }
-                (None, Some(LogNormalWire { median, sigma }), None, None) => {
-                    let law = normal(median.ln(), sigma).map(Law::Normal);
-                    ("log-normal", true, law, [0.0, f64::INFINITY], "expected a median and a sigma above 0")
-                }
-                (None, None, Some(RangeWire { from, to }), None) => {
-                    let law = uniform(from, to);
-                    ("uniform", false, law, [from, to], "expected finite ends, `from` below `to`")
-                }
-                (None, None, None, Some(RangeWire { from, to })) => {
-                    let law = uniform(from.ln(), to.ln());
-                    ("log-uniform", true, law, [from, to], "expected finite ends above 0, `from` below `to`")
-                }
-                _ => {
-                    return Err(Problem::name(
-                        place.clone(),
-                        format!("the draw of `{}` does not say from which distribution", self.key),
-                        "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
-                        "for instance `uniform = { from = 0.5, to = 3.0 }`",
-                    ));
-                }
+        let number = |name: &str, number: &str, value: f64, least: f64| {
+            let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
+            if value.is_finite() && value > least && is_within_reach {
+                return Ok(value);
+            }
+            let found = format!("`{number}` of the `{name}` distribution of `{}` is {value}", self.key);
+            let expected = match least {
+                f64::NEG_INFINITY => "expected a finite number".to_owned(),
+                _ => format!("expected a finite number above {least}"),
             };
-        let law = law.ok_or_else(|| {
-            let found = format!("the `{name}` distribution of `{}`", self.key);
-            Problem::name(place.child(name), found, expected, "change its numbers")
-        })?;
-        Ok((Shape { of_logarithm, law }, support, name))
+            Err(Problem::value(place.child(name).child(number), found, expected, "change the number"))
+        };
+        let everything = [f64::NEG_INFINITY, f64::INFINITY];
+        match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
+            (Some(NormalWire { mean, sd }), None, None, None) => {
+                let mean = number("normal", "mean", mean, f64::NEG_INFINITY)?;
+                let law = normal(mean, number("normal", "sd", sd, 0.0)?);
+                Ok((Shape { of_logarithm: false, law }, everything, "normal"))
+            }
+            (None, Some(LogNormalWire { median, sigma }), None, None) => {
+                let median = number("log-normal", "median", median, 0.0)?;
+                let law = normal(median.ln(), number("log-normal", "sigma", sigma, 0.0)?);
+                Ok((Shape { of_logarithm: true, law }, [0.0, f64::INFINITY], "log-normal"))
+            }
+            (None, None, Some(RangeWire { from, to }), None) => {
+                let from = number("uniform", "from", from, f64::NEG_INFINITY)?;
+                let to = number("uniform", "to", to, from)?;
+                Ok((Shape { of_logarithm: false, law: uniform(from, to) }, [from, to], "uniform"))
+            }
+            (None, None, None, Some(RangeWire { from, to })) => {
+                let from = number("log-uniform", "from", from, 0.0)?;
+                let to = number("log-uniform", "to", to, from)?;
+                Ok((Shape { of_logarithm: true, law: uniform(from.ln(), to.ln()) }, [from, to], "log-uniform"))
+            }
+            _ => Err(Problem::name(
+                place.clone(),
+                format!("the draw of `{}` does not say from which distribution", self.key),
+                "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
+                "for instance `uniform = { from = 0.5, to = 3.0 }`",
+            )),
+        }
     }
+}
+
+/// A normal law; both numbers have been checked.
+fn normal(mean: f64, sd: f64) -> Law {
+    Law::Normal(Normal::new(mean, sd).expect("a finite standard deviation"))
+}
+
+/// A uniform law; both ends have been checked.
+fn uniform(from: f64, to: f64) -> Law {
+    Law::Uniform { uniform: Uniform::new_inclusive(from, to).expect("finite ends in order"), ends: [from, to] }
 }
 
 impl Draw {
@@ -179,11 +187,20 @@ impl Draw {
         std::iter::once(self.shape.middle().clamp(low, high)).chain(ends).collect()
     }
 
-    /// The problem of a drawn trial, moved to the draw; `cell` names the cell where it helps.
+    /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution; `cell`
+    /// names the cell where it helps.
     pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
-        let found = format!("the draw of `{}` reaches a value that makes no trial{cell}: {}", self.key, problem.found);
-        Problem { key: self.place.clone(), mark: Mark::Name, found, ..problem }
+        let (key, mark, what) = match problem.mark {
+            Mark::Name => (self.key_place(), Mark::Value, "changes a key that cannot be drawn"),
+            Mark::Value => (self.place.clone(), Mark::Name, "reaches a value that makes no trial"),
+        };
+        let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
+        Problem { key, mark, found, ..problem }
+    }
+
+    fn key_place(&self) -> KeyPath {
+        KeyPath::dotted("draw").child(self.index).child("key")
     }
 
     /// The key set to a value.
@@ -191,7 +208,7 @@ impl Draw {
         Setting {
             key: self.key.clone(),
             value: Value::Float(value),
-            key_place: KeyPath::dotted("draw").child(self.index).child("key"),
+            key_place: self.key_place(),
             value_place: self.place.clone(),
         }
     }
@@ -296,6 +313,7 @@ mod tests {
             "log-normal = { median = -1.0, sigma = 0.3 }",
             "uniform = { from = 3.0, to = 0.5 }",
             "uniform = { from = 0.0, to = inf }",
+            "uniform = { from = -1e308, to = 1e308 }",
             "log-uniform = { from = 0.0, to = 5.0 }",
             "normal = { mean = 0.0, sd = 1.0 }\nuniform = { from = 0.0, to = 1.0 }",
             "normal = { mean = 0.0, sd = 1.0 }\nbetween = [8.0, 9.0]",

@@ -296,11 +296,11 @@ impl Scenario {
             .map(|cell| cell.map(|cell| cell.named(name)))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
-        // A study of one cell is about that cell.
-        let detail = match cells.len() {
-            1 => vec![0],
-            _ => detail(&wire.output.detail, &cells).map_err(&fail)?,
-        };
+        let mut detail = detail(&wire.output.detail, &cells).map_err(&fail)?;
+        if cells.len() == 1 {
+            // A study of one cell is about that cell.
+            detail = vec![0];
+        }
         let design = identity::design_of(&document);
         Ok(Self {
             name: name.to_owned(),
@@ -385,16 +385,19 @@ fn check_draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
 
 /// Indices of the cells with these titles.
 fn detail(titles: &[String], cells: &[Cell]) -> Result<Vec<usize>, Problem> {
-    let known: Vec<String> = cells.iter().map(Cell::title).collect();
+    let known: Vec<String> = cells.iter().map(Cell::title).filter(|title| !title.is_empty()).collect();
     let place = |(index, title): (usize, &String)| {
         known.iter().position(|known| known == title).ok_or_else(|| {
             let key = KeyPath::dotted("output.detail").child(index);
-            let shown = &known[..known.len().min(20)];
+            let advice = match &known[..known.len().min(20)] {
+                [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
+                shown => suggestion(title, shown),
+            };
             Problem::value(
                 key,
                 format!("no cell is called {title:?}"),
                 "expected labels of points, joined by commas",
-                suggestion(title, shown),
+                advice,
             )
         })
     };

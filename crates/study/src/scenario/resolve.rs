@@ -206,8 +206,6 @@ fn not_a_ship(key: &KeyPath, table: &toml::Table, error: &ShipError) -> Problem 
         "T1" => "T1-s",
         "T2" => "T2-s",
         "T3" => "T3-s",
-        "length" => "length-m",
-        "speed" => "speed-kn",
         _ => "rudder-bias-deg",
     };
     let key = key.child(own);
@@ -225,8 +223,18 @@ fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> R
             format!("add `{missing}`, or leave both out"),
         )
     };
+    let checked = |name: &str, value: f64| {
+        let key = key.child(name);
+        let found = format!("`{key}` is {value}");
+        let is_right = value.is_finite() && value > 0.0;
+        let problem = || Problem::value(key, found, "expected a finite number above 0", "change the number");
+        is_right.then_some(value).ok_or_else(problem)
+    };
     match (length_m, speed_kn) {
-        (Some(length), Some(speed)) => Ok(Some(Particulars { length, speed: speed * KNOT })),
+        (Some(length), Some(speed)) => {
+            let (length, speed) = (checked("length-m", length)?, checked("speed-kn", speed)?);
+            Ok(Some(Particulars { length, speed: speed * KNOT }))
+        }
         (None, None) => Ok(None),
         (Some(_), None) => Err(half("length-m", "speed-kn")),
         (None, Some(_)) => Err(half("speed-kn", "length-m")),

@@ -3,6 +3,9 @@
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use study::rows::Row;
+use study::store::Stored;
+
 use crate::desk::Desk;
 
 /// A study of some seconds in two cells.
@@ -196,4 +199,114 @@ fn two_runs_do_not_share_a_folder() {
     desk.run(&["study.toml", "--out", "shared", "--quiet"]).is_refused(1, &["another study is running", "shared"]);
     first.kill().expect("it is ours to kill");
     first.wait().expect("it ends");
+}
+
+/// Trials of every cell and method of a summary, in its order.
+fn trials(desk: &Desk, folder: &str) -> Vec<u64> {
+    let file = desk.path(folder).join("summary.csv");
+    let mut summary = csv::Reader::from_path(file).expect("there is a summary");
+    let column = summary.headers().expect("it has headings").iter().position(|name| name == "trials").expect("trials");
+    let lines = summary.records().map(|line| line.expect("it is well formed"));
+    lines.map(|line| line[column].parse().expect("a count")).collect()
+}
+
+#[test]
+fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
+    let desk = Desk::new();
+    let rule = "[stop]\nfigure = \"sd-T\"\nmethod = \"output-error\"\nstandard-error = 0.015\nevery = 50\n";
+    desk.file("study.toml", scenario(3000) + rule);
+    let whole = uninterrupted(&desk);
+    let counts = trials(&desk, "whole");
+    // The standard error of a standard deviation is about sd/√(2n), so five times the noise needs 25 times the trials.
+    assert!(counts[0] == counts[1] && counts[2] == counts[3], "{counts:?}");
+    assert!(counts[0] % 50 == 0 && counts[0] >= 50 && counts[2] > 5 * counts[0] && counts[2] < 3000, "{counts:?}");
+    for threads in ["1", "3"] {
+        desk.run(&["study.toml", "--out", threads, "--threads", threads, "--quiet"]).is_done();
+        assert!(whole == desk.bytes(&format!("{threads}/rows.parquet")), "{threads} threads");
+    }
+    for shard in ["1/2", "2/2"] {
+        desk.run(&["study.toml", "--quiet", "--shard", shard]).is_done();
+    }
+    let (one, two) = ("results/study/shards/1-of-2", "results/study/shards/2-of-2");
+    desk.run(&["merge", one, two, "--out", "joined", "--quiet"]).is_done();
+    assert!(whole == desk.bytes("joined/rows.parquet"));
+    // A rule that is never met runs every trial there is.
+    desk.file("never.toml", scenario(100) + &rule.replace("0.015", "1e-9"));
+    desk.run(&["never.toml", "--out", "never", "--quiet"]).is_done();
+    assert_eq!(trials(&desk, "never"), [100; 4]);
+}
+
+#[test]
+fn drawn_ships_are_the_same_in_every_cell_and_every_part() {
+    let desk = Desk::new();
+    let ship = "[ship.first-order]\nK-per-s = 0.1\nT-s = 16.3\n";
+    let draws = "[[draw]]\nkey = \"ship.first-order.T-s\"\nlog-uniform = { from = 5.0, to = 50.0 }\n\
+                 [[draw]]\nkey = \"steering-gear.rate-deg-s\"\nuniform = { from = 2.3, to = 7.0 }\n";
+    desk.file("study.toml", scenario(40).replace("[ship.yukun]\n", ship) + draws);
+    let whole = uninterrupted(&desk);
+    for shard in ["1/3", "2/3", "3/3"] {
+        desk.run(&["study.toml", "--quiet", "--shard", shard, "--threads", "2"]).is_done();
+    }
+    let shards = ["1", "2", "3"].map(|shard| format!("results/study/shards/{shard}-of-3"));
+    let merge = ["merge", &shards[0], &shards[1], &shards[2], "--out", "joined", "--quiet"];
+    desk.run(&merge).is_done();
+    assert!(whole == desk.bytes("joined/rows.parquet"));
+
+    let stored = Stored::read(&desk.path("whole")).expect("it is finished");
+    let mut rows = Vec::new();
+    let read = stored.rows(|row| {
+        rows.push(row);
+        Ok(())
+    });
+    read.expect("they can be read");
+    let ships: Vec<&[f64]> = rows.iter().map(|row| row.drawn.as_deref().expect("a ship of its own")).collect();
+    assert_eq!(ships[..80], ships[80..], "paired over the cells");
+    let is_truth = |row: &Row, ship: &[f64]| row.true_t_s.is_some_and(|t| (t / ship[0] - 1.0).abs() < 1e-14);
+    assert!(rows.iter().zip(&ships).all(|(row, ship)| is_truth(row, ship)), "the truth is what was drawn");
+    assert!(ships.iter().all(|ship| (5.0..=50.0).contains(&ship[0]) && (2.3..=7.0).contains(&ship[1])));
+    assert!(ships[0] != ships[2], "one ship per trial");
+}
+
+#[test]
+fn studies_are_gathered_on_one_page() {
+    let desk = Desk::new();
+    let told = |finding: &str, figure: &str| {
+        scenario(5).replace("seed = 3", &format!("seed = 3\nfinding = \"{finding}\"\noutput.figure = \"{figure}\""))
+    };
+    desk.file("one.toml", told("Precise to 0.1 %.", "errors"));
+    desk.file("two.toml", told("So is this.", "coverage"));
+    for name in ["one.toml", "two.toml"] {
+        desk.run(&[name, "--quiet"]).is_done();
+    }
+    assert!(desk.run(&["overview", "results"]).is_done().out.contains("2 studies"));
+    let page = String::from_utf8(desk.bytes("results/README.md")).expect("UTF-8");
+    for part in
+        ["## [one](one/report.md)", "Precise to 0.1 %.", "](one/errors.png)", "So is this.", "](two/coverage.png)"]
+    {
+        assert!(page.contains(part), "{part} is missing in\n{page}");
+    }
+    desk.file("two.toml", told("So is this.", "nothing"));
+    desk.run(&["two.toml", "--quiet"]).is_done();
+    desk.run(&["overview", "results"]).is_refused(2, &["results/two", "no nothing.png", "coverage, ecdf, errors"]);
+    desk.run(&["overview", "results/one"]).is_refused(2, &["results/one", "run a scenario first"]);
+    desk.run(&["overview", "nowhere"]).is_refused(2, &["nowhere", "folders of studies"]);
+}
+
+#[test]
+fn figures_for_print_have_the_size_that_was_asked_for() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(5));
+    desk.run(&["study.toml", "--out", "whole", "--quiet", "--paper", "85", "--dpi", "300"]).is_done();
+    // Width and physical resolution of a PNG: in IHDR and pHYs.
+    let pixels = |name: &str| {
+        let png = desk.bytes(name);
+        u32::from_be_bytes(png[16..20].try_into().expect("four bytes"))
+    };
+    assert_eq!(pixels("whole/errors.png"), (85.0_f64 / 25.4 * 300.0).round() as u32);
+    desk.run(&["report", "whole", "--quiet"]).is_done();
+    assert_ne!(pixels("whole/errors.png"), (85.0_f64 / 25.4 * 300.0).round() as u32);
+    let table = String::from_utf8(desk.bytes("whole/summary.tex")).expect("UTF-8");
+    assert!(table.contains("\\toprule") && table.contains("output-error"), "{table}");
+    desk.run(&["report", "whole", "--paper", "3"]).is_refused(2, &["3"]);
+    desk.run(&["report", "whole", "--paper", "85", "--dpi", "0"]).is_refused(2, &["dpi"]);
 }
