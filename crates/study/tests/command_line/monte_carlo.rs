@@ -219,7 +219,10 @@ fn a_stopping_rule_ends_a_cell_wherever_it_runs() {
     let counts = trials(&desk, "whole");
     // The standard error of a standard deviation is about sd/√(2n), so five times the noise needs 25 times the trials.
     assert!(counts[0] == counts[1] && counts[2] == counts[3], "{counts:?}");
-    assert!(counts[0] % 50 == 0 && counts[0] >= 50 && counts[2] > 5 * counts[0] && counts[2] < 3000, "{counts:?}");
+    assert!(
+        counts[0].is_multiple_of(50) && counts[0] >= 50 && counts[2] > 5 * counts[0] && counts[2] < 3000,
+        "{counts:?}"
+    );
     for threads in ["1", "3"] {
         desk.run(&["study.toml", "--out", threads, "--threads", threads, "--quiet"]).is_done();
         assert!(whole == desk.bytes(&format!("{threads}/rows.parquet")), "{threads} threads");
