@@ -144,13 +144,18 @@ impl Sheet {
         0.32 * self.theme.tick_font
     }
 
+    /// Distance between panels side by side.
+    pub(crate) fn gap(theme: &Theme) -> f64 {
+        2.6 * theme.tick_font
+    }
+
     /// Draws the frames and returns the panels, row by row.
     pub(crate) fn grid(&mut self, grid: Grid) -> Vec<Panel> {
         let theme = self.theme;
         let count = grid.columns.len().max(1);
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
         let right = 1.6 * theme.tick_font;
-        let gap = 2.6 * theme.tick_font;
+        let gap = Self::gap(&theme);
         let width = ((theme.width - left - right - gap * (count - 1) as f64) / count as f64).max(theme.tick_font);
         let total = grid.panel_count();
         let mut panels = Vec::with_capacity(total);

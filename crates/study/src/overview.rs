@@ -87,8 +87,8 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
 fn page(studies: &[Study]) -> String {
     let mut page = String::from(
         "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
-         whole report,\nthe table as CSV, Markdown and LaTeX, and a manifest from which `study NAME/manifest.toml --out DIR` \
-         runs it again.\n",
+         whole report,\nevery figure with its 95 % interval as CSV, Markdown and LaTeX, and a manifest from which \
+         `study NAME/manifest.toml --out DIR`\nruns it again.\n",
     );
     for Study { name, question, finding, figure } in studies {
         write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");

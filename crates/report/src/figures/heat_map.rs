@@ -62,8 +62,7 @@ const VIRIDIS: [(u8, u8, u8); 9] = [
 pub fn heat_map(data: &HeatMap, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     let count = data.panels.len().max(1);
-    let most = if theme.is_narrow() { 1 } else { 3 };
-    let across = count.min(if count == 4 { 2.min(most) } else { most });
+    let across = across(data, theme).min(count);
     let row_height = if theme.is_narrow() { 1.75 } else { 2.0 } * theme.tick_font;
     let height = (data.y_labels.len().max(1) as f64 + 0.2) * row_height;
     let column = || Side::new(Axis::columns(data.x_labels.clone()), data.x_title.clone());
@@ -90,6 +89,27 @@ pub fn heat_map(data: &HeatMap, theme: &Theme) -> Figure {
     };
     sheet.note(&format!("Numbers in the cells: {}. {order}", data.value_title));
     sheet.finish()
+}
+
+/// Panels side by side: three, or as many as leave room for the numbers in the cells.
+fn across(data: &HeatMap, theme: &Theme) -> usize {
+    let width = |text: &str, font: f64| Text::new(text, font).width();
+    let widest = |labels: &[String], font: f64| labels.iter().map(|label| width(label, font)).fold(0.0, f64::max);
+    let values: Vec<String> =
+        data.panels.iter().flat_map(|panel| panel.values.iter().flatten()).map(|value| written(*value)).collect();
+    let cell = widest(&values, theme.small_font).max(widest(&data.x_labels, theme.tick_font)) + 0.5 * theme.tick_font;
+    let room = theme.width - widest(&data.y_labels, theme.tick_font) - 2.0 * theme.label_font;
+    let fits = |across: usize| {
+        let gaps = Sheet::gap(theme) * (across - 1) as f64;
+        room - gaps >= cell * (across * data.x_labels.len()) as f64
+    };
+    let most = if data.panels.len() == 4 { 2 } else { 3 };
+    (2..=most).rev().find(|&across| fits(across)).unwrap_or(1)
+}
+
+/// A value as it stands in a cell.
+fn written(value: Option<f64>) -> String {
+    value.map_or_else(|| number::MISSING.to_owned(), |value| number::significant(value, 2))
 }
 
 /// From values to colours.
@@ -145,8 +165,7 @@ fn cell(
     // Relative luminance (ITU-R BT.709) decides whether black or white can be read.
     let luminance = (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
     let ink = if luminance > 0.5 { INK } else { PAPER };
-    let label = value.map_or_else(|| number::MISSING.to_owned(), |value| number::significant(value, 2));
-    let text = Text::new(label, theme.small_font).colour(ink).anchor(Anchor::Middle);
+    let text = Text::new(written(value), theme.small_font).colour(ink).anchor(Anchor::Middle);
     if text.width() < (right - left).abs() {
         let place = (0.5 * (left + right), 0.5 * (top + bottom) + text.centring());
         scene.text(Layer::Note, place, text);

@@ -126,6 +126,14 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
     if is_crowded && (is_map || !matches!(quantity, Quantity::Rms | Quantity::Validation)) {
         return Vec::new();
     }
+    // A chart without a single failure says nothing.
+    let is_empty = |group: &&Group| {
+        let records = group
+            .cells
+            .iter()
+            .flat_map(|&cell| (0..design.methods.len()).filter_map(move |method| summary.record(cell, method)));
+        quantity == Quantity::Failures && records.map(|record| record.failed()).sum::<u64>() == 0
+    };
     match number {
         Some(_) if !is_crowded => {
             vec![Chart { group: None, data: Data::Curves(curves(design, summary, quantity, x, &groups)) }]
@@ -139,6 +147,7 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
             .collect(),
         None => groups
             .iter()
+            .filter(|group| !is_empty(group))
             .map(|group| Chart {
                 group: (groups.len() > 1).then(|| group.name.clone()),
                 data: Data::Dots(named(design, summary, quantity, x, group)),
@@ -177,6 +186,7 @@ fn curves(design: &Design, summary: &Summary, quantity: Quantity, x: usize, grou
         for row in 0..titles.len() {
             let at = |cell: usize| design.cells[cell].values[x];
             let mut curves: Vec<ErrorCurve> = (0..design.methods.len())
+                .filter(|&method| quantity != Quantity::Failures || fails(summary, method))
                 .map(|method| ErrorCurve {
                     origin: origin(design, method),
                     points: group
@@ -188,7 +198,6 @@ fn curves(design: &Design, summary: &Summary, quantity: Quantity, x: usize, grou
                         })
                         .collect(),
                 })
-                .filter(|curve| curve.points.iter().any(|point| quantity != Quantity::Failures || point.y > 0.0))
                 .collect();
             let bound = |&cell: &usize| {
                 Some(ErrorPoint { x: at(cell)?, y: quantity.bound(design, cell, row)?, interval: None })
@@ -216,6 +225,11 @@ fn curves(design: &Design, summary: &Summary, quantity: Quantity, x: usize, grou
     }
 }
 
+/// Whether a method has no answer to some trial of the study.
+fn fails(summary: &Summary, method: usize) -> bool {
+    summary.overall[method].record.failed() > 0
+}
+
 /// Usual number of trials behind a figure.
 fn trials(summary: &Summary, groups: &[Group]) -> u64 {
     let cells = || groups.iter().flat_map(|group| &group.cells);
@@ -226,10 +240,10 @@ fn named(design: &Design, summary: &Summary, quantity: Quantity, x: usize, group
     let column = |(panel, title): (usize, &&str)| {
         let rows = group.cells.iter().map(|&cell| {
             let dot = |method: usize| {
-                let figure = quantity.of(summary.record(cell, method)?, panel)?;
-                if quantity == Quantity::Failures && figure.value == 0.0 {
+                if quantity == Quantity::Failures && !fails(summary, method) {
                     return None;
                 }
+                let figure = quantity.of(summary.record(cell, method)?, panel)?;
                 Some(Dot { origin: origin(design, method), x: figure.value, interval: figure.ci95, hollow: false })
             };
             let bound = quantity.bound(design, cell, panel);
