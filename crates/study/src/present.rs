@@ -7,10 +7,11 @@ use report::number::{self, MISSING};
 use report::{Column, Table};
 
 use crate::cli::Format;
+use crate::scenario::MethodName;
 use crate::showcase::Showcase;
 use crate::statistics::Figure;
 use crate::store::Design;
-use crate::summary::{Errors, Record, Summary};
+use crate::summary::{Errors, MethodSummary, PairSummary, Record, Summary};
 
 /// Renders a table in the format the user asked for.
 pub fn render(table: &Table, format: Format) -> String {
@@ -35,8 +36,8 @@ pub fn showcase(showcase: &Showcase) -> Table {
     table
 }
 
-/// Every figure of every method in every cell, for other programs: `summary.csv`. An interval is two columns.
-pub fn summary(summary: &Summary, design: &Design) -> Table {
+/// Every figure of methods in cells, for other programs: `summary.csv`. An interval is two columns.
+pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     let mut columns = head(design);
     columns.extend(["trials", "failed"].map(Column::right));
     for index in ["K", "T", "K/T"] {
@@ -50,7 +51,7 @@ pub fn summary(summary: &Summary, design: &Design) -> Table {
     );
     columns.push(Column::decimal("evaluations"));
     let mut table = Table::new(columns);
-    for line in &summary.methods {
+    for line in lines {
         let record = &line.record;
         let mut cells = place(design, line.cell, line.method);
         cells.extend([record.trials.to_string(), record.failed().to_string()]);
@@ -177,7 +178,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
 }
 
 /// Every method against the reference on the same trials: `pairs.csv`.
-pub fn pairs(summary: &Summary, design: &Design) -> Table {
+pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
     let mut columns = head(design);
     columns.extend([Column::left("reference"), Column::right("trials")]);
     for index in ["K", "T"] {
@@ -186,9 +187,9 @@ pub fn pairs(summary: &Summary, design: &Design) -> Table {
         columns.extend(with_ends(&format!("{index} closer"), "%"));
     }
     let mut table = Table::new(columns);
-    for line in &summary.pairs {
+    for line in lines {
         let mut cells = place(design, line.cell, line.method);
-        cells.extend([design.methods[summary.reference].label.clone(), line.trials.to_string()]);
+        cells.extend([reference.label.clone(), line.trials.to_string()]);
         for comparison in [&line.k, &line.t] {
             cells.extend(all_digits(comparison.rms_difference));
             cells.extend(all_digits(comparison.rms_ratio));

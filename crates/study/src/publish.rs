@@ -4,16 +4,17 @@ mod charts;
 pub mod drawings;
 
 use std::fmt::Write as _;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
-use report::number;
+use report::{Table, number};
 
 use crate::cli::{Common, Format, Style};
 use crate::failure::{Failure, OnPath, result_folder};
 use crate::present;
 use crate::screen;
-use crate::store::Stored;
+use crate::store::{Design, Stored};
 use crate::summary::{Summary, Tally};
 use drawings::{Drawing, write_all};
 
@@ -32,20 +33,24 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
         Ok(())
     })?;
     let summary = tally.finish();
-    let (full, brief) = (present::summary(&summary, design), present::summary_in_brief(&summary, design));
+    let table = folder.join("summary.csv");
+    write_csv(&table, &summary.methods, |lines| present::summary(lines, design))?;
+    if design.methods.len() > 1 {
+        let reference = &design.methods[summary.reference];
+        write_csv(&folder.join("pairs.csv"), &summary.pairs, |lines| present::pairs(lines, reference, design))?;
+    }
     let write = |name: &str, text: String| {
         let path = folder.join(name);
         fs::write(&path, text).on("write", &path)
     };
-    write("summary.csv", full.to_csv())?;
-    write("summary.md", brief.to_markdown())?;
-    write("summary.tex", brief.to_latex())?;
-    if design.methods.len() > 1 {
-        write("pairs.csv", present::pairs(&summary, design).to_csv())?;
+    let brief = present::summary_in_brief(&summary, design);
+    if is_readable(design) {
+        write("summary.md", brief.to_markdown())?;
+        write("summary.tex", brief.to_latex())?;
     }
     let drawings = drawings::of(&stored, &summary);
     write_all(&drawings, &theme, folder)?;
-    write("report.md", page(&stored, &summary, &drawings))?;
+    write("report.md", page(&stored, &summary, &brief, &drawings))?;
 
     match common.format {
         _ if common.quiet => Ok(()),
@@ -53,9 +58,30 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
             screen::say(&format!("{}\nreport: {}", on_screen(&stored, &summary), folder.join("report.md").display()))
         }
         // Another program reads the table: nothing else may stand beside it.
-        Format::Csv => screen::say(full.to_csv().trim_end()),
+        Format::Csv => screen::say(fs::read_to_string(&table).on("read", &table)?.trim_end()),
         format => screen::say(present::render(&brief, format).trim_end()),
     }
+}
+
+/// Cells that are listed one by one for a person to read; more are in `summary.csv`.
+const LISTED_CELLS: usize = 500;
+
+fn is_readable(design: &Design) -> bool {
+    design.cells.len() <= LISTED_CELLS
+}
+
+/// Lines that are turned into text at a time.
+const PIECE: usize = 1000;
+
+/// Writes a long table as CSV, a piece at a time.
+fn write_csv<T>(path: &Path, lines: &[T], table: impl Fn(&[T]) -> Table) -> Result<(), Failure> {
+    let mut file = BufWriter::new(File::create(path).on("create", path)?);
+    let head = table(&[]).to_csv();
+    file.write_all(head.as_bytes()).on("write", path)?;
+    for piece in lines.chunks(PIECE) {
+        file.write_all(&table(piece).to_csv().as_bytes()[head.len()..]).on("write", path)?;
+    }
+    file.flush().on("write", path)
 }
 
 /// Cells whose lines go on the screen; more are in the files.
@@ -84,7 +110,7 @@ fn on_screen(stored: &Stored, summary: &Summary) -> String {
 }
 
 /// `report.md`.
-fn page(stored: &Stored, summary: &Summary, drawings: &[Drawing]) -> String {
+fn page(stored: &Stored, summary: &Summary, brief: &Table, drawings: &[Drawing]) -> String {
     let Stored { manifest, design, showcases, timings, .. } = stored;
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
@@ -111,7 +137,11 @@ fn page(stored: &Stored, summary: &Summary, drawings: &[Drawing]) -> String {
         line(&present::overall(summary, design).to_markdown());
         line("### Cell by cell\n");
     }
-    line(&present::summary_in_brief(summary, design).to_markdown());
+    if is_readable(design) {
+        line(&brief.to_markdown());
+    } else {
+        line(&format!("The {} cells are in `summary.csv`.\n", design.cells.len()));
+    }
     line(
         "Errors of K and T are relative to the truth. *median*, *rms*: median and root mean square error, with a bootstrap \
          interval; *coverage*: share of quoted 95 % intervals that hold the truth; *sd/bound*: standard deviation over the \

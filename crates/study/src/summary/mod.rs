@@ -137,10 +137,9 @@ pub struct Summary {
 impl Summary {
     /// The record of a method in a cell.
     pub fn record(&self, cell: usize, method: usize) -> Option<&Record> {
-        self.methods
-            .iter()
-            .find(|summary| summary.cell == cell && summary.method == method)
-            .map(|summary| &summary.record)
+        let key = |summary: &MethodSummary| (summary.cell, summary.method);
+        let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
+        Some(&self.methods[place].record)
     }
 }
 
