@@ -1,5 +1,5 @@
-//! Draws every kind of figure with made-up but realistic data, once for the screen and once for a journal column:
-//! `cargo run -p report --example gallery -- DIR`. The data come from a first-order response stepped with Euler's method,
+//! Draws the figures of trials and records with made-up but realistic data, once for the screen and once for a journal
+//! column: `cargo run -p report --example gallery -- DIR`; those of whole studies are seen in `results/`. The data come from a first-order response stepped with Euler's method,
 //! which is enough to look right; nothing here is a result.
 
 use std::error::Error;

@@ -5,9 +5,10 @@
 //! | to learn about | read |
 //! |---|---|
 //! | scenario files | [`scenario`] |
-//! | running a design | [`engine`] |
-//! | what is stored | [`store`], [`rows`], [`manifest`], [`showcase`] |
-//! | what is said about it | [`summary`], [`present`], [`publish`] |
+//! | one trial | [`engine`] |
+//! | many of them, in order | [`plan`], [`stopping`], [`collect`], [`unfinished`], [`merge`] |
+//! | what is stored | [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`] |
+//! | what is said about it | [`summary`], [`statistics`], [`present`], [`publish`], [`overview`] |
 //! | measured records | [`fit`] |
 //! | commands and exit codes | [`cli`], [`failure`], [`screen`] |
 
