@@ -85,10 +85,7 @@ pub fn collect(scenario: &Scenario, shard: Shard, folder: &Path, restart: bool, 
 
 /// Everything of a study in a folder, thrown away on request.
 fn discard(folder: &Path) -> Result<(), Failure> {
-    let unfinished = folder.join(unfinished::NAME);
-    if unfinished.exists() {
-        fs::remove_dir_all(&unfinished).on("remove", &unfinished)?;
-    }
+    unfinished::discard(folder)?;
     let rows = folder.join(store::ROWS);
     if rows.exists() { fs::remove_file(&rows).on("remove", &rows) } else { Ok(()) }
 }

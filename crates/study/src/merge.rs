@@ -33,7 +33,7 @@ pub fn merge(folders: &[PathBuf], style: &Style, common: &Common) -> Result<(), 
     if let Some(stored) = store::manifest_of_rows(out)? {
         is_same(&stored, &manifest, out)?;
     }
-    if out.join(unfinished::NAME).exists() {
+    if unfinished::is_in(out) {
         return Err(Failure::input(format!(
             "{}: a study in it is not finished; give another folder with --out",
             out.display()
@@ -79,7 +79,7 @@ fn parts(folders: &[PathBuf]) -> Result<Vec<Part<'_>>, Failure> {
     let mut parts: Vec<Part> = Vec::with_capacity(folders.len());
     for folder in folders {
         let Some(manifest) = store::manifest_of_rows(folder)? else {
-            let problem = match folder.join(unfinished::NAME).exists() {
+            let problem = match unfinished::is_in(folder) {
                 true => "this shard is not finished; run it again with the same --shard and --out",
                 false => "there is no finished shard in it; give folders written with --shard",
             };

@@ -74,7 +74,7 @@ impl Stored {
     /// Reads a finished study. Fails as wrong input when the folder holds none.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         let Some(manifest) = manifest_of_rows(folder)? else {
-            let problem = match folder.join(unfinished::NAME).exists() {
+            let problem = match unfinished::is_in(folder) {
                 true => "the study in it is not finished; run it again to go on",
                 false => "there are no rows in it; expected the folder of a finished study",
             };
@@ -99,7 +99,7 @@ impl Stored {
 /// The manifest of the finished rows in a folder; `None` when there are none. A folder that holds what was published
 /// without its rows is not a finished study.
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
-    let whole = folder.join(ROWS).exists() && folder.join(MANIFEST).exists() && !folder.join(unfinished::NAME).exists();
+    let whole = folder.join(ROWS).exists() && folder.join(MANIFEST).exists() && !unfinished::is_in(folder);
     if whole { Manifest::read(&folder.join(MANIFEST)).map(Some) } else { Ok(None) }
 }
 

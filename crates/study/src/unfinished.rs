@@ -39,11 +39,39 @@ pub struct Unfinished<'a> {
     _lock: File,
 }
 
+/// Whether a result folder holds a study in progress. What else may be in its folder `unfinished` is left of one that ended.
+pub fn is_in(results: &Path) -> bool {
+    results.join(NAME).join(MANIFEST).exists()
+}
+
+/// Throws away the study in progress in a result folder. Fails when a run is at work there.
+pub fn discard(results: &Path) -> Result<(), Failure> {
+    let folder = results.join(NAME);
+    if folder.exists() {
+        drop(lock(results)?);
+        fs::remove_dir_all(&folder).on("remove", &folder)?;
+    }
+    Ok(())
+}
+
+/// Keeps other runs out of a result folder while the file lives. Fails when one is at work there.
+fn lock(results: &Path) -> Result<File, Failure> {
+    let path = results.join(NAME).join(LOCK);
+    let lock = File::create(&path).on("create", &path)?;
+    lock.try_lock().map_err(|error| match error {
+        fs::TryLockError::WouldBlock => Failure::work(format!(
+            "another study is running in {}; wait for it, or give another folder with --out",
+            results.display()
+        )),
+        fs::TryLockError::Error(error) => Failure::work(format!("failed to lock {}: {error}", path.display())),
+    })?;
+    Ok(lock)
+}
+
 impl<'a> Unfinished<'a> {
     /// The manifest of the study in progress in a result folder, if there is one.
     pub fn manifest_in(results: &Path) -> Result<Option<Manifest>, Failure> {
-        let path = results.join(NAME).join(MANIFEST);
-        if path.exists() { Manifest::read(&path).map(Some) } else { Ok(None) }
+        if is_in(results) { Manifest::read(&results.join(NAME).join(MANIFEST)).map(Some) } else { Ok(None) }
     }
 
     /// Begins a study, or goes on with the one in the folder, which the caller has found to be the same.
@@ -52,17 +80,10 @@ impl<'a> Unfinished<'a> {
     pub fn open(results: &Path, manifest: Manifest, design: &'a Design, layout: &'a Layout) -> Result<Self, Failure> {
         let folder = results.join(NAME);
         fs::create_dir_all(&folder).on("make the folder", &folder)?;
-        let lock_path = folder.join(LOCK);
-        let lock = File::create(&lock_path).on("create", &lock_path)?;
-        lock.try_lock().map_err(|error| match error {
-            fs::TryLockError::WouldBlock => Failure::work(format!(
-                "another study is running in {}; wait for it, or give another folder with --out",
-                results.display()
-            )),
-            fs::TryLockError::Error(error) => Failure::work(format!("failed to lock {}: {error}", lock_path.display())),
-        })?;
+        let lock = lock(results)?;
         let known = Self::manifest_in(results)?;
-        let manifest = Manifest { machine: known.map_or(manifest.machine.clone(), |known| known.machine), ..manifest };
+        let machine = known.as_ref().unwrap_or(&manifest).machine.clone();
+        let manifest = Manifest { machine, ..manifest };
         let this = Self {
             folder,
             design,
@@ -72,8 +93,20 @@ impl<'a> Unfinished<'a> {
             timings: Timings::new(design.methods.len()),
             _lock: lock,
         };
+        if known.is_none() {
+            this.remove_parts_from(0)?;
+        }
         this.write_manifest()?;
         Ok(this)
+    }
+
+    fn remove_parts_from(&self, first: u64) -> Result<(), Failure> {
+        let mut part = first;
+        while self.rows_of(part).exists() {
+            fs::remove_file(self.rows_of(part)).on("remove", &self.rows_of(part))?;
+            part += 1;
+        }
+        Ok(())
     }
 
     fn rows_of(&self, part: u64) -> PathBuf {
@@ -119,11 +152,7 @@ impl<'a> Unfinished<'a> {
             self.timings.join(&timings);
             self.parts += 1;
         }
-        let mut late = self.parts;
-        while self.rows_of(late).exists() {
-            fs::remove_file(self.rows_of(late)).on("remove", &self.rows_of(late))?;
-            late += 1;
-        }
+        self.remove_parts_from(self.parts)?;
         if let Some(last) = last {
             plan.resume_after(last);
         }
@@ -221,8 +250,10 @@ impl<'a> Unfinished<'a> {
         &self.timings
     }
 
-    /// Removes the folder, once everything in it is elsewhere.
+    /// Removes the folder, once everything in it is elsewhere; the manifest first, so that a kill leaves a finished study.
     pub fn remove(self) -> Result<(), Failure> {
+        let manifest = self.folder.join(MANIFEST);
+        fs::remove_file(&manifest).on("remove", &manifest)?;
         fs::remove_dir_all(&self.folder).on("remove", &self.folder)
     }
 }

@@ -179,6 +179,22 @@ fn a_folder_belongs_to_one_study() {
     assert!(rows != desk.bytes(ROWS));
 }
 
+/// What a kill in the last moment leaves: a folder `unfinished` without its manifest.
+#[test]
+fn what_is_left_of_an_ended_study_does_no_harm() {
+    let desk = Desk::new();
+    desk.file("study.toml", scenario(10));
+    let rows = uninterrupted(&desk);
+    desk.file("whole/unfinished/00000000.parquet", "half a part");
+    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
+    desk.run(&["report", "whole", "--quiet"]).is_done();
+    assert!(rows == desk.bytes(ROWS));
+    std::fs::remove_file(desk.path(ROWS)).expect("it was there");
+    let run = desk.run(&["study.toml", "--out", "whole", "--quiet"]);
+    assert_eq!(run.is_done().err, "", "a part of another study is no part of this one");
+    assert!(rows == desk.bytes(ROWS) && !desk.path("whole/unfinished").exists());
+}
+
 #[test]
 fn a_manifest_repeats_its_study() {
     let desk = Desk::new();
@@ -196,7 +212,11 @@ fn two_runs_do_not_share_a_folder() {
     while parts(&desk, "shared") < 1 {
         std::thread::sleep(Duration::from_millis(10));
     }
-    desk.run(&["study.toml", "--out", "shared", "--quiet"]).is_refused(1, &["another study is running", "shared"]);
+    for options in [&[][..], &["--restart"]] {
+        let run = desk.run(&[&["study.toml", "--out", "shared", "--quiet"], options].concat());
+        run.is_refused(1, &["another study is running", "shared"]);
+    }
+    assert!(parts(&desk, "shared") > 0, "nothing was discarded");
     first.kill().expect("it is ours to kill");
     first.wait().expect("it ends");
 }
