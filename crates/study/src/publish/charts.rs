@@ -288,9 +288,10 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
         return Vec::new();
     }
     let of = |quantity: Quantity, panel: usize, stem: &str, value_title: &str| {
-        let value = |x: &str, y: &str, method: usize| {
-            let cell = design.cells.iter().position(|cell| cell.labels[0] == y && cell.labels[1] == x)?;
-            Some(quantity.of(summary.record(cell, method)?, panel)?.value)
+        // Cells are the product of the axes, the first axis slowest.
+        let value = |x: usize, y: usize, method: usize| {
+            let record = summary.record(y * x_labels.len() + x, method)?;
+            Some(quantity.of(record, panel)?.value)
         };
         let map = HeatMap {
             title: None,
@@ -303,7 +304,9 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
             panels: (0..design.methods.len())
                 .map(|method| HeatPanel {
                     title: design.methods[method].label.clone(),
-                    values: y_labels.iter().map(|y| x_labels.iter().map(|x| value(x, y, method)).collect()).collect(),
+                    values: (0..y_labels.len())
+                        .map(|y| (0..x_labels.len()).map(|x| value(x, y, method)).collect())
+                        .collect(),
                 })
                 .collect(),
         };

@@ -1,5 +1,6 @@
 //! The figures of a finished study: which there are, what they say, and their files.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use rayon::prelude::*;
@@ -36,18 +37,25 @@ impl<'a> Drawing<'a> {
 /// All figures, in the order of the report.
 pub fn of<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
-    let mut prefixes: Vec<String> = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
-        let mut prefix = slug(&showcase.title);
-        // Two titles may make one slug.
-        if prefixes.contains(&prefix) {
-            prefix = format!("{prefix}-{}", index + 1);
-        }
-        drawings.extend(of_showcase(index, &prefix, showcase));
-        prefixes.push(prefix);
+        drawings.extend(of_showcase(index, &slug(&showcase.title), showcase));
     }
     drawings.extend(of_summary(stored, summary));
+    tell_apart(&mut drawings);
     drawings
+}
+
+/// Numbers stems that are the same: two titles may make one slug.
+fn tell_apart(drawings: &mut [Drawing]) {
+    let mut taken = HashSet::new();
+    for drawing in drawings {
+        let stem = drawing.stem.clone();
+        let mut number = 2;
+        while !taken.insert(drawing.stem.clone()) {
+            drawing.stem = format!("{stem}-{number}");
+            number += 1;
+        }
+    }
 }
 
 /// What a person should see in the charts of one quantity.
@@ -193,7 +201,19 @@ pub fn slug(title: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::slug;
+    use super::*;
+
+    #[test]
+    fn no_figure_overwrites_another() {
+        let stems = ["errors", "errors-2", "errors", "errors"];
+        let mut drawings: Vec<Drawing> = stems
+            .iter()
+            .map(|stem| Drawing::new(*stem, "", |theme| figures::ecdf(&figures::Ecdf::default(), theme)))
+            .collect();
+        tell_apart(&mut drawings);
+        let found: Vec<&str> = drawings.iter().map(|drawing| drawing.stem.as_str()).collect();
+        assert_eq!(found, ["errors", "errors-2", "errors-3", "errors-4"]);
+    }
 
     #[test]
     fn slugs_are_file_names() {
