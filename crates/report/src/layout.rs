@@ -55,6 +55,12 @@ impl Grid {
         Self::new(vec![x], rows)
     }
 
+    /// So many panels with the same axes, in rows of `across`; the last row may not be full.
+    pub(crate) fn alike(count: usize, across: usize, column: Side, row: (Side, f64)) -> Self {
+        let rows = vec![row; count.div_ceil(across)];
+        Self { panels: Some(count), ..Self::new(vec![column; across], rows) }
+    }
+
     fn panel_count(&self) -> usize {
         let all = self.rows.len() * self.columns.len();
         self.panels.map_or(all, |n| n.min(all))
@@ -192,6 +198,16 @@ impl Sheet {
         }
         self.y = lowest;
         panels
+    }
+
+    /// Panels with one vertical axis, side by side; above each other when the figure is narrow.
+    pub(crate) fn side_by_side(&mut self, columns: impl IntoIterator<Item = Side>, row: (Side, f64)) -> Vec<Panel> {
+        let columns = columns.into_iter();
+        if self.theme.is_narrow() {
+            columns.flat_map(|column| self.grid(Grid::stack(column, vec![row.clone()]))).collect()
+        } else {
+            self.grid(Grid::new(columns.collect(), vec![row]))
+        }
     }
 
     fn frame(&mut self, rect: &Rect, x: &Ticks, y: &Ticks) {

@@ -4,17 +4,16 @@
 use serde::{Deserialize, Serialize};
 
 use super::error_curves::Scale;
-use super::{PAD, Reference95};
+use super::{Reference95, distinct};
 use crate::axis::Axis;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
+use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::palette::{Look, Origin};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
-use crate::ticks::Steps;
 
 /// One value with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,19 +60,19 @@ pub struct DotPlot {
 pub fn dots(data: &DotPlot, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     if !data.rows_are_methods {
+        let dots = data.columns.iter().flat_map(|column| &column.rows).flatten();
+        let origins = distinct(dots.map(|dot| &dot.origin));
         let entries: Vec<Entry> =
-            origins(data).iter().map(|origin| Entry::new(Sample::Marker(origin.look()), origin.label())).collect();
+            origins.iter().map(|origin| Entry::new(Sample::Marker(origin.look()), origin.label())).collect();
         sheet.legend(&entries);
     }
     let most = data.columns.iter().flat_map(|column| &column.rows).map(Vec::len).max().unwrap_or(1);
     let lines = if data.rows_are_methods { 1.0 } else { most.max(1) as f64 };
     let row = (0.62 * lines + 1.1) * theme.tick_font;
-    let side = || (Side::new(Axis::names(data.names.clone()), ""), (data.names.len().max(1) as f64 + 0.2) * row);
+    let names = Side::new(Axis::names(data.names.clone()), "");
+    let height = (data.names.len().max(1) as f64 + 0.2) * row;
     let columns = data.columns.iter().map(|column| Side::new(axis(column), column.x_title.clone()));
-    let panels: Vec<Panel> = match theme.is_narrow() {
-        true => columns.flat_map(|column| sheet.grid(Grid::new(vec![column], vec![side()]))).collect(),
-        false => sheet.grid(Grid::new(columns.collect(), vec![side()])),
-    };
+    let panels = sheet.side_by_side(columns, (names, height));
     for (panel, column) in panels.iter().zip(&data.columns) {
         if let Some(reference) = &column.reference {
             reference.vertical(panel, &mut sheet.scene, theme);
@@ -88,30 +87,9 @@ pub fn dots(data: &DotPlot, theme: &Theme) -> Figure {
     sheet.finish()
 }
 
-/// Everyone who appears, in the order of appearance.
-fn origins(data: &DotPlot) -> Vec<&Origin> {
-    let mut found: Vec<&Origin> = Vec::new();
-    for dot in data.columns.iter().flat_map(|column| &column.rows).flatten() {
-        if !found.contains(&&dot.origin) {
-            found.push(&dot.origin);
-        }
-    }
-    found
-}
-
 fn axis(column: &DotColumn) -> Axis {
     let dots = || column.rows.iter().flatten();
-    let reference =
-        column.reference.iter().flat_map(|reference| [reference.value, reference.band[0], reference.band[1]]);
-    let mut values: Vec<f64> = dots().map(|dot| dot.x).chain(reference).collect();
-    let lowest = values.iter().copied().filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
-    // As for curves: an interval that reaches down to nearly zero must not stretch a logarithmic axis by decades.
-    let ends = dots().filter_map(|dot| dot.interval).flatten();
-    values.extend(ends.filter(|end| column.scale == Scale::Linear || *end > 0.5 * lowest));
-    match column.scale {
-        Scale::Linear => Axis::covering(values, PAD, Steps::Decimal),
-        Scale::Log => Axis::log_covering(values),
-    }
+    column.scale.around(dots().map(|dot| dot.x), dots().filter_map(|dot| dot.interval), column.reference)
 }
 
 fn draw_row(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, dots: &[Dot], together: bool) {

@@ -3,9 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::distinct;
 use crate::axis::Axis;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
+use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, stroke_of};
 use crate::palette::{INK, Origin};
 use crate::panel::Panel;
@@ -46,19 +47,11 @@ const DECADES: f64 = 5.0;
 /// Draws the panels side by side, or above each other when the figure is narrow.
 pub fn ecdf(data: &Ecdf, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let mut origins: Vec<&Origin> = Vec::new();
-    for curve in data.panels.iter().flat_map(|panel| &panel.curves) {
-        if !origins.contains(&&curve.origin) {
-            origins.push(&curve.origin);
-        }
-    }
+    let origins = distinct(data.panels.iter().flat_map(|panel| &panel.curves).map(|curve| &curve.origin));
     sheet.legend(&origins.iter().map(|origin| Entry::line_of(origin, theme)).collect::<Vec<_>>());
-    let side = || (Side::new(Axis::linear(0.0, 1.02, Steps::Decimal), "share of trials"), theme.tall(0.36));
     let columns = data.panels.iter().map(|panel| Side::new(axis(panel), panel.x_title.clone()));
-    let panels: Vec<Panel> = match theme.is_narrow() {
-        true => columns.flat_map(|column| sheet.grid(Grid::new(vec![column], vec![side()]))).collect(),
-        false => sheet.grid(Grid::new(columns.collect(), vec![side()])),
-    };
+    let row = (Side::new(Axis::linear(0.0, 1.02, Steps::Decimal), "share of trials"), theme.tall(0.36));
+    let panels = sheet.side_by_side(columns, row);
     for (panel, content) in panels.iter().zip(&data.panels) {
         for share in [0.5, 0.95] {
             let stroke = Stroke { opacity: 0.45, ..Stroke::solid(INK, theme.thin) };

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PAD, Reference95};
+use super::{PAD, Reference95, distinct};
 use crate::axis::Axis;
 use crate::clip::{self, Place};
 use crate::figure::Figure;
@@ -24,6 +24,32 @@ pub enum Scale {
     /// Equal factors; a zero has a place of its own beyond a break, negative values are left out.
     #[default]
     Log,
+}
+
+impl Scale {
+    /// An axis over values.
+    fn covering(self, values: Vec<f64>) -> Axis {
+        match self {
+            Self::Linear => Axis::covering(values, PAD, Steps::Decimal),
+            Self::Log => Axis::log_covering(values),
+        }
+    }
+
+    /// An axis over values, their intervals and what they are held against.
+    pub(super) fn around(
+        self,
+        values: impl Iterator<Item = f64>,
+        intervals: impl Iterator<Item = [f64; 2]>,
+        reference: Option<Reference95>,
+    ) -> Axis {
+        let mut values: Vec<f64> = values.collect();
+        values.extend(reference.iter().flat_map(|reference| [reference.value, reference.band[0], reference.band[1]]));
+        // The lower end of an interval of an error can come close to zero and would stretch a logarithmic axis by decades;
+        // such a bar is cut at the frame.
+        let lowest = values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
+        values.extend(intervals.flatten().filter(|end| self == Self::Linear || *end > 0.5 * lowest));
+        self.covering(values)
+    }
 }
 
 /// An error at one value of the swept quantity.
@@ -107,12 +133,7 @@ pub fn error_curves(data: &ErrorCurves, theme: &Theme) -> Figure {
 
 /// Everyone who appears, in the order of appearance, the bound last.
 fn origins(data: &ErrorCurves) -> Vec<&Origin> {
-    let mut found: Vec<&Origin> = Vec::new();
-    for curve in data.cells.iter().flat_map(|cell| &cell.curves) {
-        if !found.contains(&&curve.origin) {
-            found.push(&curve.origin);
-        }
-    }
+    let mut found = distinct(data.cells.iter().flat_map(|cell| &cell.curves).map(|curve| &curve.origin));
     found.sort_by_key(|origin| **origin == Origin::Bound);
     found
 }
@@ -134,27 +155,13 @@ fn points(data: &ErrorCurves, wanted: impl Fn(&ErrorCell) -> bool) -> Vec<ErrorP
     cells.flat_map(|cell| &cell.curves).flat_map(|curve| &curve.points).copied().collect()
 }
 
-fn axis(values: Vec<f64>, scale: Scale) -> Axis {
-    match scale {
-        Scale::Linear => Axis::covering(values, PAD, Steps::Decimal),
-        Scale::Log => Axis::log_covering(values),
-    }
-}
-
 fn x_axis(data: &ErrorCurves, column: usize) -> Axis {
-    axis(points(data, |cell| cell.column == column).iter().map(|p| p.x).collect(), data.x_scale)
+    data.x_scale.covering(points(data, |cell| cell.column == column).iter().map(|p| p.x).collect())
 }
 
 fn y_axis(data: &ErrorCurves, row: usize) -> Axis {
     let points = points(data, |cell| cell.row == row);
-    let mut values: Vec<f64> = points.iter().map(|p| p.y).collect();
-    values.extend(data.reference.iter().flat_map(|reference| [reference.value, reference.band[0], reference.band[1]]));
-    // The lower end of an interval of an error can come close to zero and would stretch a logarithmic axis by decades;
-    // such a bar is cut at the frame.
-    let lowest = values.iter().copied().filter(|y| *y > 0.0).fold(f64::INFINITY, f64::min);
-    let ends = points.iter().filter_map(|p| p.interval).flatten();
-    values.extend(ends.filter(|end| data.y_scale == Scale::Linear || *end > 0.5 * lowest));
-    axis(values, data.y_scale)
+    data.y_scale.around(points.iter().map(|p| p.y), points.iter().filter_map(|p| p.interval), data.reference)
 }
 
 fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, curve: &ErrorCurve, aside: f64) {

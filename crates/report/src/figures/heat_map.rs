@@ -65,15 +65,11 @@ pub fn heat_map(data: &HeatMap, theme: &Theme) -> Figure {
     let across = across(data, theme).min(count);
     let row_height = if theme.is_narrow() { 1.75 } else { 2.0 } * theme.tick_font;
     let height = (data.y_labels.len().max(1) as f64 + 0.2) * row_height;
-    let column = || Side::new(Axis::columns(data.x_labels.clone()), data.x_title.clone());
-    let row = || (Side::new(Axis::names(data.y_labels.clone()), data.y_title.clone()), height);
+    let column = Side::new(Axis::columns(data.x_labels.clone()), data.x_title.clone());
+    let row = (Side::new(Axis::names(data.y_labels.clone()), data.y_title.clone()), height);
     let range = Colours::of(data);
     let heads = data.panels.iter().map(|panel| Some(Entry::new(Sample::Nothing, panel.title.clone())));
-    let panels = sheet.grid(Grid {
-        heads: heads.collect(),
-        panels: Some(count),
-        ..Grid::new((0..across).map(|_| column()).collect(), (0..count.div_ceil(across)).map(|_| row()).collect())
-    });
+    let panels = sheet.grid(Grid { heads: heads.collect(), ..Grid::alike(count, across, column, row) });
     for (panel, content) in panels.iter().zip(&data.panels) {
         for (y, values) in content.values.iter().enumerate() {
             for (x, value) in values.iter().enumerate() {
@@ -81,13 +77,11 @@ pub fn heat_map(data: &HeatMap, theme: &Theme) -> Figure {
             }
         }
     }
-    let order = "Colours from dark (small) to light (large), on a logarithmic scale; – is not defined.";
-    let order = if data.scale == Scale::Log {
-        order
-    } else {
-        "Colours from dark (small) to light (large); – is not defined."
-    };
-    sheet.note(&format!("Numbers in the cells: {}. {order}", data.value_title));
+    let scale = if data.scale == Scale::Log { ", on a logarithmic scale" } else { "" };
+    sheet.note(&format!(
+        "Numbers in the cells: {}. Colours from dark (small) to light (large){scale}; – is not defined.",
+        data.value_title
+    ));
     sheet.finish()
 }
 

@@ -3,10 +3,11 @@
 use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 
+use super::median;
 use crate::axis::Axis;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
+use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample, stroke_of};
 use crate::number;
 use crate::palette::{INK, Look, Origin, RECORD};
@@ -91,12 +92,6 @@ impl Quantity {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
-}
-
 /// Draws K and T side by side (one above the other when the figure is narrow).
 ///
 /// An estimate without interval is a dot, a method without estimate says so, and an estimate beyond the axis is an arrow
@@ -106,14 +101,9 @@ pub fn intervals(data: &Intervals, theme: &Theme) -> Figure {
     sheet.legend(&entries(data, theme));
     let names: Vec<String> = data.estimates.iter().map(|e| e.origin.label().to_owned()).collect();
     let height = (names.len().max(2) as f64 + 0.4) * 2.0 * theme.tick_font;
-    let rows = vec![(Side::new(Axis::names(names), ""), height)];
     let quantities = quantities(data);
     let sides = quantities.iter().map(|q| Side::new(q.axis(), q.title.clone()));
-    let panels: Vec<Panel> = if theme.is_narrow() {
-        sides.flat_map(|side| sheet.grid(Grid::new(vec![side], rows.clone()))).collect()
-    } else {
-        sheet.grid(Grid::new(sides.collect(), rows))
-    };
+    let panels = sheet.side_by_side(sides, (Side::new(Axis::names(names), ""), height));
     let mut beyond = false;
     for (panel, quantity) in panels.iter().zip(&quantities) {
         for (value, origin) in [(quantity.published, Origin::Published), (quantity.truth, Origin::Truth)] {

@@ -34,7 +34,7 @@ use crate::clip::Rect;
 use crate::curve::Curve;
 use crate::layout::Side;
 use crate::legend::{Entry, Sample};
-use crate::palette::{INK, RECORD};
+use crate::palette::{INK, Origin, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke, symbol};
 use crate::theme::Theme;
@@ -82,6 +82,24 @@ fn record_entry(label: &str, theme: &Theme, heading: &Curve) -> Entry {
         Sample::Dots(RECORD)
     };
     Entry::new(sample, label)
+}
+
+/// Everyone who appears, in the order of appearance.
+fn distinct<'a>(origins: impl Iterator<Item = &'a Origin>) -> Vec<&'a Origin> {
+    let mut found: Vec<&Origin> = Vec::new();
+    for origin in origins {
+        if !found.contains(&origin) {
+            found.push(origin);
+        }
+    }
+    found
+}
+
+/// The middle one of the finite values, the upper of two.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
 }
 
 /// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves them.

@@ -59,15 +59,12 @@ pub fn replays(data: &Replays, theme: &Theme) -> Figure {
     let limit = residual_limit(&data.replays);
     let residual_axis = Axis::linear(-limit, limit, Steps::Angle);
     let columns = if theme.is_narrow() || data.replays.len() < 3 { 1 } else { 2 };
-    let row_count = data.replays.len().div_ceil(columns);
     let small = if columns == 1 { theme.tall(0.075) } else { theme.tall(0.085) };
-    let columns = vec![Side::new(time(), time_side([&data.record]).title); columns];
-    let residual_rows = vec![(Side::new(residual_axis, ""), small); row_count];
+    let column = Side::new(time(), time_side([&data.record]).title);
     let mut lower_grid = Grid {
         heads: data.replays.iter().map(|r| Some(entry(r, theme.is_narrow(), theme))).collect(),
-        panels: Some(data.replays.len()),
         shared_title: Some("residual [°]".into()),
-        ..Grid::new(columns, residual_rows)
+        ..Grid::alike(data.replays.len(), columns, column, (Side::new(residual_axis, ""), small))
     };
     let has_residuals = !data.replays.is_empty();
     let upper_title = if has_residuals { String::new() } else { time_side([&data.record]).title };

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{zero_line, zero_upright};
+use super::{median, zero_line, zero_upright};
 use crate::axis::Axis;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
@@ -91,22 +91,14 @@ pub fn scatter(data: &KtScatter, theme: &Theme) -> Figure {
     let across = if theme.is_narrow() { count.min(2) } else { count.min(if count == 4 { 2 } else { 3 }) };
     let [k, t] = reach(data);
     let title = |index: &str| format!("error of {} [%]", symbol(index));
-    let column = || Side::new(Axis::linear(-k, k, Steps::Decimal), title("K"));
-    let row = || {
-        (
-            Side::new(Axis::linear(-t, t, Steps::Decimal), title("T")),
-            theme.tall(if theme.is_narrow() { 0.26 } else { 0.24 }),
-        )
-    };
+    let column = Side::new(Axis::linear(-k, k, Steps::Decimal), title("K"));
+    let height = theme.tall(if theme.is_narrow() { 0.26 } else { 0.24 });
+    let row = (Side::new(Axis::linear(-t, t, Steps::Decimal), title("T")), height);
     let heads = data
         .panels
         .iter()
         .map(|panel| Some(Entry::new(Sample::Dots(panel.origin.look().colour), panel.origin.label())));
-    let panels = sheet.grid(Grid {
-        heads: heads.collect(),
-        panels: Some(count),
-        ..Grid::new((0..across).map(|_| column()).collect(), (0..count.div_ceil(across)).map(|_| row()).collect())
-    });
+    let panels = sheet.grid(Grid { heads: heads.collect(), ..Grid::alike(count, across, column, row) });
     for (panel, content) in panels.iter().zip(&data.panels) {
         zero_line(panel, &mut sheet.scene, theme);
         zero_upright(panel, &mut sheet.scene, theme);
@@ -123,16 +115,9 @@ fn bound_stroke(theme: &Theme) -> Stroke {
 /// no less than the bound needs.
 fn reach(data: &KtScatter) -> [f64; 2] {
     [0, 1].map(|axis| {
-        let mut reaches: Vec<f64> = data
-            .panels
-            .iter()
-            .filter_map(|panel| panel.ellipse)
-            .map(|ellipse| ellipse.reach()[axis])
-            .filter(|r| r.is_finite())
-            .collect();
-        reaches.sort_by(f64::total_cmp);
-        let middle = reaches.get(reaches.len() / 2).copied().unwrap_or(1.0);
-        let widest = reaches.last().copied().unwrap_or(1.0);
+        let reaches = || data.panels.iter().filter_map(|panel| panel.ellipse).map(|ellipse| ellipse.reach()[axis]);
+        let middle = median(reaches()).unwrap_or(1.0);
+        let widest = reaches().filter(|reach| reach.is_finite()).reduce(f64::max).unwrap_or(1.0);
         let bound =
             data.panels.iter().filter_map(|panel| panel.bound).map(|bound| bound.reach()[axis]).fold(0.0, f64::max);
         (REACH * middle).min(1.15 * widest).max(1.3 * bound).max(1e-6)

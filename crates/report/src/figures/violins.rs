@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::zero_upright;
+use super::{median, zero_upright};
 use crate::axis::Axis;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
+use crate::layout::{Sheet, Side};
 use crate::palette::{INK, Origin, PAPER};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
@@ -56,12 +56,8 @@ pub fn violins(data: &Violins, theme: &Theme) -> Figure {
         .map(|panel| panel.violins.iter().map(|violin| violin.origin.label().to_owned()).collect())
         .unwrap_or_default();
     let height = (names.len().max(1) as f64 + 0.2) * 2.6 * theme.tick_font;
-    let side = || (Side::new(Axis::names(names.clone()), ""), height);
     let columns = data.panels.iter().map(|panel| Side::new(axis(panel), panel.x_title.clone()));
-    let panels: Vec<Panel> = match theme.is_narrow() {
-        true => columns.flat_map(|column| sheet.grid(Grid::new(vec![column], vec![side()]))).collect(),
-        false => sheet.grid(Grid::new(columns.collect(), vec![side()])),
-    };
+    let panels = sheet.side_by_side(columns, (Side::new(Axis::names(names), ""), height));
     let mut beyond = false;
     for (panel, content) in panels.iter().zip(&data.panels) {
         zero_upright(panel, &mut sheet.scene, theme);
@@ -79,10 +75,7 @@ const SPREADS: f64 = 4.0;
 
 fn axis(panel: &ViolinPanel) -> Axis {
     let quantiles = || panel.violins.iter().filter_map(|violin| violin.quantiles);
-    let mut reaches: Vec<f64> =
-        quantiles().map(|q| q[0].abs().max(q[4].abs())).filter(|reach| reach.is_finite()).collect();
-    reaches.sort_by(f64::total_cmp);
-    let limit = SPREADS * reaches.get(reaches.len() / 2).copied().unwrap_or(1.0);
+    let limit = SPREADS * median(quantiles().map(|q| q[0].abs().max(q[4].abs()))).unwrap_or(1.0);
     let ends = quantiles().flat_map(|q| [q[0], q[4]]).map(|end| end.clamp(-limit, limit));
     Axis::covering(ends.chain([0.0]), 0.06, Steps::Decimal)
 }
