@@ -141,7 +141,7 @@ impl<'a> Plan<'a> {
         tasks
     }
 
-    /// Takes note of a row, in order: of a trial handed out, or stored before by an earlier session.
+    /// Takes note of a row, in order: of a trial handed out, or stored by an earlier run.
     pub fn saw(&mut self, row: &Row) {
         if let Some(verdict) = &mut self.verdict {
             verdict.see(row);

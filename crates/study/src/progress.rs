@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
-/// A bar over `length` trials, of which the first `done` are not of this session.
+/// A bar over `length` trials, of which the first `done` were done before.
 pub fn bar(length: u64, done: u64, quiet: bool) -> ProgressBar {
     of("trials", length, quiet).with_position(done).with_elapsed(Duration::ZERO)
 }

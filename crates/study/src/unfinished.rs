@@ -25,7 +25,7 @@ const LOCK: &str = "lock";
 const PART_ROWS: usize = 32_768;
 /// or when its first row is so old, so that little is lost to a kill,
 const PART_AGE: Duration = Duration::from_millis(250);
-/// or, later, when that age is this share of the time of the session, so that long studies have no hosts of small parts.
+/// or, later, when that age is this share of the time of the run, so that long studies have no hosts of small parts.
 const PART_SHARE: f64 = 0.01;
 
 /// A study in progress. Nobody else can work in the folder while this lives.
@@ -163,14 +163,10 @@ impl<'a> Unfinished<'a> {
     fn part(&self, part: u64, plan: &Plan, last: Option<Task>) -> Result<Vec<Row>, Failure> {
         let path = self.rows_of(part);
         let mut rows = Vec::new();
-        let mut reader = Reader::open(&path, self.layout)?;
-        loop {
-            let more = reader.next_rows()?;
-            if more.is_empty() {
-                break;
-            }
-            rows.extend(more);
-        }
+        Reader::open(&path, self.layout)?.for_each(|row| {
+            rows.push(row);
+            Ok(())
+        })?;
         let foreign = || Failure::input(format!("{}: these are not the next trials of this study", path.display()));
         let mut before = last;
         let trials = rows.chunks(self.design.methods.len());
@@ -228,14 +224,7 @@ impl<'a> Unfinished<'a> {
     pub fn join(&self, rows: &Path) -> Result<(), Failure> {
         let mut writer = Writer::create(rows, self.layout)?;
         for part in 0..self.parts {
-            let mut reader = Reader::open(&self.rows_of(part), self.layout)?;
-            loop {
-                let more = reader.next_rows()?;
-                if more.is_empty() {
-                    break;
-                }
-                writer.push(more)?;
-            }
+            Reader::open(&self.rows_of(part), self.layout)?.for_each(|row| writer.push([row]))?;
         }
         writer.finish()
     }

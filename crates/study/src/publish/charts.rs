@@ -7,7 +7,7 @@ use report::figures::{
 use report::{Figure as Page, Origin, Theme};
 
 use crate::showcase;
-use crate::statistics::Figure;
+use crate::statistics::{Figure, Z95};
 use crate::store::Design;
 use crate::summary::{self, Record, Summary};
 
@@ -71,7 +71,7 @@ impl Quantity {
     /// What its values are held against; `trials` stand behind each of them.
     fn reference(self, trials: u64) -> Option<Reference95> {
         (self == Self::Coverage && trials > 0).then(|| {
-            let reach = 1.96 * (95.0 * 5.0 / trials as f64).sqrt();
+            let reach = Z95 * (95.0 * 5.0 / trials as f64).sqrt();
             Reference95 { value: 95.0, band: [95.0 - reach, (95.0 + reach).min(100.0)] }
         })
     }
@@ -112,11 +112,12 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
         |axis: &usize| design.cells.iter().any(|cell| cell.labels[*axis] != design.cells[0].labels[*axis]);
     let number = (0..design.axes.len()).rev().filter(has_several).find(is_number);
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
-    let shown = |line: &&summary::MethodSummary| {
-        let figures = (0..quantity.titles().len()).filter_map(|panel| quantity.of(&line.record, panel));
-        figures.into_iter().any(|figure| quantity != Quantity::Failures || figure.value > 0.0)
+    // A chart without a value, or without a single failure, says nothing.
+    let says_something = |record: &Record| {
+        let mut figures = (0..quantity.titles().len()).filter_map(|panel| quantity.of(record, panel));
+        figures.any(|figure| quantity != Quantity::Failures || figure.value > 0.0)
     };
-    if summary.methods.iter().find(shown).is_none() {
+    if !summary.methods.iter().any(|line| says_something(&line.record)) {
         return Vec::new();
     }
     let groups = groups(design, x);
@@ -126,13 +127,9 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
     if is_crowded && (is_map || !matches!(quantity, Quantity::Rms | Quantity::Validation)) {
         return Vec::new();
     }
-    // A chart without a single failure says nothing.
-    let is_empty = |group: &&Group| {
-        let records = group
-            .cells
-            .iter()
-            .flat_map(|&cell| (0..design.methods.len()).filter_map(move |method| summary.record(cell, method)));
-        quantity == Quantity::Failures && records.map(|record| record.failed()).sum::<u64>() == 0
+    let is_worth_it = |group: &&Group| {
+        let records = |&cell: &usize| (0..design.methods.len()).filter_map(move |method| summary.record(cell, method));
+        group.cells.iter().flat_map(records).any(says_something)
     };
     match number {
         Some(_) if !is_crowded => {
@@ -147,7 +144,7 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
             .collect(),
         None => groups
             .iter()
-            .filter(|group| !is_empty(group))
+            .filter(is_worth_it)
             .map(|group| Chart {
                 group: (groups.len() > 1).then(|| group.name.clone()),
                 data: Data::Dots(named(design, summary, quantity, x, group)),

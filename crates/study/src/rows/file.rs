@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The next rows, a few thousand at most; nothing when all have been read.
-    pub fn next_rows(&mut self) -> Result<Vec<Row>, Failure> {
+    pub(super) fn next_rows(&mut self) -> Result<Vec<Row>, Failure> {
         while self.left == 0 {
             if self.group == self.file.num_row_groups() {
                 return Ok(Vec::new());

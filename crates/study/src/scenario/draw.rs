@@ -8,6 +8,7 @@ use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 use toml::Value;
 
+use super::part::Part;
 use super::problem::{KeyPath, Mark, Problem};
 use super::sweep::Setting;
 
@@ -75,10 +76,6 @@ enum Law {
 /// Least probability of the range that is kept: below it, drawing again and again would take for ever.
 const LEAST_PROBABILITY: f64 = 1e-3;
 
-/// Parts of a scenario that decide how a trial is made.
-const PARTS: [&str; 9] =
-    ["ship", "effect", "manoeuvre", "steering-gear", "helmsman", "approach", "recording", "sensor", "disturbance"];
-
 impl DrawWire {
     /// The key that is drawn, with dots.
     pub fn key(&self) -> &str {
@@ -89,7 +86,8 @@ impl DrawWire {
     pub fn resolve(&self, index: usize) -> Result<Draw, Problem> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
-        if !key.parts().first().is_some_and(|part| PARTS.contains(&part.as_str())) {
+        let is_of_trial = |first: &String| Part::of(first) == Part::Trial && first != "validation";
+        if !key.parts().first().is_some_and(is_of_trial) {
             return Err(Problem::value(
                 place.child("key"),
                 format!("the draw changes `{key}`"),

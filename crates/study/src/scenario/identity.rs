@@ -5,14 +5,13 @@ use std::fmt;
 
 use toml::{Table, Value};
 
-/// Keys that a person reads and the engine does not.
-const PROSE: [&str; 5] = ["question", "analysis", "finding", "published", "output"];
+use super::part::Part;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
 pub fn design_of(document: &Table) -> Table {
     document
         .iter()
-        .filter(|(key, _)| !PROSE.contains(&key.as_str()))
+        .filter(|(key, _)| Part::of(key) != Part::Prose)
         .map(|(key, value)| (key.clone(), value.clone()))
         .collect()
 }

@@ -8,6 +8,7 @@ mod draw;
 mod effect;
 pub mod identity;
 mod locate;
+mod part;
 mod problem;
 mod reader;
 mod resolve;
@@ -33,6 +34,7 @@ use crate::failure::Failure;
 use crate::manifest::Manifest;
 use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
+use part::Part;
 use problem::{KeyPath, Problem, suggestion};
 pub use resolve::Specification;
 pub use stop::{Index, StopFigure, StopRule};
@@ -173,7 +175,7 @@ impl Drawn {
 fn trial_of(document: &Table) -> Table {
     let mut trial: Table = document
         .iter()
-        .filter(|(key, _)| !NOT_OF_TRIALS.contains(&key.as_str()))
+        .filter(|(key, _)| Part::of(key) == Part::Trial)
         .map(|(key, value)| (key.clone(), value.clone()))
         .collect();
     trial.insert("question".into(), Value::String(String::new()));
@@ -181,21 +183,6 @@ fn trial_of(document: &Table) -> Table {
     trial.insert("identifier".into(), Value::Array(Vec::new()));
     trial
 }
-
-/// Parts of a scenario that do not say how a trial is made.
-const NOT_OF_TRIALS: [&str; 11] = [
-    "question",
-    "analysis",
-    "finding",
-    "seed",
-    "replicates",
-    "stop",
-    "identifier",
-    "draw",
-    "sweep",
-    "published",
-    "output",
-];
 
 /// Values of other authors, shown beside the results.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -236,9 +223,7 @@ pub struct Scenario {
     pub draws: Vec<String>,
     /// When a cell has had enough trials.
     pub stop: Option<StopRule>,
-    /// All that decides the rows, the seed of the command line apart.
-    pub design: Table,
-    /// SHA-256 of that and of the files it reads.
+    /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the files it reads.
     pub design_sha256: String,
     /// The file as it was read.
     pub text: String,
@@ -301,7 +286,6 @@ impl Scenario {
             // A study of one cell is about that cell.
             detail = vec![0];
         }
-        let design = identity::design_of(&document);
         Ok(Self {
             name: name.to_owned(),
             question: wire.question,
@@ -317,8 +301,7 @@ impl Scenario {
             figure: wire.output.figure,
             detail,
             stop,
-            design_sha256: sha256_of(&design, &folder),
-            design,
+            design_sha256: sha256_of(&identity::design_of(&document), &folder),
             sha256: hex(&Sha256::digest(text.as_bytes())),
             text,
         })

@@ -22,6 +22,11 @@ pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Resu
     T::deserialize(Reader { node: Node::Table(table), key: key.clone() }).map_err(|error| error.at(key).into())
 }
 
+/// The problem of a table that lacks a key.
+pub fn missing(table: &KeyPath, name: &'static str) -> Problem {
+    Error::new(table, Fault::MissingKey { name }).into()
+}
+
 /// What is wrong, before it is put into words.
 #[derive(Debug)]
 enum Fault {

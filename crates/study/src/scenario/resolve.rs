@@ -177,10 +177,10 @@ fn indices(own: &FirstOrderWire, key: &KeyPath, particulars: Option<Particulars>
             "expected `length-m` and `speed-kn` as well",
             "add both, or give `K-per-s` and `T-s`",
         )),
-        (Some(_), None, None, None, _) => Err(missing(key, "T-s")),
-        (None, Some(_), None, None, _) | (None, None, None, None, _) => Err(missing(key, "K-per-s")),
-        (None, None, Some(_), None, _) => Err(missing(key, "T-prime")),
-        (None, None, None, Some(_), _) => Err(missing(key, "K-prime")),
+        (Some(_), None, None, None, _) => Err(reader::missing(key, "T-s")),
+        (None, Some(_), None, None, _) | (None, None, None, None, _) => Err(reader::missing(key, "K-per-s")),
+        (None, None, Some(_), None, _) => Err(reader::missing(key, "T-prime")),
+        (None, None, None, Some(_), _) => Err(reader::missing(key, "K-prime")),
         _ => Err(Problem::name(
             key.clone(),
             format!("`{key}` gives K and T both with and without dimension"),
@@ -188,11 +188,6 @@ fn indices(own: &FirstOrderWire, key: &KeyPath, particulars: Option<Particulars>
             "give one pair and leave out the other",
         )),
     }
-}
-
-fn missing(key: &KeyPath, name: &str) -> Problem {
-    let found = format!("`{key}` has no key `{name}`");
-    Problem::name(key.clone(), found, format!("expected `{name}` here"), format!("add a line `{name} = …`"))
 }
 
 /// Numbers that make no ship, with the key of the number where there is one.

@@ -6,6 +6,7 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use super::part::Part;
 use super::problem::{KeyPath, Mark, Problem};
 
 /// Largest number of cells; more is a mistake in a range.
@@ -98,10 +99,6 @@ impl Setting {
     }
 }
 
-/// Keys that belong to the study as a whole; a sweep of them would say nothing.
-const FIXED: [&str; 9] =
-    ["question", "analysis", "finding", "seed", "replicates", "stop", "sweep", "published", "output"];
-
 impl AxisWire {
     /// Checks an axis; `index` is its place in the `sweep` array.
     pub fn resolve(&self, index: usize) -> Result<Axis, Problem> {
@@ -144,7 +141,7 @@ impl AxisWire {
         }
         for setting in points.iter().flat_map(|point| &point.set) {
             let first = setting.key.parts().first().map_or("", String::as_str);
-            if first.is_empty() || FIXED.contains(&first) {
+            if first.is_empty() || matches!(Part::of(first), Part::Prose | Part::Study) {
                 let found = match first {
                     "" => "the sweep names no key".to_owned(),
                     _ => format!("the sweep changes `{}`, which is the same for the whole study", setting.key),

@@ -26,7 +26,7 @@ impl Figure {
 }
 
 /// Two-sided 95 % quantile of the standard normal distribution.
-const Z95: f64 = 1.959_963_984_540_054;
+pub const Z95: f64 = 1.959_963_984_540_054;
 
 /// Fewest values of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
 const FEWEST: u64 = 6;

@@ -15,6 +15,15 @@ pub struct Moments {
     pub second: f64,
 }
 
+/// The batch of a replicate.
+fn batch_of(batches: &mut Vec<Moments>, replicate: u64) -> &mut Moments {
+    let place = (replicate % BATCHES as u64) as usize;
+    if batches.len() <= place {
+        batches.resize(place + 1, Moments::default());
+    }
+    &mut batches[place]
+}
+
 /// Sums of one quantity.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sums {
@@ -29,11 +38,8 @@ impl Sums {
         if self.batches.is_empty() {
             self.shift = value;
         }
-        let place = (replicate % BATCHES as u64) as usize;
-        if self.batches.len() <= place {
-            self.batches.resize(place + 1, Moments::default());
-        }
-        let (batch, x) = (&mut self.batches[place], value - self.shift);
+        let x = value - self.shift;
+        let batch = batch_of(&mut self.batches, replicate);
         batch.count += 1.0;
         batch.first += x;
         batch.second += x * x;
@@ -74,11 +80,7 @@ pub struct PairSums {
 impl PairSums {
     /// Adds a replicate.
     pub fn add(&mut self, replicate: u64, one: f64, other: f64) {
-        let place = (replicate % BATCHES as u64) as usize;
-        if self.batches.len() <= place {
-            self.batches.resize(place + 1, Moments::default());
-        }
-        let batch = &mut self.batches[place];
+        let batch = batch_of(&mut self.batches, replicate);
         batch.count += 1.0;
         batch.first += one * one;
         batch.second += other * other;

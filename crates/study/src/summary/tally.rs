@@ -93,7 +93,7 @@ impl Tally {
         if self.present.iter().all(|running| running.trials == 0) {
             return;
         }
-        let resamples = self.resamples();
+        let resamples = self.resamples(most_batches(&self.present));
         let present = std::mem::replace(&mut self.present, vec![Running::default(); self.overall.len()]);
         let pairs = std::mem::replace(&mut self.pairs, vec![Default::default(); self.overall.len()]);
         if self.detailed.contains(&cell) {
@@ -116,9 +116,8 @@ impl Tally {
         }));
     }
 
-    /// Resamples of as many batches as the present cell has; the same for all cells of one size.
-    fn resamples(&mut self) -> Rc<Resamples> {
-        let batches = self.present.iter().map(|running| running.batches).max().unwrap_or(0);
+    /// Resamples of so many batches; the same for all cells of one size.
+    fn resamples(&mut self, batches: usize) -> Rc<Resamples> {
         match &self.resamples {
             Some(known) if known.batches() == batches => Rc::clone(known),
             _ => Rc::clone(self.resamples.insert(Rc::new(Resamples::new(batches)))),
@@ -129,8 +128,7 @@ impl Tally {
     pub fn finish(mut self) -> Summary {
         self.end_trial();
         self.end_cell();
-        self.present.clone_from(&self.overall);
-        let resamples = self.resamples();
+        let resamples = self.resamples(most_batches(&self.overall));
         let overall =
             self.overall.iter().map(|running| Overall { record: running.record(&resamples), detail: running.detail() });
         Summary {
@@ -141,6 +139,10 @@ impl Tally {
             details: self.details,
         }
     }
+}
+
+fn most_batches(methods: &[Running]) -> usize {
+    methods.iter().map(|running| running.batches).max().unwrap_or(0)
 }
 
 fn comparison(pair: &PairSums, resamples: &Resamples) -> Comparison {
