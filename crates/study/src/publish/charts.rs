@@ -4,7 +4,7 @@ use report::figures::{
     self, Dot, DotColumn, DotPlot, Ecdf, EcdfCurve, EcdfPanel, Ellipse, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint,
     HeatMap, HeatPanel, KtPanel, KtScatter, Reference95, Scale, Violin, ViolinPanel, Violins,
 };
-use report::{Figure as Page, Origin, Theme};
+use report::{Figure as Page, Origin, Theme, number};
 
 use crate::showcase;
 use crate::statistics::{Figure, Z95};
@@ -352,7 +352,11 @@ pub fn ranking(design: &Design, summary: &Summary) -> Option<(DotPlot, String)> 
     let name = |&method: &usize| {
         let failed = record(method).failure_rate.map_or(0.0, |rate| rate.value);
         let label = &design.methods[method].label;
-        if failed > 0.0 { format!("{label} ({:.1} % fail)", 100.0 * failed) } else { label.clone() }
+        match failed > 0.0 {
+            // A rare failure is not "0.0 %".
+            true => format!("{label} ({} % fail)", number::significant(100.0 * failed, 2)),
+            false => label.clone(),
+        }
     };
     let plot = DotPlot {
         title: None,

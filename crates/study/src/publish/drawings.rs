@@ -125,8 +125,12 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
     for (cell, data) in charts::scatters(design, summary) {
         let (stem, place) = of_cell("scatter", cell);
         let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust \
-                       standard deviations drawn in) beside that of the Cramér–Rao bound.";
-        drawings.push(Drawing::new(stem, format!("{caption}{place}"), move |theme| figures::scatter(&data, theme)));
+                       standard deviations drawn in)";
+        // Trials with a bound each have none in common.
+        let is_bounded = data.panels.iter().any(|panel| panel.bound.is_some());
+        let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
+        let caption = format!("{caption}{bound}.{place}");
+        drawings.push(Drawing::new(stem, caption, move |theme| figures::scatter(&data, theme)));
     }
     drawings
 }
