@@ -14,6 +14,8 @@ pub struct Measured {
     pub wind_speed: Option<f64>,
     /// Direction the relative wind comes from, clockwise from the bow, rad.
     pub wind_from: Option<f64>,
+    /// Propeller revolutions, 1/s.
+    pub propeller: Option<f64>,
 }
 
 /// What acts on a ship at one instant.

@@ -18,12 +18,14 @@ pub struct Recorded<'a> {
     pub wind_speed: Option<&'a Polyline>,
     /// Direction the relative wind comes from, rad, unwrapped.
     pub wind_from: Option<&'a Polyline>,
+    /// Propeller revolutions, 1/s.
+    pub propeller: Option<&'a Polyline>,
 }
 
 impl<'a> Recorded<'a> {
     /// A record that holds nothing but the rudder.
     pub fn rudder(rudder: &'a Polyline) -> Self {
-        Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None }
+        Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
     }
 
     /// What acts at time `t` on a ship whose rudder is late by `dead_time`; `piece` is a hint into the rudder signal.
@@ -37,6 +39,7 @@ impl<'a> Recorded<'a> {
                 sway: at(self.sway),
                 wind_speed: at(self.wind_speed),
                 wind_from: at(self.wind_from),
+                propeller: at(self.propeller),
             },
         }
     }

@@ -138,6 +138,40 @@ impl Response {
         self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
     }
 
+    /// Shortest time constant of base and effects, s.
+    pub fn shortest_time(&self) -> f64 {
+        let own = self.parameters[0].abs().recip();
+        self.effects().map(|(effect, p, _)| effect.shortest_time(p)).fold(own, f64::min)
+    }
+
+    /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is
+    /// that of a rudder that has stood there.
+    pub fn enter(&self, heading: f64, yaw_rate: f64, input: &Input, state: &mut [f64]) {
+        state.fill(0.0);
+        (state[0], state[1]) = (heading, yaw_rate);
+        let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
+        for (effect, p, place) in self.effects() {
+            let z = &mut state[place.states.0..place.states.1];
+            effect.approach(p, &now, z);
+            now.rudder = effect.rudder(p, z, now.rudder);
+        }
+        if let Some((coupling, s)) = self.sway_coupling() {
+            // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
+            let lead = coupling.second_time - coupling.rudder_time;
+            state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
+        }
+    }
+
+    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the state s
+    /// of a second-order response follows so that the yaw acceleration stays what it is.
+    pub fn restart(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        let change = yaw_rate - state[1];
+        (state[0], state[1]) = (heading, yaw_rate);
+        if let Some((coupling, s)) = self.sway_coupling() {
+            state[s] += (1.0 + coupling.second_time * self.parameters[0]) * change;
+        }
+    }
+
     fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[f64], Place)> {
         self.model
             .effects
@@ -205,18 +239,7 @@ impl Dynamics for Response {
     }
 
     fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
-        state.fill(0.0);
-        (state[0], state[1]) = (heading, yaw_rate);
-        let input = Input::default();
-        let now = Now { heading, yaw_rate, ..self.now(0.0, &[heading, yaw_rate], 0.0, &input) };
-        for (effect, p, place) in self.effects() {
-            effect.approach(p, &now, &mut state[place.states.0..place.states.1]);
-        }
-        if let Some((coupling, s)) = self.sway_coupling() {
-            // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
-            let lead = coupling.second_time - coupling.rudder_time;
-            state[s] = yaw_rate + self.parameters[1] * lead * self.parameters[2];
-        }
+        self.enter(heading, yaw_rate, &Input::default(), state);
     }
 
     fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
@@ -260,9 +283,7 @@ impl Dynamics for Response {
 
     /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
     fn largest_step(&self) -> f64 {
-        let own = self.parameters[0].abs().recip();
-        let shortest = self.effects().map(|(effect, p, _)| effect.shortest_time(p)).fold(own, f64::min);
-        (shortest / 50.0).clamp(1e-3, 0.1)
+        (self.shortest_time() / 50.0).clamp(1e-3, 0.1)
     }
 }
 
@@ -292,12 +313,14 @@ mod tests {
         let speed = Polyline::new(vec![0.0, 100.0], vec![1.0, 0.7]).expect("increasing times");
         let (sway, wind, from) =
             (Polyline::constant(0.2 * side), Polyline::constant(3.0), Polyline::constant(0.8 * side));
+        let propeller = Polyline::constant(1.2);
         let recorded = Recorded {
             rudder,
             speed: Some(&speed),
             sway: Some(&sway),
             wind_speed: Some(&wind),
             wind_from: Some(&from),
+            propeller: Some(&propeller),
         };
         let mut last = f64::NAN;
         replay(response, &recorded, &times, response.largest_step(), &mut state, |_, motion| last = motion.heading);

@@ -170,7 +170,8 @@ pub trait Effect: fmt::Debug + Send + Sync {
 
 /// Every effect in every form, in the order of reports.
 ///
-/// Forms that need a constant of the record have it at a neutral value: approach speed 1 m/s, reference time 0.
+/// Forms that need a constant of the record have it at a neutral value: approach speed 1 m/s, propeller
+/// 1/s, reference time 0.
 pub fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(SecondOrder),
@@ -181,6 +182,7 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(WindMoment::Measured),
         Arc::new(SpeedLoss::Modelled),
         Arc::new(SpeedLoss::Measured { approach_speed: 1.0 }),
+        Arc::new(SpeedLoss::Propeller { approach_rate: 1.0 }),
         Arc::new(SteeringLag::DeadTime),
         Arc::new(SteeringLag::FirstOrder),
         Arc::new(RudderSaturation),

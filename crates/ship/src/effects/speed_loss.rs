@@ -15,6 +15,11 @@ pub enum SpeedLoss {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
     },
+    /// The flow over the rudder from the measured propeller revolutions n: b ~ (n/n₀)^m; as it is where there are none.
+    Propeller {
+        /// Revolutions n₀ of the approach, 1/s.
+        approach_rate: f64,
+    },
 }
 
 const MODELLED: [Parameter; 3] = [
@@ -26,6 +31,9 @@ const MEASURED: [Parameter; 2] = [
     Parameter { symbol: "m_a", unit: "1", neutral: 0.0, typical: 1.0, lowest: -1.0, highest: 3.0, odd: false },
     Parameter { symbol: "m_b", unit: "1", neutral: 0.0, typical: 2.0, lowest: -1.0, highest: 4.0, odd: false },
 ];
+
+const PROPELLER: [Parameter; 1] =
+    [Parameter { symbol: "m_n", unit: "1", neutral: 0.0, typical: 2.0, lowest: -1.0, highest: 4.0, odd: false }];
 
 /// Speed ratio below which the scaling laws mean nothing; keeps a bad trial step of a search finite.
 const SLOWEST: f64 = 0.05;
@@ -39,6 +47,7 @@ impl Effect for SpeedLoss {
         match self {
             Self::Modelled => "modelled speed",
             Self::Measured { .. } => "measured speed",
+            Self::Propeller { .. } => "measured propeller",
         }
     }
 
@@ -46,6 +55,7 @@ impl Effect for SpeedLoss {
         match self {
             Self::Modelled => "r' = −(q/T) r + (K/T) q^m_b (δ + δ_r), q' = (1 − q)/T_u − c_u r²",
             Self::Measured { .. } => "r' = −(q^m_a/T) r + (K/T) q^m_b (δ + δ_r), q = U/U₀",
+            Self::Propeller { .. } => "r' = −r/T + (K/T) (n/n₀)^m_n (δ + δ_r)",
         }
     }
 
@@ -53,13 +63,14 @@ impl Effect for SpeedLoss {
         match self {
             Self::Modelled => &MODELLED,
             Self::Measured { .. } => &MEASURED,
+            Self::Propeller { .. } => &PROPELLER,
         }
     }
 
     fn states(&self) -> usize {
         match self {
             Self::Modelled => 1,
-            Self::Measured { .. } => 0,
+            Self::Measured { .. } | Self::Propeller { .. } => 0,
         }
     }
 
@@ -86,13 +97,17 @@ impl Effect for SpeedLoss {
                 }
                 None => Scale::NONE,
             },
+            Self::Propeller { approach_rate } => match now.input.measured.propeller {
+                Some(rate) => Scale { damping: 1.0, gain: (rate / approach_rate).max(SLOWEST).powf(p[0]) },
+                None => Scale::NONE,
+            },
         }
     }
 
     fn shortest_time(&self, p: &[f64]) -> f64 {
         match self {
             Self::Modelled => p[1],
-            Self::Measured { .. } => f64::INFINITY,
+            Self::Measured { .. } | Self::Propeller { .. } => f64::INFINITY,
         }
     }
 }

@@ -1,0 +1,539 @@
+//! Output error for a structure with terms: the parameters, bounded, and the initial state of every record that bring the
+//! whitened heading of the replay nearest to the record (Levenberg–Marquardt; Moré 1978).
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::noise::{Colour, Grain, Moment, Whitener};
+use crate::record::Record;
+use crate::structure::{Entry, Structure, headings};
+use ship::narrow_band::NarrowBand;
+
+/// Relative step of a finite difference: half the digits of a replay.
+const DIFFERENCE: f64 = 1e-6;
+
+/// A step that lowers RSS by less than this many mean squares ends the search: a hundredth of what any test could see.
+const NEGLIGIBLE: f64 = 0.01;
+
+/// Most steps.
+const MOST_STEPS: usize = 30;
+
+/// Dampings of one step that are tried before it counts as a minimum.
+const MOST_DAMPINGS: usize = 9;
+
+/// The records of one analysis with what all fits need of them.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// The records.
+    pub records: Vec<Record>,
+    grains: Vec<Grain>,
+    inverse_time: f64,
+    inverse_time_scale: f64,
+    gain_scale: f64,
+}
+
+/// A fitted structure.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// Parameters, in the order of [`Structure::entries`].
+    pub theta: Vec<f64>,
+    /// Initial heading (rad) and yaw rate (rad/s) of every record.
+    pub initial: Vec<[f64; 2]>,
+    /// Colour of the noise it was fitted under.
+    pub colour: Colour,
+    /// Measured less replayed heading at the observed rows of every record, rad, not whitened.
+    pub residual: Vec<Vec<f64>>,
+    /// Sum of squares of the whitened residual, rad².
+    pub rss: f64,
+    /// −2 log L, up to a constant of the record.
+    pub deviance: f64,
+    /// Number of fitted parameters, initial states and noise included.
+    pub freedom: usize,
+    /// −2 log L + freedom · log n (Schwarz 1978).
+    pub bic: f64,
+    /// Replays used.
+    pub replays: usize,
+}
+
+impl Fit {
+    /// Mean square of the whitened residual, rad².
+    pub fn variance(&self, observations: usize) -> f64 {
+        self.rss / observations as f64
+    }
+}
+
+/// Residual and sensitivities at one point, record by record.
+#[derive(Debug, Clone)]
+pub struct Linear {
+    blocks: Vec<Block>,
+    unknowns: usize,
+    replays: usize,
+}
+
+#[derive(Debug, Clone)]
+struct Block {
+    residual: Vec<f64>,
+    /// Place of the unknown and its column.
+    columns: Vec<(usize, Vec<f64>)>,
+}
+
+/// Normal equations of whitened columns.
+struct Normal {
+    matrix: DMatrix<f64>,
+    gradient: DVector<f64>,
+    rss: f64,
+    log_variance: f64,
+}
+
+impl Linear {
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    /// Adds columns that belong to one more unknown, one per record.
+    pub fn push(&mut self, columns: Vec<Option<Vec<f64>>>) {
+        let place = self.unknowns;
+        self.unknowns += 1;
+        for (block, column) in self.blocks.iter_mut().zip(columns) {
+            if let Some(column) = column {
+                block.columns.push((place, column));
+            }
+        }
+    }
+
+    /// Leaves out the columns of some unknowns, which stay in place.
+    pub fn without(mut self, unknowns: std::ops::Range<usize>) -> Self {
+        for block in &mut self.blocks {
+            block.columns.retain(|(place, _)| !unknowns.contains(place));
+        }
+        self
+    }
+
+    /// Replaces the residual of every record.
+    pub fn with_residual(mut self, residual: Vec<Vec<f64>>) -> Self {
+        for (block, residual) in self.blocks.iter_mut().zip(residual) {
+            block.residual = residual;
+        }
+        self
+    }
+
+    /// Whitened columns and residual of one record.
+    pub fn whitened_block(&self, record: usize, whitener: &Whitener) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
+        let block = self.blocks.get(record)?;
+        let white = |column: &[f64]| {
+            let mut column = column.to_vec();
+            whitener.apply(&mut column);
+            column
+        };
+        Some((block.columns.iter().map(|(_, column)| white(column)).collect(), white(&block.residual)))
+    }
+
+    fn normal(&self, whiteners: &[Whitener]) -> Normal {
+        let n = self.unknowns;
+        let mut normal =
+            Normal { matrix: DMatrix::zeros(n, n), gradient: DVector::zeros(n), rss: 0.0, log_variance: 0.0 };
+        for (block, whitener) in self.blocks.iter().zip(whiteners) {
+            let white = |column: &[f64]| {
+                let mut column = column.to_vec();
+                whitener.apply(&mut column);
+                column
+            };
+            let residual = white(&block.residual);
+            let columns: Vec<(usize, Vec<f64>)> = block.columns.iter().map(|(at, c)| (*at, white(c))).collect();
+            for (k, (i, one)) in columns.iter().enumerate() {
+                normal.gradient[*i] += dot(one, &residual);
+                for (j, other) in &columns[..=k] {
+                    let product = dot(one, other);
+                    normal.matrix[(*i, *j)] += product;
+                    if i != j {
+                        normal.matrix[(*j, *i)] += product;
+                    }
+                }
+            }
+            normal.rss += dot(&residual, &residual);
+            normal.log_variance += whitener.log_variance;
+        }
+        normal
+    }
+
+    /// RSS after the best linear step under these whiteners, and Σ log S.
+    pub fn projected(&self, whiteners: &[Whitener]) -> (f64, f64) {
+        let normal = self.normal(whiteners);
+        let gain = solve(&normal.matrix, &normal.gradient, 0.0).map_or(0.0, |step| step.dot(&normal.gradient));
+        ((normal.rss - gain).max(0.0), normal.log_variance)
+    }
+
+    /// RSS left by every leading set of unknowns: with none, and with the first `from`, `from + 1`, … all of them.
+    pub fn explained(&self, whiteners: &[Whitener], from: usize) -> (f64, f64) {
+        let normal = self.normal(whiteners);
+        let part = |n: usize| {
+            let matrix = normal.matrix.view((0, 0), (n, n)).into_owned();
+            let gradient = normal.gradient.rows(0, n).into_owned();
+            let gain = solve(&matrix, &gradient, 0.0).map_or(0.0, |step| step.dot(&gradient));
+            (normal.rss - gain).max(0.0)
+        };
+        (part(from), part(self.unknowns))
+    }
+
+    /// Covariance of the unknowns for unit variance of the whitened residual; `None` when they cannot be told apart.
+    pub fn covariance(&self, whiteners: &[Whitener]) -> Option<DMatrix<f64>> {
+        let normal = self.normal(whiteners);
+        let scale = scales(&normal.matrix);
+        let n = self.unknowns;
+        let scaled = DMatrix::from_fn(n, n, |i, j| normal.matrix[(i, j)] * scale[i] * scale[j]);
+        let inverse = scaled.cholesky()?.inverse();
+        Some(DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    }
+
+    /// Whitened residual times whitened columns, row by row, for every record: the scores of the likelihood.
+    pub fn scores(&self, whiteners: &[Whitener]) -> Vec<Vec<DVector<f64>>> {
+        self.blocks
+            .iter()
+            .zip(whiteners)
+            .map(|(block, whitener)| {
+                let mut residual = block.residual.clone();
+                whitener.apply(&mut residual);
+                let mut rows = vec![DVector::zeros(self.unknowns); residual.len()];
+                for (at, column) in &block.columns {
+                    let mut column = column.clone();
+                    whitener.apply(&mut column);
+                    for (row, (c, e)) in rows.iter_mut().zip(column.iter().zip(&residual)) {
+                        row[*at] = c * e;
+                    }
+                }
+                rows
+            })
+            .collect()
+    }
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(x, y)| x * y).sum()
+}
+
+/// One over the length of every column; 0 for a column of zeros.
+fn scales(matrix: &DMatrix<f64>) -> Vec<f64> {
+    (0..matrix.nrows())
+        .map(|i| {
+            let length = matrix[(i, i)].sqrt();
+            if length > 0.0 && length.is_finite() { length.recip() } else { 0.0 }
+        })
+        .collect()
+}
+
+/// Solves the damped normal equations in scaled unknowns. Directions that the record does not see are left alone.
+fn solve(matrix: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
+    let n = matrix.nrows();
+    let scale = scales(matrix);
+    // A hair on the diagonal keeps parallel columns solvable; it moves no estimate by more than its rounding.
+    let scaled = DMatrix::from_fn(n, n, |i, j| {
+        let own = if i == j { damping + 1e-11 + if scale[i] == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
+        matrix[(i, j)] * scale[i] * scale[j] + own
+    });
+    let right = DVector::from_fn(n, |i, _| gradient[i] * scale[i]);
+    let step = scaled.cholesky()?.solve(&right);
+    let step = DVector::from_fn(n, |i, _| step[i] * scale[i]);
+    step.iter().all(|x| x.is_finite()).then_some(step)
+}
+
+impl Problem {
+    /// Prepares records of a ship whose base response is about 1/T, K/T.
+    pub fn new(records: Vec<Record>, inverse_time: f64, gain: f64) -> Self {
+        let longest = records.iter().map(Record::duration).fold(0.0, f64::max);
+        let grains = records.iter().map(|record| Grain::new(record, inverse_time, longest)).collect();
+        let inverse_time_scale = inverse_time.abs().max(1.0 / longest);
+        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain }
+    }
+
+    /// The same ship on other records.
+    pub fn on(&self, records: Vec<Record>) -> Self {
+        let damping = self.inverse_time;
+        let grains = records.iter().map(|record| Grain::new(record, damping, self.longest())).collect();
+        Self { records, grains, ..*self }
+    }
+
+    /// Length of the longest record, s.
+    pub fn longest(&self) -> f64 {
+        self.grains.iter().map(Grain::longest).fold(0.0, f64::max)
+    }
+
+    /// Number of observed headings.
+    pub fn observations(&self) -> usize {
+        self.records.iter().map(|record| record.observed.len()).sum()
+    }
+
+    /// Every entry of θ.
+    pub fn entries(&self, structure: &Structure) -> Vec<Entry> {
+        structure.entries(self.inverse_time_scale, self.gain_scale)
+    }
+
+    /// The filters of all records for one colour of noise.
+    pub fn whiteners(&self, colour: &Colour) -> Vec<Whitener> {
+        self.grains.iter().map(|grain| grain.whitener(colour)).collect()
+    }
+
+    /// Replayed headings of one record.
+    fn replayed(&self, structure: &Structure, theta: &[f64], initial: [f64; 2], record: usize) -> Vec<f64> {
+        let response = structure.response(record, theta);
+        let mut out = vec![0.0; self.records[record].observed.len()];
+        headings(&response, &self.records[record], initial, &mut out);
+        out
+    }
+
+    /// Replayed headings of every record, rad.
+    pub fn replay(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
+        (0..self.records.len()).map(|record| self.replayed(structure, theta, initial[record], record)).collect()
+    }
+
+    /// Measured less replayed headings of every record, rad.
+    pub fn residual(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
+        let mut headings = self.replay(structure, theta, initial);
+        for (record, headings) in self.records.iter().zip(&mut headings) {
+            for (value, &row) in headings.iter_mut().zip(&record.observed) {
+                *value = record.heading[row] - *value;
+            }
+        }
+        headings
+    }
+
+    /// Residual and sensitivities at a point. Unknowns are the fitted entries of θ in order, then heading and yaw rate at
+    /// the beginning of every record.
+    pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], entries: &[Entry]) -> Linear {
+        let residual = self.residual(structure, theta, initial);
+        self.linear_at(structure, theta, initial, entries, residual)
+    }
+
+    fn linear_at(
+        &self,
+        structure: &Structure,
+        theta: &[f64],
+        initial: &[[f64; 2]],
+        entries: &[Entry],
+        residual: Vec<Vec<f64>>,
+    ) -> Linear {
+        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
+        let mut replays = 0;
+        let blocks = residual
+            .into_iter()
+            .enumerate()
+            .map(|(record, residual)| {
+                let source = &self.records[record];
+                let now: Vec<f64> =
+                    source.observed.iter().zip(&residual).map(|(&row, e)| source.heading[row] - e).collect();
+                let mut response = structure.response(record, theta);
+                let mut moved = theta.to_vec();
+                let mut columns = Vec::with_capacity(fitted.len() + 2);
+                let mut difference = |response: &ship::Response, start: [f64; 2], step: f64| {
+                    let mut column = vec![0.0; now.len()];
+                    headings(response, source, start, &mut column);
+                    replays += 1;
+                    for (value, now) in column.iter_mut().zip(&now) {
+                        *value = (*value - now) / step;
+                    }
+                    column
+                };
+                for (place, &k) in fitted.iter().enumerate() {
+                    if entries[k].only.is_some_and(|only| only != record) {
+                        continue;
+                    }
+                    let size = DIFFERENCE * theta[k].abs().max(entries[k].scale);
+                    let step = if theta[k] + size > entries[k].highest { -size } else { size };
+                    moved[k] = theta[k] + step;
+                    structure.set(&mut response, record, &moved);
+                    columns.push((place, difference(&response, initial[record], step)));
+                    moved[k] = theta[k];
+                }
+                structure.set(&mut response, record, theta);
+                let [heading, rate] = initial[record];
+                let place = fitted.len() + 2 * record;
+                if structure.sees_heading() {
+                    columns.push((place, difference(&response, [heading + DIFFERENCE, rate], DIFFERENCE)));
+                } else {
+                    columns.push((place, vec![1.0; now.len()]));
+                }
+                let size = DIFFERENCE * source.duration().recip();
+                columns.push((place + 1, difference(&response, [heading, rate + size], size)));
+                Block { residual, columns }
+            })
+            .collect();
+        Linear { blocks, unknowns: fitted.len() + 2 * self.records.len(), replays }
+    }
+
+    /// Fits a structure from a start, under one colour of noise.
+    pub fn fit(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], colour: &Colour) -> Fit {
+        let whiteners = self.whiteners(colour);
+        let entries = self.entries(structure);
+        let mut theta: Vec<f64> =
+            theta.iter().zip(&entries).map(|(x, entry)| x.clamp(entry.lowest, entry.highest)).collect();
+        let mut initial = initial.to_vec();
+        let mut residual = self.residual(structure, &theta, &initial);
+        let mut rss = whitened(&residual, &whiteners);
+        let mut replays = 1;
+        let mut damping = 1e-3;
+        let observations = self.observations() as f64;
+        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
+        for _ in 0..MOST_STEPS {
+            if !rss.is_finite() {
+                break;
+            }
+            let linear = self.linear_at(structure, &theta, &initial, &entries, residual.clone());
+            replays += linear.replays;
+            let normal = linear.normal(&whiteners);
+            let mut improved = None;
+            for _ in 0..MOST_DAMPINGS {
+                let Some(step) = self.step(&normal, damping, &theta, &entries, &fitted) else {
+                    damping *= 10.0;
+                    continue;
+                };
+                let mut next = theta.clone();
+                for (place, &k) in fitted.iter().enumerate() {
+                    next[k] = (theta[k] + step[place]).clamp(entries[k].lowest, entries[k].highest);
+                }
+                let mut start = initial.clone();
+                for (record, start) in start.iter_mut().enumerate() {
+                    start[0] += step[fitted.len() + 2 * record];
+                    start[1] += step[fitted.len() + 2 * record + 1];
+                }
+                let trial = self.residual(structure, &next, &start);
+                replays += 1;
+                let lower = whitened(&trial, &whiteners);
+                if lower < rss {
+                    improved = Some((next, start, trial, lower));
+                    damping = (damping * 0.1).max(1e-9);
+                    break;
+                }
+                damping = (damping * 8.0).max(1e-6);
+            }
+            let Some((next, start, trial, lower)) = improved else { break };
+            let gain = rss - lower;
+            (theta, initial, residual, rss) = (next, start, trial, lower);
+            if gain < NEGLIGIBLE * rss / observations {
+                break;
+            }
+        }
+        self.judged(structure, theta, initial, residual, rss, &whiteners, colour, replays)
+    }
+
+    /// A damped step; parameters that stand at a bound and want to leave it stay.
+    fn step(
+        &self,
+        normal: &Normal,
+        damping: f64,
+        theta: &[f64],
+        entries: &[Entry],
+        fitted: &[usize],
+    ) -> Option<DVector<f64>> {
+        let mut matrix = normal.matrix.clone();
+        let mut gradient = normal.gradient.clone();
+        for _ in 0..fitted.len() + 1 {
+            let step = solve(&matrix, &gradient, damping)?;
+            let stuck: Vec<usize> = (0..fitted.len())
+                .filter(|&place| {
+                    let (x, entry) = (theta[fitted[place]], &entries[fitted[place]]);
+                    (x <= entry.lowest && step[place] < 0.0) || (x >= entry.highest && step[place] > 0.0)
+                })
+                .collect();
+            if stuck.is_empty() {
+                return Some(step);
+            }
+            for place in stuck {
+                matrix.row_mut(place).fill(0.0);
+                matrix.column_mut(place).fill(0.0);
+                gradient[place] = 0.0;
+            }
+        }
+        None
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the parts of one finished fit")]
+    fn judged(
+        &self,
+        structure: &Structure,
+        theta: Vec<f64>,
+        initial: Vec<[f64; 2]>,
+        residual: Vec<Vec<f64>>,
+        rss: f64,
+        whiteners: &[Whitener],
+        colour: &Colour,
+        replays: usize,
+    ) -> Fit {
+        let n = self.observations() as f64;
+        let log_variance: f64 = whiteners.iter().map(|whitener| whitener.log_variance).sum();
+        let fitted = self.entries(structure).iter().filter(|entry| entry.fitted).count();
+        let freedom = fitted + 2 * self.records.len() + colour.freedom() + 1;
+        let deviance = deviance(rss, log_variance, n);
+        Fit {
+            theta,
+            initial,
+            colour: *colour,
+            residual,
+            rss,
+            deviance,
+            freedom,
+            bic: deviance + freedom as f64 * n.ln(),
+            replays,
+        }
+    }
+
+    /// The random moment of the given kind that explains best what a fit leaves, if it is worth its parameter.
+    ///
+    /// Level and parameters are found together: for every level the linearised fit is solved anew.
+    pub fn best_moment(&self, linear: &Linear, kind: Moment, waves: Option<NarrowBand>) -> (Colour, f64) {
+        let n = self.observations() as f64;
+        let value = |level: f64| {
+            let colour = Colour { moment: Some((kind, level.exp())), waves };
+            let (rss, log_variance) = linear.projected(&self.whiteners(&colour));
+            deviance(rss, log_variance, n)
+        };
+        let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
+        let (level, deviance) = minimum(lo, hi, 12, value);
+        (Colour { moment: Some((kind, level.exp())), waves }, deviance)
+    }
+}
+
+/// −2 log L of white residuals, the variance at its best value.
+pub fn deviance(rss: f64, log_variance: f64, n: f64) -> f64 {
+    if rss.is_finite() && rss > 0.0 { n * (rss / n).ln() + log_variance } else { f64::INFINITY }
+}
+
+/// Sum of squares of whitened residuals.
+fn whitened(residual: &[Vec<f64>], whiteners: &[Whitener]) -> f64 {
+    residual
+        .iter()
+        .zip(whiteners)
+        .map(|(residual, whitener)| {
+            let mut residual = residual.clone();
+            whitener.apply(&mut residual);
+            dot(&residual, &residual)
+        })
+        .sum()
+}
+
+/// Smallest value on a range: a grid, then golden sections about its lowest point.
+pub fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
+    let at = |k: usize| lo + (hi - lo) * k as f64 / points as f64;
+    let heights: Vec<f64> = (0..=points).map(|k| value(at(k))).collect();
+    let best = (0..=points).min_by(|&i, &j| heights[i].total_cmp(&heights[j])).unwrap_or(0);
+    let (mut left, mut right) = (at(best.saturating_sub(1)), at((best + 1).min(points)));
+    let mut found = (at(best), heights[best]);
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let (mut one, mut two) = (right - golden * (right - left), left + golden * (right - left));
+    let (mut f_one, mut f_two) = (value(one), value(two));
+    for _ in 0..8 {
+        for candidate in [(one, f_one), (two, f_two)] {
+            if candidate.1 < found.1 {
+                found = candidate;
+            }
+        }
+        if f_one < f_two {
+            (right, two, f_two) = (two, one, f_one);
+            one = right - golden * (right - left);
+            f_one = value(one);
+        } else {
+            (left, one, f_one) = (one, two, f_two);
+            two = left + golden * (right - left);
+            f_two = value(two);
+        }
+    }
+    found
+}

@@ -1,0 +1,33 @@
+//! From a residual to the effect the model lacks: fit the base, look at what is left, decide whether anything is missing,
+//! name it, add it, and say how far the model is from the records before and after.
+//!
+//! There is no path from here to the simulator: a record is all that is known of a ship.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | the whole analysis and its result | [`analysis`] |
+//! | what may be missing, with bounds and starts | [`candidates`] |
+//! | how terms are added, tested and dropped | [`search`] |
+//! | random explanations that compete with effects | [`noise`] and [`waves`] |
+//! | the fit itself | [`fit`], [`structure`], [`record`] |
+//! | where a squall was | [`transient`] |
+//! | errors before and after | [`errors`], [`held_out`] |
+//! | what a record cannot tell, and which trial could | [`separation`] |
+//! | what is left in the end | [`diagnostics`], [`monomial`] |
+
+pub mod analysis;
+pub mod candidates;
+pub mod diagnostics;
+pub mod errors;
+pub mod fit;
+pub mod held_out;
+pub mod monomial;
+pub mod noise;
+pub mod record;
+pub mod search;
+pub mod separation;
+pub mod structure;
+pub mod transient;
+pub mod waves;
+
+pub use analysis::{Analysis, Settings, TraceError, trace};

@@ -1,0 +1,319 @@
+//! The noise that a fit is judged against: white heading noise, a random yaw moment that has gone through the ship, and
+//! narrow-band waves, as one linear stochastic system whose Kalman filter makes residual and sensitivities white.
+//!
+//! Noise is a competitor of every effect. A slow residual may be a missing term or a moment nobody knows the cause of; an
+//! effect is only believed when it explains the record better than the best of these random explanations. With the filter
+//! the likelihood is exact for the linearised response: −2 log L = n log(RSS/n) + Σ log S + const, where RSS is that of the
+//! whitened residual and S the predicted variances in units of σ².
+//!
+//! Sources: Åström and Källström (1976) for maximum likelihood on ship records; Harvey (1989) for the prediction error
+//! decomposition.
+
+use nalgebra::DMatrix;
+use ship::narrow_band::NarrowBand;
+
+use crate::record::Record;
+
+/// Most states: heading, rate, moment, and two of the waves.
+const MOST: usize = 5;
+
+type Vector = [f64; MOST];
+type Matrix = [[f64; MOST]; MOST];
+
+/// A random yaw moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Moment {
+    /// r' = −a r + w: the yaw rate of a ship in a white moment wanders.
+    White,
+    /// r' = −a r + d, d' = w: the moment itself wanders.
+    Walk,
+}
+
+/// Colour of the noise beside the white heading noise, whose variance is the unit of everything here.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Colour {
+    /// Random moment, and the variance of the heading it would leave at the end of the longest record of a ship without
+    /// damping.
+    pub moment: Option<(Moment, f64)>,
+    /// Waves; `sd` in units of the white noise.
+    pub waves: Option<NarrowBand>,
+}
+
+impl Colour {
+    /// White heading noise alone.
+    pub const WHITE: Self = Self { moment: None, waves: None };
+
+    /// Number of parameters beside σ.
+    pub fn freedom(&self) -> usize {
+        usize::from(self.moment.is_some()) + if self.waves.is_some() { 3 } else { 0 }
+    }
+
+    /// Whether it is white.
+    pub fn is_white(&self) -> bool {
+        *self == Self::WHITE
+    }
+}
+
+/// Transitions of a random moment over every step of a record, for one unit of intensity.
+#[derive(Debug, Clone)]
+struct Drift {
+    states: usize,
+    /// Transition and added covariance of every distinct step.
+    steps: Vec<(Matrix, Matrix)>,
+    /// The step before every observed row.
+    of_row: Vec<usize>,
+}
+
+impl Drift {
+    fn new(kind: Moment, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
+        let (states, intensity) = match kind {
+            Moment::White => (2, 3.0 / longest.powi(3)),
+            Moment::Walk => (3, 20.0 / longest.powi(5)),
+        };
+        let mut generator = DMatrix::<f64>::zeros(states, states);
+        generator[(0, 1)] = 1.0;
+        generator[(1, 1)] = -inverse_time;
+        if states == 3 {
+            generator[(1, 2)] = 1.0;
+        }
+        let mut known: Vec<f64> = Vec::new();
+        let mut steps = Vec::new();
+        let of_row = durations
+            .iter()
+            .map(|&h| {
+                known.iter().rposition(|&other| (other - h).abs() <= 1e-6 * h).unwrap_or_else(|| {
+                    known.push(h);
+                    steps.push(van_loan(&generator, intensity, h));
+                    known.len() - 1
+                })
+            })
+            .collect();
+        Self { states, steps, of_row }
+    }
+}
+
+/// Transition and added covariance over h for white noise of the given intensity on the last state (Van Loan 1978).
+fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix) {
+    let m = generator.nrows();
+    let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
+    block.view_mut((0, 0), (m, m)).copy_from(&(-generator * h));
+    block[(m - 1, 2 * m - 1)] = h;
+    block.view_mut((m, m), (m, m)).copy_from(&(generator.transpose() * h));
+    let exponential = block.exp();
+    let transition = exponential.view((m, m), (m, m)).transpose();
+    let added = &transition * exponential.view((0, m), (m, m)) * intensity;
+    let mut result = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
+    for i in 0..m {
+        for j in 0..m {
+            result.0[i][j] = transition[(i, j)];
+            result.1[i][j] = 0.5 * (added[(i, j)] + added[(j, i)]);
+        }
+    }
+    result
+}
+
+/// What is the same for every intensity of the noise of one record.
+#[derive(Debug, Clone)]
+pub struct Grain {
+    durations: Vec<f64>,
+    longest: f64,
+    white: Drift,
+    walk: Drift,
+}
+
+impl Grain {
+    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest record, s.
+    pub fn new(record: &Record, inverse_time: f64, longest: f64) -> Self {
+        let time = |seat: usize| record.time[record.observed[seat]];
+        let durations: Vec<f64> =
+            (0..record.observed.len()).map(|seat| if seat == 0 { 0.0 } else { time(seat) - time(seat - 1) }).collect();
+        // A course-unstable ship is steered: what a random moment does is over after a rudder order.
+        let damping = inverse_time.max(0.0);
+        Self {
+            white: Drift::new(Moment::White, damping, &durations, longest),
+            walk: Drift::new(Moment::Walk, damping, &durations, longest),
+            durations,
+            longest,
+        }
+    }
+
+    /// Length of the longest record, s.
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
+
+    /// The filter that makes noise of this colour white.
+    pub fn whitener(&self, colour: &Colour) -> Whitener {
+        let rows = self.durations.len();
+        if colour.is_white() {
+            return Whitener { states: 0, steps: Vec::new(), rows: Vec::new(), count: rows, log_variance: 0.0 };
+        }
+        let drift = colour.moment.map(|(kind, level)| match kind {
+            Moment::White => (&self.white, level),
+            Moment::Walk => (&self.walk, level),
+        });
+        let own = drift.map_or(0, |(drift, _)| drift.states);
+        let states = own + if colour.waves.is_some() { 2 } else { 0 };
+        let mut observe = [0.0; MOST];
+        observe[0] = 1.0;
+        let mut covariance: Matrix = [[0.0; MOST]; MOST];
+        if let Some(waves) = &colour.waves {
+            observe[own] = 1.0;
+            let [p0, p1] = waves.stationary_sd().map(|sd| sd * sd);
+            (covariance[own][own], covariance[own + 1][own + 1]) = (p0, p1);
+        }
+        let mut steps: Vec<(f64, usize, Matrix, Matrix)> = Vec::new();
+        let mut filter = Vec::with_capacity(rows);
+        let mut log_variance = 0.0;
+        let mut settled = false;
+        let mut last: Option<(usize, Vector, f64)> = None;
+        for row in 0..rows {
+            let h = self.durations[row];
+            let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
+            let place = steps.iter().rposition(|step| step.1 == key && (step.0 - h).abs() <= 1e-6 * h.max(1e-300));
+            let place = place.unwrap_or_else(|| {
+                let (f, q) = joint(drift.map(|(drift, level)| (&drift.steps[key], level, own)), &colour.waves, h);
+                steps.push((h, key, f, q));
+                steps.len() - 1
+            });
+            // Even rows lead to a filter that no longer changes.
+            if settled && let Some((before, gain, variance)) = last && before == place {
+                log_variance += variance.ln();
+                filter.push((place, gain, variance.sqrt().recip()));
+                continue;
+            }
+            if row > 0 {
+                covariance = propagate(&steps[place].2, &covariance, &steps[place].3, states);
+            }
+            let mut seen = [0.0; MOST];
+            for i in 0..states {
+                seen[i] = (0..states).map(|j| covariance[i][j] * observe[j]).sum();
+            }
+            let variance = 1.0 + (0..states).map(|i| observe[i] * seen[i]).sum::<f64>();
+            let gain = seen.map(|s| s / variance);
+            for i in 0..states {
+                for j in 0..states {
+                    covariance[i][j] -= gain[i] * seen[j];
+                }
+            }
+            settled = last.is_some_and(|(before, old, _)| {
+                before == place && (0..states).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
+            });
+            last = Some((place, gain, variance));
+            log_variance += variance.ln();
+            filter.push((place, gain, variance.sqrt().recip()));
+        }
+        let steps = steps.into_iter().map(|(_, _, f, _)| f).collect();
+        Whitener { states, steps, rows: filter, count: rows, log_variance }
+            .observing(own, colour.waves.is_some())
+    }
+}
+
+/// Transition and added covariance of moment and waves together.
+fn joint(drift: Option<(&(Matrix, Matrix), f64, usize)>, waves: &Option<NarrowBand>, h: f64) -> (Matrix, Matrix) {
+    let (mut f, mut q): (Matrix, Matrix) = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
+    let mut own = 0;
+    if let Some(((transition, added), level, states)) = drift {
+        own = states;
+        for i in 0..states {
+            for j in 0..states {
+                (f[i][j], q[i][j]) = (transition[i][j], level * added[i][j]);
+            }
+        }
+    }
+    if let Some(waves) = waves {
+        let step = waves.step(h);
+        let (a, b) = (step.advance([1.0, 0.0], [0.0; 2]), step.advance([0.0, 1.0], [0.0; 2]));
+        let (c, d) = (step.advance([0.0; 2], [1.0, 0.0]), step.advance([0.0; 2], [0.0, 1.0]));
+        for i in 0..2 {
+            (f[own + i][own], f[own + i][own + 1]) = (a[i], b[i]);
+            for j in 0..2 {
+                q[own + i][own + j] = c[i] * c[j] + d[i] * d[j];
+            }
+        }
+    }
+    (f, q)
+}
+
+fn propagate(f: &Matrix, p: &Matrix, q: &Matrix, states: usize) -> Matrix {
+    let mut half = [[0.0; MOST]; MOST];
+    let mut result = *q;
+    for i in 0..states {
+        for j in 0..states {
+            half[i][j] = (0..states).map(|k| f[i][k] * p[k][j]).sum();
+        }
+    }
+    for i in 0..states {
+        for j in 0..states {
+            result[i][j] += (0..states).map(|k| half[i][k] * f[j][k]).sum::<f64>();
+        }
+    }
+    result
+}
+
+/// A filter that makes columns of one record white; for white noise it leaves them as they are.
+#[derive(Debug, Clone)]
+pub struct Whitener {
+    states: usize,
+    steps: Vec<Matrix>,
+    /// Transition, gain and one over the predicted standard deviation of every observed row.
+    rows: Vec<(usize, Vector, f64)>,
+    count: usize,
+    /// Σ log S.
+    pub log_variance: f64,
+}
+
+impl Whitener {
+    /// Waves are seen through their first state, which the transition of a moment leaves at `own`.
+    fn observing(mut self, own: usize, waves: bool) -> Self {
+        if waves && own > 0 {
+            // Seen is the sum of two states: a change of coordinates makes it the first one. x₀ ← x₀ + x_own.
+            for f in &mut self.steps {
+                for row in f.iter_mut() {
+                    row[own] -= row[0];
+                }
+                for j in 0..self.states {
+                    f[0][j] += f[own][j];
+                }
+            }
+            for (_, gain, _) in &mut self.rows {
+                gain[0] += gain[own];
+            }
+        }
+        self
+    }
+
+    /// Number of observed rows.
+    pub fn rows(&self) -> usize {
+        self.count
+    }
+
+    /// Makes a column white in place.
+    pub fn apply(&self, column: &mut [f64]) {
+        match self.states {
+            0 => {}
+            2 => self.run::<2>(column),
+            3 => self.run::<3>(column),
+            4 => self.run::<4>(column),
+            _ => self.run::<5>(column),
+        }
+    }
+
+    fn run<const N: usize>(&self, column: &mut [f64]) {
+        let mut x = [0.0; N];
+        for (value, (step, gain, weight)) in column.iter_mut().zip(&self.rows) {
+            let f = &self.steps[*step];
+            let mut next = [0.0; N];
+            for (i, next) in next.iter_mut().enumerate() {
+                for j in 0..N {
+                    *next += f[i][j] * x[j];
+                }
+            }
+            let innovation = *value - next[0];
+            for i in 0..N {
+                x[i] = next[i] + gain[i] * innovation;
+            }
+            *value = innovation * weight;
+        }
+    }
+}

@@ -1,0 +1,432 @@
+//! The search for what is missing: terms are added one at a time, needless ones dropped again, and what remains has to
+//! explain the records better than the best random moment.
+//!
+//! First as if the noise were white (or white with waves): the candidate with the lowest BIC is added while it gains more
+//! than the threshold. Then every term so found is confronted with the random moments of [`crate::noise`]: it stays if its
+//! likelihood ratio against the model without it, each with the noise that suits it best, passes the threshold. If a random
+//! moment is still needed, terms are looked for once more under it.
+
+use rayon::prelude::*;
+use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
+use ship::narrow_band::NarrowBand;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::candidates::Candidate;
+use crate::fit::{Fit, Linear, Problem};
+use crate::noise::{Colour, Moment};
+use crate::structure::{Structure, Term};
+use crate::{held_out, transient, waves};
+
+/// What decides whether a term is believed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thresholds {
+    /// Smallest gain in BIC (Kass and Raftery 1995: above 10 is very strong).
+    pub gain: f64,
+    /// Probability of naming any effect where there is none, shared by all candidates (Bonferroni).
+    pub false_discovery: f64,
+    /// Most terms.
+    pub most_terms: usize,
+}
+
+/// A structure with its fit under the noise that suits it best.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Structure.
+    pub structure: Structure,
+    /// Fit under white noise (and waves): what minimises the heading error.
+    pub plain: Fit,
+    /// Fit under the noise of lowest BIC; the same as `plain` when no random moment is worth its parameter.
+    pub judged: Fit,
+}
+
+/// How much a term explains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence {
+    /// BIC without it less BIC with it.
+    pub gain: f64,
+    /// Probability of a likelihood ratio as large by chance, times the number of candidates.
+    pub p_value: f64,
+}
+
+/// How a candidate did.
+#[derive(Debug, Clone)]
+pub struct Tried {
+    /// The candidate's place in the list.
+    pub place: usize,
+    /// Model with it.
+    pub model: Model,
+    /// Its evidence against the model without it.
+    pub evidence: Evidence,
+}
+
+/// Later rounds fit only this many candidates, those with the largest score.
+const SHORT_LIST: usize = 6;
+
+/// Search over one problem.
+pub struct Search<'a> {
+    /// Records.
+    pub problem: &'a Problem,
+    /// What may be missing.
+    pub candidates: &'a [Candidate],
+    /// When to believe it.
+    pub thresholds: Thresholds,
+}
+
+impl Search<'_> {
+    fn log_n(&self) -> f64 {
+        (self.problem.observations() as f64).ln()
+    }
+
+    /// Evidence of `freedom` parameters that lead from one fit to another.
+    pub fn evidence(&self, without: &Fit, with: &Fit, freedom: usize) -> Evidence {
+        let ratio = (without.deviance - with.deviance).max(0.0);
+        let chance = ChiSquared::new(freedom as f64).map_or(1.0, |chi| chi.sf(ratio));
+        Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
+    }
+
+    /// Gain in BIC that a term needs. A trend, or a moment for a while, is also what a random moment looks like in one
+    /// record, and a place to put it has to be looked for: each of the two costs as much again.
+    pub fn needed(&self, term: &Term) -> f64 {
+        let times = match (is_of_time(term), term.effect.id() == TransientDisturbance.id()) {
+            (true, true) => 3.0,
+            (true, false) => 2.0,
+            (false, _) => 1.0,
+        };
+        times * self.thresholds.gain
+    }
+
+    /// Whether the evidence for a term passes both thresholds.
+    pub fn believes(&self, term: &Term, evidence: &Evidence) -> bool {
+        evidence.gain > self.needed(term) && evidence.p_value < self.thresholds.false_discovery
+    }
+
+    /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands beside
+    /// any other damping), or another moment that depends on time. Several of those would be a random moment, written as
+    /// a sum.
+    fn excludes(&self, structure: &Structure, term: &Term) -> bool {
+        let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
+        structure.terms.iter().any(|other| {
+            other.only == term.only
+                && (other.is(term)
+                    || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
+                    || (is_of_time(term) && is_of_time(other)))
+        })
+    }
+
+    /// The base, fitted and judged.
+    pub fn base(&self, structure: Structure, theta: &[f64], initial: &[[f64; 2]]) -> Model {
+        let plain = self.problem.fit(&structure, theta, initial, &Colour::WHITE);
+        self.with_waves(self.judge(structure, plain))
+    }
+
+    /// A model with the waves that its residual shows, if they are worth their three parameters.
+    fn with_waves(&self, model: Model) -> Model {
+        let moment = Colour { waves: None, ..model.judged.colour };
+        let Some(waves) = waves::find(self.problem, &model.judged.residual, &moment) else { return model };
+        let with = self.coloured(&model, Some(waves));
+        if model.judged.bic - with.judged.bic > self.thresholds.gain { with } else { model }
+    }
+
+    /// A model fitted anew with or without waves.
+    pub fn coloured(&self, model: &Model, waves: Option<NarrowBand>) -> Model {
+        let Model { structure, plain, .. } = model;
+        let plain = self.problem.fit(structure, &plain.theta, &plain.initial, &Colour { moment: None, waves });
+        self.judge(structure.clone(), plain)
+    }
+
+    /// Asks again whether there are waves, once the terms are known.
+    fn revise_waves(&self, model: Model) -> Model {
+        if model.judged.colour.waves.is_none() {
+            return if model.structure.terms.is_empty() { model } else { self.with_waves(model) };
+        }
+        let calm = self.coloured(&model, None);
+        if calm.judged.bic - model.judged.bic > self.thresholds.gain { model } else { calm }
+    }
+
+    fn linear(&self, structure: &Structure, fit: &Fit) -> Linear {
+        self.problem.linear(structure, &fit.theta, &fit.initial, &self.problem.entries(structure))
+    }
+
+    /// The better of the two random moments, and its deviance after a linear step.
+    fn best_moment(&self, linear: &Linear, waves: Option<NarrowBand>) -> (Colour, f64) {
+        let one = self.problem.best_moment(linear, Moment::White, waves);
+        let other = self.problem.best_moment(linear, Moment::Walk, waves);
+        if one.1 <= other.1 { one } else { other }
+    }
+
+    /// Finds the noise that suits a plainly fitted structure best.
+    pub fn judge(&self, structure: Structure, plain: Fit) -> Model {
+        let mut judged = plain.clone();
+        if plain.rss.is_finite() {
+            let waves = plain.colour.waves;
+            let (mut colour, deviance) = self.best_moment(&self.linear(&structure, &plain), waves);
+            // A random moment that does not pay for its one parameter is not tried further.
+            let mut start = plain.clone();
+            let mut reached = deviance;
+            for _ in 0..2 {
+                if reached + self.log_n() >= plain.deviance {
+                    break;
+                }
+                let fit = self.problem.fit(&structure, &start.theta, &start.initial, &colour);
+                if fit.bic < judged.bic {
+                    judged = fit.clone();
+                }
+                (colour, reached) = self.best_moment(&self.linear(&structure, &fit), waves);
+                start = fit;
+            }
+        }
+        Model { structure, plain, judged }
+    }
+
+    /// Fits a model with one more term from every start of a candidate, plainly.
+    fn plain(&self, model: &Model, candidate: &Candidate, from: &Fit, colour: &Colour) -> (Structure, Fit) {
+        let structure = model.structure.with(candidate.term.clone());
+        let scanned;
+        let starts = if candidate.starts.is_empty() {
+            scanned = transient::starts(self.problem, &model.structure, from, &candidate.term);
+            &scanned
+        } else {
+            &candidate.starts
+        };
+        let best = starts
+            .iter()
+            .map(|start| {
+                let theta = [from.theta.as_slice(), start].concat();
+                self.problem.fit(&structure, &theta, &from.initial, colour)
+            })
+            .min_by(|one, other| one.deviance.total_cmp(&other.deviance));
+        match best {
+            Some(fit) => (structure, fit),
+            None => (model.structure.clone(), from.clone()),
+        }
+    }
+
+    /// Approximate gain in −2 log L of a candidate from the sensitivities at a fit: a score test that needs no refit.
+    fn score(&self, model: &Model, fit: &Fit, linear: &Linear, candidate: &Candidate) -> f64 {
+        let n = self.problem.observations() as f64;
+        let structure = model.structure.with(candidate.term.clone());
+        let whiteners = self.problem.whiteners(&fit.colour);
+        let scanned;
+        let starts = if candidate.starts.is_empty() {
+            scanned = transient::starts(self.problem, &model.structure, fit, &candidate.term);
+            &scanned
+        } else {
+            &candidate.starts
+        };
+        starts
+            .iter()
+            .map(|start| {
+                let columns = self.columns(&structure, fit, start, candidate);
+                let mut linear = linear.clone();
+                let own = linear.unknowns();
+                for column in columns {
+                    linear.push(column);
+                }
+                let (without, with) = linear.explained(&whiteners, own);
+                n * (without / with).ln()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// How the heading changes with the parameters of a candidate at its start, and by being there at all.
+    fn columns(
+        &self,
+        structure: &Structure,
+        fit: &Fit,
+        start: &[f64],
+        candidate: &Candidate,
+    ) -> Vec<Vec<Option<Vec<f64>>>> {
+        let only = candidate.term.only;
+        let replay = |own: &[f64]| -> Vec<Option<Vec<f64>>> {
+            let theta = [fit.theta.as_slice(), own].concat();
+            let headings = self.problem.replay(structure, &theta, &fit.initial);
+            let acts = |record| only.is_none_or(|only| only == record);
+            headings.into_iter().enumerate().map(|(record, h)| acts(record).then_some(h)).collect()
+        };
+        let less = |one: &[Option<Vec<f64>>], other: &[Option<Vec<f64>>]| -> Vec<Option<Vec<f64>>> {
+            one.iter()
+                .zip(other)
+                .map(|(one, other)| {
+                    let (one, other) = (one.as_ref()?, other.as_ref()?);
+                    Some(one.iter().zip(other).map(|(x, y)| x - y).collect())
+                })
+                .collect()
+        };
+        let here = replay(start);
+        let without: Vec<Option<Vec<f64>>> = here
+            .iter()
+            .enumerate()
+            .map(|(record, there)| {
+                there.as_ref()?;
+                let source = &self.problem.records[record];
+                Some(source.observed.iter().zip(&fit.residual[record]).map(|(&row, e)| source.heading[row] - e).collect())
+            })
+            .collect();
+        let mut columns = Vec::new();
+        let being = less(&here, &without);
+        if being.iter().flatten().flatten().any(|&x| x != 0.0) {
+            columns.push(being);
+        }
+        for k in (0..start.len()).filter(|k| !candidate.term.held.contains(k)) {
+            let mut moved = start.to_vec();
+            moved[k] += 1e-4 * candidate.term.scale[k];
+            columns.push(less(&replay(&moved), &here));
+        }
+        columns
+    }
+
+    /// Tries candidates on a model; with `short_list` only those with the best scores are fitted.
+    ///
+    /// Under white noise fits are compared as they are. Under a random moment every fit finds its own level of it.
+    pub fn try_all(&self, model: &Model, under_moment: bool, short_list: bool) -> Vec<Tried> {
+        let fit = if under_moment { &model.judged } else { &model.plain };
+        let mut places: Vec<usize> =
+            (0..self.candidates.len()).filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term)).collect();
+        if short_list {
+            let linear = self.linear(&model.structure, fit);
+            let mut scored: Vec<(f64, usize)> = places
+                .par_iter()
+                .map(|&place| (self.score(model, fit, &linear, &self.candidates[place]), place))
+                .collect();
+            scored.sort_by(|one, other| other.0.total_cmp(&one.0));
+            places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
+        }
+        let mut tried: Vec<Tried> = places
+            .into_par_iter()
+            .map(|place| {
+                let candidate = &self.candidates[place];
+                let colour = Colour { moment: None, waves: model.plain.colour.waves };
+                let (structure, plain) = self.plain(model, candidate, &model.plain, &colour);
+                let tried = if under_moment {
+                    let (_, under) = self.plain(model, candidate, &model.judged, &model.judged.colour);
+                    let mut tried = self.judge(structure, plain);
+                    if under.bic < tried.judged.bic {
+                        tried.judged = under;
+                    }
+                    tried
+                } else {
+                    Model { structure, judged: plain.clone(), plain }
+                };
+                let evidence = self.evidence(fit, &tried.judged, candidate.term.freedom());
+                Tried { place, model: tried, evidence }
+            })
+            .collect();
+        tried.sort_by(|one, other| one.model.judged.bic.total_cmp(&other.model.judged.bic));
+        tried
+    }
+
+    /// A model without one of its terms, fitted anew.
+    pub fn dropped(&self, model: &Model, place: usize, under_moment: bool) -> Model {
+        let structure = model.structure.without(place);
+        let theta = structure_theta(model, place, &model.plain);
+        let colour = Colour { moment: None, waves: model.plain.colour.waves };
+        let plain = self.problem.fit(&structure, &theta, &model.plain.initial, &colour);
+        if !under_moment {
+            return Model { structure, judged: plain.clone(), plain };
+        }
+        let mut less = self.judge(structure, plain);
+        if !model.judged.colour.is_white() {
+            let theta = structure_theta(model, place, &model.judged);
+            let under = self.problem.fit(&less.structure, &theta, &model.judged.initial, &model.judged.colour);
+            if under.bic < less.judged.bic {
+                less.judged = under;
+            }
+        }
+        less
+    }
+
+    /// Evidence of every term of a model against the model without it, and those models.
+    pub fn tested(&self, model: &Model, under_moment: bool) -> Vec<(Evidence, Model)> {
+        (0..model.structure.terms.len())
+            .into_par_iter()
+            .map(|place| {
+                let less = self.dropped(model, place, under_moment);
+                let with = if under_moment { &model.judged } else { &model.plain };
+                let evidence = self.evidence(&less.judged, with, model.structure.terms[place].freedom());
+                (evidence, less)
+            })
+            .collect()
+    }
+
+    /// Whether a model gains over the base what all of its terms need together: two terms that are each other's reason
+    /// explain nothing.
+    fn pays(&self, model: &Model, base: &Model) -> bool {
+        let needed: f64 = model.structure.terms.iter().map(|term| self.needed(term)).sum();
+        base.judged.bic - model.judged.bic > needed
+    }
+
+    /// Drops terms that are not believed, the weakest first.
+    fn prune(&self, mut model: Model, base: &Model, under_moment: bool) -> Model {
+        while !model.structure.terms.is_empty() {
+            let tests = self.tested(&model, under_moment);
+            let surplus = |place: usize, evidence: &Evidence| evidence.gain - self.needed(&model.structure.terms[place]);
+            let weakest = tests
+                .into_iter()
+                .enumerate()
+                .min_by(|(i, one), (j, other)| surplus(*i, &one.0).total_cmp(&surplus(*j, &other.0)));
+            match weakest {
+                Some((place, (evidence, less)))
+                    if !self.believes(&model.structure.terms[place], &evidence) || !self.pays(&model, base) =>
+                {
+                    model = less;
+                }
+                _ => break,
+            }
+        }
+        model
+    }
+
+    /// The believed candidate of lowest BIC.
+    fn best(&self, tried: Vec<Tried>) -> Option<Tried> {
+        tried.into_iter().find(|tried| self.believes(&self.candidates[tried.place].term, &tried.evidence))
+    }
+
+    /// Adds what is missing under white noise, one at a time, dropping what a later term made needless.
+    fn add_plainly(&self, base: &Model, first: &[Tried]) -> Model {
+        let mut model = base.clone();
+        let plain = Model { judged: base.plain.clone(), ..base.clone() };
+        for round in 0..self.thresholds.most_terms {
+            let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, false, true) };
+            let Some(best) = self.best(tried) else { break };
+            let before = model.structure.terms.len();
+            model = self.prune(best.model, &plain, false);
+            if model.structure.terms.len() <= before && round > 0 {
+                break;
+            }
+        }
+        model
+    }
+
+    /// The whole search. `first` are all candidates tried on the base.
+    pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
+        let plain = self.add_plainly(base, first);
+        let mut model = base.clone();
+        if !plain.structure.terms.is_empty() {
+            let judged = self.judge(plain.structure.clone(), plain.plain.clone());
+            model = self.prune(judged, base, true);
+            if model.structure.terms.is_empty() {
+                model = base.clone();
+            }
+        }
+        while model.structure.terms.len() < self.thresholds.most_terms && model.judged.colour.moment.is_some() {
+            let tried = self.try_all(&model, true, true);
+            let Some(best) = self.best(tried) else { break };
+            let before = model.structure.terms.len();
+            let next = self.prune(best.model, base, true);
+            if next.structure.terms.len() <= before {
+                break;
+            }
+            model = next;
+        }
+        self.revise_waves(model)
+    }
+}
+
+/// Whether a term is a moment that depends on time alone.
+fn is_of_time(term: &Term) -> bool {
+    held_out::is_of_one_record(term.effect.id())
+}
+
+fn structure_theta(model: &Model, place: usize, fit: &Fit) -> Vec<f64> {
+    model.structure.drop_from(&fit.theta, place)
+}

@@ -1,0 +1,213 @@
+//! The structure that is fitted: the first-order base, shared by all records, and terms added to it, each with the bounds
+//! inside which a search may move its parameters.
+//!
+//! θ = (1/T, K/T, δ_r of all or of every record, parameters of the terms …), SI and rad.
+
+use std::sync::Arc;
+
+use ship::dynamics::Dynamics;
+use ship::effects::Effect;
+use ship::replay::replay;
+use ship::response::BASE;
+use ship::{Response, ResponseModel};
+
+use crate::record::Record;
+
+/// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the response,
+/// far below any heading that is measured.
+const STEPS: f64 = 4.0;
+
+/// Most steps between two rows, which bounds the work for a trial point with an absurd time constant.
+const MOST_STEPS: f64 = 16.0;
+
+/// An effect in one form, with the range and the scale of its parameters in these records.
+#[derive(Debug, Clone)]
+pub struct Term {
+    /// The effect.
+    pub effect: Arc<dyn Effect>,
+    /// The one record in which it acts; `None` for all.
+    pub only: Option<usize>,
+    /// Parameters that are not fitted but kept at their start.
+    pub held: &'static [usize],
+    /// Smallest values.
+    pub lowest: Vec<f64>,
+    /// Largest values.
+    pub highest: Vec<f64>,
+    /// Sizes against which steps are measured.
+    pub scale: Vec<f64>,
+    /// Whether a heading that is turned changes the response.
+    pub sees_heading: bool,
+}
+
+impl Term {
+    /// Number of fitted parameters.
+    pub fn freedom(&self) -> usize {
+        self.effect.parameters().len() - self.held.len()
+    }
+
+    /// Whether two terms are the same effect in the same form on the same records.
+    pub fn is(&self, other: &Term) -> bool {
+        self.name() == other.name()
+    }
+
+    /// Identifier, form and record.
+    pub fn name(&self) -> (&'static str, &'static str, Option<usize>) {
+        (self.effect.id(), self.effect.form(), self.only)
+    }
+}
+
+/// Base and terms over a number of records.
+#[derive(Debug, Clone)]
+pub struct Structure {
+    /// Number of records.
+    pub records: usize,
+    /// Whether every record has a rudder bias of its own.
+    pub own_bias: bool,
+    /// The terms, in the order in which the rudder passes through them.
+    pub terms: Vec<Term>,
+}
+
+/// What one entry of θ is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// Symbol.
+    pub symbol: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Whether it is fitted.
+    pub fitted: bool,
+    /// Smallest value.
+    pub lowest: f64,
+    /// Largest value.
+    pub highest: f64,
+    /// Size against which steps are measured.
+    pub scale: f64,
+    /// The record it belongs to; `None` for all.
+    pub only: Option<usize>,
+}
+
+impl Structure {
+    /// The base alone.
+    pub fn base(records: usize, own_bias: bool) -> Self {
+        Self { records, own_bias, terms: Vec::new() }
+    }
+
+    /// Number of rudder biases.
+    fn biases(&self) -> usize {
+        if self.own_bias { self.records } else { 1 }
+    }
+
+    /// Number of base parameters.
+    pub fn base_count(&self) -> usize {
+        2 + self.biases()
+    }
+
+    /// The same with one more term.
+    pub fn with(&self, term: Term) -> Self {
+        let mut more = self.clone();
+        more.terms.push(term);
+        more
+    }
+
+    /// The same without the term at `place`.
+    pub fn without(&self, place: usize) -> Self {
+        let mut less = self.clone();
+        less.terms.remove(place);
+        less
+    }
+
+    /// θ without the parameters of the term at `place`.
+    pub fn drop_from(&self, theta: &[f64], place: usize) -> Vec<f64> {
+        let range = self.range(place);
+        [&theta[..range.start], &theta[range.end..]].concat()
+    }
+
+    /// Where in θ the parameters of the term at `place` are.
+    pub fn range(&self, place: usize) -> std::ops::Range<usize> {
+        let before: usize = self.terms[..place].iter().map(|term| term.effect.parameters().len()).sum();
+        let start = self.base_count() + before;
+        start..start + self.terms[place].effect.parameters().len()
+    }
+
+    /// Every entry of θ.
+    pub fn entries(&self, inverse_time_scale: f64, gain_scale: f64) -> Vec<Entry> {
+        let base = |k: usize, scale: f64, only| Entry {
+            symbol: BASE[k].symbol,
+            unit: BASE[k].unit,
+            fitted: true,
+            lowest: BASE[k].lowest,
+            highest: BASE[k].highest,
+            scale,
+            only,
+        };
+        let mut entries = vec![base(0, inverse_time_scale, None), base(1, gain_scale, None)];
+        for record in 0..self.biases() {
+            entries.push(base(2, BASE[2].typical, self.own_bias.then_some(record)));
+        }
+        for term in &self.terms {
+            for (k, parameter) in term.effect.parameters().iter().enumerate() {
+                entries.push(Entry {
+                    symbol: parameter.symbol,
+                    unit: parameter.unit,
+                    fitted: !term.held.contains(&k),
+                    lowest: term.lowest[k],
+                    highest: term.highest[k],
+                    scale: term.scale[k],
+                    only: term.only,
+                });
+            }
+        }
+        entries
+    }
+
+    /// Whether the response depends on the direction in which the record begins.
+    pub fn sees_heading(&self) -> bool {
+        self.terms.iter().any(|term| term.sees_heading)
+    }
+
+    /// The response of one record, with these parameters.
+    pub fn response(&self, record: usize, theta: &[f64]) -> Response {
+        let acting = self.terms.iter().filter(|term| term.only.is_none_or(|only| only == record));
+        let model = ResponseModel::new(acting.map(|term| Arc::clone(&term.effect)).collect());
+        let count = model.parameter_count();
+        let mut response = model.with(vec![0.0; count]);
+        self.set(&mut response, record, theta);
+        response
+    }
+
+    /// Puts θ into the response of one record.
+    pub fn set(&self, response: &mut Response, record: usize, theta: &[f64]) {
+        let own = response.parameters_mut();
+        own[..2].copy_from_slice(&theta[..2]);
+        own[2] = theta[2 + if self.own_bias { record } else { 0 }];
+        let (mut to, mut from) = (3, self.base_count());
+        for term in &self.terms {
+            let count = term.effect.parameters().len();
+            if term.only.is_none_or(|only| only == record) {
+                own[to..to + count].copy_from_slice(&theta[from..from + count]);
+                to += count;
+            }
+            from += count;
+        }
+    }
+}
+
+/// Step of the solver for a response on rows `spacing` seconds apart.
+pub fn step(response: &Response, spacing: f64) -> f64 {
+    (response.shortest_time() / STEPS).max(spacing / MOST_STEPS)
+}
+
+/// The heading of a response along a record, from its first row, at the observed rows.
+pub fn headings(response: &Response, record: &Record, initial: [f64; 2], headings: &mut [f64]) {
+    let recorded = record.recorded();
+    let mut state = vec![0.0; response.dimension()];
+    let start = recorded.input(record.time[0], response.dead_time(), 0);
+    response.enter(initial[0], initial[1], &start, &mut state);
+    let mut seat = 0;
+    replay(response, &recorded, &record.time, step(response, record.spacing), &mut state, |row, motion| {
+        if record.observed.get(seat) == Some(&row) {
+            headings[seat] = motion.heading;
+            seat += 1;
+        }
+    });
+}

@@ -1,0 +1,72 @@
+//! Where in a record a moment may have been present for a while: boxes of several lengths are tried at every place, with
+//! the response of the base to a box in closed form, and the best places are handed on as starts of a fit.
+
+use nalgebra::{DMatrix, DVector};
+use ship::first_order::Transition;
+
+use crate::fit::{Fit, Problem};
+use crate::structure::{Structure, Term};
+
+/// Lengths of the boxes as shares of the record.
+const LENGTHS: [f64; 4] = [1.0 / 24.0, 1.0 / 12.0, 1.0 / 6.0, 1.0 / 3.0];
+
+/// Places that are handed on.
+const STARTS: usize = 2;
+
+/// Starts (m, t_c, d) for a transient on top of a fit, the most promising first.
+pub fn starts(problem: &Problem, structure: &Structure, fit: &Fit, term: &Term) -> Vec<Vec<f64>> {
+    let number = term.only.unwrap_or(0);
+    let record = &problem.records[number];
+    let whitener = &problem.whiteners(&fit.colour)[number];
+    let linear = problem.linear(structure, &fit.theta, &fit.initial, &problem.entries(structure));
+    let Some((columns, residual)) = linear.whitened_block(number, whitener) else { return Vec::new() };
+    let p = columns.len();
+    let gram = DMatrix::from_fn(p, p, |i, j| dot(&columns[i], &columns[j]));
+    let ridge = DMatrix::from_fn(p, p, |i, j| if i == j { 1e-10 * gram[(i, i)] + f64::MIN_POSITIVE } else { 0.0 });
+    let Some(factor) = (gram + ridge).cholesky() else { return Vec::new() };
+    let gradient = DVector::from_fn(p, |i, _| dot(&columns[i], &residual));
+    let explained = factor.solve(&gradient);
+
+    let (a, b) = (fit.theta[0], fit.theta[1]);
+    let times: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+    let (start, duration) = (record.time[0], record.duration());
+    let mut found: Vec<(f64, [f64; 3])> = Vec::new();
+    let mut column = vec![0.0; times.len()];
+    for length in LENGTHS.map(|share| share * duration).into_iter().filter(|&length| length >= term.lowest[2]) {
+        let mut from = start;
+        while from + length <= start + duration {
+            for (value, &t) in column.iter_mut().zip(&times) {
+                *value = b * (step_response(a, t - from) - step_response(a, t - from - length));
+            }
+            whitener.apply(&mut column);
+            let cross = DVector::from_fn(p, |i, _| dot(&columns[i], &column));
+            let own = dot(&column, &column) - cross.dot(&factor.solve(&cross));
+            let with = dot(&column, &residual) - cross.dot(&explained);
+            if own > 1e-9 * dot(&column, &column) {
+                found.push((with * with / own, [with / own, from + 0.5 * length, length]));
+            }
+            from += 0.5 * length;
+        }
+    }
+    found.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let mut starts: Vec<[f64; 3]> = Vec::new();
+    for (_, place) in found {
+        // Neighbours lead to the same minimum.
+        if starts.iter().all(|other| (other[1] - place[1]).abs() > 0.5 * (other[2] + place[2])) {
+            starts.push(place);
+        }
+        if starts.len() == STARTS {
+            break;
+        }
+    }
+    starts.into_iter().map(Vec::from).collect()
+}
+
+/// Heading after a unit yaw acceleration has acted for t seconds.
+fn step_response(inverse_time: f64, t: f64) -> f64 {
+    if t > 0.0 { Transition::new(inverse_time, t).phi2 } else { 0.0 }
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(x, y)| x * y).sum()
+}

@@ -1,0 +1,92 @@
+//! Whether the heading carries a narrow band of waves: the likelihood of the residual over frequency, width and strength.
+
+use ship::narrow_band::NarrowBand;
+
+use crate::fit::{Problem, deviance};
+use crate::noise::Colour;
+
+/// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.
+const FASTER: f64 = 5.0;
+
+/// Frequencies, widths and strengths that are tried.
+const FREQUENCIES: usize = 30;
+const DAMPINGS: [f64; 3] = [0.03, 0.1, 0.3];
+const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
+
+/// The waves that explain a residual best beside a random moment; `None` when none can be resolved or helps.
+pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option<NarrowBand> {
+    let n = problem.observations() as f64;
+    let value = |waves: NarrowBand| {
+        let colour = Colour { waves: Some(waves), ..*beside };
+        let (mut rss, mut log_variance) = (0.0, 0.0);
+        for (whitener, residual) in problem.whiteners(&colour).iter().zip(residual) {
+            let mut residual = residual.clone();
+            whitener.apply(&mut residual);
+            rss += residual.iter().map(|x| x * x).sum::<f64>();
+            log_variance += whitener.log_variance;
+        }
+        deviance(rss, log_variance, n)
+    };
+    let slowest = FASTER * problem.records.iter().map(fundamental).fold(0.0, f64::max);
+    let spacing = problem.records.iter().map(|record| record.spacing).fold(0.0, f64::max);
+    let fastest = 0.8 * std::f64::consts::PI / spacing;
+    if slowest >= fastest {
+        return None;
+    }
+    let mut best: Option<(f64, NarrowBand)> = None;
+    let mut consider = |waves: NarrowBand, best: &mut Option<(f64, NarrowBand)>| {
+        let height = value(waves);
+        if best.as_ref().is_none_or(|(lowest, _)| height < *lowest) {
+            *best = Some((height, waves));
+        }
+    };
+    for k in 0..FREQUENCIES {
+        let frequency = slowest * (fastest / slowest).powf(k as f64 / (FREQUENCIES - 1) as f64);
+        for damping in DAMPINGS {
+            for sd in STRENGTHS {
+                consider(NarrowBand { sd, frequency, damping }, &mut best);
+            }
+        }
+    }
+    // Downhill along each of the three, in ever smaller steps.
+    let mut factor = (fastest / slowest).powf(0.5 / (FREQUENCIES - 1) as f64).max(1.05);
+    for _ in 0..7 {
+        let (_, centre) = best?;
+        for step in [factor, 1.0 / factor] {
+            let frequency = (centre.frequency * step).clamp(slowest, fastest);
+            consider(NarrowBand { frequency, ..centre }, &mut best);
+        }
+        let (_, centre) = best?;
+        for step in [1.6, 1.0 / 1.6, 1.2, 1.0 / 1.2] {
+            consider(NarrowBand { sd: centre.sd * step, ..centre }, &mut best);
+            consider(NarrowBand { damping: (centre.damping * step).clamp(0.005, 0.6), ..centre }, &mut best);
+        }
+        factor = factor.sqrt();
+    }
+    let plain = {
+        let (mut rss, mut log_variance) = (0.0, 0.0);
+        for (whitener, residual) in problem.whiteners(beside).iter().zip(residual) {
+            let mut residual = residual.clone();
+            whitener.apply(&mut residual);
+            rss += residual.iter().map(|x| x * x).sum::<f64>();
+            log_variance += whitener.log_variance;
+        }
+        deviance(rss, log_variance, n)
+    };
+    best.filter(|(height, _)| *height < plain).map(|(_, waves)| waves)
+}
+
+/// Angular frequency of the manoeuvre, rad/s: the rudder changes its side twice a period.
+fn fundamental(record: &crate::record::Record) -> f64 {
+    let rudder = record.rudder();
+    let largest = rudder.iter().fold(0.0_f64, |most, delta| most.max(delta.abs()));
+    let mut side = 0.0;
+    let mut changes = 0usize;
+    for &delta in rudder.iter().filter(|delta| delta.abs() > 0.3 * largest) {
+        if side * delta < 0.0 {
+            changes += 1;
+        }
+        side = delta.signum();
+    }
+    std::f64::consts::PI * (changes.max(1) as f64) / record.duration()
+}
