@@ -42,7 +42,7 @@ fn main() {
     println!("base: plain {:.1} judged {:.1} {:?}", start.plain.bic, start.judged.bic, start.judged.colour);
     let first = search.try_all(&start, false, false);
     if std::env::args().nth(4).is_some() { for tried in &first {
-        println!("  {:?} gain {:.1} p {:.1e} theta {:?}", list[tried.place].term.name(), tried.evidence.gain, tried.evidence.p_value, &tried.model.plain.theta[3..]);
+        println!("  {} {:?} gain {:.1} p {:.1e} theta {:?}", tried.model.plain.replays, list[tried.place].term.name(), tried.evidence.gain, tried.evidence.p_value, &tried.model.plain.theta[3..]);
     }}
     let model = search.run(&start, &first);
     println!("final plain {:.1} judged {:.1} {:?}", model.plain.bic, model.judged.bic, model.judged.colour);

@@ -11,11 +11,20 @@ use ship::narrow_band::NarrowBand;
 /// Relative step of a finite difference: half the digits of a replay.
 const DIFFERENCE: f64 = 1e-6;
 
-/// A step that lowers RSS by less than this many mean squares ends the search: a hundredth of what any test could see.
-const NEGLIGIBLE: f64 = 0.01;
+/// A step that lowers RSS by less than this many mean squares ends the search: far below what any test could see.
+const NEGLIGIBLE: f64 = 0.02;
 
 /// Most steps.
-const MOST_STEPS: usize = 30;
+const MOST_STEPS: usize = 25;
+
+/// Damping of the first step: none to speak of.
+const SMALLEST_DAMPING: f64 = 1e-9;
+
+/// A step whose gain is further from what was promised than this share calls for new sensitivities.
+const SURPRISE: f64 = 0.1;
+
+/// Up to this share the old sensitivities are mended by what the step has taught (Broyden 1965).
+const LESSON: f64 = 0.7;
 
 /// Dampings of one step that are tried before it counts as a minimum.
 const MOST_DAMPINGS: usize = 9;
@@ -76,6 +85,52 @@ struct Block {
     columns: Vec<(usize, Vec<f64>)>,
 }
 
+/// Whitened columns of every record.
+struct Columns {
+    blocks: Vec<Vec<(usize, Vec<f64>)>>,
+    matrix: DMatrix<f64>,
+}
+
+impl Columns {
+    /// Changes the columns as little as possible so that they tell what a step has done to the residual.
+    fn learn(&mut self, step: &DVector<f64>, before: &[Vec<f64>], after: &[Vec<f64>], whiteners: &[Whitener]) {
+        let weight: Vec<f64> = (0..step.len()).map(|k| step[k] * self.matrix[(k, k)]).collect();
+        let length: f64 = weight.iter().zip(step.iter()).map(|(w, s)| w * s).sum();
+        if length.is_nan() || length <= 0.0 {
+            return;
+        }
+        self.matrix.fill(0.0);
+        for (((columns, before), after), whitener) in self.blocks.iter_mut().zip(before).zip(after).zip(whiteners) {
+            let mut missed: Vec<f64> = before.iter().zip(after).map(|(before, after)| before - after).collect();
+            whitener.apply(&mut missed);
+            for (at, column) in columns.iter() {
+                missed.iter_mut().zip(column).for_each(|(missed, c)| *missed -= step[*at] * c);
+            }
+            for (at, column) in columns.iter_mut() {
+                let share = weight[*at] / length;
+                column.iter_mut().zip(&missed).for_each(|(c, missed)| *c += share * missed);
+            }
+            gram(columns, &mut self.matrix);
+        }
+    }
+
+    /// Normal equations with a residual, which is not whitened yet.
+    fn normal(&self, residual: &[Vec<f64>], whiteners: &[Whitener]) -> Normal {
+        let mut gradient = DVector::zeros(self.matrix.nrows());
+        let (mut rss, mut log_variance) = (0.0, 0.0);
+        for ((columns, residual), whitener) in self.blocks.iter().zip(residual).zip(whiteners) {
+            let mut residual = residual.clone();
+            whitener.apply(&mut residual);
+            for (at, column) in columns {
+                gradient[*at] += dot(column, &residual);
+            }
+            rss += dot(&residual, &residual);
+            log_variance += whitener.log_variance;
+        }
+        Normal { matrix: self.matrix.clone(), gradient, rss, log_variance }
+    }
+}
+
 /// Normal equations of whitened columns.
 struct Normal {
     matrix: DMatrix<f64>,
@@ -99,6 +154,22 @@ impl Linear {
                 block.columns.push((place, column));
             }
         }
+    }
+
+    /// Makes room for unknowns at a place and fills it with columns, one per record each.
+    pub fn insert(&mut self, at: usize, new: Vec<Vec<Option<Vec<f64>>>>) {
+        let count = new.len();
+        for block in &mut self.blocks {
+            for (place, _) in &mut block.columns {
+                *place += if *place >= at { count } else { 0 };
+            }
+        }
+        for (k, columns) in new.into_iter().enumerate() {
+            for (block, column) in self.blocks.iter_mut().zip(columns) {
+                block.columns.extend(column.map(|column| (at + k, column)));
+            }
+        }
+        self.unknowns += count;
     }
 
     /// Leaves out the columns of some unknowns, which stay in place.
@@ -128,32 +199,30 @@ impl Linear {
         Some((block.columns.iter().map(|(_, column)| white(column)).collect(), white(&block.residual)))
     }
 
-    fn normal(&self, whiteners: &[Whitener]) -> Normal {
+    fn whitened(&self, whiteners: &[Whitener]) -> Columns {
         let n = self.unknowns;
-        let mut normal =
-            Normal { matrix: DMatrix::zeros(n, n), gradient: DVector::zeros(n), rss: 0.0, log_variance: 0.0 };
-        for (block, whitener) in self.blocks.iter().zip(whiteners) {
-            let white = |column: &[f64]| {
-                let mut column = column.to_vec();
-                whitener.apply(&mut column);
-                column
-            };
-            let residual = white(&block.residual);
-            let columns: Vec<(usize, Vec<f64>)> = block.columns.iter().map(|(at, c)| (*at, white(c))).collect();
-            for (k, (i, one)) in columns.iter().enumerate() {
-                normal.gradient[*i] += dot(one, &residual);
-                for (j, other) in &columns[..=k] {
-                    let product = dot(one, other);
-                    normal.matrix[(*i, *j)] += product;
-                    if i != j {
-                        normal.matrix[(*j, *i)] += product;
-                    }
-                }
-            }
-            normal.rss += dot(&residual, &residual);
-            normal.log_variance += whitener.log_variance;
-        }
-        normal
+        let mut matrix = DMatrix::zeros(n, n);
+        let blocks: Vec<Vec<(usize, Vec<f64>)>> = self
+            .blocks
+            .iter()
+            .zip(whiteners)
+            .map(|(block, whitener)| {
+                let white = |(at, column): &(usize, Vec<f64>)| {
+                    let mut column = column.clone();
+                    whitener.apply(&mut column);
+                    (*at, column)
+                };
+                let columns: Vec<(usize, Vec<f64>)> = block.columns.iter().map(white).collect();
+                gram(&columns, &mut matrix);
+                columns
+            })
+            .collect();
+        Columns { blocks, matrix }
+    }
+
+    fn normal(&self, whiteners: &[Whitener]) -> Normal {
+        let residual: Vec<Vec<f64>> = self.blocks.iter().map(|block| block.residual.clone()).collect();
+        self.whitened(whiteners).normal(&residual, whiteners)
     }
 
     /// RSS after the best linear step under these whiteners, and Σ log S.
@@ -204,6 +273,19 @@ impl Linear {
                 rows
             })
             .collect()
+    }
+}
+
+/// Adds the products of all pairs of columns.
+fn gram(columns: &[(usize, Vec<f64>)], matrix: &mut DMatrix<f64>) {
+    for (k, (i, one)) in columns.iter().enumerate() {
+        for (j, other) in &columns[..=k] {
+            let product = dot(one, other);
+            matrix[(*i, *j)] += product;
+            if i != j {
+                matrix[(*j, *i)] += product;
+            }
+        }
     }
 }
 
@@ -361,6 +443,21 @@ impl Problem {
 
     /// Fits a structure from a start, under one colour of noise.
     pub fn fit(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], colour: &Colour) -> Fit {
+        self.fit_from(structure, theta, initial, colour, None)
+    }
+
+    /// Fits a structure of which sensitivities near the start are known.
+    ///
+    /// Sensitivities are computed anew only when a step did not do what they promised: most terms change the response so
+    /// little that one set serves the whole search.
+    pub fn fit_from(
+        &self,
+        structure: &Structure,
+        theta: &[f64],
+        initial: &[[f64; 2]],
+        colour: &Colour,
+        known: Option<Linear>,
+    ) -> Fit {
         let whiteners = self.whiteners(colour);
         let entries = self.entries(structure);
         let mut theta: Vec<f64> =
@@ -369,22 +466,30 @@ impl Problem {
         let mut residual = self.residual(structure, &theta, &initial);
         let mut rss = whitened(&residual, &whiteners);
         let mut replays = 1;
-        let mut damping = 1e-3;
-        let observations = self.observations() as f64;
+        let mut damping = SMALLEST_DAMPING;
+        let negligible = |rss: f64| NEGLIGIBLE * rss / self.observations() as f64;
         let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
+        // Whitened columns; `None` when they have to be computed anew.
+        let mut sensitivities = known.map(|linear| (linear.whitened(&whiteners), false));
         for _ in 0..MOST_STEPS {
             if !rss.is_finite() {
                 break;
             }
-            let linear = self.linear_at(structure, &theta, &initial, &entries, residual.clone());
-            replays += linear.replays;
-            let normal = linear.normal(&whiteners);
+            let (columns, fresh) = sensitivities.take().unwrap_or_else(|| {
+                let linear = self.linear_at(structure, &theta, &initial, &entries, residual.clone());
+                replays += linear.replays;
+                (linear.whitened(&whiteners), true)
+            });
+            let normal = columns.normal(&residual, &whiteners);
             let mut improved = None;
-            for _ in 0..MOST_DAMPINGS {
-                let Some(step) = self.step(&normal, damping, &theta, &entries, &fitted) else {
-                    damping *= 10.0;
+            for _ in 0..if fresh { MOST_DAMPINGS } else { 1 } {
+                let Some((step, promised)) = self.step(&normal, damping, &theta, &entries, &fitted) else {
+                    damping = 10.0 * damping.max(1e-7);
                     continue;
                 };
+                if promised < negligible(rss) && fresh {
+                    break;
+                }
                 let mut next = theta.clone();
                 for (place, &k) in fitted.iter().enumerate() {
                     next[k] = (theta[k] + step[place]).clamp(entries[k].lowest, entries[k].highest);
@@ -398,23 +503,46 @@ impl Problem {
                 replays += 1;
                 let lower = whitened(&trial, &whiteners);
                 if lower < rss {
-                    improved = Some((next, start, trial, lower));
-                    damping = (damping * 0.1).max(1e-9);
+                    improved = Some((next, start, trial, lower, promised));
+                    damping = if damping <= 1e-6 { SMALLEST_DAMPING } else { 0.1 * damping };
                     break;
                 }
-                damping = (damping * 8.0).max(1e-6);
+                damping = (damping * 8.0).max(1e-4);
             }
-            let Some((next, start, trial, lower)) = improved else { break };
+            let Some((next, start, trial, lower, promised)) = improved else {
+                if fresh { break } else { continue };
+            };
             let gain = rss - lower;
-            (theta, initial, residual, rss) = (next, start, trial, lower);
-            if gain < NEGLIGIBLE * rss / observations {
+            let surprise = (gain - promised).abs() / promised;
+            if damping <= 1e-6 && surprise < LESSON {
+                if surprise < SURPRISE && promised < negligible(rss) {
+                    (theta, initial, residual, rss) = (next, start, trial, lower);
+                    break;
+                }
+                let mut columns = columns;
+                if surprise >= SURPRISE {
+                    let mut step = DVector::zeros(columns.matrix.nrows());
+                    for (place, &k) in fitted.iter().enumerate() {
+                        step[place] = next[k] - theta[k];
+                    }
+                    for (record, (to, from)) in start.iter().zip(&initial).enumerate() {
+                        step[fitted.len() + 2 * record] = to[0] - from[0];
+                        step[fitted.len() + 2 * record + 1] = to[1] - from[1];
+                    }
+                    columns.learn(&step, &residual, &trial, &whiteners);
+                }
+                sensitivities = Some((columns, false));
+            } else if gain < negligible(rss) && fresh {
+                (theta, initial, residual, rss) = (next, start, trial, lower);
                 break;
             }
+            (theta, initial, residual, rss) = (next, start, trial, lower);
         }
         self.judged(structure, theta, initial, residual, rss, &whiteners, colour, replays)
     }
 
-    /// A damped step; parameters that stand at a bound and want to leave it stay.
+    /// A damped step and how much it lowers RSS if the heading is linear; parameters that would leave their range go to its
+    /// end.
     fn step(
         &self,
         normal: &Normal,
@@ -422,24 +550,37 @@ impl Problem {
         theta: &[f64],
         entries: &[Entry],
         fitted: &[usize],
-    ) -> Option<DVector<f64>> {
-        let mut matrix = normal.matrix.clone();
-        let mut gradient = normal.gradient.clone();
+    ) -> Option<(DVector<f64>, f64)> {
+        let mut fixed: Vec<Option<f64>> = vec![None; normal.gradient.len()];
         for _ in 0..fitted.len() + 1 {
-            let step = solve(&matrix, &gradient, damping)?;
-            let stuck: Vec<usize> = (0..fitted.len())
-                .filter(|&place| {
-                    let (x, entry) = (theta[fitted[place]], &entries[fitted[place]]);
-                    (x <= entry.lowest && step[place] < 0.0) || (x >= entry.highest && step[place] > 0.0)
-                })
-                .collect();
-            if stuck.is_empty() {
-                return Some(step);
+            let mut matrix = normal.matrix.clone();
+            let mut gradient = normal.gradient.clone();
+            for (place, &own) in fixed.iter().enumerate().filter_map(|(place, own)| Some((place, own.as_ref()?))) {
+                gradient.axpy(-own, &normal.matrix.column(place), 1.0);
             }
-            for place in stuck {
+            for place in (0..fixed.len()).filter(|&place| fixed[place].is_some()) {
                 matrix.row_mut(place).fill(0.0);
                 matrix.column_mut(place).fill(0.0);
                 gradient[place] = 0.0;
+            }
+            let mut step = solve(&matrix, &gradient, damping)?;
+            for (place, own) in fixed.iter().enumerate() {
+                step[place] = own.unwrap_or(step[place]);
+            }
+            let beyond: Vec<(usize, f64)> = (0..fitted.len())
+                .filter(|&place| fixed[place].is_none())
+                .filter_map(|place| {
+                    let (x, entry) = (theta[fitted[place]], &entries[fitted[place]]);
+                    let inside = (x + step[place]).clamp(entry.lowest, entry.highest);
+                    (inside != x + step[place]).then_some((place, inside - x))
+                })
+                .collect();
+            if beyond.is_empty() {
+                let promised = 2.0 * step.dot(&normal.gradient) - (&normal.matrix * &step).dot(&step);
+                return Some((step, promised));
+            }
+            for (place, own) in beyond {
+                fixed[place] = Some(own);
             }
         }
         None

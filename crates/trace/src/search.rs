@@ -6,6 +6,8 @@
 //! likelihood ratio against the model without it, each with the noise that suits it best, passes the threshold. If a random
 //! moment is still needed, terms are looked for once more under it.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
 use ship::narrow_band::NarrowBand;
@@ -61,6 +63,12 @@ pub struct Tried {
 
 /// Later rounds fit only this many candidates, those with the largest score.
 const SHORT_LIST: usize = 6;
+
+/// Step of a tangent in units of the scale of a parameter.
+const TANGENT: f64 = 1e-5;
+
+/// A column of every record in which the unknown acts.
+type Column = Vec<Option<Vec<f64>>>;
 
 /// Search over one problem.
 pub struct Search<'a> {
@@ -178,21 +186,19 @@ impl Search<'_> {
         Model { structure, plain, judged }
     }
 
-    /// Fits a model with one more term from every start of a candidate, plainly.
-    fn plain(&self, model: &Model, candidate: &Candidate, from: &Fit, colour: &Colour) -> (Structure, Fit) {
+    /// Fits a model with one more term from every start of a candidate, under one colour; `linear` are the sensitivities of
+    /// the model at `from`.
+    fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, linear: &Linear, colour: &Colour) -> (Structure, Fit) {
         let structure = model.structure.with(candidate.term.clone());
-        let scanned;
-        let starts = if candidate.starts.is_empty() {
-            scanned = transient::starts(self.problem, &model.structure, from, &candidate.term);
-            &scanned
-        } else {
-            &candidate.starts
-        };
-        let best = starts
+        let own = model.structure.free_count();
+        let best = self
+            .starts(candidate, from, linear)
             .iter()
             .map(|start| {
                 let theta = [from.theta.as_slice(), start].concat();
-                self.problem.fit(&structure, &theta, &from.initial, colour)
+                let mut known = linear.clone();
+                known.insert(own, self.columns(&structure, from, start, candidate).1);
+                self.problem.fit_from(&structure, &theta, &from.initial, colour, Some(known))
             })
             .min_by(|one, other| one.deviance.total_cmp(&other.deviance));
         match best {
@@ -201,25 +207,27 @@ impl Search<'_> {
         }
     }
 
+    fn starts<'b>(&self, candidate: &'b Candidate, from: &Fit, linear: &Linear) -> Cow<'b, [Vec<f64>]> {
+        if candidate.starts.is_empty() {
+            Cow::Owned(transient::starts(self.problem, from, linear, &candidate.term))
+        } else {
+            Cow::Borrowed(&candidate.starts)
+        }
+    }
+
     /// Approximate gain in −2 log L of a candidate from the sensitivities at a fit: a score test that needs no refit.
     fn score(&self, model: &Model, fit: &Fit, linear: &Linear, candidate: &Candidate) -> f64 {
         let n = self.problem.observations() as f64;
         let structure = model.structure.with(candidate.term.clone());
         let whiteners = self.problem.whiteners(&fit.colour);
-        let scanned;
-        let starts = if candidate.starts.is_empty() {
-            scanned = transient::starts(self.problem, &model.structure, fit, &candidate.term);
-            &scanned
-        } else {
-            &candidate.starts
-        };
+        let starts = self.starts(candidate, fit, linear);
         starts
             .iter()
             .map(|start| {
-                let columns = self.columns(&structure, fit, start, candidate);
+                let (being, tangents) = self.columns(&structure, fit, start, candidate);
                 let mut linear = linear.clone();
                 let own = linear.unknowns();
-                for column in columns {
+                for column in being.into_iter().chain(tangents) {
                     linear.push(column);
                 }
                 let (without, with) = linear.explained(&whiteners, own);
@@ -235,7 +243,7 @@ impl Search<'_> {
         fit: &Fit,
         start: &[f64],
         candidate: &Candidate,
-    ) -> Vec<Vec<Option<Vec<f64>>>> {
+    ) -> (Option<Column>, Vec<Column>) {
         let only = candidate.term.only;
         let replay = |own: &[f64]| -> Vec<Option<Vec<f64>>> {
             let theta = [fit.theta.as_slice(), own].concat();
@@ -262,17 +270,19 @@ impl Search<'_> {
                 Some(source.observed.iter().zip(&fit.residual[record]).map(|(&row, e)| source.heading[row] - e).collect())
             })
             .collect();
-        let mut columns = Vec::new();
         let being = less(&here, &without);
-        if being.iter().flatten().flatten().any(|&x| x != 0.0) {
-            columns.push(being);
-        }
-        for k in (0..start.len()).filter(|k| !candidate.term.held.contains(k)) {
+        let acts = being.iter().flatten().flatten().any(|&x| x != 0.0);
+        let tangents = (0..start.len()).filter(|k| !candidate.term.held.contains(k)).map(|k| {
+            let size = TANGENT * candidate.term.scale[k];
+            let size = if start[k] + size > candidate.term.highest[k] { -size } else { size };
             let mut moved = start.to_vec();
-            moved[k] += 1e-4 * candidate.term.scale[k];
-            columns.push(less(&replay(&moved), &here));
-        }
-        columns
+            moved[k] += size;
+            let mut column = less(&replay(&moved), &here);
+            column.iter_mut().flatten().flatten().for_each(|x| *x /= size);
+            column
+        });
+        let tangents = tangents.collect();
+        (acts.then_some(being), tangents)
     }
 
     /// Tries candidates on a model; with `short_list` only those with the best scores are fitted.
@@ -280,10 +290,10 @@ impl Search<'_> {
     /// Under white noise fits are compared as they are. Under a random moment every fit finds its own level of it.
     pub fn try_all(&self, model: &Model, under_moment: bool, short_list: bool) -> Vec<Tried> {
         let fit = if under_moment { &model.judged } else { &model.plain };
+        let linear = self.linear(&model.structure, fit);
         let mut places: Vec<usize> =
             (0..self.candidates.len()).filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term)).collect();
         if short_list {
-            let linear = self.linear(&model.structure, fit);
             let mut scored: Vec<(f64, usize)> = places
                 .par_iter()
                 .map(|&place| (self.score(model, fit, &linear, &self.candidates[place]), place))
@@ -291,14 +301,18 @@ impl Search<'_> {
             scored.sort_by(|one, other| other.0.total_cmp(&one.0));
             places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
         }
+        let plainly = under_moment.then(|| self.linear(&model.structure, &model.plain));
         let mut tried: Vec<Tried> = places
             .into_par_iter()
             .map(|place| {
                 let candidate = &self.candidates[place];
                 let colour = Colour { moment: None, waves: model.plain.colour.waves };
-                let (structure, plain) = self.plain(model, candidate, &model.plain, &colour);
+                let (structure, plain) = match &plainly {
+                    Some(plainly) => self.with_term(model, candidate, &model.plain, plainly, &colour),
+                    None => self.with_term(model, candidate, &model.plain, &linear, &colour),
+                };
                 let tried = if under_moment {
-                    let (_, under) = self.plain(model, candidate, &model.judged, &model.judged.colour);
+                    let (_, under) = self.with_term(model, candidate, fit, &linear, &fit.colour);
                     let mut tried = self.judge(structure, plain);
                     if under.bic < tried.judged.bic {
                         tried.judged = under;

@@ -102,6 +102,11 @@ impl Structure {
         2 + self.biases()
     }
 
+    /// Number of fitted parameters.
+    pub fn free_count(&self) -> usize {
+        self.base_count() + self.terms.iter().map(Term::freedom).sum::<usize>()
+    }
+
     /// The same with one more term.
     pub fn with(&self, term: Term) -> Self {
         let mut more = self.clone();

@@ -4,8 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Problem};
-use crate::structure::{Structure, Term};
+use crate::fit::{Fit, Linear, Problem};
+use crate::structure::Term;
 
 /// Lengths of the boxes as shares of the record.
 const LENGTHS: [f64; 4] = [1.0 / 24.0, 1.0 / 12.0, 1.0 / 6.0, 1.0 / 3.0];
@@ -14,11 +14,12 @@ const LENGTHS: [f64; 4] = [1.0 / 24.0, 1.0 / 12.0, 1.0 / 6.0, 1.0 / 3.0];
 const STARTS: usize = 2;
 
 /// Starts (m, t_c, d) for a transient on top of a fit, the most promising first.
-pub fn starts(problem: &Problem, structure: &Structure, fit: &Fit, term: &Term) -> Vec<Vec<f64>> {
+///
+/// `linear` are residual and sensitivities at that fit.
+pub fn starts(problem: &Problem, fit: &Fit, linear: &Linear, term: &Term) -> Vec<Vec<f64>> {
     let number = term.only.unwrap_or(0);
     let record = &problem.records[number];
     let whitener = &problem.whiteners(&fit.colour)[number];
-    let linear = problem.linear(structure, &fit.theta, &fit.initial, &problem.entries(structure));
     let Some((columns, residual)) = linear.whitened_block(number, whitener) else { return Vec::new() };
     let p = columns.len();
     let gram = DMatrix::from_fn(p, p, |i, j| dot(&columns[i], &columns[j]));
