@@ -78,11 +78,13 @@ pub(crate) struct Sheet {
     pub theme: Theme,
     pub scene: Scene,
     y: f64,
+    /// Left edge of the strip that is being filled, points.
+    edge: f64,
 }
 
 impl Sheet {
     pub(crate) fn new(theme: &Theme, title: Option<&str>) -> Self {
-        let mut sheet = Self { theme: *theme, scene: Scene::default(), y: 0.5 * theme.small_font };
+        let mut sheet = Self { theme: *theme, scene: Scene::default(), y: 0.5 * theme.small_font, edge: 0.0 };
         if let Some(title) = title {
             let size = theme.title_font;
             for line in wrap(title, size, true, theme.width - 2.0 * theme.small_font) {
@@ -153,6 +155,28 @@ impl Sheet {
     /// Distance between panels side by side.
     pub(crate) fn gap(theme: &Theme) -> f64 {
         2.6 * theme.tick_font
+    }
+
+    /// How far down the page the sheet is filled, points.
+    pub(crate) fn height(&self) -> f64 {
+        self.y
+    }
+
+    /// Goes on at another height, for what stands beside what was drawn.
+    pub(crate) fn rewind(&mut self, y: f64) {
+        self.y = y;
+    }
+
+    /// Draws a grid into a strip of the page: its left edge and its width, points.
+    pub(crate) fn grid_within(&mut self, grid: Grid, (left, width): (f64, f64)) -> Vec<Panel> {
+        let page = self.theme;
+        let margin = self.left_margin(&grid);
+        // The strip is laid out like a page that ends where it ends.
+        self.theme.width = left + width;
+        self.edge = left;
+        let panels = self.grid(Grid { left: Some(left + margin), ..grid });
+        (self.theme, self.edge) = (page, 0.0);
+        panels
     }
 
     /// Draws the frames and returns the panels, row by row.
@@ -275,7 +299,7 @@ impl Sheet {
     fn vertical_title(&mut self, lines: impl IntoIterator<Item = String>, middle: f64) {
         let theme = self.theme;
         for (i, line) in lines.into_iter().enumerate() {
-            let x = 0.5 * theme.small_font + (0.85 + 1.2 * i as f64) * theme.label_font;
+            let x = self.edge + 0.5 * theme.small_font + (0.85 + 1.2 * i as f64) * theme.label_font;
             let text = Text { turned: true, ..Text::new(line, theme.label_font).anchor(Anchor::Middle) };
             self.scene.text(Layer::Frame, (x, middle), text);
         }

@@ -18,6 +18,10 @@ pub enum Origin {
     Published,
     /// The Cramér–Rao bound.
     Bound,
+    /// A model before something was added to it.
+    Before,
+    /// The same model after.
+    After,
     /// An identification method with its usual settings, by its id.
     Method(String),
     /// The same method with other settings.
@@ -39,6 +43,8 @@ impl Origin {
             Self::Truth => "truth",
             Self::Published => "published",
             Self::Bound => "Cramér–Rao bound",
+            Self::Before => "before",
+            Self::After => "after",
             Self::Method(label) | Self::Variant { label, .. } => label,
         }
     }
@@ -50,6 +56,8 @@ impl Origin {
             Self::Truth => Look::new(INK, Marker::Circle, SOLID),
             Self::Published => Look::new(RECORD, Marker::Cross, DASHED),
             Self::Bound => Look::new(INK, Marker::Plus, DOTTED),
+            Self::Before => Look::new(RUDDER, Marker::Square, DASHED),
+            Self::After => Look::new(HEADING, Marker::Circle, SOLID),
             Self::Method(id) => method_look(id),
             Self::Variant { method, number, .. } => variant_look(method, *number),
         }

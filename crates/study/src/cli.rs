@@ -9,7 +9,7 @@ use report::Theme;
 
 use crate::failure::Failure;
 use crate::plan::Shard;
-use crate::{check, fit, list, merge, overview, publish, run, screen};
+use crate::{check, fit, list, merge, overview, publish, run, screen, trace};
 
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
 #[derive(Debug, Parser)]
@@ -67,7 +67,7 @@ const MOST_THREADS: i64 = 1024;
 /// Options every command understands.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Folder for results [default: `results/SCENARIO`, or `./TRIAL-fit`]
+    /// Folder for results [default: `results/SCENARIO`, or `./TRIAL-fit`, `./TRIAL-trace`]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Number of threads [default: all cores]; the results do not depend on it
@@ -107,6 +107,13 @@ enum Command {
     Fit {
         #[command(flatten)]
         request: FitRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Close the loop on records: fit, look at what is left, name the effect the model lacks, add it: trace.json, report, plots
+    Trace {
+        #[command(flatten)]
+        request: TraceRequest,
         #[command(flatten)]
         common: Common,
     },
@@ -170,6 +177,42 @@ pub struct FitRequest {
     pub columns: Option<PathBuf>,
 }
 
+/// What `study trace` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct TraceRequest {
+    /// Records of one ship, analysed together
+    #[arg(required = true, value_name = "TRIAL")]
+    pub trials: Vec<PathBuf>,
+    /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not kept
+    #[arg(long, value_name = "TRIAL")]
+    pub validate: Vec<PathBuf>,
+    /// Description of the columns of the records (a sidecar)
+    #[arg(long, value_name = "FILE.toml")]
+    pub columns: Option<PathBuf>,
+    /// Give every record a rudder bias of its own
+    #[arg(long)]
+    pub own_bias: bool,
+    /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
+    #[arg(long, value_name = "CHANNEL", value_enum)]
+    pub without: Vec<Withheld>,
+    /// How figures are drawn
+    #[command(flatten)]
+    pub style: Style,
+}
+
+/// Channels that can be withheld from an analysis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Withheld {
+    /// Wind, relative and true
+    Wind,
+    /// Speed and surge velocity
+    Speed,
+    /// Propeller revolutions
+    Propeller,
+    /// Sway velocity
+    Sway,
+}
+
 /// What can be listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Listed {
@@ -207,6 +250,10 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         (Some(Command::Fit { request, common }), _) => {
             use_threads(&common)?;
             fit::run(&request, &common)
+        }
+        (Some(Command::Trace { request, common }), _) => {
+            use_threads(&common)?;
+            trace::run(&request, &common)
         }
         (Some(Command::Check { scenarios }), _) => check::run(&scenarios),
         (Some(Command::List { what, common }), _) => list::run(what, &common),

@@ -11,11 +11,12 @@ use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::number::{fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
-use trial::{Origin, Reading, Trial, ZigZag, imo};
+use trial::{Trial, ZigZag, imo};
 
 use crate::cli::{Common, FitRequest, Format};
 use crate::failure::{Failure, OnPath, result_folder};
 use crate::json::{self, CriterionEntry, FitFile, MethodEntry, TrialEntry, Validation, ZigZagEntry};
+use crate::records::{file_of, names, read, warn_of_repetition};
 use crate::{present, progress, screen};
 use figures::Drawn;
 
@@ -117,44 +118,6 @@ fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier
         .collect())
 }
 
-fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
-    if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
-    {
-        return Err(Failure::input(format!(
-            "{0}: this is a TOML file and no record; expected a table of time, heading and rudder. A scenario is run with \
-             `study {0}`, a description of columns is given with `--columns {0}`",
-            path.display()
-        )));
-    }
-    let reading = match columns {
-        Some(columns) => trial::read_with(path, Some(columns)),
-        None => trial::read(path),
-    };
-    let Reading { trial, warnings: found } = reading.map_err(Failure::input)?;
-    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
-    Ok(trial)
-}
-
-/// The same record counts only once: given twice for identification its errors come out too small, and on a record that was
-/// fitted there is nothing to validate.
-fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec<String>) {
-    for (number, trial) in trials.iter().enumerate() {
-        if trials[..number].iter().any(|before| file_of(before).1 == file_of(trial).1) {
-            let (file, _) = file_of(trial);
-            warnings.push(format!(
-                "{file}: given twice with the same content; it counts twice, and the intervals are too narrow"
-            ));
-        }
-    }
-    for other in others {
-        if trials.iter().any(|trial| file_of(trial).1 == file_of(other).1) {
-            let (file, _) = file_of(other);
-            warnings
-                .push(format!("{file}: used for identification and for validation; the error on it validates nothing"));
-        }
-    }
-}
-
 /// The message when no method gives an answer: every reason once.
 fn unusable(path: &Path, entries: &[MethodEntry], warnings: &[String]) -> Failure {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
@@ -214,31 +177,12 @@ fn reasons(entries: &[MethodEntry]) -> String {
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
-/// A name for every record: its own, with a number where several have the same.
-fn names<'a>(trials: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for name in trials {
-        let numbered = (2..).map(|number| format!("{name}-{number}"));
-        let unique = std::iter::once(name.to_owned()).chain(numbered).find(|candidate| !names.contains(candidate));
-        names.push(unique.expect("one of the endless numbers is free"));
-    }
-    names
-}
-
 fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
     Validation {
         file: file_of(other).0.to_owned(),
         heading_rmse_deg: estimate
             .and_then(|estimate| replay(other, &estimate.response))
             .map(|replay| replay.heading_rmse_deg),
-    }
-}
-
-/// File and hash of a measured record.
-fn file_of(trial: &Trial) -> (&str, &str) {
-    match trial.origin() {
-        Origin::Measured { file, sha256 } => (file, sha256),
-        Origin::Simulated { scenario, .. } => (scenario, ""),
     }
 }
 
@@ -298,16 +242,4 @@ fn characteristics(entry: &ZigZagEntry) -> String {
 
 fn seconds(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "not measured".to_owned(), |value| format!("{} s", fixed(value, decimals)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::names;
-
-    #[test]
-    fn no_two_records_have_the_same_name() {
-        assert_eq!(names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
-        assert_eq!(names(["a", "a-2", "a"].into_iter()), ["a", "a-2", "a-3"]);
-        assert_eq!(names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
-    }
 }

@@ -20,7 +20,7 @@ pub struct Value {
 
 impl Value {
     /// A quantity, multiplied by `factor` for its unit.
-    fn of(quantity: Quantity, factor: f64) -> Self {
+    pub fn of(quantity: Quantity, factor: f64) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         Self {
             value: finite(quantity.value * factor),

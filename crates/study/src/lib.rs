@@ -9,7 +9,7 @@
 //! | many of them, in order | [`plan`], [`stopping`], [`collect`], [`unfinished`], [`merge`] |
 //! | what is stored | [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`] |
 //! | what is said about it | [`summary`], [`statistics`], [`present`], [`publish`], [`overview`] |
-//! | measured records | [`fit`] |
+//! | measured records | [`fit`], [`mod@trace`] |
 //! | commands and exit codes | [`cli`], [`failure`], [`screen`] |
 
 pub mod check;
@@ -28,6 +28,7 @@ pub mod plan;
 pub mod present;
 mod progress;
 pub mod publish;
+mod records;
 pub mod rows;
 pub mod run;
 pub mod scenario;
@@ -38,4 +39,5 @@ pub mod stopping;
 pub mod store;
 pub mod summary;
 pub mod timings;
+pub mod trace;
 pub mod unfinished;

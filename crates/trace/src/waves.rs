@@ -34,7 +34,7 @@ pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option
         return None;
     }
     let mut best: Option<(f64, NarrowBand)> = None;
-    let mut consider = |waves: NarrowBand, best: &mut Option<(f64, NarrowBand)>| {
+    let consider = |waves: NarrowBand, best: &mut Option<(f64, NarrowBand)>| {
         let height = value(waves);
         if best.as_ref().is_none_or(|(lowest, _)| height < *lowest) {
             *best = Some((height, waves));

@@ -166,6 +166,12 @@ impl Trial {
         Self { particulars: Some(particulars), ..self }
     }
 
+    /// The same record without some channels; heading and rudder cannot be left out.
+    pub fn without(mut self, channels: &[Channel]) -> Self {
+        self.channels.retain(|channel, _| *channel == Channel::Heading || !channels.contains(channel));
+        self
+    }
+
     /// Name of the record: the stem of its file, or the cell of its scenario.
     pub fn name(&self) -> &str {
         &self.name

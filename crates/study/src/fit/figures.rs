@@ -7,16 +7,13 @@ use identify::Estimate;
 use identify::replay::replay;
 use rayon::prelude::*;
 use report::figures::{self, Fit, RecordFit, Replay, Replays};
-use report::{Curve, Figure, Origin, Theme};
+use report::{Figure, Origin, Theme};
 use trial::{Trial, ZigZag};
 
 use crate::failure::Failure;
 use crate::json::MethodEntry;
 use crate::publish::drawings::write_figure;
-use crate::showcase::{curve, zigzag_figure};
-
-/// Rows a figure can show.
-const DRAWN_ROWS: usize = 4000;
+use crate::showcase::{thinned, zigzag_figure};
 
 /// The method whose fit is drawn on its own where it has one.
 const BEST: &str = "output-error";
@@ -89,10 +86,4 @@ fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {
         fits: fits.into_iter().collect(),
     };
     figures::record_fit(&data, theme)
-}
-
-fn thinned(time: &[f64], angle: &[f64]) -> Curve {
-    let step = time.len().div_ceil(DRAWN_ROWS).max(1);
-    let every = |values: &[f64]| values.iter().copied().step_by(step).collect::<Vec<f64>>();
-    curve(&every(time), &every(angle))
 }

@@ -1,0 +1,77 @@
+//! Measured records as commands are given them: read with their warnings, told apart by name.
+
+use std::path::Path;
+
+use trial::{Origin, Reading, Trial};
+
+use crate::failure::Failure;
+
+/// Reads a record; what the reader noticed goes to `warnings`.
+pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
+    if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
+    {
+        return Err(Failure::input(format!(
+            "{0}: this is a TOML file and no record; expected a table of time, heading and rudder. A scenario is run with \
+             `study {0}`, a description of columns is given with `--columns {0}`",
+            path.display()
+        )));
+    }
+    let reading = match columns {
+        Some(columns) => trial::read_with(path, Some(columns)),
+        None => trial::read(path),
+    };
+    let Reading { trial, warnings: found } = reading.map_err(Failure::input)?;
+    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+    Ok(trial)
+}
+
+/// The same record counts only once: given twice for identification its errors come out too small, and on a record that was
+/// fitted there is nothing to validate.
+pub fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec<String>) {
+    for (number, trial) in trials.iter().enumerate() {
+        if trials[..number].iter().any(|before| file_of(before).1 == file_of(trial).1) {
+            let (file, _) = file_of(trial);
+            warnings.push(format!(
+                "{file}: given twice with the same content; it counts twice, and the intervals are too narrow"
+            ));
+        }
+    }
+    for other in others {
+        if trials.iter().any(|trial| file_of(trial).1 == file_of(other).1) {
+            let (file, _) = file_of(other);
+            warnings
+                .push(format!("{file}: used for identification and for validation; the error on it validates nothing"));
+        }
+    }
+}
+
+/// A name for every record: its own, with a number where several have the same.
+pub fn names<'a>(trials: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in trials {
+        let numbered = (2..).map(|number| format!("{name}-{number}"));
+        let unique = std::iter::once(name.to_owned()).chain(numbered).find(|candidate| !names.contains(candidate));
+        names.push(unique.expect("one of the endless numbers is free"));
+    }
+    names
+}
+
+/// File and hash of a measured record.
+pub fn file_of(trial: &Trial) -> (&str, &str) {
+    match trial.origin() {
+        Origin::Measured { file, sha256 } => (file, sha256),
+        Origin::Simulated { scenario, .. } => (scenario, ""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names;
+
+    #[test]
+    fn no_two_records_have_the_same_name() {
+        assert_eq!(names(["a", "b", "a", "a"].into_iter()), ["a", "b", "a-2", "a-3"]);
+        assert_eq!(names(["a", "a-2", "a"].into_iter()), ["a", "a-2", "a-3"]);
+        assert_eq!(names(["a", "a", "a-2"].into_iter()), ["a", "a-2", "a-2-2"]);
+    }
+}

@@ -1,0 +1,105 @@
+//! `study trace`: close the loop on measured records. The analysis is that of the crate [`trace`]; here its words, tables,
+//! figures and files are made.
+
+mod figures;
+mod file;
+mod page;
+mod planned;
+
+use std::fs;
+use std::path::PathBuf;
+
+use ::trace::{Analysis, Settings};
+use trial::{Channel, Trial};
+
+use crate::cli::{Common, Format, TraceRequest, Withheld};
+use crate::failure::{Failure, OnPath, result_folder};
+use crate::records::{names, read, warn_of_repetition};
+use crate::{present, screen};
+
+pub use file::TraceFile;
+
+/// Everything that is said about one analysis.
+pub struct Told<'a> {
+    /// Records that were fitted.
+    pub trials: &'a [Trial],
+    /// Records that were not.
+    pub others: &'a [Trial],
+    /// A name for every record, no two the same: first the fitted ones.
+    pub names: Vec<String>,
+    /// The analysis.
+    pub analysis: &'a Analysis,
+    /// What planned trials would tell, best first.
+    pub prospects: Vec<::trace::analysis::Prospect>,
+}
+
+/// Analyses the records, prints what was found, writes `trace.json`, `report.md` and figures.
+///
+/// Fails when a record cannot be read, and when the base cannot be fitted.
+pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
+    let theme = request.style.theme()?;
+    let mut warnings = Vec::new();
+    let withheld: Vec<Channel> = request.without.iter().flat_map(|what| channels(*what)).copied().collect();
+    let mut read_all = |paths: &[PathBuf]| {
+        paths
+            .iter()
+            .map(|path| Ok(read(path, request.columns.as_deref(), &mut warnings)?.without(&withheld)))
+            .collect::<Result<Vec<Trial>, Failure>>()
+    };
+    let trials = read_all(&request.trials)?;
+    let others = read_all(&request.validate)?;
+    warn_of_repetition(&trials, &others, &mut warnings);
+    let settings = Settings { own_bias: request.own_bias, ..Settings::default() };
+    let analysis = ::trace::trace(&trials, &others, &settings).map_err(|error| {
+        let first = request.trials[0].display();
+        Failure::input(format!("{first}: {error}; the record cannot be traced because no base model fits it"))
+    })?;
+    let folder = common.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-trace", trials[0].name())));
+    result_folder(&folder)?;
+    let planned = planned::trials(&analysis, &trials);
+    let told = Told {
+        names: names(trials.iter().chain(&others).map(Trial::name)),
+        prospects: analysis.prospects(&planned),
+        trials: &trials,
+        others: &others,
+        analysis: &analysis,
+    };
+    let write = |name: &str, text: String| {
+        let path = folder.join(name);
+        fs::write(&path, text).on("write", &path)
+    };
+    let json = serde_json::to_string_pretty(&TraceFile::of(&told)).on("describe", &folder.join("trace.json"))?;
+    write("trace.json", json + "\n")?;
+    let drawn = figures::draw(&told, &theme, &folder)?;
+    write("report.md", page::page(&told, &drawn))?;
+    if !common.quiet {
+        let table = present::render(&page::errors(&told), common.format);
+        let words = page::words(&told);
+        let notes = format!("results: {}", folder.join("trace.json").display());
+        if common.format == Format::Text {
+            screen::say(&format!("{words}\n\n{table}\n{notes}"))?;
+        } else {
+            // Another program reads the table: nothing else may stand beside it.
+            screen::say(table.trim_end())?;
+            screen::warn(&notes);
+        }
+    }
+    for warning in warnings {
+        screen::warn(&format!("warning: {warning}"));
+    }
+    Ok(())
+}
+
+fn channels(what: Withheld) -> &'static [Channel] {
+    match what {
+        Withheld::Wind => &[
+            Channel::WindRelativeSpeed,
+            Channel::WindRelativeFrom,
+            Channel::WindTrueSpeed,
+            Channel::WindTrueFrom,
+        ],
+        Withheld::Speed => &[Channel::Speed, Channel::Surge],
+        Withheld::Propeller => &[Channel::PropellerRate],
+        Withheld::Sway => &[Channel::Sway],
+    }
+}

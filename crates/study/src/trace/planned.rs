@@ -1,0 +1,71 @@
+//! Trials that could be run next with the fitted ship: standard manoeuvres, simulated without noise.
+
+use ::trace::Analysis;
+use ship::angle::{from_deg, to_deg};
+use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
+use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
+use trial::Trial;
+
+/// Zig-zags that are considered: rudder and heading, deg, first execute to starboard.
+const ZIGZAGS: [[f64; 2]; 6] = [[5.0, 5.0], [10.0, 10.0], [10.0, 20.0], [20.0, 10.0], [20.0, 20.0], [30.0, 30.0]];
+
+/// Executes of a planned zig-zag.
+const EXECUTES: usize = 5;
+
+/// Rudder rates a steering gear can have, rad/s; outside, a recorded rudder says nothing about its gear.
+const RATES_DEG_S: [f64; 2] = [1.0, 20.0];
+
+/// Longest planned trial in lengths of the records.
+const LONGEST: f64 = 3.0;
+
+/// Every manoeuvre that the fitted ship can be steered through, with the sampling and the rudder rate of the records.
+pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
+    let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
+    let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
+        [(Side::Starboard, ""), (Side::Port, ", first execute to port")].map(|(first, words)| {
+            let end = ZigZagEnd::Executes(EXECUTES);
+            let zigzag = ZigZag { rudder: from_deg(rudder), heading: from_deg(heading), first, end };
+            (format!("{rudder:.0}/{heading:.0} zig-zag{words}"), Manoeuvre::ZigZag(zigzag))
+        })
+    });
+    let turn = (
+        String::from("35° turning circle"),
+        Manoeuvre::TurningCircle(TurningCircle {
+            rudder: from_deg(35.0),
+            side: Side::Starboard,
+            end: TurnEnd::Duration(0.5 * longest),
+        }),
+    );
+    let pull_out = (
+        String::from("pull-out after 20° of rudder"),
+        Manoeuvre::PullOut(PullOut {
+            rudder: from_deg(20.0),
+            side: Side::Starboard,
+            hold: 0.4 * longest,
+            duration: 0.4 * longest,
+        }),
+    );
+    zigzags
+        .chain([turn, pull_out])
+        .filter_map(|(name, manoeuvre)| {
+            let mut simulation = Simulation::new(Vessel::response(analysis.ship()), manoeuvre);
+            simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
+            simulation.recording.period = records[0].sampling_period();
+            simulation.longest_wait = LONGEST * longest;
+            let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
+            let is_manoeuvre = trial.duration() <= LONGEST * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
+            is_manoeuvre.then_some((name, trial))
+        })
+        .collect()
+}
+
+/// Rate at which the rudder of a record moves: the upper end of its steps, without the few largest.
+fn rudder_rate(record: &Trial) -> f64 {
+    let (time, rudder) = (record.time(), record.rudder());
+    let mut rates: Vec<f64> =
+        (1..record.len()).map(|row| ((rudder[row] - rudder[row - 1]) / (time[row] - time[row - 1])).abs()).collect();
+    rates.sort_by(f64::total_cmp);
+    let high = rates[(rates.len() - 1) * 98 / 100];
+    let [slowest, fastest] = RATES_DEG_S;
+    from_deg(to_deg(high).clamp(slowest, fastest))
+}
