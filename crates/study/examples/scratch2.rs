@@ -16,7 +16,7 @@ fn main() {
     let base = identify::output_error::Settings::default().build().unwrap().identify(std::slice::from_ref(&trial)).unwrap();
     let replay = identify::replay::replay(&trial, &base.response).unwrap();
     let initial = vec![[replay.heading[0], replay.yaw_rate[0]]];
-    let problem = Problem::new(vec![Record::averaged(&trial)], base.response.inverse_T, base.response.K_over_T);
+    let problem = Problem::new(vec![Record::averaged(&trial, base.response.T().abs())], base.response.inverse_T, base.response.K_over_T);
     let structure = Structure::base(1, false);
     let theta = vec![base.response.inverse_T, base.response.K_over_T, base.response.rudder_bias];
     let headings = problem.replay(&structure, &theta, &initial);
@@ -40,9 +40,9 @@ fn main() {
     }
     let start = search.base(structure, &theta, &initial);
     println!("base: plain {:.1} judged {:.1} {:?}", start.plain.bic, start.judged.bic, start.judged.colour);
-    let first = search.try_all(&start, false, false);
+    let first = search.try_all(&start, &start.plain, false);
     if std::env::args().nth(4).is_some() { for tried in &first {
-        println!("  {} {:?} gain {:.1} p {:.1e} theta {:?}", tried.model.plain.replays, list[tried.place].term.name(), tried.evidence.gain, tried.evidence.p_value, &tried.model.plain.theta[3..]);
+        println!("  {} {:?} gain {:.1} p {:.1e} theta {:?}", tried.fit.replays, list[tried.place].term.name(), tried.evidence.gain, tried.evidence.p_value, &tried.fit.theta[3..]);
     }}
     let model = search.run(&start, &first);
     println!("final plain {:.1} judged {:.1} {:?}", model.plain.bic, model.judged.bic, model.judged.colour);

@@ -22,7 +22,7 @@ use crate::noise::Moment;
 use crate::record::Record;
 use crate::search::{Evidence, Model, Search, Thresholds, Tried};
 use crate::separation::Ground;
-use crate::structure::Term;
+use crate::structure::{Structure, Term};
 
 /// Settings of an analysis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -267,9 +267,9 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let base = method.identify(trials)?;
     let first = base.response;
     let initial: Vec<[f64; 2]> = trials.iter().map(|trial| initial(trial, &first)).collect::<Result<_, _>>()?;
-    let records: Vec<Record> = trials.iter().map(Record::averaged).collect();
+    let records: Vec<Record> = trials.iter().map(|trial| Record::averaged(trial, first.T().abs())).collect();
     let problem = Problem::new(records, first.inverse_T, first.K_over_T);
-    let structure = crate::structure::Structure::base(trials.len(), settings.own_bias);
+    let structure = Structure::base(trials.len(), settings.own_bias);
     let mut theta = vec![first.inverse_T, first.K_over_T];
     theta.extend(std::iter::repeat_n(first.rudder_bias, structure.base_count() - 2));
     let headings = problem.replay(&structure, &theta, &initial);
@@ -278,13 +278,14 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let search = Search { problem: &problem, candidates: &candidate_terms, thresholds: settings.thresholds };
 
     let start = search.base(structure, &theta, &initial);
-    let tried = search.try_all(&start, false, false);
+    let tried = search.try_all(&start, &start.plain, false);
     let mut model = search.run(&start, &tried);
 
     let held_out: Vec<HeldOut> =
         validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
     let mut refused = Vec::new();
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
+    let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 
     let before: Vec<OnRecord> = on_records(trials, &problem, &start, &first)?;
     let after = if model.structure.terms.is_empty() && !settings.own_bias {
@@ -304,7 +305,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let covariance = parameter_covariance(&problem, &model, whiteness[1].lag1);
     let parameters = parameters(&problem, &model, covariance.as_ref(), &names);
     let indices = indices(&model, covariance.as_ref());
-    let report = Reporter { search: &search, settings, names: &names, start: &start, model: &model, tried: &tried };
+    let report =
+        Reporter { search: &search, settings, names: &names, start: &start, model: &model, tried: &tried, predicted: &predicted };
     let effects = report.effects(&parameters);
     let candidates = report.candidates(&effects);
     let unexplained = report.unexplained(trials, &after);
@@ -403,6 +405,48 @@ fn worse_on_others(held_out: &[HeldOut], less: &Model, more: &Model) -> Option<S
         )
     })
 }
+
+/// A term that is believed because it predicts records it was not fitted to.
+struct Predicted {
+    term: Term,
+    evidence: Evidence,
+    comparison: Comparison,
+}
+
+/// Adds terms whose evidence does not stand against a random moment, but which predict the held-out records: chance does
+/// not.
+fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
+    let mut predicted = Vec::new();
+    let errors = |structure: &Structure, fit: &Fit| -> Option<Vec<Errors>> {
+        let response = held_out::portable(structure, &fit.theta);
+        held_out.par_iter().map(|record| Some(record.judge(&response)?.1)).collect()
+    };
+    if held_out.is_empty() || model.judged.colour.moment.is_none() {
+        return predicted;
+    }
+    while model.structure.terms.len() < search.thresholds.most_terms {
+        let Some(before) = errors(&model.structure, &model.plain) else { break };
+        let tried = search.try_all(model, &model.plain, true);
+        let next = tried.into_iter().take(LOOKED_AT).find_map(|tried| {
+            let term = search.candidates[tried.place].term.clone();
+            if held_out::is_of_one_record(term.effect.id()) || !search.believes(&term, &tried.evidence) {
+                return None;
+            }
+            let comparison = Comparison::of(&before, &errors(&tried.structure, &tried.fit)?)?;
+            comparison.is_much_better().then_some((tried, term, comparison))
+        });
+        let Some((tried, term, comparison)) = next else { break };
+        *model = search.adopted(&tried);
+        predicted.push(Predicted { term, evidence: tried.evidence, comparison });
+        if model.judged.colour.moment.is_none() {
+            break;
+        }
+    }
+    predicted
+}
+
+/// Candidates, best first, whose prediction is looked at.
+const LOOKED_AT: usize = 4;
 
 /// A model on the records it was fitted to, all rows.
 fn on_records(
@@ -589,6 +633,8 @@ struct Reporter<'a> {
     model: &'a Model,
     /// All candidates on the base.
     tried: &'a [Tried],
+    /// Terms that are believed for what they predict.
+    predicted: &'a [Predicted],
 }
 
 impl Reporter<'_> {
@@ -605,8 +651,13 @@ impl Reporter<'_> {
             .enumerate()
             .map(|(place, (evidence, less))| {
                 let term = &structure.terms[place];
-                let aliases = self.aliases(place, &less);
-                let sentence = self.sentence(term, &evidence, shares[place], &aliases);
+                let stands = self.search.believes(term, &evidence);
+                let predicted = self.predicted.iter().find(|predicted| predicted.term.is(term)).filter(|_| !stands);
+                let aliases = self.aliases(place, &less, predicted.is_some());
+                let (evidence, sentence) = match predicted {
+                    Some(predicted) => (predicted.evidence, self.prediction(predicted, shares[place])),
+                    None => (evidence, self.sentence(term, &evidence, shares[place], &aliases)),
+                };
                 Traced {
                     id: term.effect.id(),
                     form: term.effect.form(),
@@ -641,20 +692,24 @@ impl Reporter<'_> {
         shares
     }
 
-    /// Rivals that explain the records as well as the term at `place` does in its stead.
-    fn aliases(&self, place: usize, less: &Model) -> Vec<(&'static str, &'static str)> {
+    /// Rivals that explain the records as well as the term at `place` does in its stead, under the same noise. A term that
+    /// is believed for what it predicts is compared as it was found, under white noise.
+    fn aliases(&self, place: usize, less: &Model, predicted: bool) -> Vec<(&'static str, &'static str)> {
         let own = &self.model.structure.terms[place];
-        let first_of_base = less.structure.terms.is_empty();
-        let judged = self.model.judged.colour.moment.is_some();
-        let rivals: Vec<usize> = if first_of_base && !judged {
-            self.tried.iter().filter(|tried| tried.model.judged.bic < self.model.judged.bic + ALIAS).map(|t| t.place).collect()
+        let with = if predicted { &self.model.plain } else { &self.model.judged };
+        let tried;
+        let rivals = if less.structure.terms.is_empty() && with.colour == self.start.plain.colour {
+            self.tried
         } else {
-            let tried = self.search.try_all(less, judged, false);
-            tried.iter().filter(|tried| tried.model.judged.bic < self.model.judged.bic + ALIAS).map(|t| t.place).collect()
+            // The model without the term, under the noise of the model with it.
+            let without = self.search.problem.fit(&less.structure, &less.plain.theta, &less.plain.initial, &with.colour);
+            tried = self.search.try_all(less, &without, false);
+            &tried
         };
         let mut aliases: Vec<(&'static str, &'static str)> = rivals
-            .into_iter()
-            .map(|rival| &self.search.candidates[rival].term)
+            .iter()
+            .filter(|tried| tried.fit.bic < with.bic + ALIAS)
+            .map(|tried| &self.search.candidates[tried.place].term)
             .filter(|rival| !rival.is(own) && !self.model.structure.terms.iter().any(|term| term.is(rival)))
             .map(|rival| (rival.effect.id(), rival.effect.form()))
             .collect();
@@ -681,6 +736,20 @@ impl Reporter<'_> {
             term.effect.form(),
             100.0 * share,
             evidence.gain
+        )
+    }
+
+    fn prediction(&self, predicted: &Predicted, share: f64) -> String {
+        format!(
+            "{} ({}) takes away {:.0} % of the mean square error of the base; against a random moment its evidence does not \
+             stand, but it multiplies the error on held-out records by {:.2} (full replay) and {:.2} (full and restarted \
+             replays together); BIC falls by {:.0} under white noise",
+            predicted.term.effect.id(),
+            predicted.term.effect.form(),
+            100.0 * share,
+            predicted.comparison.full,
+            predicted.comparison.mean,
+            predicted.evidence.gain
         )
     }
 
@@ -725,13 +794,13 @@ impl Reporter<'_> {
     fn candidates(&self, effects: &[Traced]) -> Vec<Considered> {
         let structure = &self.model.structure;
         let judged = self.model.judged.colour.moment.is_some();
+        let fit = if judged { &self.model.judged } else { &self.model.plain };
         // On the base itself the first round has told already.
         let last = if structure.terms.is_empty() && !judged {
             self.tried.to_vec()
         } else {
-            self.search.try_all(self.model, judged, false)
+            self.search.try_all(self.model, fit, false)
         };
-        let fit = if judged { &self.model.judged } else { &self.model.plain };
         let variance = fit.variance(self.search.problem.observations());
         let ground = Ground { problem: self.search.problem, structure, fit, variance };
         let log_n = (self.search.problem.observations() as f64).ln();
@@ -858,11 +927,11 @@ impl Reporter<'_> {
             })
             .collect();
         let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
-        let tried = search.try_all(self.model, true, false);
+        let tried = search.try_all(self.model, &self.model.judged, false);
         let best = tried.first().filter(|best| search.believes(&library[best.place].term, &best.evidence))?;
-        let near = tried.iter().take_while(|tried| tried.model.judged.bic < best.model.judged.bic + ALIAS);
+        let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);
         let term = &library[best.place].term;
-        let square: f64 = best.model.plain.residual.iter().flatten().map(|e| e * e).sum();
+        let square: f64 = search.adopted(best).plain.residual.iter().flatten().map(|e| e * e).sum();
         Some(Empirical {
             group: near.map(|tried| library[tried.place].term.effect.form()).collect(),
             equation: term.effect.equation(),
@@ -915,7 +984,7 @@ impl Analysis {
     fn ground<'a>(
         &self,
         problem: &'a Problem,
-        structure: &'a crate::structure::Structure,
+        structure: &'a Structure,
         fit: &'a Fit,
     ) -> Ground<'a> {
         Ground { problem, structure, fit, variance: self.model.plain.variance(self.problem.observations()) }
@@ -924,7 +993,7 @@ impl Analysis {
     fn prospect(&self, name: &str, trial: &Trial, now: Option<f64>) -> Prospect {
         let count = self.problem.records.len();
         let mut records = self.problem.records.clone();
-        let record = Record::averaged(trial);
+        let record = Record::averaged(trial, self.base.response.T().abs());
         let ship = self.ship();
         let rest = vec![[record.heading[record.observed[0]], 0.0]];
         let initial = errors::full(&ship, &record, &rest).map_or(rest[0], |replayed| replayed.initial);

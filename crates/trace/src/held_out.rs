@@ -69,10 +69,19 @@ pub struct Comparison {
 const FULL_TOLERANCE: f64 = 1.05;
 const MEAN_TOLERANCE: f64 = 1.01;
 
+/// Ratios below which a term is believed for its prediction alone.
+const FULL_GAIN: f64 = 0.95;
+const MEAN_GAIN: f64 = 0.9;
+
 impl Comparison {
     /// Whether the second model is worse.
     pub fn is_worse(&self) -> bool {
         self.full > FULL_TOLERANCE || self.mean > MEAN_TOLERANCE
+    }
+
+    /// Whether the second model is better by more than errors of parameters could make it.
+    pub fn is_much_better(&self) -> bool {
+        self.full < FULL_GAIN && self.mean < MEAN_GAIN
     }
 
     /// Compares errors over records, pooled row by row.

@@ -10,8 +10,14 @@ use ship::Polyline;
 use ship::replay::Recorded;
 use trial::{Channel, Trial};
 
-/// Rows beyond which neighbours are averaged.
-const MOST_ROWS: usize = 1500;
+/// Rows that are kept at least, however dense they are.
+const FEWEST_ROWS: usize = 400;
+
+/// Rows per time constant that are kept at least.
+const ROWS_PER_TIME: f64 = 20.0;
+
+/// Rows that are kept at most.
+const MOST_ROWS: usize = 6000;
 
 /// An interval of more than this many usual ones ends a group of rows that are averaged.
 const GAP: f64 = 3.0;
@@ -41,9 +47,12 @@ pub struct Record {
 }
 
 impl Record {
-    /// Takes a trial, averaged down to at most 1500 rows.
-    pub fn averaged(trial: &Trial) -> Self {
-        Self::new(trial, trial.len().div_ceil(MOST_ROWS))
+    /// Takes a trial with its rows averaged down to twenty per `time` (s, the time constant of the base), but to no fewer
+    /// than 400 and no more than 6000.
+    pub fn averaged(trial: &Trial, time: f64) -> Self {
+        let longest = time.min(0.1 * trial.duration()) / (ROWS_PER_TIME * trial.sampling_period());
+        let group = (longest as usize).min(trial.len() / FEWEST_ROWS).max(1);
+        Self::new(trial, group.max(trial.len().div_ceil(MOST_ROWS)))
     }
 
     /// Takes a trial with all its rows.

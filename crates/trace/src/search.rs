@@ -55,9 +55,11 @@ pub struct Evidence {
 pub struct Tried {
     /// The candidate's place in the list.
     pub place: usize,
-    /// Model with it.
-    pub model: Model,
-    /// Its evidence against the model without it.
+    /// Structure with it.
+    pub structure: Structure,
+    /// Its fit, under the colour of the fit it is compared with.
+    pub fit: Fit,
+    /// Its evidence against that fit.
     pub evidence: Evidence,
 }
 
@@ -285,11 +287,9 @@ impl Search<'_> {
         (acts.then_some(being), tangents)
     }
 
-    /// Tries candidates on a model; with `short_list` only those with the best scores are fitted.
-    ///
-    /// Under white noise fits are compared as they are. Under a random moment every fit finds its own level of it.
-    pub fn try_all(&self, model: &Model, under_moment: bool, short_list: bool) -> Vec<Tried> {
-        let fit = if under_moment { &model.judged } else { &model.plain };
+    /// Tries candidates on one fit of a model, all under the colour of that fit; with `short_list` only those with the
+    /// best scores are fitted. The lowest BIC comes first.
+    pub fn try_all(&self, model: &Model, fit: &Fit, short_list: bool) -> Vec<Tried> {
         let linear = self.linear(&model.structure, fit);
         let mut places: Vec<usize> =
             (0..self.candidates.len()).filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term)).collect();
@@ -301,32 +301,32 @@ impl Search<'_> {
             scored.sort_by(|one, other| other.0.total_cmp(&one.0));
             places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
         }
-        let plainly = under_moment.then(|| self.linear(&model.structure, &model.plain));
         let mut tried: Vec<Tried> = places
             .into_par_iter()
             .map(|place| {
                 let candidate = &self.candidates[place];
-                let colour = Colour { moment: None, waves: model.plain.colour.waves };
-                let (structure, plain) = match &plainly {
-                    Some(plainly) => self.with_term(model, candidate, &model.plain, plainly, &colour),
-                    None => self.with_term(model, candidate, &model.plain, &linear, &colour),
-                };
-                let tried = if under_moment {
-                    let (_, under) = self.with_term(model, candidate, fit, &linear, &fit.colour);
-                    let mut tried = self.judge(structure, plain);
-                    if under.bic < tried.judged.bic {
-                        tried.judged = under;
-                    }
-                    tried
-                } else {
-                    Model { structure, judged: plain.clone(), plain }
-                };
-                let evidence = self.evidence(fit, &tried.judged, candidate.term.freedom());
-                Tried { place, model: tried, evidence }
+                let (structure, with) = self.with_term(model, candidate, fit, &linear, &fit.colour);
+                let evidence = self.evidence(fit, &with, candidate.term.freedom());
+                Tried { place, structure, fit: with, evidence }
             })
             .collect();
-        tried.sort_by(|one, other| one.model.judged.bic.total_cmp(&other.model.judged.bic));
+        tried.sort_by(|one, other| one.fit.bic.total_cmp(&other.fit.bic));
         tried
+    }
+
+    /// The model of a candidate that was tried, with the noise that suits it best.
+    pub fn adopted(&self, tried: &Tried) -> Model {
+        let Tried { structure, fit, .. } = tried;
+        if fit.colour.moment.is_none() {
+            return self.judge(structure.clone(), fit.clone());
+        }
+        let colour = Colour { moment: None, ..fit.colour };
+        let plain = self.problem.fit(structure, &fit.theta, &fit.initial, &colour);
+        let mut model = self.judge(structure.clone(), plain);
+        if fit.bic < model.judged.bic {
+            model.judged = fit.clone();
+        }
+        model
     }
 
     /// A model without one of its terms, fitted anew.
@@ -400,10 +400,11 @@ impl Search<'_> {
         let mut model = base.clone();
         let plain = Model { judged: base.plain.clone(), ..base.clone() };
         for round in 0..self.thresholds.most_terms {
-            let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, false, true) };
+            let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, &model.plain, true) };
             let Some(best) = self.best(tried) else { break };
             let before = model.structure.terms.len();
-            model = self.prune(best.model, &plain, false);
+            let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
+            model = self.prune(next, &plain, false);
             if model.structure.terms.len() <= before && round > 0 {
                 break;
             }
@@ -423,10 +424,9 @@ impl Search<'_> {
             }
         }
         while model.structure.terms.len() < self.thresholds.most_terms && model.judged.colour.moment.is_some() {
-            let tried = self.try_all(&model, true, true);
-            let Some(best) = self.best(tried) else { break };
+            let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };
             let before = model.structure.terms.len();
-            let next = self.prune(best.model, base, true);
+            let next = self.prune(self.adopted(&best), base, true);
             if next.structure.terms.len() <= before {
                 break;
             }

@@ -10,23 +10,30 @@ const FASTER: f64 = 5.0;
 
 /// Frequencies, widths and strengths that are tried.
 const FREQUENCIES: usize = 30;
-const DAMPINGS: [f64; 3] = [0.03, 0.1, 0.3];
+const DAMPINGS: [f64; 3] = [0.03, 0.08, 0.2];
+
+/// A wider band is no sea.
+const WIDEST: f64 = 0.3;
+
+/// Waves of a smaller share of the mean square are a colour of the sensor.
+const SMALLEST_SHARE: f64 = 0.05;
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// The waves that explain a residual best beside a random moment; `None` when none can be resolved or helps.
 pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option<NarrowBand> {
     let n = problem.observations() as f64;
-    let value = |waves: NarrowBand| {
-        let colour = Colour { waves: Some(waves), ..*beside };
+    // −2 log L and whitened sum of squares of the residual under one colour.
+    let judge = |colour: &Colour| {
         let (mut rss, mut log_variance) = (0.0, 0.0);
-        for (whitener, residual) in problem.whiteners(&colour).iter().zip(residual) {
+        for (whitener, residual) in problem.whiteners(colour).iter().zip(residual) {
             let mut residual = residual.clone();
             whitener.apply(&mut residual);
             rss += residual.iter().map(|x| x * x).sum::<f64>();
             log_variance += whitener.log_variance;
         }
-        deviance(rss, log_variance, n)
+        (deviance(rss, log_variance, n), rss)
     };
+    let value = |waves: NarrowBand| judge(&Colour { waves: Some(waves), ..*beside }).0;
     let slowest = FASTER * problem.records.iter().map(fundamental).fold(0.0, f64::max);
     let spacing = problem.records.iter().map(|record| record.spacing).fold(0.0, f64::max);
     let fastest = 0.8 * std::f64::consts::PI / spacing;
@@ -59,21 +66,16 @@ pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option
         let (_, centre) = best?;
         for step in [1.6, 1.0 / 1.6, 1.2, 1.0 / 1.2] {
             consider(NarrowBand { sd: centre.sd * step, ..centre }, &mut best);
-            consider(NarrowBand { damping: (centre.damping * step).clamp(0.005, 0.6), ..centre }, &mut best);
+            consider(NarrowBand { damping: (centre.damping * step).clamp(0.005, WIDEST), ..centre }, &mut best);
         }
         factor = factor.sqrt();
     }
-    let plain = {
-        let (mut rss, mut log_variance) = (0.0, 0.0);
-        for (whitener, residual) in problem.whiteners(beside).iter().zip(residual) {
-            let mut residual = residual.clone();
-            whitener.apply(&mut residual);
-            rss += residual.iter().map(|x| x * x).sum::<f64>();
-            log_variance += whitener.log_variance;
-        }
-        deviance(rss, log_variance, n)
-    };
-    best.filter(|(height, _)| *height < plain).map(|(_, waves)| waves)
+    let (plain, _) = judge(beside);
+    let (height, waves) = best?;
+    let (_, rss) = judge(&Colour { waves: Some(waves), ..*beside });
+    let all: f64 = residual.iter().flatten().map(|e| e * e).sum();
+    let is_sea = waves.damping < WIDEST && waves.sd * waves.sd * rss > SMALLEST_SHARE * all;
+    (height < plain && is_sea).then_some(waves)
 }
 
 /// Angular frequency of the manoeuvre, rad/s: the rudder changes its side twice a period.
