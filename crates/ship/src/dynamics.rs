@@ -18,6 +18,19 @@ pub struct Measured {
     pub propeller: Option<f64>,
 }
 
+/// A channel of [`Measured`], by what it is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regressor {
+    /// Speed through the water.
+    Speed,
+    /// Sway velocity.
+    Sway,
+    /// Relative wind, speed and direction.
+    Wind,
+    /// Propeller revolutions.
+    Propeller,
+}
+
 /// What acts on a ship at one instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Input {

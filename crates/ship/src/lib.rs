@@ -31,7 +31,7 @@ pub mod ships;
 pub mod signal;
 pub mod vessel;
 
-pub use dynamics::{Dynamics, Input, Measured, Motion};
+pub use dynamics::{Dynamics, Input, Measured, Motion, Regressor};
 pub use first_order::FirstOrder;
 pub use response::{Response, ResponseModel};
 pub use ships::{Particulars, Ship};

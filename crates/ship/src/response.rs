@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use crate::dynamics::{Dynamics, Input, Motion};
+use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::effects::{Effect, Now, Parameter, Scale, SwayCoupling};
 use crate::first_order::FirstOrder;
 
@@ -138,6 +138,11 @@ impl Response {
         self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
     }
 
+    /// Measured channels that effects of this response need.
+    pub fn needs(&self, channel: Regressor) -> bool {
+        self.model.effects.iter().any(|effect| effect.needs() == Some(channel))
+    }
+
     /// Shortest time constant of base and effects, s.
     pub fn shortest_time(&self) -> f64 {
         let own = self.parameters[0].abs().recip();
@@ -243,6 +248,12 @@ impl Dynamics for Response {
     }
 
     fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        if self.model.effects.is_empty() {
+            let [a, b, bias] = [self.parameters[0], self.parameters[1], self.parameters[2]];
+            rate[0] = state[1];
+            rate[1] = -a * state[1] + b * (input.rudder + bias + input.disturbance);
+            return;
+        }
         let instant = self.instant(t, state, input);
         let (f, yaw_acceleration) = self.accelerations(state, input, &instant);
         rate[0] = state[1];
@@ -381,7 +392,7 @@ mod tests {
 
     #[test]
     fn effects_without_their_channel_are_silent() {
-        for effect in effects::all().iter().filter(|effect| effect.form().starts_with("measured")) {
+        for effect in effects::all().iter().filter(|effect| effect.needs().is_some()) {
             let response = with_effect(effect.clone(), |p| p.typical, 1.0);
             let mut state = vec![0.0; response.dimension()];
             response.approach(0.0, 0.01, &mut state);

@@ -71,7 +71,7 @@ pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option
         residual: vec![0.0; count],
         initial: start,
     };
-    run(response, &record.recorded(), &record.time, record.spacing, &mut state, |row, heading, rate| {
+    run(response, &record.recorded(response), &record.time, record.spacing, &mut state, |row, heading, rate| {
         replayed.heading[row] = heading;
         replayed.yaw_rate[row] = rate;
         replayed.residual[row] = record.heading[row] - heading;
@@ -160,7 +160,7 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
         rows += seen;
         enter(response, record, from, best, Some(&memory), &mut state);
         let times = &record.time[from..until];
-        run(response, &record.recorded(), times, record.spacing, &mut state, |_, _, _| {});
+        run(response, &record.recorded(response), times, record.spacing, &mut state, |_, _, _| {});
         if to == count {
             break;
         }
@@ -183,7 +183,7 @@ fn enter(
             response.restart(start[0], start[1], state);
         }
         None => {
-            let input = record.recorded().input(record.time[row], response.dead_time(), row);
+            let input = record.recorded(response).input(record.time[row], response.dead_time(), row);
             response.enter(start[0], start[1], &input, state);
         }
     }
@@ -218,7 +218,7 @@ fn settle(
     let mut residual = |initial: [f64; 2]| -> Vec<f64> {
         enter(response, record, rows.start, initial, memory, &mut state);
         let mut all = vec![0.0; times.len()];
-        run(response, &record.recorded(), times, record.spacing, &mut state, |row, heading, _| all[row] = heading);
+        run(response, &record.recorded(response), times, record.spacing, &mut state, |row, heading, _| all[row] = heading);
         seats.iter().map(|&row| record.heading[row] - all[row - rows.start]).collect()
     };
     let size = [1e-6, 1e-6 / span];

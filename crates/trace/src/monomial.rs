@@ -1,5 +1,6 @@
 //! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect carries.
 
+use ship::Regressor;
 use ship::effects::{Effect, Now, Parameter};
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
@@ -68,6 +69,10 @@ impl Effect for Monomial {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn needs(&self) -> Option<Regressor> {
+        (LIBRARY[self.place].of[3] > 0).then_some(Regressor::Speed)
     }
 
     fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {

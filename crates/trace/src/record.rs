@@ -6,7 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use ship::Polyline;
+use ship::{Polyline, Regressor, Response};
 use ship::replay::Recorded;
 use trial::{Channel, Trial};
 
@@ -104,15 +104,16 @@ impl Record {
         other
     }
 
-    /// The signals that drive a replay.
-    pub fn recorded(&self) -> Recorded<'_> {
+    /// The signals that drive a replay of a response: those it needs.
+    pub fn recorded(&self, response: &Response) -> Recorded<'_> {
+        let needed = |channel| response.needs(channel);
         Recorded {
             rudder: &self.rudder,
-            speed: self.speed.as_ref(),
-            sway: self.sway.as_ref(),
-            wind_speed: self.wind_speed.as_ref(),
-            wind_from: self.wind_from.as_ref(),
-            propeller: self.propeller.as_ref(),
+            speed: self.speed.as_ref().filter(|_| needed(Regressor::Speed)),
+            sway: self.sway.as_ref().filter(|_| needed(Regressor::Sway)),
+            wind_speed: self.wind_speed.as_ref().filter(|_| needed(Regressor::Wind)),
+            wind_from: self.wind_from.as_ref().filter(|_| needed(Regressor::Wind)),
+            propeller: self.propeller.as_ref().filter(|_| needed(Regressor::Propeller)),
         }
     }
 

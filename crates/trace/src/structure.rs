@@ -204,7 +204,7 @@ pub fn step(response: &Response, spacing: f64) -> f64 {
 
 /// The heading of a response along a record, from its first row, at the observed rows.
 pub fn headings(response: &Response, record: &Record, initial: [f64; 2], headings: &mut [f64]) {
-    let recorded = record.recorded();
+    let recorded = record.recorded(response);
     let mut state = vec![0.0; response.dimension()];
     let start = recorded.input(record.time[0], response.dead_time(), 0);
     response.enter(initial[0], initial[1], &start, &mut state);

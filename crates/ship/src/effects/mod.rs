@@ -37,7 +37,7 @@ pub use wind_moment::WindMoment;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::dynamics::Input;
+use crate::dynamics::{Input, Regressor};
 
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,6 +115,11 @@ pub trait Effect: fmt::Debug + Send + Sync {
 
     /// The parameters, in the order in which their values travel.
     fn parameters(&self) -> &'static [Parameter];
+
+    /// The measured channel it needs; without it the effect is silent.
+    fn needs(&self) -> Option<Regressor> {
+        None
+    }
 
     /// Number of own states.
     fn states(&self) -> usize {

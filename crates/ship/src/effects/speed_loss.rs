@@ -1,6 +1,7 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
 use super::{Effect, Now, Parameter, Scale};
+use crate::dynamics::Regressor;
 
 /// K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
 ///
@@ -64,6 +65,14 @@ impl Effect for SpeedLoss {
             Self::Modelled => &MODELLED,
             Self::Measured { .. } => &MEASURED,
             Self::Propeller { .. } => &PROPELLER,
+        }
+    }
+
+    fn needs(&self) -> Option<Regressor> {
+        match self {
+            Self::Modelled => None,
+            Self::Measured { .. } => Some(Regressor::Speed),
+            Self::Propeller { .. } => Some(Regressor::Propeller),
         }
     }
 

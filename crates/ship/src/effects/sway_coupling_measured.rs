@@ -1,6 +1,7 @@
 //! Sway velocity as a regressor, where the record has it.
 
 use super::{Effect, Now, Parameter};
+use crate::dynamics::Regressor;
 
 /// c v with the measured sway velocity v, as an equivalent rudder angle; zero where the record has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +32,10 @@ impl Effect for SwayCouplingMeasured {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn needs(&self) -> Option<Regressor> {
+        Some(Regressor::Sway)
     }
 
     fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {

@@ -1,6 +1,7 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
 use super::{Effect, Now, Parameter};
+use crate::dynamics::Regressor;
 
 /// Wind as the rudder angle with the same yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +50,10 @@ impl Effect for WindMoment {
             Self::Steady => &STEADY,
             Self::Measured => &MEASURED,
         }
+    }
+
+    fn needs(&self) -> Option<Regressor> {
+        (*self == Self::Measured).then_some(Regressor::Wind)
     }
 
     fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
