@@ -95,6 +95,7 @@ fn design(scenario: &Scenario) -> Design {
     let bare = |cell: &crate::scenario::Cell| CellFacts {
         labels: cell.labels.clone(),
         values: cell.values.clone(),
+        missing: cell.missing(),
         bound_percent2: None,
     };
     Design {

@@ -7,7 +7,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use identify::replay::replay;
-use identify::{Estimate, Identifier, output_error};
+use ::trace::analysis::Traced;
+use ::trace::record::Record;
+use ::trace::{Analysis, TraceError, errors};
+use identify::{Estimate, Identifier, StopReason, output_error};
 use nalgebra::{Matrix2, Matrix2x3};
 use ship::FirstOrder;
 use ship::angle::to_deg;
@@ -17,8 +20,8 @@ use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKe
 use trial::Trial;
 
 use crate::plan::Task;
-use crate::rows::{Bound, Row};
-use crate::scenario::{Cell, Scenario, Specification, Specimen};
+use crate::rows::{Bound, Row, TracedCells};
+use crate::scenario::{Cell, Means, Scenario, Specification, Specimen, identify};
 use crate::store::CellFacts;
 
 /// Rows of one trial, and what they took.
@@ -59,21 +62,34 @@ struct Yardstick {
     bound: Option<(Bound, Matrix2<f64>)>,
     /// Undisturbed second manoeuvre, perfectly recorded.
     validation: Option<Trial>,
+    /// What a likelihood ratio of the whole truth against the nearest first-order response would be on average.
+    expected: Option<f64>,
 }
 
 impl Yardstick {
-    fn of(specimen: &Specimen, simulated: &Simulated, key: &StreamKey) -> Self {
-        let Specification { simulation, validation, truth } = &*specimen.specification;
-        let truth = truth.or_else(|| nearest_first_order(simulation, key));
+    fn of(specimen: &Specimen, simulated: &Simulated, key: &StreamKey, traces: bool) -> Self {
+        let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
+        let nearest = if truth.is_none() || traces { nearest_first_order(simulation, key) } else { None };
+        // A trace is after the base itself, not after the response that imitates base and effects together.
+        let truth = truth.or_else(|| base.filter(|_| traces)).or_else(|| nearest.as_ref().map(|near| near.response));
         let sd = simulation.sensors.declared_noise().heading;
         let bound = truth.zip(sd).and_then(|(truth, sd)| bound(simulated, &truth, sd));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        Self { truth, bound, validation: validation.map(|simulated| simulated.trial) }
+        let expected = nearest.filter(|_| traces).zip(sd).map(|(near, sd)| near.mean_square / (sd * sd) * near.rows);
+        Self { truth, bound, validation: validation.map(|simulated| simulated.trial), expected }
     }
 }
 
-/// The first-order response that comes nearest to the undisturbed, perfectly recorded trial of a ship that is none.
-fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<FirstOrder> {
+/// The first-order response that comes nearest to an undisturbed, perfectly recorded trial, and how near.
+struct Nearest {
+    response: FirstOrder,
+    /// Mean square heading error, rad².
+    mean_square: f64,
+    rows: f64,
+}
+
+/// The first-order response nearest to the trial of a ship that is none.
+fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<Nearest> {
     let calm = Simulation {
         disturbances: Disturbances::default(),
         sensors: Sensors::default(),
@@ -82,7 +98,10 @@ fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<First
     };
     let trial = calm.run(key).ok()?.trial;
     let method = output_error::Settings::default().build().ok()?;
-    Some(method.identify(std::slice::from_ref(&trial)).ok()?.response)
+    let response = method.identify(std::slice::from_ref(&trial)).ok()?.response;
+    let residual = replay(&trial, &response)?.residual;
+    let rows = residual.len() as f64;
+    Some(Nearest { response, mean_square: residual.iter().map(|e| e * e).sum::<f64>() / rows, rows })
 }
 
 /// Cramér–Rao bound of a trial for white heading noise of `sd`, rad.
@@ -136,7 +155,7 @@ impl<'a> Bench<'a> {
         let yardstick = if cell.is_fixed() {
             self.yardsticks[task.cell - self.first_cell].get_or_init(|| self.shared(task.cell))
         } else {
-            own = Yardstick::of(&specimen, &simulated, &key);
+            own = Yardstick::of(&specimen, &simulated, &key, cell.traces());
             &own
         };
         let blank = Row {
@@ -149,12 +168,28 @@ impl<'a> Bench<'a> {
         let mut methods = Vec::with_capacity(cell.methods.len());
         for (index, method) in cell.methods.iter().enumerate() {
             let start = Instant::now();
-            let answer = method.identify(&simulated.trial, &key);
-            methods.push(start.elapsed());
             let blank = Row { method: index, ..blank.clone() };
-            rows.push(match answer {
-                Err(error) => Row { failure: Some(error.kind().into()), ..blank },
-                Ok(estimate) => answered(blank, &simulated.trial, yardstick.validation.as_ref(), &estimate),
+            let validation = yardstick.validation.as_ref();
+            rows.push(match &method.means {
+                Means::Identify { identifier, .. } => {
+                    let answer = identify(identifier.as_ref(), &simulated.trial, &key);
+                    methods.push(start.elapsed());
+                    match answer {
+                        Err(error) => Row { failure: Some(error.kind().into()), ..blank },
+                        Ok(estimate) => answered(blank, &simulated.trial, validation, &estimate),
+                    }
+                }
+                Means::Trace(settings) => {
+                    let answer = ::trace::trace(std::slice::from_ref(&simulated.trial), &[], settings);
+                    methods.push(start.elapsed());
+                    match answer {
+                        Err(error) => Row { failure: Some(reason(&error).into()), ..blank },
+                        Ok(analysis) => {
+                            let missing = &specimen.specification.missing;
+                            traced(blank, validation, &analysis, missing, yardstick.expected)
+                        }
+                    }
+                }
             });
         }
         Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
@@ -163,10 +198,10 @@ impl<'a> Bench<'a> {
     /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial asks.
     fn shared(&self, cell: usize) -> Yardstick {
         let key = key(self.scenario, Task { cell, replicate: 0 });
-        let nothing = Yardstick { truth: None, bound: None, validation: None };
+        let nothing = Yardstick { truth: None, bound: None, validation: None, expected: None };
         let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return nothing };
         match specimen.specification.simulation.run(&key) {
-            Ok(simulated) => Yardstick::of(&specimen, &simulated, &key),
+            Ok(simulated) => Yardstick::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
             Err(_) => Yardstick { truth: specimen.specification.truth, ..nothing },
         }
     }
@@ -181,6 +216,62 @@ fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Durat
     let blank = Row { failure: Some(reason.into()), ..empty(task, drawn) };
     let rows = (0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect();
     Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }
+}
+
+/// Why there is no trace, in a word.
+fn reason(error: &TraceError) -> &'static str {
+    match error {
+        TraceError::Base(error) => error.kind(),
+        TraceError::Replay { .. } => "not-finite",
+    }
+}
+
+/// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
+fn traced(blank: Row, validation: Option<&Trial>, analysis: &Analysis, missing: &[String], expected: Option<f64>) -> Row {
+    let [k, t, bias] = analysis.indices;
+    let finite = |value: f64| value.is_finite().then_some(value);
+    let elsewhere = |trial: &Trial| {
+        let start = [trial.heading()[0], 0.0];
+        let record = Record::whole(trial);
+        let replayed = errors::full(&analysis.ship(), &record, &[start])?;
+        let square = replayed.residual.iter().map(|e| e * e).sum::<f64>() / replayed.residual.len() as f64;
+        finite(to_deg(square.sqrt()))
+    };
+    let group = |effect: &Traced| {
+        let mut ids = vec![effect.id];
+        ids.extend(effect.aliases.iter().map(|(id, _)| *id));
+        ids.dedup();
+        ids.join("|")
+    };
+    Row {
+        k_per_s: finite(k.value),
+        k_ci95_per_s: k.ci95,
+        t_s: finite(t.value),
+        t_ci95_s: t.ci95,
+        rudder_bias_deg: finite(to_deg(bias.value)),
+        rudder_bias_ci95_deg: bias.ci95.map(|ends| ends.map(to_deg)),
+        heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
+        validation_rmse_deg: validation.and_then(elsewhere),
+        stop: Some(StopReason::Converged.as_str()),
+        traced: Some(Box::new(TracedCells {
+            verdict: analysis.verdict.as_str().into(),
+            named: analysis.effects.iter().map(|effect| effect.id).collect::<Vec<_>>().join("+").into(),
+            groups: analysis.effects.iter().map(group).collect::<Vec<_>>().join("+").into(),
+            margin: margin(analysis, missing),
+            expected,
+        })),
+        ..blank
+    }
+}
+
+/// By how much the one missing effect gains more in BIC than the best other one, each added alone.
+fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
+    let [truth] = missing else { return None };
+    let best = |is_truth: bool| {
+        let gains = analysis.candidates.iter().filter(|one| (one.id == truth) == is_truth);
+        gains.filter_map(|one| one.gain_alone).max_by(f64::total_cmp)
+    };
+    Some(best(true)? - best(false)?)
 }
 
 fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
@@ -210,6 +301,7 @@ pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
     CellFacts {
         labels: about.labels.clone(),
         values: about.values.clone(),
+        missing: about.missing(),
         bound_percent2: bound
             .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),
     }

@@ -1,6 +1,7 @@
 //! Tables of what was found, for the screen, `report.md` and other programs.
 
 pub mod methods;
+pub mod tracing;
 
 use report::figures::Reference;
 use report::number::{self, MISSING};
@@ -88,7 +89,11 @@ const ERRORS: [ErrorFigure; 13] = [
 ];
 
 fn head(design: &Design) -> Vec<Column> {
-    design.axes.iter().map(|axis| Column::left(axis.clone())).chain([Column::left("method")]).collect()
+    head_of_cells(design).into_iter().chain([Column::left("method")]).collect()
+}
+
+fn head_of_cells(design: &Design) -> Vec<Column> {
+    design.axes.iter().map(|axis| Column::left(axis.clone())).collect()
 }
 
 fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {

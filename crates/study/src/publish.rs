@@ -2,6 +2,7 @@
 
 mod charts;
 pub mod drawings;
+mod traces;
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -38,6 +39,9 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
     if design.methods.len() > 1 {
         let reference = &design.methods[summary.reference];
         write_csv(&folder.join("pairs.csv"), &summary.pairs, |lines| present::pairs(lines, reference, design))?;
+    }
+    if !summary.tracing.is_empty() {
+        write_csv(&folder.join("tracing.csv"), &summary.tracing, |lines| present::tracing::table(lines, design, true))?;
     }
     let write = |name: &str, text: String| {
         let path = folder.join(name);
@@ -101,6 +105,9 @@ fn on_screen(stored: &Stored, summary: &Summary) -> String {
         text += &format!("over all {} cells, which are in the report one by one\n", design.cells.len());
         text += &present::overall(summary, design).to_text();
     }
+    if !summary.tracing.is_empty() {
+        text += &format!("\nwhat traces named\n{}", present::tracing::kinds(&summary.tracing).to_text());
+    }
     let failures = present::failures(summary, design);
     failures.iter().take(SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
     if failures.len() > SHOWN_CELLS {
@@ -130,8 +137,19 @@ fn page(stored: &Stored, summary: &Summary, brief: &Table, drawings: &[Drawing])
         line("");
         drawings.iter().filter(|drawing| drawing.showcase == Some(index)).for_each(|drawing| line(&figure(drawing)));
     }
+    if !summary.tracing.is_empty() {
+        line(&format!("## What traces named\n\n{}", present::tracing::kinds(&summary.tracing).to_markdown()));
+        line(&format!(
+            "*all named*: every missing effect is in one of the groups named; *wrong named*: a group was named that holds no \
+             missing effect; *clear*: the one missing effect alone gains {} more in BIC than any other alone. Intervals are \
+             Wilson's, 95 %.\n",
+            crate::summary::CLEAR
+        ));
+        drawings.iter().filter(|drawing| drawing.of_traces).for_each(|drawing| line(&figure(drawing)));
+        line(&present::tracing::table(&summary.tracing, design, false).to_markdown());
+    }
     line("## Over all trials\n");
-    drawings.iter().filter(|drawing| drawing.showcase.is_none()).for_each(|drawing| line(&figure(drawing)));
+    drawings.iter().filter(|drawing| drawing.showcase.is_none() && !drawing.of_traces).for_each(|drawing| line(&figure(drawing)));
     if design.cells.len() > 1 {
         line("### All cells together\n");
         line(&present::overall(summary, design).to_markdown());

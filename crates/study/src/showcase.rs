@@ -17,7 +17,7 @@ use trial::{Trial, ZigZag};
 use crate::engine;
 use crate::json::{self, MethodEntry, Value};
 use crate::plan::Task;
-use crate::scenario::{Cell, Method, MethodName, Published, Scenario};
+use crate::scenario::{Cell, Means, Method, MethodName, Published, Scenario, identify};
 
 /// The first trial of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,12 +51,11 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell
         .methods
         .iter()
-        .map(|method| {
-            json::entry(
-                &method.label,
-                method.identify(trial, &engine::key(scenario, first)),
-                std::slice::from_ref(trial),
-            )
+        .filter_map(|method| {
+            // A trace is no first-order response; it has a report of its own.
+            let Means::Identify { identifier, .. } = &method.means else { return None };
+            let answer = identify(identifier.as_ref(), trial, &engine::key(scenario, first));
+            Some(json::entry(&method.label, answer, std::slice::from_ref(trial)))
         })
         .collect();
     let title = |what: &str| match cell.labels.is_empty() {
@@ -229,7 +228,8 @@ impl FourierFits {
                 return None;
             }
             let origin = origin(names, &method.label);
-            let fit = match &method.settings {
+            let Means::Identify { settings, .. } = &method.means else { return None };
+            let fit = match settings {
                 IdentifierSettings::FourierPublished(settings) => {
                     let curve = settings.clone().build().ok()?.curve(trial).ok()?.curve;
                     FourierFit { origin, curve, window: [0.0, trial.duration()] }

@@ -52,6 +52,9 @@ pub struct CellFacts {
     pub labels: Vec<String>,
     /// Values of its points, where an axis is a number.
     pub values: Vec<Option<f64>>,
+    /// Identifiers of the effects that a first-order base lacks in its trials.
+    #[serde(default)]
+    pub missing: Vec<String>,
     /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a bound
     /// of its own, and where there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,

@@ -57,6 +57,14 @@ impl Sizes {
     }
 }
 
+/// Longest squall as a share of its record.
+const LONGEST_SQUALL: f64 = 0.2;
+
+/// Largest T₂ and T₃ of a second-order response in time constants of the base. Beyond, zero and pole are so slow that they
+/// imitate a trend.
+const SLOWEST_POLE: f64 = 1.0;
+const SLOWEST_ZERO: f64 = 2.0;
+
 /// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
 const PROPELLER_CHANGE: f64 = 0.05;
 
@@ -123,8 +131,10 @@ pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
         let (start, end) = (record.time[0], record.time[record.time.len() - 1]);
         let mut squall = term(TransientDisturbance, vec![0.02, 0.05 * duration, 0.05 * duration]);
         squall.only = only;
-        (squall.lowest[1], squall.highest[1]) = (start, end);
-        (squall.lowest[2], squall.highest[2]) = ((3.0 * spacing).max(0.5), 0.5 * record.duration());
+        // A squall comes and goes within the record; what lasts longer is a trend or a change of the ship.
+        let margin = LONGEST_SQUALL * 0.25 * record.duration();
+        (squall.lowest[1], squall.highest[1]) = (start + margin, end - margin);
+        (squall.lowest[2], squall.highest[2]) = ((3.0 * spacing).max(0.5), LONGEST_SQUALL * record.duration());
         let large = vec![0.05, 0.5 * (start + end), 0.1 * record.duration()];
         list.push(Candidate { term: squall, starts: Vec::new(), large });
     }
@@ -144,8 +154,8 @@ fn simple(term: Term, start: f64, large: f64) -> Candidate {
 fn second_order(sizes: &Sizes) -> Candidate {
     let time = sizes.time;
     let mut term = term(SecondOrder, vec![0.2 * time, 0.5 * time]);
-    (term.lowest[0], term.highest[0]) = (0.02_f64.max(0.1 * sizes.spacing), (0.15 * sizes.duration).min(600.0));
-    (term.lowest[1], term.highest[1]) = (-0.1 * sizes.duration, 0.5 * sizes.duration);
+    (term.lowest[0], term.highest[0]) = (0.02_f64.max(0.1 * sizes.spacing), SLOWEST_POLE * time);
+    (term.lowest[1], term.highest[1]) = (-0.5 * time, SLOWEST_ZERO * time);
     let starts = [[0.15, 0.4], [0.2, 0.02], [0.4, 1.2]].map(|[t2, t3]| vec![t2 * time, t3 * time]);
     Candidate { starts: starts.into(), large: vec![0.15 * time, 0.5 * time], term }
 }

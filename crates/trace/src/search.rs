@@ -66,6 +66,12 @@ pub struct Tried {
 /// Later rounds fit only this many candidates, those with the largest score.
 const SHORT_LIST: usize = 6;
 
+/// A moment that depends on time alone needs this many times the gain of another term.
+const OF_TIME: f64 = 3.0;
+
+/// Gain in BIC for which one term takes the place of another.
+const SWAP: f64 = 2.0;
+
 /// Step of a tangent in units of the scale of a parameter.
 const TANGENT: f64 = 1e-5;
 
@@ -94,15 +100,9 @@ impl Search<'_> {
         Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
     }
 
-    /// Gain in BIC that a term needs. A trend, or a moment for a while, is also what a random moment looks like in one
-    /// record, and a place to put it has to be looked for: each of the two costs as much again.
+    /// Gain in BIC that a term needs: a trend, or a moment for a while, is also what a random moment looks like in one record.
     pub fn needed(&self, term: &Term) -> f64 {
-        let times = match (is_of_time(term), term.effect.id() == TransientDisturbance.id()) {
-            (true, true) => 3.0,
-            (true, false) => 2.0,
-            (false, _) => 1.0,
-        };
-        times * self.thresholds.gain
+        if is_of_time(term) { OF_TIME * self.thresholds.gain } else { self.thresholds.gain }
     }
 
     /// Whether the evidence for a term passes both thresholds.
@@ -132,7 +132,7 @@ impl Search<'_> {
     /// A model with the waves that its residual shows, if they are worth their three parameters.
     fn with_waves(&self, model: Model) -> Model {
         let moment = Colour { waves: None, ..model.judged.colour };
-        let Some(waves) = waves::find(self.problem, &model.judged.residual, &moment) else { return model };
+        let Some(waves) = waves::find(self.problem, &model.plain.residual, &moment) else { return model };
         let with = self.coloured(&model, Some(waves));
         if model.judged.bic - with.judged.bic > self.thresholds.gain { with } else { model }
     }
@@ -405,9 +405,25 @@ impl Search<'_> {
             let before = model.structure.terms.len();
             let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
             model = self.prune(next, &plain, false);
+            model = self.swapped(model, &plain);
             if model.structure.terms.len() <= before && round > 0 {
                 break;
             }
+        }
+        model
+    }
+
+    /// Puts a better candidate in the place of a term that was added before its company was known.
+    fn swapped(&self, model: Model, base: &Model) -> Model {
+        if model.structure.terms.len() < 2 {
+            return model;
+        }
+        for place in 0..model.structure.terms.len() {
+            let less = self.dropped(&model, place, false);
+            let tried = self.try_all(&less, &less.plain, true);
+            let Some(best) = self.best(tried).filter(|best| best.fit.bic < model.plain.bic - SWAP) else { continue };
+            let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
+            return self.prune(next, base, false);
         }
         model
     }

@@ -8,7 +8,7 @@ use crate::fit::{Fit, Linear, Problem};
 use crate::structure::Term;
 
 /// Lengths of the boxes as shares of the record.
-const LENGTHS: [f64; 4] = [1.0 / 24.0, 1.0 / 12.0, 1.0 / 6.0, 1.0 / 3.0];
+const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 
 /// Places that are handed on.
 const STARTS: usize = 2;

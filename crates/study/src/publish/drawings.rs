@@ -8,6 +8,7 @@ use report::figures;
 use report::{Figure, Theme};
 
 use super::charts::{self, Quantity};
+use super::traces;
 use crate::failure::{Failure, OnPath};
 use crate::showcase::Showcase;
 use crate::store::Stored;
@@ -21,6 +22,8 @@ pub struct Drawing<'a> {
     pub caption: String,
     /// The showcase it belongs to; `None` when it is about all trials.
     pub showcase: Option<usize>,
+    /// Whether it is about what traces named.
+    pub of_traces: bool,
     draw: Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>,
 }
 
@@ -30,7 +33,7 @@ impl<'a> Drawing<'a> {
         caption: impl Into<String>,
         draw: impl Fn(&Theme) -> Figure + Sync + Send + 'a,
     ) -> Self {
-        Self { stem: stem.into(), caption: caption.into(), showcase: None, draw: Box::new(draw) }
+        Self { stem: stem.into(), caption: caption.into(), showcase: None, of_traces: false, draw: Box::new(draw) }
     }
 }
 
@@ -80,9 +83,28 @@ fn reading(quantity: Quantity) -> &'static str {
     }
 }
 
-fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+/// Figures about what traces named.
+fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = Vec::new();
+    if let Some(data) = traces::confusion(design, &summary.tracing) {
+        let caption = "How often each effect was named, in per cent of the trials. A row is what the trials lack, a column what \
+                       was named; aliases count for their own name only.";
+        drawings.push(Drawing::new("confusion", caption, move |theme| figures::heat_map(&data, theme)));
+    }
+    if let Some(data) = traces::power(&summary.tracing) {
+        let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
+                       ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
+                       likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
+        drawings.push(Drawing::new("power", caption, move |theme| figures::power(&data, theme)));
+    }
+    drawings.iter_mut().for_each(|drawing| drawing.of_traces = true);
+    drawings
+}
+
+fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+    let design = &stored.design;
+    let mut drawings = of_traces(stored, summary);
     for quantity in Quantity::ALL {
         for chart in charts::over_axes(design, summary, quantity) {
             let place = chart.group.as_ref().map_or_else(String::new, |group| format!(" Here: {group}."));
@@ -141,6 +163,7 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
         drawings.push(Drawing {
             stem: if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") },
             caption: caption.to_owned(),
+            of_traces: false,
             showcase: Some(index),
             draw,
         });

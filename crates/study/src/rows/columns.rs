@@ -6,7 +6,8 @@ use identify::StopReason;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 
-use super::{Bound, Row};
+use super::{Bound, Row, TracedCells};
+use crate::scenario::TRACE;
 use crate::store::Design;
 
 /// A column that every file of rows has.
@@ -166,6 +167,59 @@ pub const COLUMNS: [Column; 22] = [
     },
 ];
 
+fn words(row: &mut Row) -> &mut TracedCells {
+    row.traced.get_or_insert_default()
+}
+
+/// Columns that follow in a study with a trace.
+pub const TRACE_COLUMNS: [Column; 5] = [
+    Column {
+        name: "trace_verdict",
+        meaning: "clean, traced or unexplained",
+        access: Access::Text(
+            |row| Some(&row.traced.as_ref()?.verdict),
+            |row, text| {
+                words(row).verdict = text.into();
+                Ok(())
+            },
+        ),
+    },
+    Column {
+        name: "trace_named",
+        meaning: "effects named, joined by +; empty where none was",
+        access: Access::Text(
+            |row| Some(&row.traced.as_ref()?.named),
+            |row, text| {
+                words(row).named = text.into();
+                Ok(())
+            },
+        ),
+    },
+    Column {
+        name: "trace_groups",
+        meaning: "the same, each with its aliases joined by |",
+        access: Access::Text(
+            |row| Some(&row.traced.as_ref()?.groups),
+            |row, text| {
+                words(row).groups = text.into();
+                Ok(())
+            },
+        ),
+    },
+    number(
+        "trace_margin",
+        "gain in BIC of the one missing effect over the best other one, each added alone; null where not one is missing",
+        |row| row.traced.as_ref()?.margin,
+        |row, value| words(row).margin = Some(value),
+    ),
+    number(
+        "trace_expected",
+        "likelihood ratio of the truth against the nearest first-order response, on average over the noise",
+        |row| row.traced.as_ref()?.expected,
+        |row, value| words(row).expected = Some(value),
+    ),
+];
+
 /// Values of one column for several rows.
 pub(super) enum Values {
     Counts(Vec<i64>),
@@ -179,6 +233,8 @@ pub struct Layout {
     methods: Vec<String>,
     axes: Vec<Axis>,
     draws: Vec<String>,
+    /// Whether one of the methods is a trace.
+    traces: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -213,19 +269,25 @@ impl Layout {
             methods: design.methods.iter().map(|method| method.label.clone()).collect(),
             axes: design.axes.iter().enumerate().map(axis).collect(),
             draws: design.draws.clone(),
+            traces: design.methods.iter().any(|method| method.id == TRACE),
         }
+    }
+
+    fn fixed(&self) -> impl Iterator<Item = &'static Column> + use<> {
+        let more: &'static [Column] = if self.traces { &TRACE_COLUMNS } else { &[] };
+        COLUMNS.iter().chain(more)
     }
 
     /// Names of all columns, in order.
     pub fn names(&self) -> impl Iterator<Item = String> {
-        let fixed = COLUMNS.iter().map(|column| column.name.to_owned());
+        let fixed = self.fixed().map(|column| column.name.to_owned());
         let axes = self.axes.iter().map(|axis| format!("axis.{}", axis.name));
         fixed.chain(axes).chain(self.draws.iter().map(|key| format!("draw.{key}")))
     }
 
     fn sources(&self) -> impl Iterator<Item = Source<'_>> {
         let axes = self.axes.iter().map(Source::Axis);
-        COLUMNS.iter().map(Source::Fixed).chain(axes).chain((0..self.draws.len()).map(Source::Draw))
+        self.fixed().map(Source::Fixed).chain(axes).chain((0..self.draws.len()).map(Source::Draw))
     }
 
     /// The schema of the file.
@@ -251,7 +313,7 @@ impl Layout {
 
     /// Whether the values of a column repeat so often that a dictionary of them pays: estimates hardly ever do.
     pub(super) fn repeats(name: &str) -> bool {
-        let text = ["method", "failure", "stop"].contains(&name);
+        let text = ["method", "failure", "stop", "trace_verdict", "trace_named", "trace_groups", "trace_expected"].contains(&name);
         text || ["true_", "bound_", "axis."].iter().any(|start| name.starts_with(start))
     }
 

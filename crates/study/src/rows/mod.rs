@@ -11,7 +11,7 @@ mod tests;
 
 use std::sync::Arc;
 
-pub use columns::{COLUMNS, Column, Layout};
+pub use columns::{COLUMNS, Column, Layout, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
 
 /// Best standard deviations an unbiased method can have on a trial (Cramér–Rao), for its own noise and true K and T.
@@ -23,6 +23,21 @@ pub struct Bound {
     pub t_s: f64,
     /// Of K/T, 1/s².
     pub k_over_t_per_s2: f64,
+}
+
+/// What a trace said of one trial.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TracedCells {
+    /// `clean`, `traced` or `unexplained`.
+    pub verdict: Box<str>,
+    /// Identifiers of the effects named, joined by `+`; empty where none was.
+    pub named: Box<str>,
+    /// The same with the aliases of each, joined by `|`.
+    pub groups: Box<str>,
+    /// Gain in BIC of the one missing effect over the best other one.
+    pub margin: Option<f64>,
+    /// Likelihood ratio of the truth against the nearest first-order response, on average.
+    pub expected: Option<f64>,
 }
 
 /// The result of one method on one trial. Units are in the names; `None` is "not defined".
@@ -63,6 +78,8 @@ pub struct Row {
     pub evaluations: Option<u64>,
     /// Why the method stopped.
     pub stop: Option<&'static str>,
+    /// What a trace said.
+    pub traced: Option<Box<TracedCells>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }

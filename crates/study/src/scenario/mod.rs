@@ -36,7 +36,7 @@ use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
 use part::Part;
 use problem::{KeyPath, Problem, suggestion};
-pub use resolve::Specification;
+pub use resolve::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
 use sweep::Axis;
 use wire::ScenarioWire;
@@ -47,11 +47,25 @@ pub struct Method {
     pub label: String,
     /// Id of the method.
     pub id: &'static str,
-    /// Its settings.
-    pub settings: IdentifierSettings,
-    /// The method with its settings.
-    pub identifier: Box<dyn Identifier>,
+    /// What it does.
+    pub means: Means,
 }
+
+/// What a method does with a trial.
+pub enum Means {
+    /// Identifies a first-order response.
+    Identify {
+        /// Settings of the method.
+        settings: IdentifierSettings,
+        /// The method with its settings.
+        identifier: Box<dyn Identifier>,
+    },
+    /// Traces what a first-order response lacks.
+    Trace(::trace::Settings),
+}
+
+/// Id of a trace among the methods.
+pub const TRACE: &str = "trace";
 
 /// What a method is called, and which it is.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -62,12 +76,10 @@ pub struct MethodName {
     pub id: String,
 }
 
-impl Method {
-    /// Identifies one trial; a method that draws at random draws from the stream of this trial.
-    pub fn identify(&self, trial: &Trial, key: &StreamKey) -> Result<Estimate, IdentifyError> {
-        let own = self.identifier.with_seed(key.rng(Purpose::Method).random());
-        own.as_ref().unwrap_or(&self.identifier).identify(std::slice::from_ref(trial))
-    }
+/// Identifies one trial; a method that draws at random draws from the stream of this trial.
+pub fn identify(identifier: &dyn Identifier, trial: &Trial, key: &StreamKey) -> Result<Estimate, IdentifyError> {
+    let own = identifier.with_seed(key.rng(Purpose::Method).random());
+    own.as_deref().unwrap_or(identifier).identify(std::slice::from_ref(trial))
 }
 
 /// One cell of the design: everything but chance is fixed.
@@ -110,6 +122,16 @@ impl Cell {
     fn named(mut self, scenario: &str) -> Self {
         self.specification.name(scenario);
         self
+    }
+
+    /// Whether one of its methods is a trace.
+    pub fn traces(&self) -> bool {
+        self.methods.iter().any(|method| matches!(method.means, Means::Trace(_)))
+    }
+
+    /// Effects a first-order base lacks in its trials.
+    pub fn missing(&self) -> Vec<String> {
+        self.specification.missing.clone()
     }
 
     /// Labels of the points joined, or nothing when there is no axis.

@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use identify::IdentifierSettings;
+use ::trace::search::Thresholds;
 use ship::angle::{KNOT, from_deg};
 use ship::linear::SecondOrderIndices;
 use ship::narrow_band::NarrowBand;
+use ship::ships::Model;
 use ship::ships::user::ShipError;
 use ship::{FirstOrder, Particulars, Ship, ships};
 use simulate::disturbance::{GaussMarkov, Squall, Wind};
@@ -20,7 +22,7 @@ use simulate::{
 
 use super::problem::{KeyPath, Problem, suggestion};
 use super::wire::*;
-use super::{Method, effect, reader, specification};
+use super::{Means, Method, TRACE, effect, reader, specification};
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
@@ -31,7 +33,14 @@ pub struct Specification {
     pub validation: Option<Simulation>,
     /// The truth, where the ship is exactly first order.
     pub truth: Option<FirstOrder>,
+    /// The base of a response ship, whatever effects it has.
+    pub base: Option<FirstOrder>,
+    /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its own.
+    pub missing: Vec<String>,
 }
+
+/// What a hull has that no list of effects names.
+pub const HULL: &str = "hull";
 
 impl Specification {
     /// Trials carry the name of their scenario.
@@ -66,7 +75,30 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
     orders_are_given(&simulation)?;
     let validation =
         wire.validation.as_ref().map(|second| validation(second, wire, &simulation, folder)).transpose()?;
-    Ok(Specification { validation, truth: ship.first_order(), simulation })
+    let base = match &ship.model {
+        Model::Response(response) => Some(response.first_order()),
+        Model::Hull(_) => None,
+    };
+    Ok(Specification { validation, truth: ship.first_order(), base, missing: missing(&ship, wire), simulation })
+}
+
+/// What a first-order base lacks in a trial: effects of the ship, and disturbances that are effects by another name.
+fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
+    let mut missing: Vec<String> = match &ship.model {
+        Model::Response(response) => response.model().effects().iter().map(|effect| effect.id().to_owned()).collect(),
+        Model::Hull(_) => vec![HULL.to_owned()],
+    };
+    let sea = &wire.disturbance;
+    let disturbances = [
+        (sea.wind.is_some(), "wind_moment"),
+        (sea.drift_deg_per_s != 0.0, "moment_drift"),
+        (sea.squall.is_some(), "transient_disturbance"),
+        (sea.waves.is_some(), "wave_yaw"),
+        (wire.sensor.heading_delay_s != 0.0 || wire.sensor.heading_lag_s != 0.0, "steering_lag"),
+    ];
+    missing.extend(disturbances.into_iter().filter(|(acts, _)| *acts).map(|(_, id)| id.to_owned()));
+    missing.dedup();
+    missing
 }
 
 /// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so that
@@ -456,18 +488,12 @@ pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
         let key = list.child(index);
-        let identifier = entry.method.build().map_err(|error| {
-            let id = registry_id(&entry.method);
-            let setting = error.key.split('.').fold(key.child("method").child(id), |key, part| key.child(part));
-            let found = format!("`{setting}` is {}", error.found);
-            Problem::value(
-                setting,
-                found,
-                format!("expected {}", error.expected),
-                "change the value, or leave the key out",
-            )
-        })?;
-        let label = entry.label.clone().unwrap_or_else(|| identifier.id().to_owned());
+        let means = means(entry, &key)?;
+        let id = match &means {
+            Means::Identify { identifier, .. } => identifier.id(),
+            Means::Trace(_) => TRACE,
+        };
+        let label = entry.label.clone().unwrap_or_else(|| id.to_owned());
         if label.trim().is_empty() || label.chars().any(char::is_control) {
             let key = key.child("label");
             let found = format!("`{key}` is {label:?}");
@@ -486,7 +512,7 @@ pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
                 format!("add a label to one of them, for instance `label = \"{label} (2)\"`"),
             ));
         }
-        methods.push(Method { label, id: identifier.id(), settings: entry.method.clone(), identifier });
+        methods.push(Method { label, id, means });
     }
     if methods.is_empty() {
         return Err(Problem::name(
@@ -497,6 +523,58 @@ pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
         ));
     }
     Ok(methods)
+}
+
+/// What one entry asks for.
+fn means(entry: &IdentifierWire, key: &KeyPath) -> Result<Means, Problem> {
+    match (&entry.method, &entry.trace) {
+        (Some(settings), None) => {
+            let identifier = settings.build().map_err(|error| {
+                let id = registry_id(settings);
+                let setting = error.key.split('.').fold(key.child("method").child(id), |key, part| key.child(part));
+                let found = format!("`{setting}` is {}", error.found);
+                Problem::value(
+                    setting,
+                    found,
+                    format!("expected {}", error.expected),
+                    "change the value, or leave the key out",
+                )
+            })?;
+            Ok(Means::Identify { settings: settings.clone(), identifier })
+        }
+        (None, Some(trace)) => tracing(trace, &key.child("trace")).map(Means::Trace),
+        (method, _) => Err(Problem::name(
+            key.clone(),
+            format!("`{key}` names {}", if method.is_some() { "a method and a trace" } else { "no method" }),
+            "expected one of the two",
+            "write `method.output-error = {}` for a method, or `trace = {}` to trace what the base lacks",
+        )),
+    }
+}
+
+/// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
+fn tracing(wire: &TraceWire, key: &KeyPath) -> Result<::trace::Settings, Problem> {
+    let refuse = |name: &str, value: f64, expected: &str| {
+        let key = key.child(name);
+        let found = format!("`{key}` is {value}");
+        Problem::value(key, found, format!("expected {expected}"), "change the value, or leave the key out")
+    };
+    if !(wire.gain.is_finite() && wire.gain >= 0.0) {
+        return Err(refuse("gain", wire.gain, "a gain in BIC of at least 0"));
+    }
+    if !(wire.false_discovery > 0.0 && wire.false_discovery <= 1.0) {
+        return Err(refuse("false-discovery", wire.false_discovery, "a probability above 0 and up to 1"));
+    }
+    Ok(::trace::Settings {
+        thresholds: Thresholds {
+            gain: wire.gain,
+            false_discovery: wire.false_discovery,
+            most_terms: wire.most_effects,
+        },
+        discovery: false,
+        thorough: false,
+        ..::trace::Settings::default()
+    })
 }
 
 /// The key of a method in a scenario.

@@ -4,6 +4,8 @@
 
 use std::collections::BTreeMap;
 
+use ::trace::Settings;
+use ::trace::search::Thresholds;
 use identify::IdentifierSettings;
 use serde::Deserialize;
 
@@ -402,12 +404,32 @@ pub struct WavesWire {
     pub damping: f64,
 }
 
-/// A method with its settings: one key beside the label, the id of the method.
+/// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct IdentifierWire {
     pub label: Option<String>,
-    pub method: IdentifierSettings,
+    pub method: Option<IdentifierSettings>,
+    pub trace: Option<TraceWire>,
+}
+
+/// Thresholds of a trace.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct TraceWire {
+    /// Smallest gain in BIC.
+    pub gain: f64,
+    /// Probability of naming any effect where there is none.
+    pub false_discovery: f64,
+    /// Most effects.
+    pub most_effects: usize,
+}
+
+impl Default for TraceWire {
+    fn default() -> Self {
+        let Thresholds { gain, false_discovery, most_terms } = Settings::default().thresholds;
+        Self { gain, false_discovery, most_effects: most_terms }
+    }
 }
 
 /// Values of other authors, shown beside the results and never used.

@@ -6,9 +6,11 @@
 
 mod detail;
 mod tally;
+mod tracing;
 
 pub use detail::{CellDetail, Cloud, MethodDetail, Violin};
 pub use tally::Tally;
+pub use tracing::{CLEAR, TraceSummary};
 
 use crate::rows::Row;
 use crate::statistics::Figure;
@@ -132,6 +134,8 @@ pub struct Summary {
     pub overall: Vec<Overall>,
     /// Distributions in the cells whose detail was asked for.
     pub details: Vec<CellDetail>,
+    /// What traces said, in the cells that have them.
+    pub tracing: Vec<TraceSummary>,
 }
 
 impl Summary {

@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::detail::MOST_PAIRS;
+use super::tracing::TraceTally;
 use super::{CellDetail, Comparison, Errors, MethodDetail, MethodSummary, Overall, PairSummary, Record, Summary};
 use crate::rows::Row;
 use crate::statistics::{BATCHES, Figure, PairSums, Resamples, Sample, Sums, share};
@@ -25,6 +26,7 @@ pub struct Tally {
     methods: Vec<MethodSummary>,
     compared: Vec<PairSummary>,
     details: Vec<CellDetail>,
+    tracing: TraceTally,
 }
 
 /// Errors of all methods on one trial.
@@ -53,6 +55,7 @@ impl Tally {
             methods: Vec::new(),
             compared: Vec::new(),
             details: Vec::new(),
+            tracing: TraceTally::new(design),
         }
     }
 
@@ -68,6 +71,7 @@ impl Tally {
             self.cell = cell;
         }
         let errors = [row.k_error(), row.t_error(), row.k_over_t_error()].map(|error| error.map(|error| 100.0 * error));
+        self.tracing.add(row);
         self.trial.errors[row.method] = [errors[0], errors[1]];
         let detailed = self.detailed.contains(&cell);
         self.present[row.method].add(row, row.replicate, &errors, detailed);
@@ -137,6 +141,7 @@ impl Tally {
             pairs: self.compared,
             reference: self.reference,
             details: self.details,
+            tracing: self.tracing.finish(),
         }
     }
 }
