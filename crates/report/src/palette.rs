@@ -56,7 +56,7 @@ impl Origin {
             Self::Truth => Look::new(INK, Marker::Circle, SOLID),
             Self::Published => Look::new(RECORD, Marker::Cross, DASHED),
             Self::Bound => Look::new(INK, Marker::Plus, DOTTED),
-            Self::Before => Look::new(RUDDER, Marker::Square, DASHED),
+            Self::Before => Look::new(BEFORE, Marker::Square, DASHED),
             Self::After => Look::new(HEADING, Marker::Circle, SOLID),
             Self::Method(id) => method_look(id),
             Self::Variant { method, number, .. } => variant_look(method, *number),
@@ -91,6 +91,8 @@ pub const PAPER: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
 pub const HEADING: RGBColor = RGBColor(0x00, 0x72, 0xB2);
 /// The rudder.
 pub const RUDDER: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
+/// A model before something was added to it.
+pub const BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
 /// Dimension lines and their numbers.
 pub const DIMENSION: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
 

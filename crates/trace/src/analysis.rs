@@ -166,6 +166,8 @@ pub struct Considered {
     pub evidence: Option<Evidence>,
     /// Gain in BIC when it is added to the base alone, under white noise.
     pub gain_alone: Option<f64>,
+    /// Gain in BIC it needs to be believed.
+    pub needed: f64,
     /// Expected gain in −2 log L if it were as large as it can be expected.
     pub visibility: Option<f64>,
     /// Why, in words, where a number does not say it.
@@ -287,11 +289,11 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 
-    let before: Vec<OnRecord> = on_records(trials, &problem, &start, &first)?;
+    let before: Vec<OnRecord> = on_records(trials, &problem, &start, &first, settings.thorough)?;
     let after = if model.structure.terms.is_empty() && !settings.own_bias {
         before.clone()
     } else {
-        on_records(trials, &problem, &model, &first)?
+        on_records(trials, &problem, &model, &first, settings.thorough)?
     };
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
@@ -454,6 +456,7 @@ fn on_records(
     problem: &Problem,
     model: &Model,
     first: &FirstOrder,
+    thorough: bool,
 ) -> Result<Vec<OnRecord>, TraceError> {
     let is_base = model.structure.terms.is_empty() && !model.structure.own_bias && problem.records.len() == trials.len();
     trials
@@ -465,7 +468,7 @@ fn on_records(
                 if is_base { Response::first_order_ship(*first) } else { model.structure.response(number, &model.plain.theta) };
             let mut all = starts(trial, first);
             all.push(model.plain.initial[number]);
-            on_record(trial, &record, &response, &all, is_base.then_some(first))
+            on_record(trial, &record, &response, &all, is_base.then_some(first), thorough)
                 .ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })
         })
         .collect()
@@ -478,12 +481,17 @@ fn on_record(
     response: &Response,
     starts: &[[f64; 2]],
     first: Option<&FirstOrder>,
+    thorough: bool,
 ) -> Option<OnRecord> {
     let replayed = match first {
         Some(first) => closed_form(trial, record, first)?,
         None => errors::full(response, record, starts)?,
     };
-    let errors = errors::errors(trial, record, response, &replayed);
+    let errors = if thorough {
+        errors::errors(trial, record, response, &replayed)
+    } else {
+        errors::in_brief(&replayed)
+    };
     Some(OnRecord { replayed, errors })
 }
 
@@ -508,13 +516,13 @@ fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Result<Vec<Jud
             let refuse = || TraceError::Replay { trial: held.trial.name().to_owned() };
             let response = Response::first_order_ship(first);
             let before =
-                on_record(held.trial, &held.record, &response, &held.starts, Some(&first)).ok_or_else(refuse)?;
+                on_record(held.trial, &held.record, &response, &held.starts, Some(&first), true).ok_or_else(refuse)?;
             let after = if unchanged {
                 before.clone()
             } else {
                 let mut all = held.starts.clone();
                 all.push(before.replayed.initial);
-                on_record(held.trial, &held.record, &after, &all, None).ok_or_else(refuse)?
+                on_record(held.trial, &held.record, &after, &all, None, true).ok_or_else(refuse)?
             };
             Ok(Judged { name: held.trial.name().to_owned(), before, after })
         })
@@ -825,7 +833,10 @@ impl Reporter<'_> {
                 let outcome = match (added, alias, visibility) {
                     (true, ..) => Outcome::Added,
                     (_, true, _) => Outcome::Alias,
-                    (.., Some(visibility)) if visibility < needed => Outcome::NotObservable,
+                    // What would explain the base alone is seen, even if something else explains it better.
+                    (.., Some(visibility)) if visibility < needed && alone.is_none_or(|gain| gain < needed) => {
+                        Outcome::NotObservable
+                    }
                     _ => Outcome::Rejected,
                 };
                 Considered {
@@ -835,6 +846,7 @@ impl Reporter<'_> {
                     outcome,
                     evidence,
                     gain_alone: alone,
+                    needed: self.search.needed(term),
                     visibility,
                     reason: None,
                 }
@@ -857,6 +869,7 @@ impl Reporter<'_> {
                 outcome: Outcome::NotObservable,
                 evidence: None,
                 gain_alone: None,
+                needed: self.settings.thresholds.gain,
                 visibility: None,
                 reason: Some(reason),
             })
@@ -872,6 +885,7 @@ impl Reporter<'_> {
             outcome: if found.is_some() { Outcome::Added } else { Outcome::Rejected },
             evidence: found.map(|effect| effect.evidence),
             gain_alone: None,
+            needed: self.settings.thresholds.gain,
             visibility: None,
             reason: if found.is_some() { None } else { Some("no band above five times the frequency of the manoeuvre") },
         }

@@ -79,10 +79,20 @@ pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option
     replayed.heading.iter().all(|psi| psi.is_finite()).then_some(replayed)
 }
 
+/// The heading error of a full replay alone.
+pub fn in_brief(replayed: &Replayed) -> Errors {
+    let residual: Vec<f64> = replayed.residual.iter().copied().filter(|e| e.is_finite()).collect();
+    Errors {
+        heading: root_mean_square(&residual).unwrap_or(f64::NAN),
+        rows: residual.len(),
+        yaw_rate: None,
+        overshoot: None,
+        horizon: [None; HORIZONS.len()],
+    }
+}
+
 /// Errors of a full replay, with the restarted ones.
 pub fn errors(trial: &Trial, record: &Record, response: &Response, replayed: &Replayed) -> Errors {
-    let residual = || replayed.residual.iter().filter(|e| e.is_finite());
-    let rows = residual().count();
     let first = trial.observed_rows().next().unwrap_or(0);
     let yaw_rate = trial.yaw_rate().and_then(|measured| {
         let differences: Vec<f64> = measured[first..]
@@ -94,11 +104,10 @@ pub fn errors(trial: &Trial, record: &Record, response: &Response, replayed: &Re
         root_mean_square(&differences)
     });
     Errors {
-        heading: root_mean_square(&residual().copied().collect::<Vec<_>>()).unwrap_or(f64::NAN),
-        rows,
         yaw_rate,
         overshoot: overshoot_error(trial, replayed),
         horizon: HORIZONS.map(|length| restarted(response, record, replayed.initial, length)),
+        ..in_brief(replayed)
     }
 }
 

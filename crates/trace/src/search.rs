@@ -9,7 +9,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
+use ship::effects::{Effect, NonlinearDamping};
 use ship::narrow_band::NarrowBand;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -391,21 +391,29 @@ impl Search<'_> {
     }
 
     /// The believed candidate of lowest BIC.
-    fn best(&self, tried: Vec<Tried>) -> Option<Tried> {
+    fn best(&self, tried: impl IntoIterator<Item = Tried>) -> Option<Tried> {
         tried.into_iter().find(|tried| self.believes(&self.candidates[tried.place].term, &tried.evidence))
     }
 
-    /// Adds what is missing under white noise, one at a time, dropping what a later term made needless.
-    fn add_plainly(&self, base: &Model, first: &[Tried]) -> Model {
+    /// Adds what is missing under white noise, one at a time, dropping what a later term made needless; `timeless` without
+    /// moments that depend on time alone.
+    fn add_plainly(&self, base: &Model, first: &[Tried], timeless: bool) -> Model {
         let mut model = base.clone();
         let plain = Model { judged: base.plain.clone(), ..base.clone() };
         for round in 0..self.thresholds.most_terms {
             let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, &model.plain, true) };
-            let Some(best) = self.best(tried) else { break };
+            let allowed = |tried: &Tried| !timeless || !is_of_time(&self.candidates[tried.place].term);
+            let Some(best) = self.best(tried.into_iter().filter(allowed)) else { break };
             let before = model.structure.terms.len();
             let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
             model = self.prune(next, &plain, false);
-            model = self.swapped(model, &plain);
+            if !timeless {
+                model = self.swapped(model, &plain);
+            }
+            // Three terms that a random moment alone outdoes are on no promising way; what they leave is looked at under it.
+            if model.structure.terms.len() > 2 && model.plain.bic > base.judged.bic {
+                break;
+            }
             if model.structure.terms.len() <= before && round > 0 {
                 break;
             }
@@ -428,15 +436,25 @@ impl Search<'_> {
         model
     }
 
+    /// The terms of a plain search that stand against random moments.
+    fn confirmed(&self, base: &Model, plain: &Model) -> Model {
+        if plain.structure.terms.is_empty() {
+            return base.clone();
+        }
+        let judged = self.judge(plain.structure.clone(), plain.plain.clone());
+        let model = self.prune(judged, base, true);
+        if model.structure.terms.is_empty() { base.clone() } else { model }
+    }
+
     /// The whole search. `first` are all candidates tried on the base.
     pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
-        let plain = self.add_plainly(base, first);
-        let mut model = base.clone();
-        if !plain.structure.terms.is_empty() {
-            let judged = self.judge(plain.structure.clone(), plain.plain.clone());
-            model = self.prune(judged, base, true);
-            if model.structure.terms.is_empty() {
-                model = base.clone();
+        let plain = self.add_plainly(base, first, false);
+        let mut model = self.confirmed(base, &plain);
+        // A moment for a while is so flexible that it may come first and send the search astray.
+        if plain.structure.terms.len() > 1 && plain.structure.terms.iter().any(is_of_time) {
+            let timeless = self.confirmed(base, &self.add_plainly(base, first, true));
+            if timeless.judged.bic < model.judged.bic {
+                model = timeless;
             }
         }
         while model.structure.terms.len() < self.thresholds.most_terms && model.judged.colour.moment.is_some() {

@@ -78,7 +78,8 @@ pub fn evidence(data: &Evidence, theme: &Theme) -> Figure {
     let limit = Stroke::solid(INK, theme.line).dashed(DASHED);
     entries.push(Entry::new(Sample::Line(limit), "needed to be added"));
     sheet.legend(&entries);
-    let gains = data.bars.iter().flat_map(|bar| [bar.gain, bar.threshold]).filter(|gain| *gain > 1.0);
+    // Room for the number beside the longest bar.
+    let gains = data.bars.iter().flat_map(|bar| [3.0 * bar.gain, bar.threshold]).filter(|gain| *gain > 1.0);
     let x = Side::new(Axis::log_covering(gains.chain([1.0, 100.0]).collect::<Vec<_>>()), data.x_title.clone());
     let names = Side::new(Axis::names(data.bars.iter().map(|bar| bar.name.clone()).collect()), "");
     let row = 1.75 * theme.tick_font;

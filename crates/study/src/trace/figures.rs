@@ -159,7 +159,7 @@ fn candidates(told: &Told, theme: &Theme) -> Figure {
             Some(EvidenceBar {
                 name: format!("{} ({}){only}", one.id, one.form),
                 gain,
-                threshold: analysis.thresholds.gain,
+                threshold: one.needed,
                 fate: match one.outcome {
                     Outcome::Added => Fate::Added,
                     Outcome::Alias => Fate::Alias,
