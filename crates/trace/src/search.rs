@@ -410,10 +410,6 @@ impl Search<'_> {
             if !timeless {
                 model = self.swapped(model, &plain);
             }
-            // Three terms that a random moment alone outdoes are on no promising way; what they leave is looked at under it.
-            if model.structure.terms.len() > 2 && model.plain.bic > base.judged.bic {
-                break;
-            }
             if model.structure.terms.len() <= before && round > 0 {
                 break;
             }
