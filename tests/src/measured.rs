@@ -21,7 +21,8 @@ pub fn record(relative: &str) -> Option<Trial> {
     Some(reading.trial)
 }
 
-fn folder() -> PathBuf {
+/// The folder that holds the measured records, whether it is there or not.
+pub fn folder() -> PathBuf {
     std::env::var_os("TRIAL_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"), PathBuf::from)
 }

@@ -172,8 +172,8 @@ pub struct FitRequest {
     /// Methods to use [default: all]
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
-    /// Description of the columns of the records (a sidecar)
-    #[arg(long, value_name = "FILE.toml")]
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
+    #[arg(long, value_name = "FILE.toml|DIR")]
     pub columns: Option<PathBuf>,
 }
 
@@ -186,8 +186,8 @@ pub struct TraceRequest {
     /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not kept
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
-    /// Description of the columns of the records (a sidecar)
-    #[arg(long, value_name = "FILE.toml")]
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
+    #[arg(long, value_name = "FILE.toml|DIR")]
     pub columns: Option<PathBuf>,
     /// Give every record a rudder bias of its own
     #[arg(long)]

@@ -6,7 +6,8 @@ use trial::{Origin, Reading, Trial};
 
 use crate::failure::Failure;
 
-/// Reads a record; what the reader noticed goes to `warnings`.
+/// Reads a record; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder that
+/// holds one for it.
 pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
@@ -16,9 +17,15 @@ pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> 
             path.display()
         )));
     }
-    let reading = match columns {
-        Some(columns) => trial::read_with(path, Some(columns)),
-        None => trial::read(path),
+    // A folder holds a description for each record, under the name of the record.
+    let own = columns.filter(|columns| columns.is_dir()).and_then(|folder| {
+        let stem = path.file_stem()?.to_string_lossy().into_owned();
+        Some(folder.join(format!("{stem}.trial.toml"))).filter(|own| own.is_file())
+    });
+    let reading = match (columns, &own) {
+        (_, Some(own)) => trial::read_with(path, Some(own)),
+        (Some(columns), None) if !columns.is_dir() => trial::read_with(path, Some(columns)),
+        _ => trial::read(path),
     };
     let Reading { trial, warnings: found } = reading.map_err(Failure::input)?;
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));

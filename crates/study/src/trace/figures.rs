@@ -37,6 +37,10 @@ pub fn draw(told: &Told, theme: &Theme, folder: &Path) -> Result<Vec<(String, St
         let caption = format!("{title}: heading, residual and rudder.");
         let record_title = title.clone();
         drawings.push((format!("record{suffix}"), caption, Box::new(move || record(trial, judged, &record_title, theme))));
+        // Held-out records are judged, not studied.
+        if held_out {
+            continue;
+        }
         let caption = format!("{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation.");
         let name = name.clone();
         drawings.push((format!("residual{suffix}"), caption, Box::new(move || residual(trial, judged, &name, theme))));

@@ -1,0 +1,290 @@
+//! Traces the measured records, which are not part of the project, and writes what came out into `results/measured`.
+//!
+//! Run with the folder of the results as only argument; the records are looked for as [`kempf_tests::measured`] says.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use kempf_tests::measured::folder;
+use report::number::{fixed, significant};
+use report::{Column, Table};
+use serde_json::Value;
+use ship::angle::to_deg;
+use study::cli::{Common, Format, Style, TraceRequest, Withheld};
+use trace::candidates::{self, Sizes};
+use trace::fit::Problem;
+use trace::noise::Colour;
+use trace::record::Record;
+use trace::structure::Structure;
+use trial::{Channel, Trial};
+
+/// Records of one ship, of which each is fitted in turn and the others are held out.
+struct Set {
+    name: &'static str,
+    folder: &'static str,
+    records: &'static [&'static str],
+    /// Whether the records have wind columns.
+    wind: bool,
+}
+
+const SETS: [Set; 3] = [
+    Set {
+        name: "KVLCC2, 7 m model, HSVA",
+        folder: "kvlcc2_hsva",
+        records: &[
+            "zigzag_20_10_s",
+            "zigzag_10_10_s",
+            "zigzag_20_05",
+            "zigzag_15_05",
+            "zigzag_10_05",
+            "zigzag_05_01",
+        ],
+        wind: false,
+    },
+    Set {
+        name: "KVLCC2, MARIN, full-scale values",
+        folder: "kvlcc2_marin",
+        records: &["zigzag_20", "zigzag_10"],
+        wind: false,
+    },
+    Set {
+        name: "Esso Osaka, 3 m model outdoors",
+        folder: "esso_osaka",
+        records: &["zigzag_13_57_45", "zigzag_13_04_24", "zigzag_13_14_21", "zigzag_13_42_53", "zigzag_14_10_05"],
+        wind: true,
+    },
+];
+
+/// Cases whose whole report is kept: record, and whether the wind is withheld.
+const KEPT: [(&str, bool); 4] =
+    [("zigzag_20_10_s", false), ("zigzag_20", false), ("zigzag_13_57_45", false), ("zigzag_13_57_45", true)];
+
+fn main() -> ExitCode {
+    let Some(results) = std::env::args_os().nth(1).map(PathBuf::from) else {
+        eprintln!("give the folder of the results, for instance results/measured");
+        return ExitCode::from(2);
+    };
+    if !folder().is_dir() {
+        eprintln!("there are no measured records in {}; set TRIAL_DATA to the folder that holds them", folder().display());
+        return ExitCode::from(2);
+    }
+    match run(&results) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+
+fn run(results: &Path) -> Outcome<()> {
+    let scratch = tempfile::tempdir()?;
+    let mut page = String::from(INTRODUCTION);
+    for set in &SETS {
+        let mut table = errors_table();
+        let withheld: &[bool] = if set.wind { &[false, true] } else { &[false] };
+        for &record in set.records {
+            for &without_wind in withheld {
+                let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
+                let out = scratch.path().join(&name);
+                trace_one(set, record, without_wind, &out)?;
+                let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?;
+                table.push(line(record, without_wind, &json));
+                if KEPT.contains(&(record, without_wind)) {
+                    keep(&out, &results.join(format!("{}-{name}", set.folder)))?;
+                }
+            }
+        }
+        let _ = writeln!(page, "## {}\n\n{}", set.name, table.to_markdown());
+        if set.wind {
+            page += &wind(set)?;
+        }
+    }
+    page += KEPT_REPORTS;
+    for (record, without_wind) in KEPT {
+        let set = SETS.iter().find(|set| set.records.contains(&record)).ok_or("a kept record belongs to a set")?;
+        let wind = if without_wind { "-without-wind" } else { "" };
+        let _ = writeln!(page, "- [{}: {record}{wind}]({}-{record}{wind}/report.md)", set.name, set.folder);
+    }
+    fs::create_dir_all(results)?;
+    fs::write(results.join("README.md"), page)?;
+    Ok(())
+}
+
+const INTRODUCTION: &str = "# Measured records, traced
+
+What a first-order response lacks on measured records, found from one record and judged on others that were not fitted. The records
+are not part of the project; where they come from is said in the README of the project. Made by
+
+```text
+cargo run --release -p kempf-tests --bin measured -- results/measured
+```
+
+A line is one analysis: `study trace` of one record with all others of its set held out. *heading*: error of the recorded rudder
+replayed over the whole record, before (the best first-order base) and after. *windows*: the same restarted every 20 s. On held-out
+records only initial states are fitted; their figures are root mean squares over all rows of all of them, as the ratio after over
+before. Terms are in the order of discovery; those marked * were believed because they predict the held-out records, the others
+because of their likelihood against random moments.
+
+";
+
+const KEPT_REPORTS: &str = "## Reports\n\nWhole, with figures:\n\n";
+
+fn errors_table() -> Table {
+    Table::new([
+        Column::left("fitted record"),
+        Column::left("found"),
+        Column::decimal("heading before").unit("deg"),
+        Column::decimal("after").unit("deg"),
+        Column::decimal("ratio"),
+        Column::decimal("held out: heading ratio"),
+        Column::decimal("held out: windows of 20 s"),
+        Column::decimal("held out: windows of 60 s"),
+    ])
+}
+
+/// Runs `study trace` on one record.
+fn trace_one(set: &Set, record: &str, without_wind: bool, out: &Path) -> Outcome<()> {
+    let path = |name: &str| folder().join(set.folder).join(format!("{name}.csv"));
+    let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
+    let request = TraceRequest {
+        trials: vec![path(record)],
+        validate: set.records.iter().filter(|other| **other != record).map(|other| path(other)).collect(),
+        columns: Some(sidecars),
+        own_bias: false,
+        without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
+        style: Style { paper: None, dpi: 600.0 },
+    };
+    let common =
+        Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
+    eprintln!("{}: {record}{}", set.folder, if without_wind { ", wind withheld" } else { "" });
+    study::trace::run(&request, &common).map_err(|failure| failure.to_string().into())
+}
+
+/// One line of the table, from `trace.json`.
+fn line(record: &str, without_wind: bool, json: &Value) -> Vec<String> {
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let fitted = &json["error"]["identification"][0];
+    let (before, after) = (number(&fitted["before"]["heading_rmse_deg"]), number(&fitted["after"]["heading_rmse_deg"]));
+    let empty = Vec::new();
+    let held_out = json["error"]["validation"].as_array().unwrap_or(&empty);
+    let ratio = |of: &dyn Fn(&Value) -> &Value| {
+        let pooled = |when: &str| held_out.iter().map(|record| number(of(&record[when])).powi(2)).sum::<f64>().sqrt();
+        significant(pooled("after") / pooled("before"), 2)
+    };
+    let found: Vec<String> = json["effects"]
+        .as_array()
+        .unwrap_or(&empty)
+        .iter()
+        .map(|effect| {
+            let predicted = effect["evidence"].as_str().is_some_and(|text| text.contains("does not stand"));
+            let text = |key: &str| effect[key].as_str().unwrap_or_default().to_owned();
+            format!("{} ({}){}", text("id"), text("form"), if predicted { "*" } else { "" })
+        })
+        .collect();
+    vec![
+        format!("{record}{}", if without_wind { ", wind withheld" } else { "" }),
+        if found.is_empty() { "nothing".to_owned() } else { found.join(", ") },
+        significant(before, 3),
+        significant(after, 3),
+        significant(after / before, 2),
+        ratio(&|errors| &errors["heading_rmse_deg"]),
+        ratio(&|errors| &errors["horizon_rmse_deg"]["20"]),
+        ratio(&|errors| &errors["horizon_rmse_deg"]["60"]),
+    ]
+}
+
+/// Keeps report and PNG figures of one case.
+fn keep(from: &Path, to: &Path) -> Outcome<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let path = entry?.path();
+        let kind = path.extension().and_then(|kind| kind.to_str());
+        if matches!(kind, Some("png" | "md")) {
+            fs::copy(&path, to.join(path.file_name().ok_or("a file has a name")?))?;
+        }
+    }
+    Ok(())
+}
+
+/// The wind that a trace without wind columns finds, beside the wind that was measured.
+fn wind(set: &Set) -> Outcome<String> {
+    let mut table = Table::new([
+        Column::left("record"),
+        Column::decimal("measured: mean true wind").unit("m/s"),
+        Column::decimal("from").unit("deg"),
+        Column::decimal("traced: moment as rudder").unit("deg"),
+        Column::decimal("from, modulo 180°").unit("deg"),
+        Column::decimal("difference").unit("deg"),
+        Column::decimal("c_w of the measured wind").unit("deg s²/m²"),
+        Column::decimal("heading: base").unit("deg"),
+        Column::decimal("traced wind").unit("deg"),
+        Column::decimal("measured wind").unit("deg"),
+    ]);
+    let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
+    for record in set.records {
+        let path = folder().join(set.folder).join(format!("{record}.csv"));
+        let sidecar = sidecars.join(format!("{record}.trial.toml"));
+        let trial = trial::read_with(&path, Some(&sidecar))?.trial;
+        let (speed, from) = mean_wind(&trial).ok_or("the record has wind columns")?;
+        let [base, steady, measured] = wind_fits(&trial)?;
+        let (c, s) = (steady.1[0], steady.1[1]);
+        // w_c cos 2ψ + w_s sin 2ψ = w sin 2(ψ_w − ψ): w_c = w sin 2ψ_w, w_s = −w cos 2ψ_w.
+        let direction = 0.5 * c.atan2(-s);
+        let difference = (direction - from + 0.25 * std::f64::consts::TAU).rem_euclid(std::f64::consts::PI)
+            - 0.25 * std::f64::consts::TAU;
+        table.push([
+            (*record).to_owned(),
+            fixed(speed, 2),
+            fixed(to_deg(from.rem_euclid(std::f64::consts::TAU)), 0),
+            fixed(to_deg(c.hypot(s)), 1),
+            fixed(to_deg(direction.rem_euclid(std::f64::consts::PI)), 0),
+            fixed(to_deg(difference), 0),
+            fixed(to_deg(measured.1[0]), 2),
+            fixed(to_deg(base.0), 2),
+            fixed(to_deg(steady.0), 2),
+            fixed(to_deg(measured.0), 2),
+        ]);
+    }
+    Ok(format!(
+        "### Traced wind beside measured wind\n\nThe base with nothing but a wind moment added: once without the wind columns (steady \
+         wind of unknown strength and direction, found from the heading alone), once with them (c_w U² sin γ).\n\n{}\n",
+        table.to_markdown()
+    ))
+}
+
+/// Mean true wind: speed, and direction of the mean vector, rad.
+fn mean_wind(trial: &Trial) -> Option<(f64, f64)> {
+    let (speed, from) = (trial.channel(Channel::WindTrueSpeed)?, trial.channel(Channel::WindTrueFrom)?);
+    let count = speed.len() as f64;
+    let mean = |part: fn(f64) -> f64| speed.iter().zip(from).map(|(u, g)| u * part(*g)).sum::<f64>() / count;
+    let (north, east) = (mean(f64::cos), mean(f64::sin));
+    Some((north.hypot(east), east.atan2(north)))
+}
+
+/// Heading error (rad) and own parameters of the base, of the base with steady wind and of the base with the measured wind.
+fn wind_fits(trial: &Trial) -> Outcome<[(f64, Vec<f64>); 3]> {
+    let method = identify::output_error::Settings::default().build()?;
+    let first = identify::Identifier::identify(&method, std::slice::from_ref(trial))?.response;
+    let replay = identify::replay::replay(trial, &first).ok_or("the base can be replayed")?;
+    let initial = vec![[replay.heading[0], replay.yaw_rate[0]]];
+    let problem = Problem::new(vec![Record::averaged(trial, first.T().abs())], first.inverse_T, first.K_over_T);
+    let base = Structure::base(1, false);
+    let theta = vec![first.inverse_T, first.K_over_T, first.rudder_bias];
+    let plain = problem.fit(&base, &theta, &initial, &Colour::WHITE);
+    let sizes = Sizes::of(&problem.records, first.inverse_T, &problem.replay(&base, &plain.theta, &plain.initial));
+    let error = |fit: &trace::fit::Fit| fit.variance(problem.observations()).sqrt();
+    let with = |form: &str| -> Outcome<(f64, Vec<f64>)> {
+        let all = candidates::all(&problem.records, &sizes);
+        let wind = all.into_iter().find(|candidate| candidate.term.effect.form() == form);
+        let wind = wind.ok_or_else(|| format!("no candidate {form}"))?;
+        let start = [plain.theta.as_slice(), &wind.starts[0]].concat();
+        let fit = problem.fit(&base.with(wind.term), &start, &plain.initial, &Colour::WHITE);
+        Ok((error(&fit), fit.theta[theta.len()..].to_vec()))
+    };
+    Ok([(error(&plain), Vec::new()), with("steady wind")?, with("measured wind")?])
+}
