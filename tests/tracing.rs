@@ -16,10 +16,16 @@ use trace::analysis::{Outcome, Verdict};
 use trace::{Analysis, Settings};
 use trial::{Channel, Columns, Origin, Trial};
 
+/// An effect with its parameters.
+type Missing = (Arc<dyn Effect>, Vec<f64>);
+
+/// A channel as a function of time.
+type Signal = (Channel, fn(f64) -> f64);
+
 /// K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg.
 const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
 
-fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
+fn ship(effects: Vec<Missing>) -> Response {
     let mut parameters = BASE.to_vec();
     parameters.extend(effects.iter().flat_map(|(_, values)| values.iter().copied()));
     ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with(parameters)
@@ -58,7 +64,7 @@ fn is_named(analysis: &Analysis, id: &str) -> bool {
 }
 
 /// Effects that a response can be simulated with, in a size that a 10/10 shows.
-fn simulated() -> Vec<(Arc<dyn Effect>, Vec<f64>)> {
+fn simulated() -> Vec<Missing> {
     use effects::*;
     vec![
         (Arc::new(SecondOrder), vec![2.5, 6.2]),
@@ -89,7 +95,10 @@ fn every_effect_is_named_from_the_csv_alone() {
         let found = &analysis.effects[0];
         let error = analysis.identification[0].after.errors.heading;
         if id == "wave_yaw" {
-            assert!((found.parameters[0].value / values[0] - 1.0).abs() < 0.5 && (found.parameters[1].value - 0.6).abs() < 0.1);
+            assert!(
+                (found.parameters[0].value / values[0] - 1.0).abs() < 0.5
+                    && (found.parameters[1].value - 0.6).abs() < 0.1
+            );
         } else {
             // What is left is the noise of the compass, to a tenth.
             assert!((error / from_deg(0.05) - 1.0).abs() < 0.1, "{id} ({form}): {:.4} deg is left", error.to_degrees());
@@ -104,7 +113,7 @@ fn every_effect_is_named_from_the_csv_alone() {
 }
 
 /// A record of a ship whose effect acts through a measured channel.
-fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[(Channel, fn(f64) -> f64)]) -> Trial {
+fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) -> Trial {
     let helm = run(&steered(Vessel::response(ship(Vec::new())), 10.0), 3);
     let time = helm.time().to_vec();
     let signal = |of: Channel| {
@@ -126,18 +135,24 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[(Channel,
     let mut state = vec![0.0; response.dimension()];
     response.approach(0.0, 0.0, &mut state);
     let noise: Vec<f64> = {
-        let quiet = run(&{
-            let mut quiet = steered(Vessel::response(ship(Vec::new())), 10.0);
-            quiet.sensors.heading.noise = 0.0;
-            quiet
-        }, 3);
+        let quiet = run(
+            &{
+                let mut quiet = steered(Vessel::response(ship(Vec::new())), 10.0);
+                quiet.sensors.heading.noise = 0.0;
+                quiet
+            },
+            3,
+        );
         helm.heading().iter().zip(quiet.heading()).map(|(noisy, quiet)| noisy - quiet).collect()
     };
     let mut heading = vec![0.0; time.len()];
-    ship::replay::replay(&response, &recorded, &time, 0.05, &mut state, |row, motion| heading[row] = motion.heading + noise[row]);
+    ship::replay::replay(&response, &recorded, &time, 0.05, &mut state, |row, motion| {
+        heading[row] = motion.heading + noise[row]
+    });
     let mut columns: std::collections::BTreeMap<Channel, Vec<f64>> =
         [(Channel::Heading, heading), (Channel::Rudder, helm.rudder().to_vec())].into();
-    columns.extend(channels.iter().map(|(channel, value)| (*channel, time.iter().map(|&t| value(t)).collect::<Vec<_>>())));
+    columns
+        .extend(channels.iter().map(|(channel, value)| (*channel, time.iter().map(|&t| value(t)).collect::<Vec<_>>())));
     let origin = Origin::Simulated { scenario: "channel".into(), cell: 0, replicate: 0 };
     Trial::new("channel", origin, Columns { time, channels: columns, unknown: Vec::new() }).expect("a valid record")
 }
@@ -145,7 +160,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[(Channel,
 #[test]
 fn measured_channels_are_used_where_they_help() {
     use effects::*;
-    let cases: [(Arc<dyn Effect>, Vec<f64>, Vec<(Channel, fn(f64) -> f64)>); 4] = [
+    let cases: [(Arc<dyn Effect>, Vec<f64>, Vec<Signal>); 4] = [
         (Arc::new(SwayCouplingMeasured), vec![0.1], vec![(Channel::Sway, |t| 0.4 * (0.11 * t).sin())]),
         (
             Arc::new(SpeedLoss::Measured { approach_speed: 5.0 }),
@@ -182,11 +197,8 @@ fn measured_channels_are_used_where_they_help() {
 #[test]
 fn pairs_are_named() {
     use effects::*;
-    let pairs: [[(Arc<dyn Effect>, Vec<f64>); 2]; 3] = [
-        [
-            (Arc::new(SecondOrder), vec![2.5, 6.2]),
-            (Arc::new(MomentDrift { reference_time: 0.0 }), vec![7e-5]),
-        ],
+    let pairs: [[Missing; 2]; 3] = [
+        [(Arc::new(SecondOrder), vec![2.5, 6.2]), (Arc::new(MomentDrift { reference_time: 0.0 }), vec![7e-5])],
         [(Arc::new(NonlinearDamping::Cubic), vec![80.0]), (Arc::new(PortStarboardAsymmetry), vec![0.2])],
         [(Arc::new(SpeedLoss::Modelled), vec![13.0, 100.0, 2.0]), (Arc::new(SteeringLag::DeadTime), vec![1.0])],
     ];
@@ -315,7 +327,8 @@ fn damping_of_either_power_is_one_group_and_a_validation_record_is_never_fitted(
 /// A term that the fitted record wants and another record of the same kind contradicts is not kept, and that is said.
 #[test]
 fn what_makes_the_held_out_error_worse_is_not_kept() {
-    let lagging = Vessel::response(ship(vec![(Arc::new(effects::SteeringLag::DeadTime) as Arc<dyn Effect>, vec![1.5])]));
+    let lagging =
+        Vessel::response(ship(vec![(Arc::new(effects::SteeringLag::DeadTime) as Arc<dyn Effect>, vec![1.5])]));
     let fitted = run(&steered(lagging, 10.0), 11);
     let other = run(&steered(Vessel::response(ship(Vec::new())), 10.0), 12);
     assert_eq!(analysed(std::slice::from_ref(&fitted), &[]).effects.len(), 1);
@@ -334,14 +347,18 @@ fn records_of_one_ship_may_have_a_rudder_bias_each() {
     let settings = Settings { own_bias: true, ..Settings::default() };
     let analysis = trace::trace(&trials, &[], &settings).expect("two zig-zags have a base");
     assert!(analysis.effects.is_empty(), "named {:?}", names(&analysis));
-    let biases: Vec<f64> =
-        analysis.parameters.iter().filter(|value| value.symbol == "δ_r").map(|value| value.value.to_degrees()).collect();
+    let biases: Vec<f64> = analysis
+        .parameters
+        .iter()
+        .filter(|value| value.symbol == "δ_r")
+        .map(|value| value.value.to_degrees())
+        .collect();
     assert!((biases[0] + 1.0).abs() < 0.02 && (biases[1] - 1.5).abs() < 0.02, "{biases:?}");
 }
 
 #[test]
 fn port_and_starboard_are_exchanged_and_nothing_else() {
-    let effects: Vec<(Arc<dyn Effect>, Vec<f64>)> = vec![
+    let effects: Vec<Missing> = vec![
         (Arc::new(effects::NonlinearDamping::Cubic), vec![80.0]),
         (Arc::new(effects::PortStarboardAsymmetry), vec![0.2]),
     ];

@@ -6,10 +6,10 @@
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use identify::replay::replay;
 use ::trace::analysis::Traced;
 use ::trace::record::Record;
 use ::trace::{Analysis, TraceError, errors};
+use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
 use nalgebra::{Matrix2, Matrix2x3};
 use ship::FirstOrder;
@@ -227,7 +227,13 @@ fn reason(error: &TraceError) -> &'static str {
 }
 
 /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
-fn traced(blank: Row, validation: Option<&Trial>, analysis: &Analysis, missing: &[String], expected: Option<f64>) -> Row {
+fn traced(
+    blank: Row,
+    validation: Option<&Trial>,
+    analysis: &Analysis,
+    missing: &[String],
+    expected: Option<f64>,
+) -> Row {
     let [k, t, bias] = analysis.indices;
     let finite = |value: f64| value.is_finite().then_some(value);
     let elsewhere = |trial: &Trial| {

@@ -149,7 +149,10 @@ fn page(stored: &Stored, summary: &Summary, brief: &Table, drawings: &[Drawing])
         line(&present::tracing::table(&summary.tracing, design, false).to_markdown());
     }
     line("## Over all trials\n");
-    drawings.iter().filter(|drawing| drawing.showcase.is_none() && !drawing.of_traces).for_each(|drawing| line(&figure(drawing)));
+    drawings
+        .iter()
+        .filter(|drawing| drawing.showcase.is_none() && !drawing.of_traces)
+        .for_each(|drawing| line(&figure(drawing)));
     if design.cells.len() > 1 {
         line("### All cells together\n");
         line(&present::overall(summary, design).to_markdown());

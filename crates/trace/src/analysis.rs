@@ -283,8 +283,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let tried = search.try_all(&start, &start.plain, false);
     let mut model = search.run(&start, &tried);
 
-    let held_out: Vec<HeldOut> =
-        validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
+    let held_out: Vec<HeldOut> = validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
     let mut refused = Vec::new();
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
@@ -307,8 +306,15 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let covariance = parameter_covariance(&problem, &model, whiteness[1].lag1);
     let parameters = parameters(&problem, &model, covariance.as_ref(), &names);
     let indices = indices(&model, covariance.as_ref());
-    let report =
-        Reporter { search: &search, settings, names: &names, start: &start, model: &model, tried: &tried, predicted: &predicted };
+    let report = Reporter {
+        search: &search,
+        settings,
+        names: &names,
+        start: &start,
+        model: &model,
+        tried: &tried,
+        predicted: &predicted,
+    };
     let effects = report.effects(&parameters);
     let candidates = report.candidates(&effects);
     let unexplained = report.unexplained(trials, &after);
@@ -458,14 +464,18 @@ fn on_records(
     first: &FirstOrder,
     thorough: bool,
 ) -> Result<Vec<OnRecord>, TraceError> {
-    let is_base = model.structure.terms.is_empty() && !model.structure.own_bias && problem.records.len() == trials.len();
+    let is_base =
+        model.structure.terms.is_empty() && !model.structure.own_bias && problem.records.len() == trials.len();
     trials
         .iter()
         .enumerate()
         .map(|(number, trial)| {
             let record = Record::whole(trial);
-            let response =
-                if is_base { Response::first_order_ship(*first) } else { model.structure.response(number, &model.plain.theta) };
+            let response = if is_base {
+                Response::first_order_ship(*first)
+            } else {
+                model.structure.response(number, &model.plain.theta)
+            };
             let mut all = starts(trial, first);
             all.push(model.plain.initial[number]);
             on_record(trial, &record, &response, &all, is_base.then_some(first), thorough)
@@ -487,11 +497,8 @@ fn on_record(
         Some(first) => closed_form(trial, record, first)?,
         None => errors::full(response, record, starts)?,
     };
-    let errors = if thorough {
-        errors::errors(trial, record, response, &replayed)
-    } else {
-        errors::in_brief(&replayed)
-    };
+    let errors =
+        if thorough { errors::errors(trial, record, response, &replayed) } else { errors::in_brief(&replayed) };
     Some(OnRecord { replayed, errors })
 }
 
@@ -617,13 +624,15 @@ fn indices(model: &Model, covariance: Option<&DMatrix<f64>>) -> [Quantity; 3] {
             let ci95 = Some([response.rudder_bias - reach, response.rudder_bias + reach]);
             [k, t, Quantity { value: response.rudder_bias, sd: Some(sd), ci95 }]
         }
-        None => [response.K(), response.T(), response.rudder_bias].map(|value| Quantity { value, sd: None, ci95: None }),
+        None => {
+            [response.K(), response.T(), response.rudder_bias].map(|value| Quantity { value, sd: None, ci95: None })
+        }
     }
 }
 
 fn randomness(problem: &Problem, model: &Model) -> Randomness {
     let fit = &model.judged;
-    let white = fit.variance(problem.observations()).sqrt();
+    let white = (fit.rss / problem.observations() as f64).sqrt();
     Randomness {
         white,
         moment: fit.colour.moment.map(|(kind, _)| kind),
@@ -710,7 +719,8 @@ impl Reporter<'_> {
             self.tried
         } else {
             // The model without the term, under the noise of the model with it.
-            let without = self.search.problem.fit(&less.structure, &less.plain.theta, &less.plain.initial, &with.colour);
+            let without =
+                self.search.problem.fit(&less.structure, &less.plain.theta, &less.plain.initial, &with.colour);
             tried = self.search.try_all(less, &without, false);
             &tried
         };
@@ -764,7 +774,7 @@ impl Reporter<'_> {
     /// Waves as an effect, where they are part of the noise.
     fn waves(&self) -> Option<Traced> {
         let waves = self.model.judged.colour.waves?;
-        let white = self.model.judged.variance(self.search.problem.observations()).sqrt();
+        let white = self.search.problem.variance(&self.model.judged).sqrt();
         let calm = self.search.coloured(self.model, None);
         let evidence = self.search.evidence(&calm.judged, &self.model.judged, 3);
         let effect = ship::effects::WaveYaw;
@@ -809,7 +819,7 @@ impl Reporter<'_> {
         } else {
             self.search.try_all(self.model, fit, false)
         };
-        let variance = fit.variance(self.search.problem.observations());
+        let variance = self.search.problem.variance(fit);
         let ground = Ground { problem: self.search.problem, structure, fit, variance };
         let log_n = (self.search.problem.observations() as f64).ln();
         let mut list: Vec<Considered> = self
@@ -821,7 +831,8 @@ impl Reporter<'_> {
                 let term = &candidate.term;
                 let alone = self.tried.iter().find(|tried| tried.place == place).map(|tried| tried.evidence.gain);
                 let added = structure.terms.iter().any(|own| own.is(term));
-                let alias = effects.iter().any(|effect| effect.aliases.contains(&(term.effect.id(), term.effect.form())));
+                let alias =
+                    effects.iter().any(|effect| effect.aliases.contains(&(term.effect.id(), term.effect.form())));
                 let evidence = if added {
                     let own = |effect: &&Traced| (effect.id, effect.form) == (term.effect.id(), term.effect.form());
                     effects.iter().find(own).map(|effect| effect.evidence)
@@ -887,7 +898,11 @@ impl Reporter<'_> {
             gain_alone: None,
             needed: self.settings.thresholds.gain,
             visibility: None,
-            reason: if found.is_some() { None } else { Some("no band above five times the frequency of the manoeuvre") },
+            reason: if found.is_some() {
+                None
+            } else {
+                Some("no band above five times the frequency of the manoeuvre")
+            },
         }
     }
 
@@ -985,7 +1000,8 @@ impl Analysis {
     /// A planned trial is a record of the fitted ship itself, made by the caller; only its rudder and its times count.
     pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
         let now = self.ground(&self.problem, &self.model.structure, &self.model.plain).uncertainty();
-        let mut prospects: Vec<Prospect> = planned.par_iter().map(|(name, trial)| self.prospect(name, trial, now)).collect();
+        let mut prospects: Vec<Prospect> =
+            planned.par_iter().map(|(name, trial)| self.prospect(name, trial, now)).collect();
         let rank = |prospect: &Prospect| prospect.separated.len() + prospect.revealed.len();
         prospects.sort_by(|one, other| {
             let by_information = other.information.total_cmp(&one.information);
@@ -995,13 +1011,8 @@ impl Analysis {
         prospects
     }
 
-    fn ground<'a>(
-        &self,
-        problem: &'a Problem,
-        structure: &'a Structure,
-        fit: &'a Fit,
-    ) -> Ground<'a> {
-        Ground { problem, structure, fit, variance: self.model.plain.variance(self.problem.observations()) }
+    fn ground<'a>(&self, problem: &'a Problem, structure: &'a Structure, fit: &'a Fit) -> Ground<'a> {
+        Ground { problem, structure, fit, variance: self.problem.variance(&self.model.plain) }
     }
 
     fn prospect(&self, name: &str, trial: &Trial, now: Option<f64>) -> Prospect {

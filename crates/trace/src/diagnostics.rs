@@ -27,8 +27,11 @@ pub fn whiteness(residuals: &[Vec<f64>]) -> Whiteness {
         square += own;
         cross += correlations.first().copied().unwrap_or(0.0) * own;
         let n = n as f64;
-        statistic +=
-            correlations.iter().enumerate().map(|(k, rho)| n * (n + 2.0) * rho * rho / (n - 1.0 - k as f64)).sum::<f64>();
+        statistic += correlations
+            .iter()
+            .enumerate()
+            .map(|(k, rho)| n * (n + 2.0) * rho * rho / (n - 1.0 - k as f64))
+            .sum::<f64>();
         freedom += lags as f64;
     }
     let p_value = if freedom > 0.0 { ChiSquared::new(freedom).map_or(1.0, |chi| chi.sf(statistic)) } else { 1.0 };
@@ -101,7 +104,14 @@ const PARTS: usize = 8;
 const BANDS: usize = 4;
 
 /// Describes the residual of one record, row by row.
-pub fn signature(number: usize, time: &[f64], residual: &[f64], heading: &[f64], rudder: &[f64], spacing: f64) -> Signature {
+pub fn signature(
+    number: usize,
+    time: &[f64],
+    residual: &[f64],
+    heading: &[f64],
+    rudder: &[f64],
+    spacing: f64,
+) -> Signature {
     let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
     let rms = |rows: &[usize]| {
         if rows.is_empty() {

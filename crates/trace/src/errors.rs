@@ -119,11 +119,8 @@ fn root_mean_square(values: &[f64]) -> Option<f64> {
 pub fn replayed_zigzag(trial: &Trial, replayed: &Replayed) -> Option<ZigZag> {
     let first = trial.observed_rows().next().unwrap_or(0);
     let range = first..first + replayed.time.len();
-    let channels: BTreeMap<Channel, Vec<f64>> = [
-        (Channel::Heading, replayed.heading.clone()),
-        (Channel::Rudder, trial.rudder()[range].to_vec()),
-    ]
-    .into();
+    let channels: BTreeMap<Channel, Vec<f64>> =
+        [(Channel::Heading, replayed.heading.clone()), (Channel::Rudder, trial.rudder()[range].to_vec())].into();
     let columns = Columns { time: replayed.time.clone(), channels, unknown: Vec::new() };
     let twin = Trial::new(trial.name(), trial.origin().clone(), columns).ok()?;
     ZigZag::of(&twin).ok()
@@ -178,14 +175,7 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
     Some((square / rows as f64).sqrt())
 }
 
-fn enter(
-    response: &Response,
-    record: &Record,
-    row: usize,
-    start: [f64; 2],
-    memory: Option<&[f64]>,
-    state: &mut [f64],
-) {
+fn enter(response: &Response, record: &Record, row: usize, start: [f64; 2], memory: Option<&[f64]>, state: &mut [f64]) {
     match memory {
         Some(memory) => {
             state.copy_from_slice(memory);
@@ -227,7 +217,9 @@ fn settle(
     let mut residual = |initial: [f64; 2]| -> Vec<f64> {
         enter(response, record, rows.start, initial, memory, &mut state);
         let mut all = vec![0.0; times.len()];
-        run(response, &record.recorded(response), times, record.spacing, &mut state, |row, heading, _| all[row] = heading);
+        run(response, &record.recorded(response), times, record.spacing, &mut state, |row, heading, _| {
+            all[row] = heading
+        });
         seats.iter().map(|&row| record.heading[row] - all[row - rows.start]).collect()
     };
     let size = [1e-6, 1e-6 / span];
@@ -238,7 +230,11 @@ fn settle(
         let column = |residual: &mut dyn FnMut([f64; 2]) -> Vec<f64>, k: usize| -> Vec<f64> {
             let mut moved = initial;
             moved[k] += size[k];
-            residual(moved).iter().zip(&now).map(|(moved, now)| (now - moved) / size[k] * [1.0, 1.0 / span][k]).collect()
+            residual(moved)
+                .iter()
+                .zip(&now)
+                .map(|(moved, now)| (now - moved) / size[k] * [1.0, 1.0 / span][k])
+                .collect()
         };
         let (one, two) = (column(&mut residual, 0), column(&mut residual, 1));
         let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();

@@ -29,6 +29,25 @@ const LESSON: f64 = 0.7;
 /// Dampings of one step that are tried before it counts as a minimum.
 const MOST_DAMPINGS: usize = 9;
 
+/// No heading is believed to be better than this, rad: a thousandth of a degree.
+const FINEST: f64 = 1.75e-5;
+
+/// Share of the rows whose rudder bends most, by which the error of the rudder between rows is judged.
+const BENT: f64 = 0.05;
+
+/// Heading error, rad, that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral of
+/// the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
+///
+/// `gain` is K, 1/s. Half the largest error is taken, root mean square over the corners.
+fn blur(record: &Record, gain: f64) -> f64 {
+    let rudder = record.rudder();
+    let mut bends: Vec<f64> = rudder.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+    bends.sort_by(|one, other| other.total_cmp(one));
+    let most = ((bends.len() as f64 * BENT) as usize).max(1);
+    let square = bends.iter().take(most).sum::<f64>() / most as f64;
+    gain * record.spacing * square.sqrt() / 16.0
+}
+
 /// The records of one analysis with what all fits need of them.
 #[derive(Debug, Clone)]
 pub struct Problem {
@@ -38,6 +57,7 @@ pub struct Problem {
     inverse_time: f64,
     inverse_time_scale: f64,
     gain_scale: f64,
+    floor: f64,
 }
 
 /// A fitted structure.
@@ -61,13 +81,6 @@ pub struct Fit {
     pub bic: f64,
     /// Replays used.
     pub replays: usize,
-}
-
-impl Fit {
-    /// Mean square of the whitened residual, rad².
-    pub fn variance(&self, observations: usize) -> f64 {
-        self.rss / observations as f64
-    }
 }
 
 /// Residual and sensitivities at one point, record by record.
@@ -324,7 +337,9 @@ impl Problem {
         let longest = records.iter().map(Record::duration).fold(0.0, f64::max);
         let grains = records.iter().map(|record| Grain::new(record, inverse_time, longest)).collect();
         let inverse_time_scale = inverse_time.abs().max(1.0 / longest);
-        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain }
+        let time = inverse_time_scale.recip().min(0.1 * longest);
+        let floor = records.iter().map(|record| blur(record, gain * time)).fold(FINEST, f64::max).powi(2);
+        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain, floor }
     }
 
     /// The same ship on other records.
@@ -337,6 +352,18 @@ impl Problem {
     /// Length of the longest record, s.
     pub fn longest(&self) -> f64 {
         self.grains.iter().map(Grain::longest).fold(0.0, f64::max)
+    }
+
+    /// −2 log L of a whitened sum of squares (rad²) and Σ log S, up to a constant of the records, the variance at its best
+    /// value but not below what the rudder between rows leaves unknown.
+    pub fn deviance(&self, rss: f64, log_variance: f64) -> f64 {
+        let n = self.observations() as f64;
+        if rss.is_finite() && rss >= 0.0 { n * (rss / n + self.floor).ln() + log_variance } else { f64::INFINITY }
+    }
+
+    /// Variance of one whitened heading, rad².
+    pub fn variance(&self, fit: &Fit) -> f64 {
+        fit.rss / self.observations() as f64 + self.floor
     }
 
     /// Number of observed headings.
@@ -510,7 +537,11 @@ impl Problem {
                 damping = (damping * 8.0).max(1e-4);
             }
             let Some((next, start, trial, lower, promised)) = improved else {
-                if fresh { break } else { continue };
+                if fresh {
+                    break;
+                } else {
+                    continue;
+                };
             };
             let gain = rss - lower;
             let surprise = (gain - promised).abs() / promised;
@@ -602,7 +633,7 @@ impl Problem {
         let log_variance: f64 = whiteners.iter().map(|whitener| whitener.log_variance).sum();
         let fitted = self.entries(structure).iter().filter(|entry| entry.fitted).count();
         let freedom = fitted + 2 * self.records.len() + colour.freedom() + 1;
-        let deviance = deviance(rss, log_variance, n);
+        let deviance = self.deviance(rss, log_variance);
         Fit {
             theta,
             initial,
@@ -620,21 +651,15 @@ impl Problem {
     ///
     /// Level and parameters are found together: for every level the linearised fit is solved anew.
     pub fn best_moment(&self, linear: &Linear, kind: Moment, waves: Option<NarrowBand>) -> (Colour, f64) {
-        let n = self.observations() as f64;
         let value = |level: f64| {
             let colour = Colour { moment: Some((kind, level.exp())), waves };
             let (rss, log_variance) = linear.projected(&self.whiteners(&colour));
-            deviance(rss, log_variance, n)
+            self.deviance(rss, log_variance)
         };
         let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
         let (level, deviance) = minimum(lo, hi, 12, value);
         (Colour { moment: Some((kind, level.exp())), waves }, deviance)
     }
-}
-
-/// −2 log L of white residuals, the variance at its best value.
-pub fn deviance(rss: f64, log_variance: f64, n: f64) -> f64 {
-    if rss.is_finite() && rss > 0.0 { n * (rss / n).ln() + log_variance } else { f64::INFINITY }
 }
 
 /// Sum of squares of whitened residuals.

@@ -6,8 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use ship::{Polyline, Regressor, Response};
 use ship::replay::Recorded;
+use ship::{Polyline, Regressor, Response};
 use trial::{Channel, Trial};
 
 /// Rows that are kept at least, however dense they are.
@@ -17,7 +17,7 @@ const FEWEST_ROWS: usize = 400;
 const ROWS_PER_TIME: f64 = 20.0;
 
 /// Rows that are kept at most.
-const MOST_ROWS: usize = 6000;
+const MOST_ROWS: usize = 4000;
 
 /// An interval of more than this many usual ones ends a group of rows that are averaged.
 const GAP: f64 = 3.0;
@@ -48,7 +48,7 @@ pub struct Record {
 
 impl Record {
     /// Takes a trial with its rows averaged down to twenty per `time` (s, the time constant of the base), but to no fewer
-    /// than 400 and no more than 6000.
+    /// than 400 and no more than 4000.
     pub fn averaged(trial: &Trial, time: f64) -> Self {
         let longest = time.min(0.1 * trial.duration()) / (ROWS_PER_TIME * trial.sampling_period());
         let group = (longest as usize).min(trial.len() / FEWEST_ROWS).max(1);

@@ -198,7 +198,14 @@ impl Search<'_> {
 
     /// Fits a model with one more term from every start of a candidate, under one colour; `linear` are the sensitivities of
     /// the model at `from`.
-    fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, linear: &Linear, colour: &Colour) -> (Structure, Fit) {
+    fn with_term(
+        &self,
+        model: &Model,
+        candidate: &Candidate,
+        from: &Fit,
+        linear: &Linear,
+        colour: &Colour,
+    ) -> (Structure, Fit) {
         let structure = model.structure.with(candidate.term.clone());
         let own = model.structure.free_count();
         let best = self
@@ -227,7 +234,6 @@ impl Search<'_> {
 
     /// Approximate gain in −2 log L of a candidate from the sensitivities at a fit: a score test that needs no refit.
     fn score(&self, model: &Model, fit: &Fit, linear: &Linear, candidate: &Candidate) -> f64 {
-        let n = self.problem.observations() as f64;
         let structure = model.structure.with(candidate.term.clone());
         let whiteners = self.problem.whiteners(&fit.colour);
         let starts = self.starts(candidate, fit, linear);
@@ -241,7 +247,7 @@ impl Search<'_> {
                     linear.push(column);
                 }
                 let (without, with) = linear.explained(&whiteners, own);
-                n * (without / with).ln()
+                self.problem.deviance(without, 0.0) - self.problem.deviance(with, 0.0)
             })
             .fold(0.0, f64::max)
     }
@@ -277,7 +283,14 @@ impl Search<'_> {
             .map(|(record, there)| {
                 there.as_ref()?;
                 let source = &self.problem.records[record];
-                Some(source.observed.iter().zip(&fit.residual[record]).map(|(&row, e)| source.heading[row] - e).collect())
+                Some(
+                    source
+                        .observed
+                        .iter()
+                        .zip(&fit.residual[record])
+                        .map(|(&row, e)| source.heading[row] - e)
+                        .collect(),
+                )
             })
             .collect();
         let being = less(&here, &without);
@@ -299,8 +312,9 @@ impl Search<'_> {
     /// best scores are fitted. The lowest BIC comes first.
     pub fn try_all(&self, model: &Model, fit: &Fit, short_list: bool) -> Vec<Tried> {
         let linear = self.linear(&model.structure, fit);
-        let mut places: Vec<usize> =
-            (0..self.candidates.len()).filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term)).collect();
+        let mut places: Vec<usize> = (0..self.candidates.len())
+            .filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term))
+            .collect();
         if short_list {
             let mut scored: Vec<(f64, usize)> = places
                 .par_iter()
@@ -381,7 +395,8 @@ impl Search<'_> {
     fn prune(&self, mut model: Model, base: &Model, under_moment: bool) -> Model {
         while !model.structure.terms.is_empty() {
             let tests = self.tested(&model, under_moment);
-            let surplus = |place: usize, evidence: &Evidence| evidence.gain - self.needed(&model.structure.terms[place]);
+            let surplus =
+                |place: usize, evidence: &Evidence| evidence.gain - self.needed(&model.structure.terms[place]);
             let weakest = tests
                 .into_iter()
                 .enumerate()

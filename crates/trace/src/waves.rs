@@ -2,7 +2,7 @@
 
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::{Problem, deviance};
+use crate::fit::Problem;
 use crate::noise::Colour;
 
 /// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.
@@ -21,7 +21,6 @@ const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// The waves that explain a residual best beside a random moment; `None` when none can be resolved or helps.
 pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option<NarrowBand> {
-    let n = problem.observations() as f64;
     // −2 log L and whitened sum of squares of the residual under one colour.
     let judge = |colour: &Colour| {
         let (mut rss, mut log_variance) = (0.0, 0.0);
@@ -31,7 +30,7 @@ pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option
             rss += residual.iter().map(|x| x * x).sum::<f64>();
             log_variance += whitener.log_variance;
         }
-        (deviance(rss, log_variance, n), rss)
+        (problem.deviance(rss, log_variance), rss)
     };
     let value = |waves: NarrowBand| judge(&Colour { waves: Some(waves), ..*beside }).0;
     let slowest = FASTER * problem.records.iter().map(fundamental).fold(0.0, f64::max);

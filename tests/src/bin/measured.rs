@@ -33,14 +33,7 @@ const SETS: [Set; 3] = [
     Set {
         name: "KVLCC2, 7 m model, HSVA",
         folder: "kvlcc2_hsva",
-        records: &[
-            "zigzag_20_10_s",
-            "zigzag_10_10_s",
-            "zigzag_20_05",
-            "zigzag_15_05",
-            "zigzag_10_05",
-            "zigzag_05_01",
-        ],
+        records: &["zigzag_20_10_s", "zigzag_10_10_s", "zigzag_20_05", "zigzag_15_05", "zigzag_10_05", "zigzag_05_01"],
         wind: false,
     },
     Set {
@@ -67,7 +60,10 @@ fn main() -> ExitCode {
         return ExitCode::from(2);
     };
     if !folder().is_dir() {
-        eprintln!("there are no measured records in {}; set TRIAL_DATA to the folder that holds them", folder().display());
+        eprintln!(
+            "there are no measured records in {}; set TRIAL_DATA to the folder that holds them",
+            folder().display()
+        );
         return ExitCode::from(2);
     }
     match run(&results) {
@@ -159,8 +155,7 @@ fn trace_one(set: &Set, record: &str, without_wind: bool, out: &Path) -> Outcome
         without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
         style: Style { paper: None, dpi: 600.0 },
     };
-    let common =
-        Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
+    let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
     eprintln!("{}: {record}{}", set.folder, if without_wind { ", wind withheld" } else { "" });
     study::trace::run(&request, &common).map_err(|failure| failure.to_string().into())
 }
@@ -277,7 +272,7 @@ fn wind_fits(trial: &Trial) -> Outcome<[(f64, Vec<f64>); 3]> {
     let theta = vec![first.inverse_T, first.K_over_T, first.rudder_bias];
     let plain = problem.fit(&base, &theta, &initial, &Colour::WHITE);
     let sizes = Sizes::of(&problem.records, first.inverse_T, &problem.replay(&base, &plain.theta, &plain.initial));
-    let error = |fit: &trace::fit::Fit| fit.variance(problem.observations()).sqrt();
+    let error = |fit: &trace::fit::Fit| (fit.rss / problem.observations() as f64).sqrt();
     let with = |form: &str| -> Outcome<(f64, Vec<f64>)> {
         let all = candidates::all(&problem.records, &sizes);
         let wind = all.into_iter().find(|candidate| candidate.term.effect.form() == form);

@@ -69,7 +69,8 @@ fn colour(fate: Fate) -> RGBColor {
 /// Draws the bars.
 pub fn evidence(data: &Evidence, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let look = |fate| Look { colour: colour(fate), marker: Marker::Square, dash: SOLID, hollow: fate == Fate::NotObservable };
+    let look =
+        |fate| Look { colour: colour(fate), marker: Marker::Square, dash: SOLID, hollow: fate == Fate::NotObservable };
     let mut entries: Vec<Entry> = FATES
         .iter()
         .filter(|(fate, _)| data.bars.iter().any(|bar| bar.fate == *fate))

@@ -50,17 +50,23 @@ pub fn power(data: &Power, theme: &Theme) -> Figure {
         dash: SOLID,
         hollow: false,
     };
-    let measured = data.series.iter().enumerate().map(|(number, series)| {
-        Entry::new(Sample::Marker(look(number)), series.name.clone())
-    });
-    let theory =
-        data.theory.iter().enumerate().map(|(number, (name, _))| Entry::new(Sample::Line(stroke(number)), name.clone()));
+    let measured = data
+        .series
+        .iter()
+        .enumerate()
+        .map(|(number, series)| Entry::new(Sample::Marker(look(number)), series.name.clone()));
+    let theory = data
+        .theory
+        .iter()
+        .enumerate()
+        .map(|(number, (name, _))| Entry::new(Sample::Line(stroke(number)), name.clone()));
     sheet.legend(&measured.chain(theory).collect::<Vec<_>>());
     let sizes = data.series.iter().flat_map(|series| series.points.iter().map(|point| point.0));
     let drawn = data.theory.iter().flat_map(|(_, curve)| curve.finite().map(|(x, _)| x));
     let x = Axis::log_covering(sizes.chain(drawn).filter(|x| *x > 0.0).collect::<Vec<_>>());
     let y = Axis::linear(-3.0, 103.0, Steps::Decimal);
-    let grid = Grid::stack(Side::new(x, data.x_title.clone()), vec![(Side::new(y, data.y_title.clone()), theme.tall(0.42))]);
+    let grid =
+        Grid::stack(Side::new(x, data.x_title.clone()), vec![(Side::new(y, data.y_title.clone()), theme.tall(0.42))]);
     for panel in &sheet.grid(grid) {
         for (number, (_, curve)) in data.theory.iter().enumerate() {
             panel.line(&mut sheet.scene, curve.pairs(), stroke(number));

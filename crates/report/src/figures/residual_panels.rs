@@ -44,7 +44,8 @@ pub struct ResidualPanels {
 pub fn residual_panels(data: &ResidualPanels, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     let origins = super::distinct(data.panels.iter().flat_map(|panel| &panel.curves).map(|(origin, _)| origin));
-    let entry = |origin: &&Origin| Entry::new(Sample::Line(Stroke::solid(origin.look().colour, theme.line)), origin.label());
+    let entry =
+        |origin: &&Origin| Entry::new(Sample::Line(Stroke::solid(origin.look().colour, theme.line)), origin.label());
     sheet.legend(&origins.iter().map(entry).collect::<Vec<_>>());
     // Two columns side by side have vertical axes of their own.
     let width = if theme.is_narrow() { 1 } else { 2 };

@@ -64,14 +64,14 @@ pub fn kinds(lines: &[TraceSummary]) -> Table {
         Column::left("wrong named [%]"),
         Column::left("named where clear [%]"),
     ]);
-    let kinds: [(&str, fn(&TraceSummary) -> bool); 4] = [
-        ("nothing missing", |line| line.missing.is_empty()),
-        ("one effect missing", |line| line.missing.len() == 1 && line.wrong_share().is_some()),
-        ("several effects missing", |line| line.missing.len() > 1),
-        ("a hull", |line| !line.missing.is_empty() && line.wrong_share().is_none()),
-    ];
-    for (name, is) in kinds {
-        let own: Vec<&TraceSummary> = lines.iter().filter(|line| is(line)).collect();
+    let kind = |line: &TraceSummary| match line.missing.len() {
+        0 => "nothing missing",
+        _ if line.wrong_share().is_none() => "a hull",
+        1 => "one effect missing",
+        _ => "several effects missing",
+    };
+    for name in ["nothing missing", "one effect missing", "several effects missing", "a hull"] {
+        let own: Vec<&TraceSummary> = lines.iter().filter(|line| kind(line) == name).collect();
         if own.is_empty() {
             continue;
         }

@@ -313,7 +313,8 @@ impl Layout {
 
     /// Whether the values of a column repeat so often that a dictionary of them pays: estimates hardly ever do.
     pub(super) fn repeats(name: &str) -> bool {
-        let text = ["method", "failure", "stop", "trace_verdict", "trace_named", "trace_groups", "trace_expected"].contains(&name);
+        let text = ["method", "failure", "stop", "trace_verdict", "trace_named", "trace_groups", "trace_expected"]
+            .contains(&name);
         text || ["true_", "bound_", "axis."].iter().any(|start| name.starts_with(start))
     }
 

@@ -8,6 +8,7 @@ fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {
         labels: vec![noise.to_string(), trial.to_owned()],
         values: vec![Some(noise), None],
+        missing: Vec::new(),
         bound_percent2: None,
     };
     let method = |label: &str| MethodName { label: label.into(), id: label.into() };

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use identify::IdentifierSettings;
 use ::trace::search::Thresholds;
+use identify::IdentifierSettings;
 use ship::angle::{KNOT, from_deg};
 use ship::linear::SecondOrderIndices;
 use ship::narrow_band::NarrowBand;

@@ -4,7 +4,12 @@ use crate::scenario::MethodName;
 use crate::store::CellFacts;
 
 fn design(methods: &[&str], cells: usize) -> Design {
-    let cell = |index: usize| CellFacts { labels: vec![index.to_string()], values: vec![None], bound_percent2: None };
+    let cell = |index: usize| CellFacts {
+        labels: vec![index.to_string()],
+        values: vec![None],
+        missing: Vec::new(),
+        bound_percent2: None,
+    };
     Design {
         question: String::new(),
         analysis: String::new(),

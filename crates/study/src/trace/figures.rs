@@ -23,12 +23,15 @@ const LAGS: usize = 60;
 /// Lines of a spectrum that are averaged into one, at most this many are drawn.
 const MOST_LINES: usize = 400;
 
+/// Stem, caption and what is drawn.
+type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
+
 /// Draws everything into `folder` and returns stems and captions.
 pub fn draw(told: &Told, theme: &Theme, folder: &Path) -> Result<Vec<(String, String)>, Failure> {
     let analysis = told.analysis;
     let trials: Vec<&Trial> = told.trials.iter().chain(told.others).collect();
     let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
-    let mut drawings: Vec<(String, String, Box<dyn Fn() -> Figure + Sync + Send>)> = Vec::new();
+    let mut drawings: Vec<Drawing> = Vec::new();
     for (number, (&trial, &judged)) in trials.iter().zip(&judged).enumerate() {
         let name = &told.names[number];
         let held_out = number >= told.trials.len();
@@ -36,16 +39,23 @@ pub fn draw(told: &Told, theme: &Theme, folder: &Path) -> Result<Vec<(String, St
         let title = page::title(judged, name, held_out);
         let caption = format!("{title}: heading, residual and rudder.");
         let record_title = title.clone();
-        drawings.push((format!("record{suffix}"), caption, Box::new(move || record(trial, judged, &record_title, theme))));
+        drawings.push((
+            format!("record{suffix}"),
+            caption,
+            Box::new(move || record(trial, judged, &record_title, theme)),
+        ));
         // Held-out records are judged, not studied.
         if held_out {
             continue;
         }
-        let caption = format!("{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation.");
+        let caption = format!(
+            "{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation."
+        );
         let name = name.clone();
         drawings.push((format!("residual{suffix}"), caption, Box::new(move || residual(trial, judged, &name, theme))));
     }
-    let caption = "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";
+    let caption =
+        "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";
     drawings.push((String::from("candidates"), caption.into(), Box::new(move || candidates(told, theme))));
     drawings.par_iter().try_for_each(|(stem, _, draw)| write_figure(&draw(), folder, stem))?;
     Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())

@@ -179,7 +179,8 @@ pub struct NoiseEntry {
 
 impl From<&Errors> for E {
     fn from(errors: &Errors) -> Self {
-        let horizon = HORIZONS.iter().zip(errors.horizon).map(|(length, error)| (format!("{length:.0}"), error.map(to_deg)));
+        let horizon =
+            HORIZONS.iter().zip(errors.horizon).map(|(length, error)| (format!("{length:.0}"), error.map(to_deg)));
         Self {
             heading_rmse_deg: to_deg(errors.heading),
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
@@ -203,7 +204,8 @@ impl From<&Value> for ParameterEntry {
 
 impl From<&Traced> for EffectEntry {
     fn from(effect: &Traced) -> Self {
-        let mut aliases: Vec<&'static str> = effect.aliases.iter().map(|(id, _)| *id).filter(|id| *id != effect.id).collect();
+        let mut aliases: Vec<&'static str> =
+            effect.aliases.iter().map(|(id, _)| *id).filter(|id| *id != effect.id).collect();
         aliases.dedup();
         Self {
             id: effect.id,

@@ -92,12 +92,9 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
 
 fn channels(what: Withheld) -> &'static [Channel] {
     match what {
-        Withheld::Wind => &[
-            Channel::WindRelativeSpeed,
-            Channel::WindRelativeFrom,
-            Channel::WindTrueSpeed,
-            Channel::WindTrueFrom,
-        ],
+        Withheld::Wind => {
+            &[Channel::WindRelativeSpeed, Channel::WindRelativeFrom, Channel::WindTrueSpeed, Channel::WindTrueFrom]
+        }
         Withheld::Speed => &[Channel::Speed, Channel::Surge],
         Withheld::Propeller => &[Channel::PropellerRate],
         Withheld::Sway => &[Channel::Sway],

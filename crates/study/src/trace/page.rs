@@ -47,7 +47,9 @@ pub fn words(told: &Told) -> String {
     let verdict = match analysis.verdict {
         Verdict::Clean => "clean: nothing is missing",
         Verdict::Traced => "traced: what is missing has a name, and what is left is noise",
-        Verdict::Unexplained if analysis.effects.is_empty() => "unexplained: structure is left, and no effect carries it",
+        Verdict::Unexplained if analysis.effects.is_empty() => {
+            "unexplained: structure is left, and no effect carries it"
+        }
         Verdict::Unexplained => "unexplained: some of what is missing has a name, some has not",
     };
     let _ = write!(text, "\nverdict: {verdict}");
@@ -90,7 +92,11 @@ fn uncertain(value: f64, sd: Option<f64>) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
         let exponent = value.abs().log10().floor() as i32;
         let unit = 10f64.powi(exponent);
-        return format!("({})×{}", with_uncertainty(value / unit, sd.map(|sd| sd / unit)), number::power_of_ten(exponent));
+        return format!(
+            "({})×{}",
+            with_uncertainty(value / unit, sd.map(|sd| sd / unit)),
+            number::power_of_ten(exponent)
+        );
     }
     with_uncertainty(value, sd)
 }
@@ -153,7 +159,11 @@ pub fn next_trial(told: &Told) -> String {
     }
     let what = if gains.is_empty() { String::from("is no worse than any other") } else { gains.join(" and ") };
     let but = if limits.is_empty() { String::new() } else { format!("; it {}", limits.join(" and ")) };
-    format!("a {} {what}{but} (expected information of {} manoeuvres with the fitted model)", best.name, told.prospects.len())
+    format!(
+        "a {} {what}{but} (expected information of {} manoeuvres with the fitted model)",
+        best.name,
+        told.prospects.len()
+    )
 }
 
 /// Errors before and after on every record.
@@ -367,7 +377,8 @@ pub fn page(told: &Told, figures: &[(String, String)]) -> String {
     if !hidden.is_empty() {
         let _ = writeln!(text, "## Blind spots\n\nNot observable in these records: {}.\n", hidden.join(", "));
     }
-    let _ = writeln!(text, "## Next trial\n\nBest: {}.\n\n{}", next_trial(told), prospects(&told.prospects).to_markdown());
+    let _ =
+        writeln!(text, "## Next trial\n\nBest: {}.\n\n{}", next_trial(told), prospects(&told.prospects).to_markdown());
     text += "Separated and revealed are counted over the aliases and blind spots above, for the records and the trial together; the \
              last column is the mean change of the standard deviations of the parameters.\n\n## Figures\n\n";
     for (stem, caption) in figures {

@@ -53,7 +53,8 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
             simulation.recording.period = records[0].sampling_period();
             simulation.longest_wait = LONGEST * longest;
             let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
-            let is_manoeuvre = trial.duration() <= LONGEST * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
+            let is_manoeuvre =
+                trial.duration() <= LONGEST * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
             is_manoeuvre.then_some((name, trial))
         })
         .collect()

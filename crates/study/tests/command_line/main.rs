@@ -5,3 +5,4 @@ mod desk;
 mod monte_carlo;
 mod records;
 mod scenarios;
+mod traces;

@@ -1,0 +1,149 @@
+//! Records, good and bad: `study trace`.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+use ship::effects::{Effect, SecondOrder};
+use ship::ships::Model;
+use ship::{ResponseModel, Ship, ships};
+
+use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
+
+/// The paper's ship with sway coupling that nobody declares.
+fn second_order() -> Ship {
+    let mut ship = ships::find("yukun").expect("it is in the registry");
+    let Model::Response(response) = &ship.model else { panic!("a response ship") };
+    let mut parameters = response.parameters().to_vec();
+    parameters.extend([2.5, 6.2]);
+    let effect: Arc<dyn Effect> = Arc::new(SecondOrder);
+    ship.model = Model::Response(ResponseModel::new(vec![effect]).with(parameters));
+    ship
+}
+
+/// Every key of the contract, down to its parts.
+fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
+    assert_eq!(json["schema"], "trace/1");
+    assert!(["clean", "traced", "unexplained"].contains(&json["verdict"].as_str().expect("a word")));
+    for key in ["K_per_s", "T_s", "delta_r_deg"] {
+        assert!(json["base"][key]["value"].is_f64() && json["base"][key]["sd"].is_f64(), "{key}");
+    }
+    for effect in json["effects"].as_array().expect("a list") {
+        assert!(effect["aliases"].is_array() && effect["parameters"].is_object());
+        assert!(["delta_bic", "p_value", "residual_share"].iter().all(|key| effect[*key].is_number()), "{effect}");
+        assert!(effect["evidence"].as_str().is_some_and(|text| text.len() > 20));
+    }
+    let ids: Vec<&str> = json["candidates"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|candidate| {
+            let outcome = candidate["outcome"].as_str().expect("a word");
+            assert!(["added", "alias", "rejected", "not_observable"].contains(&outcome));
+            candidate["id"].as_str().expect("a word")
+        })
+        .collect();
+    assert_eq!(ids.len(), 12, "{ids:?}");
+    assert!(json["unexplained"]["present"].is_boolean());
+    for (kind, count) in [("identification", trials), ("validation", others)] {
+        let records = json["error"][kind].as_array().expect("a list");
+        assert_eq!(records.len(), count);
+        for record in records {
+            for when in ["before", "after"] {
+                let errors = &record[when];
+                assert!(errors["heading_rmse_deg"].is_f64() && errors["horizon_rmse_deg"]["20"].is_f64(), "{errors}");
+                assert!(errors.get("yaw_rate_rmse_deg_s").is_some() && errors.get("overshoot_error_deg").is_some());
+            }
+        }
+    }
+    for when in ["before", "after"] {
+        assert!(
+            json["residual"][when]["lag1_autocorrelation"].is_f64()
+                && json["residual"][when]["whiteness_p"].is_number()
+        );
+    }
+    assert!(json["next_trial"].as_str().is_some_and(|text| !text.is_empty()));
+    assert!(json["model"]["parameters"].as_array().is_some_and(|all| all.len() >= 3));
+}
+
+#[test]
+fn an_undeclared_effect_is_named_and_everything_is_written() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv_of(&second_order()));
+    desk.file("other.csv", zig_zag_csv_of(&second_order()));
+    let run = desk.run(&["trace", "run.csv", "--validate", "other.csv"]);
+    run.is_done();
+    assert!(run.out.contains("verdict: traced") && run.out.contains("second_order"), "{}", run.out);
+    assert!(run.err.contains("validates nothing"), "the same record twice is worth a warning: {}", run.err);
+    let json = desk.json("run-trace/trace.json");
+    keeps_the_contract(&json, 1, 1);
+    assert_eq!(json["verdict"], "traced");
+    assert_eq!(json["effects"][0]["id"], "second_order");
+    assert!(json["effects"][0]["delta_bic"].as_f64().is_some_and(|change| change < -10.0));
+    let errors = &json["error"]["identification"][0];
+    assert!(errors["after"]["heading_rmse_deg"].as_f64() < errors["before"]["heading_rmse_deg"].as_f64());
+    let report = String::from_utf8(desk.bytes("run-trace/report.md")).expect("UTF-8");
+    for part in ["Error before and after", "Overshoots", "What was added", "Candidates", "Next trial", "Figures"] {
+        assert!(report.contains(&format!("## {part}")), "{part}");
+    }
+    for figure in ["record", "residual", "candidates", "record-other"] {
+        assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
+        assert!(report.contains(&format!("({figure}.png)")), "{figure}");
+    }
+}
+
+#[test]
+fn a_complete_base_is_clean_and_the_exit_code_does_not_judge() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv());
+    let run = desk.run(&["trace", "run.csv", "--out", "here", "--format", "csv"]);
+    run.is_done();
+    assert!(run.out.starts_with("record,use,") && run.out.lines().count() == 2, "{}", run.out);
+    let json = desk.json("here/trace.json");
+    keeps_the_contract(&json, 1, 0);
+    assert_eq!((json["verdict"].as_str(), json["effects"].as_array().map(Vec::len)), (Some("clean"), Some(0)));
+}
+
+#[test]
+fn a_record_that_cannot_be_traced_is_refused() {
+    let desk = Desk::new();
+    let good = zig_zag_csv();
+    desk.file("still.csv", with_column(&good, "rudder_deg", |_, _| "0".into()));
+    desk.run(&["trace", "still.csv"]).is_refused(2, &["still.csv"]);
+    desk.run(&["trace", "none.csv"]).is_refused(2, &["none.csv"]);
+    desk.run(&["trace"]).is_refused(2, &["TRIAL"]);
+    desk.file("run.csv", &good);
+    desk.run(&["trace", "run.csv", "--validate", "none.csv"]).is_refused(2, &["none.csv"]);
+    desk.run(&["trace", "run.csv", "--without", "heading"]).is_refused(2, &["heading", "wind"]);
+    assert!(!desk.path("run-trace").exists());
+}
+
+/// A column that is withheld is as good as none, and a folder of descriptions is looked into by name.
+#[test]
+fn columns_can_be_withheld_and_described_in_a_folder() {
+    let desk = Desk::new();
+    let plain = zig_zag_csv();
+    let windy: String = plain
+        .lines()
+        .enumerate()
+        .map(|(row, line)| match row {
+            0 => format!("{line},wind_relative_speed_m_s,wind_relative_from_deg\n"),
+            _ => format!("{line},{},{}\n", 8.0 + (0.05 * row as f64).sin(), 40.0 + 30.0 * (0.02 * row as f64).cos()),
+        })
+        .collect();
+    desk.file("plain.csv", &plain);
+    desk.file("windy.csv", &windy);
+    desk.run(&["trace", "windy.csv", "--quiet"]).is_done();
+    desk.run(&["trace", "windy.csv", "--without", "wind", "--out", "withheld", "--quiet"]).is_done();
+    desk.run(&["trace", "plain.csv", "--quiet"]).is_done();
+    let forms = |name: &str| {
+        let json = desk.json(name);
+        let wind = json["candidates"].as_array().into_iter().flatten().find(|one| one["id"] == "wind_moment").cloned();
+        wind.map_or(0, |wind| wind["forms"].as_array().map_or(0, Vec::len))
+    };
+    assert_eq!(
+        (forms("windy-trace/trace.json"), forms("withheld/trace.json"), forms("plain-trace/trace.json")),
+        (2, 1, 1)
+    );
+    desk.file("sidecars/windy.trial.toml", "[part]\nfrom-s = 0.0\nuntil-s = 200.0\n");
+    desk.run(&["trace", "windy.csv", "--columns", "sidecars", "--out", "cut"]).is_done();
+}
