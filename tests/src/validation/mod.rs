@@ -11,6 +11,8 @@ pub mod first_order;
 pub mod fourier;
 pub mod hulls;
 pub mod information;
+pub mod residuals;
+pub mod table_1;
 pub mod zig_zags_of_hulls;
 
 use std::fmt::Write;
@@ -130,6 +132,8 @@ pub fn sections() -> Vec<Section> {
         estimators::section(),
         information::bound(),
         information::efficiency(),
+        residuals::section(),
+        table_1::section(),
     ]
 }
 

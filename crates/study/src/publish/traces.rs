@@ -115,7 +115,7 @@ fn is_of_time(id: &str) -> bool {
 
 /// Probability that a noncentral χ² exceeds a limit: a Poisson mixture of central ones.
 fn exceeds(freedom: u32, noncentrality: f64, limit: f64) -> f64 {
-    let Ok(mixture) = Poisson::new(0.5 * noncentrality) else { return 0.0 };
+    let Ok(mixture) = Poisson::new((0.5 * noncentrality).max(f64::MIN_POSITIVE)) else { return 0.0 };
     let reach = 0.5 * noncentrality + 10.0 * (0.5 * noncentrality).sqrt() + 20.0;
     (0..reach as u64)
         .map(|k| {
