@@ -251,7 +251,6 @@ pub struct Analysis {
     pub refused: Vec<String>,
     /// The thresholds it was judged by.
     pub thresholds: Thresholds,
-    /// Replays of the recorded rudder that the analysis took.
     problem: Problem,
     candidate_terms: Vec<Candidate>,
     model: Model,

@@ -88,6 +88,26 @@ fn rows_come_back_as_they_went() {
 }
 
 #[test]
+fn traces_have_columns_of_their_own() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("rows.parquet");
+    let mut design = design();
+    design.methods[1].id = crate::scenario::TRACE.into();
+    let layout = Layout::of(&design);
+    let cells = TracedCells {
+        verdict: "traced".into(),
+        named: "wind_moment".into(),
+        groups: "wind_moment|port_starboard_asymmetry".into(),
+        margin: Some(31.5),
+        expected: None,
+    };
+    let rows = vec![good(7), Row { method: 1, traced: Some(Box::new(cells)), ..good(7) }];
+    write(&path, &layout, [rows.clone()]);
+    assert_eq!(read(&path, &layout), rows);
+    assert!(layout.names().any(|name| name == "trace_margin"));
+}
+
+#[test]
 fn the_bytes_do_not_depend_on_the_pieces() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let layout = Layout::of(&design());
@@ -140,7 +160,8 @@ fn errors_are_relative_to_the_truth() {
 #[test]
 fn every_column_is_documented() {
     let page = include_str!("../../../../docs/results.md");
-    for Column { name, meaning, .. } in &COLUMNS {
+    for Column { name, meaning, .. } in COLUMNS.iter().chain(&TRACE_COLUMNS) {
+        let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
     }
 }

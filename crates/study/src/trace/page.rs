@@ -168,36 +168,28 @@ pub fn next_trial(told: &Told) -> String {
 
 /// Errors before and after on every record.
 pub fn errors(told: &Told) -> Table {
-    let mut columns = vec![Column::left("record"), Column::left("use")];
-    let mut both = |name: &str, unit: &str| {
-        for when in ["before", "after"] {
-            columns.push(Column::decimal(format!("{name} {when}")).unit(unit));
-        }
-    };
-    both("heading", "deg");
-    for length in HORIZONS {
-        both(&format!("restarted every {length:.0} s"), "deg");
-    }
-    both("yaw rate", "deg/s");
-    both("overshoots", "deg");
+    let mut columns = vec![Column::left("record"), Column::left("use"), Column::left("model")];
+    columns.push(Column::decimal("heading").unit("deg"));
+    columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
+    columns.push(Column::decimal("yaw rate").unit("deg/s"));
+    columns.push(Column::decimal("overshoots").unit("deg"));
     let mut table = Table::new(columns);
     let analysis = told.analysis;
-    let uses = analysis
-        .identification
-        .iter()
-        .map(|judged| (judged, "fitted"))
-        .chain(analysis.validation.iter().map(|judged| (judged, "held out")));
+    let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
+    let uses = fitted.chain(analysis.validation.iter().map(|judged| (judged, "held out")));
     for ((judged, used), name) in uses.zip(&told.names) {
-        let (before, after) = (&judged.before.errors, &judged.after.errors);
-        let mut cells = vec![name.clone(), used.to_owned()];
-        let three = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(to_deg(value), 3));
-        cells.extend([Some(before.heading), Some(after.heading)].map(three));
-        for k in 0..HORIZONS.len() {
-            cells.extend([before.horizon[k], after.horizon[k]].map(three));
+        for (model, on) in [("before", &judged.before), ("after", &judged.after)] {
+            let errors = &on.errors;
+            let mut cells =
+                if model == "before" { vec![name.clone(), used.to_owned()] } else { vec![String::new(); 2] };
+            cells.push(model.to_owned());
+            let numbers =
+                [Some(errors.heading)].into_iter().chain(errors.horizon).chain([errors.yaw_rate, errors.overshoot]);
+            cells.extend(
+                numbers.map(|value| value.map_or_else(|| MISSING.into(), |value| significant(to_deg(value), 3))),
+            );
+            table.push(cells);
         }
-        cells.extend([before.yaw_rate, after.yaw_rate].map(three));
-        cells.extend([before.overshoot, after.overshoot].map(three));
-        table.push(cells);
     }
     table
 }
@@ -321,7 +313,8 @@ pub fn page(told: &Told, figures: &[(String, String)]) -> String {
     let _ = writeln!(text, "```text\n{}\n```\n", words(told));
     let _ = writeln!(text, "## Error before and after\n\n{}", errors(told).to_markdown());
     text += "Before is the best first-order base there is; after is the base with what was found. Heading and yaw rate are those of \
-             the recorded rudder replayed over the whole record. On held-out records nothing but the initial state is fitted.\n\n";
+             the recorded rudder replayed over the whole record, *every 20 s* those of a heading that is restarted so often; \
+             *overshoots* is the mean error of the overshoot angles. On held-out records nothing but the initial state is fitted.\n\n";
     if let Some(table) = overshoots(told) {
         let _ = writeln!(text, "## Overshoots and period\n\n{}", table.to_markdown());
     }

@@ -97,7 +97,7 @@ fn a_complete_base_is_clean_and_the_exit_code_does_not_judge() {
     desk.file("run.csv", zig_zag_csv());
     let run = desk.run(&["trace", "run.csv", "--out", "here", "--format", "csv"]);
     run.is_done();
-    assert!(run.out.starts_with("record,use,") && run.out.lines().count() == 2, "{}", run.out);
+    assert!(run.out.starts_with("record,use,model,") && run.out.lines().count() == 3, "{}", run.out);
     let json = desk.json("here/trace.json");
     keeps_the_contract(&json, 1, 0);
     assert_eq!((json["verdict"].as_str(), json["effects"].as_array().map(Vec::len)), (Some("clean"), Some(0)));
