@@ -90,6 +90,11 @@ impl Axis {
         Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Columns(names) }
     }
 
+    /// Whether it is a list of names from left to right.
+    pub(crate) fn is_columns(&self) -> bool {
+        matches!(self.scale, Scale::Columns(_))
+    }
+
     /// Where the axis is broken, as a fraction.
     pub(crate) fn break_at(&self) -> Option<f64> {
         matches!(self.scale, Scale::Log { zero: true }).then_some(BREAK_AT)

@@ -308,10 +308,21 @@ impl Sheet {
     /// Labels and title under a panel; returns where they end.
     fn horizontal_labels(&mut self, rect: &Rect, ticks: &Ticks, side: &Side) -> f64 {
         let theme = self.theme;
-        let base = rect.bottom() + self.tick_length() + 1.05 * theme.tick_font;
-        for (f, label) in &ticks.major {
-            let text = Text::new(label.as_str(), theme.tick_font).anchor(Anchor::Middle);
-            self.scene.text(Layer::Frame, (rect.x + f * rect.w, base), text);
+        let mut base = rect.bottom() + self.tick_length() + 1.05 * theme.tick_font;
+        if side.axis.is_columns() && !fits(ticks, rect.w, &theme) {
+            // Names too long to stand side by side are turned and end at their tick.
+            let top = rect.bottom() + self.tick_length() + 0.3 * theme.tick_font;
+            for (f, label) in &ticks.major {
+                let text = Text { turned: true, ..Text::new(label.as_str(), theme.tick_font).anchor(Anchor::End) };
+                let x = rect.x + f * rect.w + text.centring();
+                self.scene.text(Layer::Frame, (x, top), text);
+            }
+            base = top + label_width(ticks, &theme);
+        } else {
+            for (f, label) in &ticks.major {
+                let text = Text::new(label.as_str(), theme.tick_font).anchor(Anchor::Middle);
+                self.scene.text(Layer::Frame, (rect.x + f * rect.w, base), text);
+            }
         }
         let mut y = base + 0.25 * theme.label_font;
         for line in wrap(&side.title, theme.label_font, false, rect.w + theme.label_font) {
@@ -332,14 +343,20 @@ impl Sheet {
 
 /// As many ticks as their labels leave room for.
 fn fitting_ticks(axis: &Axis, width: f64, theme: &Theme) -> Ticks {
+    (2..=10)
+        .rev()
+        .map(|count| axis.ticks(count))
+        .find(|ticks| fits(ticks, width, theme))
+        .unwrap_or_else(|| axis.ticks(1))
+}
+
+/// Whether labels under an axis of this width stand clear of each other.
+fn fits(ticks: &Ticks, width: f64, theme: &Theme) -> bool {
     let gap = 1.0 * theme.tick_font;
-    let fits = |ticks: &Ticks| {
-        ticks.major.windows(2).all(|pair| {
-            let half = |label: &str| Text::new(label, theme.tick_font).width() / 2.0;
-            (pair[1].0 - pair[0].0).abs() * width >= half(&pair[0].1) + half(&pair[1].1) + gap
-        })
-    };
-    (2..=10).rev().map(|count| axis.ticks(count)).find(fits).unwrap_or_else(|| axis.ticks(1))
+    ticks.major.windows(2).all(|pair| {
+        let half = |label: &str| Text::new(label, theme.tick_font).width() / 2.0;
+        (pair[1].0 - pair[0].0).abs() * width >= half(&pair[0].1) + half(&pair[1].1) + gap
+    })
 }
 
 fn label_width(ticks: &Ticks, theme: &Theme) -> f64 {

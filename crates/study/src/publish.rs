@@ -41,7 +41,9 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
         write_csv(&folder.join("pairs.csv"), &summary.pairs, |lines| present::pairs(lines, reference, design))?;
     }
     if !summary.tracing.is_empty() {
-        write_csv(&folder.join("tracing.csv"), &summary.tracing, |lines| present::tracing::table(lines, design, true))?;
+        write_csv(&folder.join("tracing.csv"), &summary.tracing, |lines| {
+            present::tracing::table(lines, &summary, design, true)
+        })?;
     }
     let write = |name: &str, text: String| {
         let path = folder.join(name);
@@ -146,7 +148,7 @@ fn page(stored: &Stored, summary: &Summary, brief: &Table, drawings: &[Drawing])
             crate::summary::CLEAR
         ));
         drawings.iter().filter(|drawing| drawing.of_traces).for_each(|drawing| line(&figure(drawing)));
-        line(&present::tracing::table(&summary.tracing, design, false).to_markdown());
+        line(&present::tracing::table(&summary.tracing, summary, design, false).to_markdown());
     }
     line("## Over all trials\n");
     drawings

@@ -178,9 +178,9 @@ impl Search<'_> {
         if plain.rss.is_finite() {
             let waves = plain.colour.waves;
             let (mut colour, deviance) = self.best_moment(&self.linear(&structure, &plain), waves);
-            // A random moment that does not pay for its one parameter is not tried further.
             let mut start = plain.clone();
             let mut reached = deviance;
+            // Level and parameters are found in turn. A random moment that does not pay for its one parameter is not tried.
             for _ in 0..2 {
                 if reached + self.log_n() >= plain.deviance {
                     break;
@@ -196,16 +196,9 @@ impl Search<'_> {
         Model { structure, plain, judged }
     }
 
-    /// Fits a model with one more term from every start of a candidate, under one colour; `linear` are the sensitivities of
-    /// the model at `from`.
-    fn with_term(
-        &self,
-        model: &Model,
-        candidate: &Candidate,
-        from: &Fit,
-        linear: &Linear,
-        colour: &Colour,
-    ) -> (Structure, Fit) {
+    /// Fits a model with one more term from every start of a candidate, under the colour of `from`, a fit of the model with
+    /// these sensitivities.
+    fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, linear: &Linear) -> (Structure, Fit) {
         let structure = model.structure.with(candidate.term.clone());
         let own = model.structure.free_count();
         let best = self
@@ -215,7 +208,7 @@ impl Search<'_> {
                 let theta = [from.theta.as_slice(), start].concat();
                 let mut known = linear.clone();
                 known.insert(own, self.columns(&structure, from, start, candidate).1);
-                self.problem.fit_from(&structure, &theta, &from.initial, colour, Some(known))
+                self.problem.fit_from(&structure, &theta, &from.initial, &from.colour, Some(known))
             })
             .min_by(|one, other| one.deviance.total_cmp(&other.deviance));
         match best {
@@ -327,7 +320,7 @@ impl Search<'_> {
             .into_par_iter()
             .map(|place| {
                 let candidate = &self.candidates[place];
-                let (structure, with) = self.with_term(model, candidate, fit, &linear, &fit.colour);
+                let (structure, with) = self.with_term(model, candidate, fit, &linear);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
                 Tried { place, structure, fit: with, evidence }
             })
@@ -354,7 +347,7 @@ impl Search<'_> {
     /// A model without one of its terms, fitted anew.
     pub fn dropped(&self, model: &Model, place: usize, under_moment: bool) -> Model {
         let structure = model.structure.without(place);
-        let theta = structure_theta(model, place, &model.plain);
+        let theta = model.structure.drop_from(&model.plain.theta, place);
         let colour = Colour { moment: None, waves: model.plain.colour.waves };
         let plain = self.problem.fit(&structure, &theta, &model.plain.initial, &colour);
         if !under_moment {
@@ -362,7 +355,7 @@ impl Search<'_> {
         }
         let mut less = self.judge(structure, plain);
         if !model.judged.colour.is_white() {
-            let theta = structure_theta(model, place, &model.judged);
+            let theta = model.structure.drop_from(&model.judged.theta, place);
             let under = self.problem.fit(&less.structure, &theta, &model.judged.initial, &model.judged.colour);
             if under.bic < less.judged.bic {
                 less.judged = under;
@@ -492,8 +485,4 @@ impl Search<'_> {
 /// Whether a term is a moment that depends on time alone.
 fn is_of_time(term: &Term) -> bool {
     held_out::is_of_one_record(term.effect.id())
-}
-
-fn structure_theta(model: &Model, place: usize, fit: &Fit) -> Vec<f64> {
-    model.structure.drop_from(&fit.theta, place)
 }

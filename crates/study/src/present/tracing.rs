@@ -4,12 +4,16 @@ use report::number::{self, MISSING};
 use report::{Column, Table};
 
 use super::head_of_cells;
+use crate::scenario::TRACE;
 use crate::statistics::Figure;
 use crate::store::Design;
-use crate::summary::{CLEAR, TraceSummary};
+use crate::summary::{CLEAR, Summary, TraceSummary};
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
-pub fn table(lines: &[TraceSummary], design: &Design, all_digits: bool) -> Table {
+///
+/// Heading errors are medians over the trials, of the base (the reference method) and of the traced model, on the trial
+/// itself and on the validation manoeuvre.
+pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
     let mut columns = head_of_cells(design);
     columns.push(Column::left("missing"));
     columns.push(Column::right("trials"));
@@ -22,6 +26,9 @@ pub fn table(lines: &[TraceSummary], design: &Design, all_digits: bool) -> Table
     }
     columns.push(Column::right(format!("clear (margin above {CLEAR:.0})")));
     columns.extend(["clean", "traced", "unexplained"].map(Column::right));
+    for what in ["heading", "validation"] {
+        columns.extend(["before", "after"].map(|when| Column::decimal(format!("{what} {when}")).unit("deg")));
+    }
     columns.push(Column::decimal("expected likelihood ratio"));
     columns.push(Column::left("named"));
     let mut table = Table::new(columns);
@@ -34,6 +41,12 @@ pub fn table(lines: &[TraceSummary], design: &Design, all_digits: bool) -> Table
         }
         cells.push(line.clear[0].to_string());
         cells.extend(line.verdicts.map(|count| count.to_string()));
+        let traced = design.methods.iter().position(|method| method.id == TRACE);
+        let records = [Some(summary.reference), traced].map(|method| summary.record(line.cell, method?));
+        let median =
+            |figure: Option<Figure>| figure.map_or_else(|| MISSING.into(), |f| number::significant(f.value, 3));
+        cells.extend(records.map(|record| median(record.and_then(|record| record.heading_rmse_deg))));
+        cells.extend(records.map(|record| median(record.and_then(|record| record.validation_rmse_deg))));
         cells.push(line.expected.map_or_else(|| MISSING.into(), |expected| number::significant(expected, 3)));
         let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
         named.sort_by(|one, other| other.1.cmp(one.1).then(one.0.cmp(other.0)));

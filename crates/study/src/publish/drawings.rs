@@ -83,14 +83,18 @@ fn reading(quantity: Quantity) -> &'static str {
     }
 }
 
+/// Cells of a study with traces beyond which errors of K and T are not drawn one by one.
+const MOST_TRACED: usize = 24;
+
 /// Figures about what traces named.
 fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = Vec::new();
-    if let Some(data) = traces::confusion(design, &summary.tracing) {
+    for (number, (group, data)) in traces::confusion(design, &summary.tracing).into_iter().enumerate() {
+        let stem = if number == 0 { "confusion".to_owned() } else { format!("confusion-{}", slug(&group)) };
         let caption = "How often each effect was named, in per cent of the trials. A row is what the trials lack, a column what \
-                       was named; aliases count for their own name only.";
-        drawings.push(Drawing::new("confusion", caption, move |theme| figures::heat_map(&data, theme)));
+                       was named, a dash is never; aliases count for their own name only.";
+        drawings.push(Drawing::new(stem, caption, move |theme| figures::heat_map(&data, theme)));
     }
     if let Some(data) = traces::power(&summary.tracing) {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
@@ -105,7 +109,9 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
 fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = of_traces(stored, summary);
-    for quantity in Quantity::ALL {
+    // What a trace finds is told by its own figures; of many cells the errors would be a figure each.
+    let told = !summary.tracing.is_empty() && design.cells.len() > MOST_TRACED;
+    for quantity in Quantity::ALL.into_iter().filter(|_| !told) {
         for chart in charts::over_axes(design, summary, quantity) {
             let place = chart.group.as_ref().map_or_else(String::new, |group| format!(" Here: {group}."));
             let stem = match &chart.group {

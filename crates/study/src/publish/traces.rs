@@ -10,8 +10,8 @@ use crate::summary::TraceSummary;
 /// Name of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
 
-/// The confusion matrix: rows are points of the first axis, one panel for every combination of the others.
-pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Option<HeatMap> {
+/// The confusion matrices: rows are points of the first axis, one matrix for every combination of the others, with its name.
+pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Vec<(String, HeatMap)> {
     let mut names: Vec<String> = vec![NOTHING.to_owned()];
     for id in lines.iter().flat_map(|line| line.named.keys()) {
         if !names.contains(id) {
@@ -32,7 +32,7 @@ pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Option<HeatMap> {
         }
     }
     if rows.len() < 2 {
-        return None;
+        return Vec::new();
     }
     let value = |line: &TraceSummary, name: &String| {
         let count = if name == NOTHING { line.silent } else { line.named.get(name).copied().unwrap_or(0) };
@@ -49,7 +49,7 @@ pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Option<HeatMap> {
             })
             .collect(),
     };
-    Some(HeatMap {
+    let map = |group: &String| HeatMap {
         title: None,
         x_title: String::from("named"),
         y_title: design.axes.first().cloned().unwrap_or_default(),
@@ -57,8 +57,9 @@ pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Option<HeatMap> {
         y_labels: rows.clone(),
         value_title: String::from("share of trials [%]"),
         scale: Scale::Linear,
-        panels: groups.iter().map(panel).collect(),
-    })
+        panels: vec![panel(group)],
+    };
+    groups.iter().map(|group| (group.clone(), map(group))).collect()
 }
 
 /// Smallest expected likelihood ratio that is drawn.

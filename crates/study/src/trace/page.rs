@@ -29,9 +29,11 @@ fn in_degrees(value: &Value) -> (f64, Option<f64>, Option<[f64; 2]>, String) {
         unit if unit.starts_with("rad") => degree,
         _ => 1.0,
     };
-    let unit = value.unit.replace("rad/s", "°/s").replace("rad²", "deg²").replace("rad", "deg").replace("°", "deg");
     // Frequencies stay in radians.
-    let (factor, unit) = if value.symbol == "ω₀" { (1.0, value.unit.to_owned()) } else { (factor, unit) };
+    let (factor, unit) = match value.symbol.as_str() {
+        "ω₀" => (1.0, value.unit.to_owned()),
+        _ => (factor, value.unit.replace("rad", "deg")),
+    };
     let scaled = |x: f64| x * factor;
     (scaled(value.value), value.sd.map(scaled), value.ci95().map(|ends| ends.map(scaled)), unit)
 }
