@@ -14,7 +14,7 @@ use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
 use crate::linear::LeastSquares as Solution;
-use crate::robust::newey_west;
+use crate::robust::newey_west_of_three;
 use crate::samples::Samples;
 use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
@@ -160,7 +160,7 @@ impl Identifier for LeastSquares {
         let robust = solution.variance().map(|_| {
             let finite_sample = acceleration.len() as f64 / solution.degrees_of_freedom;
             Covariance {
-                matrix: base(newey_west(&equations.scores([a, b, c])) * finite_sample),
+                matrix: base(newey_west_of_three(&equations.scores([a, b, c])) * finite_sample),
                 degrees_of_freedom: Some(solution.degrees_of_freedom),
             }
         });

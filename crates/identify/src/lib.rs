@@ -28,7 +28,7 @@ pub mod output_error;
 mod profile;
 pub mod registry;
 pub mod replay;
-mod robust;
+pub mod robust;
 pub mod samples;
 pub mod savitzky_golay;
 pub mod settings;

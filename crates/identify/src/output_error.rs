@@ -198,7 +198,7 @@ impl Identifier for OutputError {
         }
         let scores = profile.scores();
         // What the fit took from the residual it left: the factor that turns a mean square into the variance above.
-        let long_run = robust::newey_west(&scores) * (observations as f64 / freedom);
+        let long_run = robust::newey_west_of_three(&scores) * (observations as f64 / freedom);
         let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
         let lag1 = robust::lag1_autocorrelation(profile.residuals());
         let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, observations);

@@ -1,6 +1,6 @@
 //! Errors of a least-squares estimate whose residual is coloured.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3};
 
 use crate::estimate::{Covariance, Uncertainty};
 
@@ -28,23 +28,31 @@ pub(crate) fn lag1_autocorrelation<'a>(residuals: impl Iterator<Item = &'a [f64]
 
 /// Long-run covariance Σ_k w_k Γ_k of scores with Bartlett weights, summed over trials.
 ///
-/// `scores[trial][row]` is residual times Jacobian row. The lag grows with the first-order autocorrelation of the scores
-/// (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square of sums over all windows
-/// of one length, which needs one pass.
+/// `scores[trial][row]` is residual times Jacobian row, one entry per unknown. The lag grows with the first-order
+/// autocorrelation of the scores (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square of sums
+/// over all windows of one length, which needs one pass.
 ///
 /// Sources: Newey and West (1987); Andrews (1991).
-pub(crate) fn newey_west(scores: &[Vec<[f64; 3]>]) -> Matrix3<f64> {
-    scores.iter().map(|trial| window_covariance(trial, bandwidth(trial))).sum()
+pub fn newey_west<S: AsRef<[f64]>>(scores: &[Vec<S>]) -> DMatrix<f64> {
+    let unknowns = scores.iter().flatten().next().map_or(0, |row| row.as_ref().len());
+    let covariances = scores.iter().map(|trial| window_covariance(trial, bandwidth(trial, unknowns), unknowns));
+    covariances.fold(DMatrix::zeros(unknowns, unknowns), |sum, one| sum + one)
 }
 
-/// Window length (lags plus one) from the autocorrelation of the scores, the largest over the three parameters.
-fn bandwidth(scores: &[[f64; 3]]) -> usize {
+/// The same of three unknowns.
+pub(crate) fn newey_west_of_three(scores: &[Vec<[f64; 3]>]) -> Matrix3<f64> {
+    Matrix3::from_iterator(newey_west(scores).iter().copied())
+}
+
+/// Window length (lags plus one) from the autocorrelation of the scores, the largest over the unknowns.
+fn bandwidth<S: AsRef<[f64]>>(scores: &[S], unknowns: usize) -> usize {
     let rows = scores.len();
     let longest = (rows / 4).max(1);
-    (0..3)
+    (0..unknowns)
         .map(|i| {
-            let square: f64 = scores.iter().map(|g| g[i] * g[i]).sum();
-            let cross: f64 = scores.windows(2).map(|pair| pair[0][i] * pair[1][i]).sum();
+            let at = |row: &S| row.as_ref()[i];
+            let square: f64 = scores.iter().map(|g| at(g) * at(g)).sum();
+            let cross: f64 = scores.windows(2).map(|pair| at(&pair[0]) * at(&pair[1])).sum();
             let rho = if square > 0.0 { (cross / square).clamp(-0.999, 0.999) } else { 0.0 };
             let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));
             (1.1447 * (alpha * rows as f64).cbrt()).ceil() as usize + 1
@@ -54,17 +62,17 @@ fn bandwidth(scores: &[[f64; 3]]) -> usize {
         .min(longest)
 }
 
-fn window_covariance(scores: &[[f64; 3]], length: usize) -> Matrix3<f64> {
-    let mut total = Matrix3::zeros();
-    let mut window = Vector3::zeros();
+fn window_covariance<S: AsRef<[f64]>>(scores: &[S], length: usize, unknowns: usize) -> DMatrix<f64> {
+    let mut total = DMatrix::zeros(unknowns, unknowns);
+    let mut window = DVector::<f64>::zeros(unknowns);
     for end in 0..scores.len() + length - 1 {
-        if let Some(&entering) = scores.get(end) {
-            window += Vector3::from(entering);
+        if let Some(entering) = scores.get(end) {
+            window.iter_mut().zip(entering.as_ref()).for_each(|(sum, g)| *sum += g);
         }
         if end >= length {
-            window -= Vector3::from(scores[end - length]);
+            window.iter_mut().zip(scores[end - length].as_ref()).for_each(|(sum, g)| *sum -= g);
         }
-        total += window * window.transpose();
+        total.ger(1.0, &window, &window, 1.0);
     }
     total / length as f64
 }
@@ -79,16 +87,16 @@ mod tests {
         let scores: Vec<[f64; 3]> =
             (0..40).map(|k| [(k as f64).sin(), (0.3 * k as f64).cos(), 0.1 * k as f64 - 2.0]).collect();
         let length = 6;
-        let mut direct = Matrix3::zeros();
+        let mut direct = DMatrix::<f64>::zeros(3, 3);
         for (i, gi) in scores.iter().enumerate() {
             for (j, gj) in scores.iter().enumerate() {
                 let weight = 1.0 - i.abs_diff(j) as f64 / length as f64;
                 if weight > 0.0 {
-                    direct += Vector3::from(*gi) * Vector3::from(*gj).transpose() * weight;
+                    direct += DVector::from_row_slice(gi) * DVector::from_row_slice(gj).transpose() * weight;
                 }
             }
         }
-        let fast = window_covariance(&scores, length);
+        let fast = window_covariance(&scores, length, 3);
         for (fast, direct) in fast.iter().zip(direct.iter()) {
             assert_relative_eq!(*fast, *direct, max_relative = 1e-10, epsilon = 1e-10);
         }

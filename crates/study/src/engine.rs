@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use ::trace::analysis::Traced;
 use ::trace::record::Record;
 use ::trace::{Analysis, TraceError, errors};
+use identify::estimate::Quantity;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
 use nalgebra::{Matrix2, Matrix2x3};
@@ -234,8 +235,6 @@ fn traced(
     missing: &[String],
     expected: Option<f64>,
 ) -> Row {
-    let [k, t, bias] = analysis.indices;
-    let finite = |value: f64| value.is_finite().then_some(value);
     let elsewhere = |trial: &Trial| {
         let start = [trial.heading()[0], 0.0];
         let record = Record::whole(trial);
@@ -250,12 +249,6 @@ fn traced(
         ids.join("|")
     };
     Row {
-        k_per_s: finite(k.value),
-        k_ci95_per_s: k.ci95,
-        t_s: finite(t.value),
-        t_ci95_s: t.ci95,
-        rudder_bias_deg: finite(to_deg(bias.value)),
-        rudder_bias_ci95_deg: bias.ci95.map(|ends| ends.map(to_deg)),
         heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
         validation_rmse_deg: validation.and_then(elsewhere),
         stop: Some(StopReason::Converged.as_str()),
@@ -266,7 +259,7 @@ fn traced(
             margin: margin(analysis, missing),
             expected,
         })),
-        ..blank
+        ..with_indices(blank, analysis.indices)
     }
 }
 
@@ -280,10 +273,12 @@ fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     Some(best(true)? - best(false)?)
 }
 
-fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
-    let (k, t, bias) = (estimate.K(), estimate.T(), estimate.rudder_bias());
-    let finite = |value: f64| value.is_finite().then_some(value);
-    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| replay.heading_rmse_deg);
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+/// A row with K (1/s), T (s) and δ_r (rad) and their intervals.
+fn with_indices(blank: Row, [k, t, bias]: [Quantity; 3]) -> Row {
     Row {
         k_per_s: finite(k.value),
         k_ci95_per_s: k.ci95,
@@ -291,11 +286,18 @@ fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Es
         t_ci95_s: t.ci95,
         rudder_bias_deg: finite(to_deg(bias.value)),
         rudder_bias_ci95_deg: bias.ci95.map(|ends| ends.map(to_deg)),
+        ..blank
+    }
+}
+
+fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
+    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| replay.heading_rmse_deg);
+    Row {
         heading_rmse_deg: error(trial),
         validation_rmse_deg: validation.and_then(error),
         evaluations: Some(estimate.evaluations as u64),
         stop: Some(estimate.stop.as_str()),
-        ..blank
+        ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use identify::estimate::{Covariance, Quantity};
 use identify::{Estimate, Identifier, IdentifyError, output_error};
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::{DMatrix, Matrix3};
 use rayon::prelude::*;
 use ship::narrow_band::NarrowBand;
 use ship::{FirstOrder, Response};
@@ -550,42 +550,8 @@ fn parameter_covariance(problem: &Problem, model: &Model, lag1: f64) -> Option<D
     if !coloured {
         return Some(inverse * (fit.rss / freedom));
     }
-    let middle: DMatrix<f64> = linear
-        .scores(&whiteners)
-        .iter()
-        .map(|scores| long_run(scores))
-        .fold(DMatrix::zeros(linear.unknowns(), linear.unknowns()), |sum, one| sum + one);
+    let middle = identify::robust::newey_west(&linear.scores(&whiteners));
     Some(&inverse * middle * &inverse * (observations / freedom))
-}
-
-/// Long-run covariance of the sum of scores with Bartlett weights (Newey and West 1987), windows as Andrews (1991) has
-/// them for the autocorrelation of each score.
-fn long_run(scores: &[DVector<f64>]) -> DMatrix<f64> {
-    let n = scores.len();
-    let unknowns = scores.first().map_or(0, DVector::len);
-    let length = (0..unknowns)
-        .map(|i| {
-            let square: f64 = scores.iter().map(|g| g[i] * g[i]).sum();
-            let cross: f64 = scores.windows(2).map(|pair| pair[0][i] * pair[1][i]).sum();
-            let rho = if square > 0.0 { (cross / square).clamp(-0.999, 0.999) } else { 0.0 };
-            let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));
-            (1.1447 * (alpha * n as f64).cbrt()).ceil() as usize + 1
-        })
-        .max()
-        .unwrap_or(1)
-        .min((n / 4).max(1));
-    let mut window = DVector::zeros(unknowns);
-    let mut total = DMatrix::zeros(unknowns, unknowns);
-    for end in 0..n + length - 1 {
-        if let Some(entering) = scores.get(end) {
-            window += entering;
-        }
-        if end >= length {
-            window -= &scores[end - length];
-        }
-        total.ger(1.0, &window, &window, 1.0);
-    }
-    total / length as f64
 }
 
 fn parameters(problem: &Problem, model: &Model, covariance: Option<&DMatrix<f64>>, names: &[String]) -> Vec<Value> {

@@ -268,14 +268,14 @@ impl Linear {
     }
 
     /// Whitened residual times whitened columns, row by row, for every record: the scores of the likelihood.
-    pub fn scores(&self, whiteners: &[Whitener]) -> Vec<Vec<DVector<f64>>> {
+    pub fn scores(&self, whiteners: &[Whitener]) -> Vec<Vec<Vec<f64>>> {
         self.blocks
             .iter()
             .zip(whiteners)
             .map(|(block, whitener)| {
                 let mut residual = block.residual.clone();
                 whitener.apply(&mut residual);
-                let mut rows = vec![DVector::zeros(self.unknowns); residual.len()];
+                let mut rows = vec![vec![0.0; self.unknowns]; residual.len()];
                 for (at, column) in &block.columns {
                     let mut column = column.clone();
                     whitener.apply(&mut column);
