@@ -406,6 +406,19 @@ impl Search<'_> {
         model
     }
 
+    /// Drops terms that do not lower the heading error itself: what helps only under a random moment mends no replay.
+    fn helpful(&self, mut model: Model) -> Model {
+        while !model.structure.terms.is_empty() && model.judged.colour.moment.is_some() {
+            let all = (0..model.structure.terms.len()).map(|place| (place, self.dropped(&model, place, true)));
+            let gain = |less: &Model| less.plain.bic - model.plain.bic;
+            match all.min_by(|one, other| gain(&one.1).total_cmp(&gain(&other.1))) {
+                Some((place, less)) if gain(&less) < self.needed(&model.structure.terms[place]) => model = less,
+                _ => break,
+            }
+        }
+        model
+    }
+
     /// The believed candidate of lowest BIC.
     fn best(&self, tried: impl IntoIterator<Item = Tried>) -> Option<Tried> {
         tried.into_iter().find(|tried| self.believes(&self.candidates[tried.place].term, &tried.evidence))
@@ -478,7 +491,7 @@ impl Search<'_> {
             }
             model = next;
         }
-        self.revise_waves(model)
+        self.revise_waves(self.helpful(model))
     }
 }
 
