@@ -1,0 +1,104 @@
+//! What records that were not fitted say of a term: it is dropped when it predicts them worse, and believed when it predicts
+//! them much better.
+
+use rayon::prelude::*;
+
+use crate::errors::Errors;
+use crate::fit::Fit;
+use crate::held_out::{self, Comparison, HeldOut};
+use crate::search::{Evidence, Model, Search};
+use crate::structure::{Structure, Term};
+
+/// Drops terms that make the error worse where they were not fitted.
+pub(super) fn believed_elsewhere(
+    search: &Search,
+    mut model: Model,
+    held_out: &[HeldOut],
+    refused: &mut Vec<String>,
+) -> Model {
+    let mut place = model.structure.terms.len();
+    while place > 0 {
+        place -= 1;
+        let term = &model.structure.terms[place];
+        if held_out::is_of_one_record(term.effect.id()) {
+            continue;
+        }
+        let less = search.dropped(&model, place, true);
+        let worse = if held_out.is_empty() {
+            held_out::is_worse_on_parts(
+                search.problem,
+                (&less.structure, &less.plain),
+                (&model.structure, &model.plain),
+            )
+            .then(|| String::from("the part of the record that was kept from the fit is predicted worse"))
+        } else {
+            worse_on_others(held_out, &less, &model)
+        };
+        if let Some(reason) = worse {
+            refused.push(format!("{} ({}) is not kept: {reason}", term.effect.id(), term.effect.form()));
+            model = less;
+            // What is left may behave differently without it.
+            place = model.structure.terms.len();
+        }
+    }
+    model
+}
+
+fn worse_on_others(held_out: &[HeldOut], less: &Model, more: &Model) -> Option<String> {
+    let all = |model: &Model| -> Option<Vec<Errors>> {
+        let response = held_out::portable(&model.structure, &model.plain.theta);
+        held_out.iter().map(|record| Some(record.judge(&response)?.1)).collect()
+    };
+    // A model whose replay is not finite is worse than any other.
+    let Some(after) = all(more) else { return Some(String::from("its replay of a held-out record is not finite")) };
+    let comparison = Comparison::of(&all(less)?, &after)?;
+    comparison.is_worse().then(|| {
+        format!(
+            "on the held-out records it multiplies the error of the full replay by {:.2} and that of full and restarted \
+             replays together by {:.2}",
+            comparison.full, comparison.mean
+        )
+    })
+}
+
+/// A term that is believed because it predicts records it was not fitted to.
+pub(super) struct Predicted {
+    pub term: Term,
+    pub evidence: Evidence,
+    pub comparison: Comparison,
+}
+
+/// Adds terms whose evidence does not stand against a random moment, but which predict the held-out records: chance does
+/// not.
+pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
+    let mut predicted = Vec::new();
+    let errors = |structure: &Structure, fit: &Fit| -> Option<Vec<Errors>> {
+        let response = held_out::portable(structure, &fit.theta);
+        held_out.par_iter().map(|record| Some(record.judge(&response)?.1)).collect()
+    };
+    if held_out.is_empty() || model.judged.colour.moment.is_none() {
+        return predicted;
+    }
+    while model.structure.terms.len() < search.thresholds.most_terms {
+        let Some(before) = errors(&model.structure, &model.plain) else { break };
+        let tried = search.try_all(model, &model.plain, true);
+        let next = tried.into_iter().take(LOOKED_AT).find_map(|tried| {
+            let term = search.candidates[tried.place].term.clone();
+            if held_out::is_of_one_record(term.effect.id()) || !search.believes(&term, &tried.evidence) {
+                return None;
+            }
+            let comparison = Comparison::of(&before, &errors(&tried.structure, &tried.fit)?)?;
+            comparison.is_much_better().then_some((tried, term, comparison))
+        });
+        let Some((tried, term, comparison)) = next else { break };
+        *model = search.adopted(&tried);
+        predicted.push(Predicted { term, evidence: tried.evidence, comparison });
+        if model.judged.colour.moment.is_none() {
+            break;
+        }
+    }
+    predicted
+}
+
+/// Candidates, best first, whose prediction is looked at.
+const LOOKED_AT: usize = 4;

@@ -1,0 +1,108 @@
+//! Replays and errors of the models before and after, on records that were fitted and on those that were not.
+
+use ship::{FirstOrder, Response};
+use trial::Trial;
+
+use super::{Judged, OnRecord, TraceError};
+use crate::errors::{self, Replayed};
+use crate::fit::Problem;
+use crate::held_out::{self, HeldOut};
+use crate::record::Record;
+use crate::search::Model;
+
+/// Initial state of a base replay of all rows.
+pub(super) fn initial(trial: &Trial, response: &FirstOrder) -> Result<[f64; 2], TraceError> {
+    let replay = identify::replay::replay(trial, response)
+        .ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })?;
+    Ok([replay.heading[0], replay.yaw_rate[0]])
+}
+
+/// Initial states from which the best is looked for on a record that was not fitted.
+pub(super) fn starts(trial: &Trial, response: &FirstOrder) -> Vec<[f64; 2]> {
+    let first = trial.observed_rows().next().unwrap_or(0);
+    let heading = trial.heading()[first];
+    let mut starts = vec![[heading, 0.0]];
+    starts.extend(initial(trial, response));
+    starts.extend(trial.yaw_rate().map(|rate| rate[first]).filter(|r| r.is_finite()).map(|rate| [heading, rate]));
+    starts
+}
+
+/// A model on the records it was fitted to, all rows.
+pub(super) fn on_records(
+    trials: &[Trial],
+    problem: &Problem,
+    model: &Model,
+    first: &FirstOrder,
+    thorough: bool,
+) -> Result<Vec<OnRecord>, TraceError> {
+    let is_base =
+        model.structure.terms.is_empty() && !model.structure.own_bias && problem.records.len() == trials.len();
+    trials
+        .iter()
+        .enumerate()
+        .map(|(number, trial)| {
+            let record = Record::whole(trial);
+            let response = if is_base {
+                Response::first_order_ship(*first)
+            } else {
+                model.structure.response(number, &model.plain.theta)
+            };
+            let mut all = starts(trial, first);
+            all.push(model.plain.initial[number]);
+            on_record(trial, &record, &response, &all, is_base.then_some(first), thorough)
+                .ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })
+        })
+        .collect()
+}
+
+/// Replays a response; a first-order one in closed form, which neither sign of T disturbs.
+fn on_record(
+    trial: &Trial,
+    record: &Record,
+    response: &Response,
+    starts: &[[f64; 2]],
+    first: Option<&FirstOrder>,
+    thorough: bool,
+) -> Option<OnRecord> {
+    let replayed = match first {
+        Some(first) => closed_form(trial, record, first)?,
+        None => errors::full(response, record, starts)?,
+    };
+    let errors =
+        if thorough { errors::errors(trial, record, response, &replayed) } else { errors::in_brief(&replayed) };
+    Some(OnRecord { replayed, errors })
+}
+
+fn closed_form(trial: &Trial, record: &Record, first: &FirstOrder) -> Option<Replayed> {
+    let replay = identify::replay::replay(trial, first)?;
+    let residual = record.heading.iter().zip(&replay.heading).map(|(measured, replayed)| measured - replayed).collect();
+    let initial = [replay.heading[0], replay.yaw_rate[0]];
+    Some(Replayed { time: replay.time, heading: replay.heading, yaw_rate: replay.yaw_rate, residual, initial })
+}
+
+pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Result<Vec<Judged>, TraceError> {
+    let first = FirstOrder {
+        inverse_T: base.plain.theta[0],
+        K_over_T: base.plain.theta[1],
+        rudder_bias: base.plain.theta[2..].iter().sum::<f64>() / base.plain.theta[2..].len() as f64,
+    };
+    let after = held_out::portable(&model.structure, &model.plain.theta);
+    let unchanged = after.model().effects().is_empty() && model.structure.terms.is_empty();
+    held_out
+        .iter()
+        .map(|held| {
+            let refuse = || TraceError::Replay { trial: held.trial.name().to_owned() };
+            let response = Response::first_order_ship(first);
+            let before =
+                on_record(held.trial, &held.record, &response, &held.starts, Some(&first), true).ok_or_else(refuse)?;
+            let after = if unchanged {
+                before.clone()
+            } else {
+                let mut all = held.starts.clone();
+                all.push(before.replayed.initial);
+                on_record(held.trial, &held.record, &after, &all, None, true).ok_or_else(refuse)?
+            };
+            Ok(Judged { name: held.trial.name().to_owned(), before, after })
+        })
+        .collect()
+}

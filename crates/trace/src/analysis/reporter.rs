@@ -1,0 +1,347 @@
+//! What is said of a finished search: effects with their evidence and aliases, what became of every candidate, and what
+//! is left.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use trial::Trial;
+
+use super::elsewhere::Predicted;
+use super::{ALIAS, Considered, Empirical, OnRecord, Outcome, Settings, Traced, Value};
+use crate::candidates::{Candidate, Sizes};
+use crate::diagnostics::{self, Signature};
+use crate::fit::Fit;
+use crate::monomial::{LIBRARY, Monomial};
+use crate::record::Record;
+use crate::search::{Evidence, Model, Search, Tried};
+use crate::separation::Ground;
+use crate::structure::Term;
+
+/// What is said about a finished search.
+pub(super) struct Reporter<'a> {
+    pub search: &'a Search<'a>,
+    pub settings: &'a Settings,
+    pub names: &'a [String],
+    pub start: &'a Model,
+    pub model: &'a Model,
+    /// All candidates on the base.
+    pub tried: &'a [Tried],
+    /// Terms that are believed for what they predict.
+    pub predicted: &'a [Predicted],
+}
+
+impl Reporter<'_> {
+    fn only(&self, term: &Term) -> Option<String> {
+        term.only.map(|only| self.names[only].clone())
+    }
+
+    pub fn effects(&self, parameters: &[Value]) -> Vec<Traced> {
+        let structure = &self.model.structure;
+        let tests = self.search.tested(self.model, true);
+        let shares = self.shares();
+        let mut effects: Vec<Traced> = tests
+            .into_par_iter()
+            .enumerate()
+            .map(|(place, (evidence, less))| {
+                let term = &structure.terms[place];
+                let stands = self.search.believes(term, &evidence);
+                let predicted = self.predicted.iter().find(|predicted| predicted.term.is(term)).filter(|_| !stands);
+                let aliases = self.aliases(place, &less, predicted.is_some());
+                let (evidence, sentence) = match predicted {
+                    Some(predicted) => (predicted.evidence, self.prediction(predicted, shares[place])),
+                    None => (evidence, self.sentence(term, &evidence, shares[place], &aliases)),
+                };
+                Traced {
+                    id: term.effect.id(),
+                    form: term.effect.form(),
+                    equation: term.effect.equation(),
+                    only: self.only(term),
+                    aliases,
+                    parameters: parameters[structure.range(place)].to_vec(),
+                    evidence,
+                    residual_share: shares[place],
+                    sentence,
+                }
+            })
+            .collect();
+        effects.extend(self.waves());
+        effects
+    }
+
+    /// Share of the mean square of the base that every term took away in its turn.
+    fn shares(&self) -> Vec<f64> {
+        let square = |fit: &Fit| fit.residual.iter().flatten().map(|e| e * e).sum::<f64>();
+        let all = square(&self.start.plain);
+        let mut model = self.model.clone();
+        let mut after = square(&model.plain);
+        let mut shares = Vec::new();
+        for place in (0..self.model.structure.terms.len()).rev() {
+            model = self.search.dropped(&model, place, false);
+            let before = if place == 0 { all } else { square(&model.plain) };
+            shares.push(((before - after) / all).max(0.0));
+            after = before;
+        }
+        shares.reverse();
+        shares
+    }
+
+    /// Rivals that explain the records as well as the term at `place` does in its stead, under the same noise. A term that
+    /// is believed for what it predicts is compared as it was found, under white noise.
+    fn aliases(&self, place: usize, less: &Model, predicted: bool) -> Vec<(&'static str, &'static str)> {
+        let own = &self.model.structure.terms[place];
+        let with = if predicted { &self.model.plain } else { &self.model.judged };
+        let tried;
+        let rivals = if less.structure.terms.is_empty() && with.colour == self.start.plain.colour {
+            self.tried
+        } else {
+            // The model without the term, under the noise of the model with it.
+            let without =
+                self.search.problem.fit(&less.structure, &less.plain.theta, &less.plain.initial, &with.colour);
+            tried = self.search.try_all(less, &without, false);
+            &tried
+        };
+        let mut aliases: Vec<(&'static str, &'static str)> = rivals
+            .iter()
+            .filter(|tried| tried.fit.bic < with.bic + ALIAS)
+            .map(|tried| &self.search.candidates[tried.place].term)
+            .filter(|rival| !rival.is(own) && !self.model.structure.terms.iter().any(|term| term.is(rival)))
+            .map(|rival| (rival.effect.id(), rival.effect.form()))
+            .collect();
+        aliases.sort_unstable();
+        aliases.dedup();
+        aliases
+    }
+
+    fn sentence(
+        &self,
+        term: &Term,
+        evidence: &Evidence,
+        share: f64,
+        aliases: &[(&'static str, &'static str)],
+    ) -> String {
+        let whom = match (&self.model.judged.colour.moment, aliases.is_empty()) {
+            (None, true) => "against the best model without it, random moments included",
+            (Some(_), true) => "against the best model without it, while a random moment takes what neither explains",
+            (_, false) => "against the best model without any of its aliases",
+        };
+        format!(
+            "{} ({}) takes away {:.0} % of the mean square error of the base; BIC falls by {:.0} {whom}",
+            term.effect.id(),
+            term.effect.form(),
+            100.0 * share,
+            evidence.gain
+        )
+    }
+
+    fn prediction(&self, predicted: &Predicted, share: f64) -> String {
+        format!(
+            "{} ({}) takes away {:.0} % of the mean square error of the base; against a random moment its evidence does not \
+             stand, but it multiplies the error on held-out records by {:.2} (full replay) and {:.2} (full and restarted \
+             replays together); BIC falls by {:.0} under white noise",
+            predicted.term.effect.id(),
+            predicted.term.effect.form(),
+            100.0 * share,
+            predicted.comparison.full,
+            predicted.comparison.mean,
+            predicted.evidence.gain
+        )
+    }
+
+    /// Waves as an effect, where they are part of the noise.
+    fn waves(&self) -> Option<Traced> {
+        let waves = self.model.judged.colour.waves?;
+        let white = self.search.problem.variance(&self.model.judged).sqrt();
+        let calm = self.search.coloured(self.model, None);
+        let evidence = self.search.evidence(&calm.judged, &self.model.judged, 3);
+        let effect = ship::effects::WaveYaw;
+        let values = [waves.sd * white, waves.frequency, waves.damping];
+        let described = ship::effects::Effect::parameters(&effect);
+        let parameters = described
+            .iter()
+            .zip(values)
+            .map(|(parameter, value)| Value {
+                symbol: parameter.symbol.to_owned(),
+                unit: parameter.unit,
+                value,
+                sd: None,
+                only: None,
+            })
+            .collect();
+        Some(Traced {
+            id: ship::effects::Effect::id(&effect),
+            form: ship::effects::Effect::form(&effect),
+            equation: ship::effects::Effect::equation(&effect),
+            only: None,
+            aliases: Vec::new(),
+            parameters,
+            evidence,
+            residual_share: 0.0,
+            sentence: format!(
+                "a narrow band at {:.2} rad/s with a standard deviation of {:.2} deg lies on the heading; BIC falls by {:.0}",
+                waves.frequency,
+                ship::angle::to_deg(waves.sd * white),
+                evidence.gain
+            ),
+        })
+    }
+
+    pub fn candidates(&self, effects: &[Traced]) -> Vec<Considered> {
+        let structure = &self.model.structure;
+        let judged = self.model.judged.colour.moment.is_some();
+        let fit = if judged { &self.model.judged } else { &self.model.plain };
+        // On the base itself the first round has told already.
+        let last = if structure.terms.is_empty() && !judged {
+            self.tried.to_vec()
+        } else {
+            self.search.try_all(self.model, fit, false)
+        };
+        let variance = self.search.problem.variance(fit);
+        let ground = Ground { problem: self.search.problem, structure, fit, variance };
+        let log_n = (self.search.problem.observations() as f64).ln();
+        let mut list: Vec<Considered> = self
+            .search
+            .candidates
+            .par_iter()
+            .enumerate()
+            .map(|(place, candidate)| {
+                let term = &candidate.term;
+                let alone = self.tried.iter().find(|tried| tried.place == place).map(|tried| tried.evidence.gain);
+                let added = structure.terms.iter().any(|own| own.is(term));
+                let alias =
+                    effects.iter().any(|effect| effect.aliases.contains(&(term.effect.id(), term.effect.form())));
+                let evidence = if added {
+                    let own = |effect: &&Traced| (effect.id, effect.form) == (term.effect.id(), term.effect.form());
+                    effects.iter().find(own).map(|effect| effect.evidence)
+                } else {
+                    last.iter().find(|tried| tried.place == place).map(|tried| tried.evidence)
+                };
+                let visibility = (!added && self.settings.thorough).then(|| ground.visibility(candidate));
+                let needed = self.settings.thresholds.gain + term.freedom() as f64 * log_n;
+                let outcome = match (added, alias, visibility) {
+                    (true, ..) => Outcome::Added,
+                    (_, true, _) => Outcome::Alias,
+                    // What would explain the base alone is seen, even if something else explains it better.
+                    (.., Some(visibility)) if visibility < needed && alone.is_none_or(|gain| gain < needed) => {
+                        Outcome::NotObservable
+                    }
+                    _ => Outcome::Rejected,
+                };
+                Considered {
+                    id: term.effect.id(),
+                    form: term.effect.form(),
+                    only: self.only(term),
+                    outcome,
+                    evidence,
+                    gain_alone: alone,
+                    needed: self.search.needed(term),
+                    visibility,
+                    reason: None,
+                }
+            })
+            .collect();
+        list.extend(self.without_channel(&list));
+        list.push(self.waves_considered(effects));
+        list
+    }
+
+    /// Effects that need a channel the records do not have.
+    fn without_channel(&self, list: &[Considered]) -> Vec<Considered> {
+        [("sway_coupling_measured", "measured sway", "the records have no sway velocity")]
+            .into_iter()
+            .filter(|(id, ..)| list.iter().all(|other| other.id != *id))
+            .map(|(id, form, reason)| Considered {
+                id,
+                form,
+                only: None,
+                outcome: Outcome::NotObservable,
+                evidence: None,
+                gain_alone: None,
+                needed: self.settings.thresholds.gain,
+                visibility: None,
+                reason: Some(reason),
+            })
+            .collect()
+    }
+
+    fn waves_considered(&self, effects: &[Traced]) -> Considered {
+        let found = effects.iter().find(|effect| effect.id == "wave_yaw");
+        Considered {
+            id: "wave_yaw",
+            form: "narrow band",
+            only: None,
+            outcome: if found.is_some() { Outcome::Added } else { Outcome::Rejected },
+            evidence: found.map(|effect| effect.evidence),
+            gain_alone: None,
+            needed: self.settings.thresholds.gain,
+            visibility: None,
+            reason: if found.is_some() {
+                None
+            } else {
+                Some("no band above five times the frequency of the manoeuvre")
+            },
+        }
+    }
+
+    /// What is left, where a random moment is needed to explain it.
+    pub fn unexplained(&self, trials: &[Trial], after: &[OnRecord]) -> Option<Signature> {
+        self.model.judged.colour.moment?;
+        let gain = self.model.plain.bic - self.model.judged.bic;
+        if gain <= self.settings.thresholds.gain {
+            return None;
+        }
+        let worst = (0..trials.len())
+            .max_by(|&one, &other| after[one].errors.heading.total_cmp(&after[other].errors.heading))?;
+        let (trial, replayed) = (&trials[worst], &after[worst].replayed);
+        let first = trial.observed_rows().next().unwrap_or(0);
+        let rudder = &trial.rudder()[first..first + replayed.time.len()];
+        Some(diagnostics::signature(
+            worst,
+            &replayed.time,
+            &replayed.residual,
+            &replayed.heading,
+            rudder,
+            trial.sampling_period(),
+        ))
+    }
+
+    /// The monomial that carries most of what is left, with those that cannot be told from it.
+    pub fn discover(&self, sizes: &Sizes) -> Option<Empirical> {
+        let records = &self.search.problem.records;
+        let rms = |values: &mut dyn Iterator<Item = f64>| {
+            let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
+            (square / count.max(1) as f64).sqrt().max(1e-9)
+        };
+        let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
+        let has_speed = records.iter().all(|record| record.speed().is_some());
+        let speed = rms(&mut records.iter().filter_map(Record::speed).flat_map(|s| s.values().iter().copied()));
+        let size = [sizes.rate, sizes.rudder, heading, speed];
+        let library: Vec<Candidate> = (0..LIBRARY.len())
+            .filter(|&place| has_speed || LIBRARY[place].of[3] == 0)
+            .map(|place| Candidate {
+                term: Term {
+                    effect: Arc::new(Monomial { place, size }),
+                    only: None,
+                    held: &[],
+                    lowest: vec![-10.0],
+                    highest: vec![10.0],
+                    scale: vec![0.02],
+                    sees_heading: LIBRARY[place].of[2] > 0,
+                },
+                starts: vec![vec![0.0]],
+                large: vec![0.02],
+            })
+            .collect();
+        let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
+        let tried = search.try_all(self.model, &self.model.judged, false);
+        let best = tried.first().filter(|best| search.believes(&library[best.place].term, &best.evidence))?;
+        let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);
+        let term = &library[best.place].term;
+        let square: f64 = search.adopted(best).plain.residual.iter().flatten().map(|e| e * e).sum();
+        Some(Empirical {
+            group: near.map(|tried| library[tried.place].term.effect.form()).collect(),
+            equation: term.effect.equation(),
+            evidence: best.evidence,
+            error: (square / self.search.problem.observations() as f64).sqrt(),
+        })
+    }
+}
