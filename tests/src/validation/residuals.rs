@@ -1,5 +1,6 @@
 //! What a first-order fit leaves when an effect is missing, and what is found when it is added: against an independent
 //! computation of the same trials.
+#![expect(clippy::approx_constant, reason = "6.28 s is a published T₃ and not 2π")]
 
 use std::sync::Arc;
 
