@@ -15,7 +15,7 @@ use trial::{Channel, Trial};
 use crate::cli::{Common, Format, TraceRequest, Withheld};
 use crate::failure::{Failure, OnPath, result_folder};
 use crate::records::{names, read, warn_of_repetition};
-use crate::{present, screen};
+use crate::{present, progress, screen};
 
 pub use file::TraceFile;
 
@@ -50,7 +50,10 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let others = read_all(&request.validate)?;
     warn_of_repetition(&trials, &others, &mut warnings);
     let settings = Settings { own_bias: request.own_bias, ..Settings::default() };
-    let analysis = ::trace::trace(&trials, &others, &settings).map_err(|error| {
+    let busy = progress::busy("tracing", common.quiet);
+    let analysis = ::trace::trace(&trials, &others, &settings);
+    busy.finish_and_clear();
+    let analysis = analysis.map_err(|error| {
         let first = request.trials[0].display();
         Failure::input(format!("{first}: {error}; the record cannot be traced because no base model fits it"))
     })?;
