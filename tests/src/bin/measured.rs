@@ -247,7 +247,9 @@ fn wind(set: &Set) -> Outcome<String> {
     }
     Ok(format!(
         "### Traced wind beside measured wind\n\nThe base with nothing but a wind moment added: once without the wind columns (steady \
-         wind of unknown strength and direction, found from the heading alone), once with them (c_w U² sin γ).\n\n{}\n",
+         wind of unknown strength and direction, found from the heading alone), once with them (c_w U² sin γ). A zig-zag shows a small \
+         part of the circle, so the direction of a steady wind is badly determined and takes up other slow errors; where it \
+         is far from the measured one, it is no wind.\n\n{}\n",
         table.to_markdown()
     ))
 }
