@@ -9,6 +9,7 @@ use ship::dynamics::Dynamics;
 use ship::replay::{Recorded, replay};
 use trial::{Channel, Columns, Trial, ZigZag};
 
+use crate::fit::dot;
 use crate::record::Record;
 use crate::structure::step;
 
@@ -237,7 +238,6 @@ fn settle(
                 .collect()
         };
         let (one, two) = (column(&mut residual, 0), column(&mut residual, 1));
-        let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
         let cross = dot(&one, &two);
         let matrix = Matrix2::new(dot(&one, &one), cross, cross, dot(&two, &two) + 1e-12 * seats.len() as f64);
         let gradient = Vector2::new(dot(&one, &now), dot(&two, &now));

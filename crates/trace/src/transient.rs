@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Linear, Problem};
+use crate::fit::{Fit, Linear, Problem, dot};
 use crate::structure::Term;
 
 /// Lengths of the boxes as shares of the record.
@@ -66,8 +66,4 @@ pub fn starts(problem: &Problem, fit: &Fit, linear: &Linear, term: &Term) -> Vec
 /// Heading after a unit yaw acceleration has acted for t seconds.
 fn step_response(inverse_time: f64, t: f64) -> f64 {
     if t > 0.0 { Transition::new(inverse_time, t).phi2 } else { 0.0 }
-}
-
-fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(x, y)| x * y).sum()
 }

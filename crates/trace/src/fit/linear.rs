@@ -230,7 +230,7 @@ fn gram(columns: &[(usize, Vec<f64>)], matrix: &mut DMatrix<f64>) {
     }
 }
 
-pub(super) fn dot(one: &[f64], other: &[f64]) -> f64 {
+pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(x, y)| x * y).sum()
 }
 

@@ -11,7 +11,8 @@ use crate::structure::{Entry, Structure, headings};
 use ship::narrow_band::NarrowBand;
 
 pub use linear::Linear;
-use linear::{Block, Normal, dot, solve};
+pub(crate) use linear::dot;
+use linear::{Block, Normal, solve};
 
 /// Relative step of a finite difference: half the digits of a replay.
 const DIFFERENCE: f64 = 1e-6;
