@@ -9,6 +9,7 @@ mod noise;
 
 use std::ops::Range;
 
+use lanes::column::{dot, gram, sum};
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -169,12 +170,12 @@ fn warnings(trials: &[Trial], pieces: usize) -> Vec<String> {
     warnings
 }
 
-/// One stretch without a gap: its times and the rows of its equations.
+/// One stretch without a gap: its times and the columns of its equations.
 #[derive(Debug)]
 struct Piece<'a> {
     time: &'a [f64],
-    /// Row by row the columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
-    rows: Vec<[f64; WIDTH]>,
+    /// The columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
+    columns: [Vec<f64>; WIDTH],
 }
 
 impl<'a> Piece<'a> {
@@ -182,76 +183,66 @@ impl<'a> Piece<'a> {
     /// that nothing but lost digits depends on them.
     fn new(samples: &'a Samples, range: Range<usize>) -> Self {
         let (time, heading) = (&samples.time[range.clone()], &samples.heading[range.clone()]);
-        let once = &samples.rudder_integral[range.clone()];
+        let once = samples.rudder_integral[range.start];
         let twice = &samples.rudder_double_integral[range];
         let (start, middle) = (time[0], 0.5 * (time[0] + time[time.len() - 1]));
-        let mut rows = Vec::with_capacity(time.len());
-        integrate(time, heading, |k, heading_integral| {
-            let s = time[k] - middle;
-            let rudder = twice[k] - twice[0] - once[0] * (time[k] - start);
+        let half_square = |t: &f64| 0.5 * (t - middle) * (t - middle);
+        let columns = [
             // The integral is that of the heading less its first value.
-            rows.push([-heading_integral, rudder, 0.5 * s * s, heading[k] - heading[0]]);
-        });
-        Self { time, rows }
+            minus_integral(time, heading),
+            time.iter().zip(twice).map(|(t, integral)| integral - twice[0] - once * (t - start)).collect(),
+            time.iter().map(half_square).collect(),
+            heading.iter().map(|psi| psi - heading[0]).collect(),
+        ];
+        Self { time, columns }
     }
 
     /// Projects c₀ and c₁ out of all columns; adds the squared lengths that the columns had before to `lengths` and
     /// the cross products they have after to `products`.
     fn project(&mut self, lengths: &mut Vector3<f64>, products: &mut Matrix4<f64>) {
-        let count = self.rows.len() as f64;
-        let middle = self.time.iter().sum::<f64>() / count;
-        let mut spread = 0.0;
-        let (mut mean, mut slope) = ([0.0; WIDTH], [0.0; WIDTH]);
-        for (t, row) in self.time.iter().zip(&self.rows) {
-            let s = t - middle;
-            spread += s * s;
-            for i in 0..WIDTH {
-                mean[i] += row[i];
-                slope[i] += s * row[i];
-            }
+        let count = self.time.len() as f64;
+        let middle = sum(self.time) / count;
+        let since: Vec<f64> = self.time.iter().map(|t| t - middle).collect();
+        let spread = dot(&since, &since);
+        let mut removed = [0.0; WIDTH];
+        for (column, removed) in self.columns.iter_mut().zip(&mut removed) {
+            let (mean, slope) = (sum(column) / count, dot(&since, column) / spread);
+            column.iter_mut().zip(&since).for_each(|(x, s)| *x -= mean + slope * s);
+            *removed = count * mean * mean + spread * slope * slope;
         }
-        mean = mean.map(|sum| sum / count);
-        slope = slope.map(|sum| sum / spread);
-        let mut sums = [[0.0; WIDTH]; WIDTH];
-        for (t, row) in self.time.iter().zip(&mut self.rows) {
-            for i in 0..WIDTH {
-                row[i] -= mean[i] + slope[i] * (t - middle);
-            }
-            for i in 0..WIDTH {
-                for j in i..WIDTH {
-                    sums[i][j] += row[i] * row[j];
-                }
-            }
-        }
+        let [x0, x1, x2, y] = &self.columns;
+        let sums = Matrix4::from(gram([x0, x1, x2, y]));
         for i in 0..SHARED {
-            lengths[i] += sums[i][i] + count * mean[i] * mean[i] + spread * slope[i] * slope[i];
+            lengths[i] += sums[(i, i)] + removed[i];
         }
-        *products += Matrix4::from_fn(|i, j| sums[i.min(j)][i.max(j)]);
+        *products += sums;
     }
 }
 
-/// Calls `visit(k, ∫(value − value₀))` for every row: cubic Hermite interpolation, the slope of a row being that of the
-/// chord between its neighbours.
+/// −∫(value − value₀) at every row: cubic Hermite interpolation, the slope of a row being that of the chord between its
+/// neighbours.
 ///
 /// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24. On
 /// unequal ones a parabola through three rows would give a smoother slope, but it leans on the shorter interval: where
 /// two rows nearly coincide, the noise of their difference over next to nothing would be integrated over the long one.
 /// `time` and `value` have the same length, at least 3.
-fn integrate(time: &[f64], value: &[f64], mut visit: impl FnMut(usize, f64)) {
+fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
     let last = time.len() - 1;
     let chord = |from: usize, to: usize| (value[to] - value[from]) / (time[to] - time[from]);
     // At the ends a parabola: its chord is the mean of its slopes.
     let beyond = |chord: f64, slope: f64| 2.0 * chord - slope;
     let mut slope = beyond(chord(0, 1), chord(0, 2));
     let mut total = 0.0;
-    visit(0, total);
+    let mut integral = Vec::with_capacity(time.len());
+    integral.push(total);
     for k in 0..last {
         let h = time[k + 1] - time[k];
         let next = if k + 1 < last { chord(k, k + 2) } else { beyond(chord(k, last), slope) };
-        total += h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next));
-        visit(k + 1, total);
+        total -= h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next));
+        integral.push(total);
         slope = next;
     }
+    integral
 }
 
 /// The least-squares solution and what the noise needs of it.

@@ -283,15 +283,19 @@ impl Equations {
     }
 
     /// Regressors times residual, stretch by stretch.
-    fn scores(&self, [a, b, c]: [f64; 3]) -> Vec<Vec<[f64; 3]>> {
+    fn scores(&self, [a, b, c]: [f64; 3]) -> Vec<[Vec<f64>; 3]> {
         let mut equation = 0;
-        let mut score = |_: &usize| -> [f64; 3] {
-            let row = self.row(equation);
-            let error = self.acceleration[equation] - row.dot(&Vector3::new(a, b, c));
-            equation += 1;
-            (row * error).into()
+        let mut of_stretch = |rows: usize| {
+            let mut columns = [(); 3].map(|()| Vec::with_capacity(rows));
+            for equation in equation..equation + rows {
+                let row = self.row(equation);
+                let error = self.acceleration[equation] - row.dot(&Vector3::new(a, b, c));
+                columns.iter_mut().zip(&row).for_each(|(column, x): (&mut Vec<f64>, _)| column.push(x * error));
+            }
+            equation += rows;
+            columns
         };
-        self.stretches.iter().map(|stretch| stretch.rows.iter().map(&mut score).collect()).collect()
+        self.stretches.iter().map(|stretch| of_stretch(stretch.rows.len())).collect()
     }
 }
 

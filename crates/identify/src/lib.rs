@@ -31,6 +31,7 @@ pub mod replay;
 pub mod robust;
 pub mod samples;
 pub mod savitzky_golay;
+mod scan;
 pub mod settings;
 pub mod srivc;
 #[cfg(test)]

@@ -15,7 +15,8 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
-use crate::profile::{Profile, invert};
+use crate::profile::{Profile, Step, invert};
+use crate::scan::{self, Fit};
 use crate::settings::SettingsError;
 use crate::track::{Coefficients, Track};
 use crate::{Identifier, robust};
@@ -69,6 +70,12 @@ const SLOWEST: f64 = 0.02;
 /// Relative step at which the polish stops.
 const TOLERANCE: f64 = 1e-10;
 
+/// The same for the start of it, on some of the rows: their minimum is another one by a share of its standard deviation.
+const COARSE_TOLERANCE: f64 = 1e-3;
+
+/// Share of the sum of squares below which a promised decrease is rounding.
+const ROUNDING: f64 = 1e-14;
+
 /// Halvings after which a step that does not lead down is taken for rounding.
 const MOST_HALVINGS: usize = 12;
 
@@ -113,14 +120,21 @@ impl OutputError {
     }
 
     /// Variable projection from a start, with step halving; never leaves a lower point for a higher one.
-    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64) -> Option<Minimum> {
+    ///
+    /// Ends when a step is below `tolerance` of 1/T, or promises less than the sum of squares can tell.
+    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, tolerance: f64) -> Option<Minimum> {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
         for iterations in 1..=self.settings.iterations {
             let converged = Minimum { inverse_time, rss, stop: StopReason::Converged, iterations };
-            let mut step = profile.newton_step(inverse_time);
-            if step.abs() <= TOLERANCE * (inverse_time.abs() + resolution) {
+            let Step { by: mut step, decrease } = profile.newton_step(inverse_time);
+            if step.abs() <= tolerance * (inverse_time.abs() + resolution) {
                 return Some(converged);
+            }
+            if decrease <= ROUNDING * rss {
+                // The score is known to more digits than the sum of squares: the step is right, whatever the sum does.
+                let last = profile.evaluate(inverse_time + step);
+                return last.map(|rss| Minimum { inverse_time: inverse_time + step, rss, ..converged });
             }
             let lower = (0..MOST_HALVINGS).find_map(|_| {
                 let lower = profile.evaluate(inverse_time + step).filter(|&lower| lower < rss);
@@ -154,11 +168,15 @@ impl Identifier for OutputError {
             trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let grid = self.grid(&tracks, trials);
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
-        // The scan only has to find the valleys, for which some rows do; the polish takes all.
-        let mut coarse = Profile::new(tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect());
-        let scan: Vec<Option<f64>> = grid.iter().map(|&a| coarse.evaluate(a)).collect();
+        // The scan only has to find the valleys, and the first polish their place, for which some rows do; the last takes all.
+        let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
+        let scan = scan::fits(&thinned, &grid);
+        let mut coarse = Profile::new(thinned);
         let mut profile = Profile::new(tracks);
-        let height = |k: usize| scan.get(k).copied().flatten().unwrap_or(f64::INFINITY);
+        let height = |k: usize| {
+            let ship = scan.get(k).copied().flatten().filter(|fit| fit.gain > 0.0);
+            ship.map_or(f64::INFINITY, |fit| fit.rss)
+        };
         let valleys = (0..grid.len()).filter(|&k| {
             height(k).is_finite()
                 && (k == 0 || height(k - 1) >= height(k))
@@ -169,14 +187,16 @@ impl Identifier for OutputError {
         for k in valleys {
             minima += 1;
             let at_end = k == 0 || k + 1 == grid.len();
-            if let Some(minimum) = self.polish(&mut profile, grid[k], resolution)
+            let place = self.polish(&mut coarse, grid[k], resolution, COARSE_TOLERANCE);
+            let start = place.map_or(grid[k], |minimum| minimum.inverse_time);
+            if let Some(minimum) = self.polish(&mut profile, start, resolution, TOLERANCE)
                 && best.as_ref().is_none_or(|(so_far, _)| minimum.rss < so_far.rss)
             {
                 best = Some((minimum, at_end));
             }
         }
         let Some((minimum, at_end)) = best else {
-            return Err(refusal(&mut coarse, &grid, f64::INFINITY));
+            return Err(refusal(&scan, &grid, f64::INFINITY));
         };
         let inverse_time = minimum.inverse_time;
         profile.evaluate(inverse_time);
@@ -190,7 +210,7 @@ impl Identifier for OutputError {
         let variance = minimum.rss / freedom;
         // Ships that turn the wrong way have their best fit with b > 0 where the rudder hardly counts.
         let (inverse, condition) =
-            invert(&information, CONDITION_LIMIT).map_err(|condition| refusal(&mut coarse, &grid, condition))?;
+            invert(&information, CONDITION_LIMIT).map_err(|condition| refusal(&scan, &grid, condition))?;
         let white = to_response(&(inverse * variance), &response, freedom);
         let gain_sd = white.matrix[(1, 1)].sqrt();
         if gain < SIGNIFICANT * gain_sd {
@@ -211,7 +231,7 @@ impl Identifier for OutputError {
             uncertainty,
             robust: Some(robust_covariance),
             stop: if range_end { StopReason::RangeLimit } else { minimum.stop },
-            evaluations: coarse.evaluations() + profile.evaluations(),
+            evaluations: grid.len() + coarse.evaluations() + profile.evaluations(),
             diagnostics: vec![
                 ("heading_rmse_deg", to_deg((minimum.rss / observations as f64).sqrt())),
                 ("r_squared", 1.0 - minimum.rss / profile.total_sum_of_squares()),
@@ -228,10 +248,10 @@ impl Identifier for OutputError {
 
 /// Why there is no answer: the best fit of the scan, whatever the sign of its K/T, is no ship; or the columns are
 /// parallel.
-fn refusal(profile: &mut Profile, grid: &[f64], condition: f64) -> IdentifyError {
-    let fits = grid.iter().filter_map(|&a| profile.fit(a).map(|rss| (rss, a, profile.steering().0)));
-    match fits.min_by(|one, other| one.0.total_cmp(&other.0)) {
-        Some((_, inverse_time, gain)) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
+fn refusal(scan: &[Option<Fit>], grid: &[f64], condition: f64) -> IdentifyError {
+    let fits = grid.iter().zip(scan).filter_map(|(&a, fit)| fit.map(|fit| (a, fit)));
+    match fits.min_by(|(_, one), (_, other)| one.rss.total_cmp(&other.rss)) {
+        Some((inverse_time, Fit { gain, .. })) if gain <= 0.0 => IdentifyError::NotAShip { inverse_time, gain },
         _ => IdentifyError::Singular { condition, limit: CONDITION_LIMIT },
     }
 }
@@ -338,7 +358,7 @@ mod tests {
             for k in 0..=60 {
                 for sign in [1.0, -1.0] {
                     let start = sign / (2.0 * 250f64.powf(k as f64 / 60.0));
-                    if let Some(minimum) = method().polish(&mut profile, start, 1.0 / trial.duration()) {
+                    if let Some(minimum) = method().polish(&mut profile, start, 1.0 / trial.duration(), TOLERANCE) {
                         let rmse = to_deg((minimum.rss / trial.len() as f64).sqrt());
                         assert!(
                             rmse >= best * (1.0 - 1e-9),

@@ -4,6 +4,7 @@
 //! follow from two normal equations over all trials. The same projections give the exact step in 1/T, the Fisher
 //! information and the scores. Work space is allocated once.
 
+use lanes::column::{Removed, dot, gram, project, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
@@ -14,8 +15,10 @@ use crate::track::{Coefficients, Columns, Track};
 struct Part {
     track: Track,
     columns: Columns,
-    /// φ₁ less its mean, of unit length.
-    homogeneous: Vec<f64>,
+    /// Mean and length of φ₁ before it became a unit column.
+    homogeneous: (f64, f64),
+    /// What was taken out of G, H and the heading.
+    removed: [Removed; 3],
     /// Heading, projected.
     heading: Vec<f64>,
     /// ∂ψ/∂a, projected.
@@ -29,7 +32,18 @@ struct Part {
 pub(crate) struct Profile {
     parts: Vec<Part>,
     steering: Vector2<f64>,
+    /// Point last evaluated and the answer there.
+    last: Option<(f64, Option<f64>)>,
     evaluations: usize,
+}
+
+/// A step of 1/T.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    /// Change of 1/T, 1/s.
+    pub by: f64,
+    /// Change of the sum of squares that it promises, rad².
+    pub decrease: f64,
 }
 
 impl Profile {
@@ -41,107 +55,94 @@ impl Profile {
                 Part {
                     track,
                     columns: Columns::default(),
-                    homogeneous: vec![0.0; rows],
+                    homogeneous: (0.0, 0.0),
+                    removed: [Removed::default(); 3],
                     heading: vec![0.0; rows],
-                    sensitivity: vec![0.0; rows],
+                    sensitivity: Vec::new(),
                     residual: vec![0.0; rows],
                 }
             })
             .collect();
-        Self { parts, steering: Vector2::zeros(), evaluations: 0 }
+        Self { parts, steering: Vector2::zeros(), last: None, evaluations: 0 }
     }
 
     /// Sum of squares (rad²) of the best fit of a ship with this 1/T; `None` when the columns are dependent or b ≤ 0.
     pub fn evaluate(&mut self, inverse_time: f64) -> Option<f64> {
-        let rss = self.fit(inverse_time)?;
-        (self.steering[0] > 0.0).then_some(rss)
+        match self.last {
+            Some((point, answer)) if point == inverse_time => answer,
+            _ => {
+                self.evaluations += 1;
+                let answer = self.fit(inverse_time);
+                self.last = Some((inverse_time, answer));
+                answer
+            }
+        }
     }
 
-    /// The same for whatever b is.
-    pub fn fit(&mut self, inverse_time: f64) -> Option<f64> {
-        self.evaluations += 1;
-        let (mut gram, mut moment) = (Matrix2::zeros(), Vector2::zeros());
+    fn fit(&mut self, inverse_time: f64) -> Option<f64> {
+        let (mut products, mut moment) = (Matrix2::zeros(), Vector2::zeros());
         for part in &mut self.parts {
             part.project_columns(inverse_time);
             part.project_heading();
-            let (g, h) = (&part.columns.rudder, &part.columns.constant);
-            let gh = dot(g, h);
-            gram += Matrix2::new(dot(g, g), gh, gh, dot(h, h));
-            moment += Vector2::new(dot(g, &part.heading), dot(h, &part.heading));
+            let [[gg, gh, gy], [_, hh, hy], _] = gram([&part.columns.rudder, &part.columns.constant, &part.heading]);
+            products += Matrix2::new(gg, gh, gh, hh);
+            moment += Vector2::new(gy, hy);
         }
-        self.steering = solve2(&gram, &moment)?;
+        self.steering = solve2(&products, &moment)?;
+        let [b, q] = self.steering.into();
         let mut rss = 0.0;
         for part in &mut self.parts {
-            let (b, q) = (self.steering[0], self.steering[1]);
-            for (k, residual) in part.residual.iter_mut().enumerate() {
-                *residual = part.heading[k] - b * part.columns.rudder[k] - q * part.columns.constant[k];
+            let columns = part.columns.rudder.iter().zip(&part.columns.constant);
+            for (residual, (psi, (g, h))) in part.residual.iter_mut().zip(part.heading.iter().zip(columns)) {
+                *residual = psi - b * g - q * h;
             }
             rss += dot(&part.residual, &part.residual);
         }
-        rss.is_finite().then_some(rss)
+        (rss.is_finite() && b > 0.0).then_some(rss)
     }
 
     /// Kaufman's step of 1/T from the point last evaluated.
-    pub fn newton_step(&mut self, inverse_time: f64) -> f64 {
+    pub fn newton_step(&mut self, inverse_time: f64) -> Step {
         let information = self.information(inverse_time);
         let score: f64 = self.parts.iter().map(|part| dot(&part.sensitivity, &part.residual)).sum();
-        let gram = Matrix2::new(information[(1, 1)], information[(1, 2)], information[(2, 1)], information[(2, 2)]);
+        let products = Matrix2::new(information[(1, 1)], information[(1, 2)], information[(2, 1)], information[(2, 2)]);
         let cross = Vector2::new(information[(0, 1)], information[(0, 2)]);
-        let explained = solve2(&gram, &cross).map_or(0.0, |share| share.dot(&cross));
+        let explained = solve2(&products, &cross).map_or(0.0, |share| share.dot(&cross));
         let curvature = information[(0, 0)] - explained;
-        if curvature > 0.0 { score / curvature } else { 0.0 }
+        let by = if curvature > 0.0 { score / curvature } else { 0.0 };
+        Step { by, decrease: by * score }
     }
 
     /// JᵀJ of (1/T, b, b δ_r) with the anchors eliminated, at the point last evaluated; times 1/σ² it is the Fisher
     /// information.
     pub fn information(&mut self, inverse_time: f64) -> Matrix3<f64> {
-        let coefficients: Vec<Coefficients> =
-            self.parts.iter().map(|part| part.coefficients(inverse_time, self.steering[0], self.steering[1])).collect();
-        self.accumulate(inverse_time, &coefficients)
-    }
-
-    /// The same at given coefficients, one set a trial, whatever the headings are; `None` when it is not finite.
-    pub fn information_at(&mut self, inverse_time: f64, coefficients: &[Coefficients]) -> Option<Matrix3<f64>> {
-        for part in &mut self.parts {
-            part.project_columns(inverse_time);
-        }
-        let information = self.accumulate(inverse_time, coefficients);
-        information.iter().all(|value| value.is_finite()).then_some(information)
-    }
-
-    fn accumulate(&mut self, inverse_time: f64, coefficients: &[Coefficients]) -> Matrix3<f64> {
+        let [b, q] = self.steering.into();
         let mut information = Matrix3::zeros();
-        for (part, coefficients) in self.parts.iter_mut().zip(coefficients) {
-            let Part { track, sensitivity, homogeneous, columns, .. } = part;
-            track.sensitivity(inverse_time, coefficients, sensitivity);
-            project(homogeneous, sensitivity);
-            let all = [sensitivity.as_slice(), &columns.rudder, &columns.constant];
-            for i in 0..3 {
-                for j in i..3 {
-                    let product = dot(all[i], all[j]);
-                    information[(i, j)] += product;
-                    if i != j {
-                        information[(j, i)] += product;
-                    }
-                }
-            }
+        for part in &mut self.parts {
+            let coefficients = part.coefficients(b, q);
+            information += part.information(inverse_time, &coefficients);
         }
         information
     }
 
-    /// Residual times projected Jacobian row, trial by trial; after [`information`](Self::information).
-    pub fn scores(&self) -> Vec<Vec<[f64; 3]>> {
-        self.parts
-            .iter()
-            .map(|part| {
-                (0..part.residual.len())
-                    .map(|k| {
-                        [part.sensitivity[k], part.columns.rudder[k], part.columns.constant[k]]
-                            .map(|x| x * part.residual[k])
-                    })
-                    .collect()
-            })
-            .collect()
+    /// The same at given coefficients, one set a trial, whatever the headings are; `None` when it is not finite.
+    pub fn information_at(&mut self, inverse_time: f64, coefficients: &[Coefficients]) -> Option<Matrix3<f64>> {
+        self.last = None;
+        let mut information = Matrix3::zeros();
+        for (part, coefficients) in self.parts.iter_mut().zip(coefficients) {
+            part.project_columns(inverse_time);
+            information += part.information(inverse_time, coefficients);
+        }
+        information.iter().all(|value| value.is_finite()).then_some(information)
+    }
+
+    /// Residual times projected Jacobian, column by column and trial by trial; after [`information`](Self::information).
+    pub fn scores(&self) -> Vec<[Vec<f64>; 3]> {
+        let of_part = |part: &Part| {
+            let times_residual = |column: &[f64]| column.iter().zip(&part.residual).map(|(x, e)| x * e).collect();
+            [&part.sensitivity, &part.columns.rudder, &part.columns.constant].map(|column| times_residual(column))
+        };
+        self.parts.iter().map(of_part).collect()
     }
 
     /// Residuals, trial by trial.
@@ -166,49 +167,51 @@ impl Profile {
 
     /// Σ(ψ − mean)² over all trials, rad².
     pub fn total_sum_of_squares(&self) -> f64 {
-        self.parts
-            .iter()
-            .map(|part| {
-                let heading = &part.track.heading;
-                let mean = heading.iter().sum::<f64>() / heading.len() as f64;
-                heading.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>()
-            })
-            .sum()
+        let of_part = |part: &Part| {
+            let heading = &part.track.heading;
+            let mean = sum(heading) / heading.len() as f64;
+            heading.iter().map(|psi| (psi - mean).powi(2)).sum::<f64>()
+        };
+        self.parts.iter().map(of_part).sum()
     }
 }
 
 impl Part {
     fn project_columns(&mut self, inverse_time: f64) {
         self.track.fill(inverse_time, &mut self.columns);
-        self.homogeneous.copy_from_slice(&self.columns.homogeneous);
-        subtract_mean(&mut self.homogeneous);
-        let length = dot(&self.homogeneous, &self.homogeneous).sqrt();
+        let Columns { homogeneous, rudder, constant } = &mut self.columns;
+        let mean = sum(homogeneous) / homogeneous.len() as f64;
+        homogeneous.iter_mut().for_each(|x| *x -= mean);
+        let length = dot(homogeneous, homogeneous).sqrt();
         if length > 0.0 {
-            self.homogeneous.iter_mut().for_each(|x| *x /= length);
+            homogeneous.iter_mut().for_each(|x| *x /= length);
         }
-        project(&self.homogeneous, &mut self.columns.rudder);
-        project(&self.homogeneous, &mut self.columns.constant);
+        self.homogeneous = (mean, length);
+        self.removed[0] = project(homogeneous, rudder);
+        self.removed[1] = project(homogeneous, constant);
     }
 
     fn project_heading(&mut self) {
         self.heading.copy_from_slice(&self.track.heading);
-        project(&self.homogeneous, &mut self.heading);
+        self.removed[2] = project(&self.columns.homogeneous, &mut self.heading);
+    }
+
+    /// Products of the projected columns (∂ψ/∂a, G, H).
+    fn information(&mut self, inverse_time: f64, coefficients: &Coefficients) -> Matrix3<f64> {
+        self.track.sensitivity(inverse_time, coefficients, &mut self.sensitivity);
+        project(&self.columns.homogeneous, &mut self.sensitivity);
+        Matrix3::from(gram([&self.sensitivity, &self.columns.rudder, &self.columns.constant]))
     }
 
     /// Coefficients of the track for given steering: the anchor is what the projections took out.
-    fn coefficients(&self, inverse_time: f64, gain: f64, offset: f64) -> Coefficients {
-        let free = Coefficients { anchor: State::default(), gain, offset };
-        let forced = self.track.simulate(inverse_time, &free);
-        let rest: Vec<f64> =
-            self.track.observed().zip(&self.track.heading).map(|(row, psi)| psi - forced[row].heading).collect();
-        let along = dot(&self.homogeneous, &rest);
-        // φ₁ = mean + length · unit: the length is φ₁ · unit, because the unit column has no mean.
-        let length = dot(&self.columns.homogeneous, &self.homogeneous);
+    fn coefficients(&self, gain: f64, offset: f64) -> Coefficients {
+        let [rudder, constant, heading] = self.removed;
+        let (mean, length) = self.homogeneous;
+        // φ₁ = mean + length · unit.
+        let along = heading.share - gain * rudder.share - offset * constant.share;
         let yaw_rate = if length > 0.0 { along / length } else { 0.0 };
-        let rows = rest.len() as f64;
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / rows;
-        let heading = mean(&rest) - yaw_rate * mean(&self.columns.homogeneous);
-        Coefficients { anchor: State { heading, yaw_rate }, ..free }
+        let level = heading.mean - gain * rudder.mean - offset * constant.mean;
+        Coefficients { anchor: State { heading: level - yaw_rate * mean, yaw_rate }, gain, offset }
     }
 }
 
@@ -232,24 +235,8 @@ pub(crate) fn invert(information: &Matrix3<f64>, limit: f64) -> Result<(Matrix3<
     Ok((scaled(&inverse), condition))
 }
 
-fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
-}
-
-fn subtract_mean(column: &mut [f64]) {
-    let mean = column.iter().sum::<f64>() / column.len() as f64;
-    column.iter_mut().for_each(|x| *x -= mean);
-}
-
-/// Takes the constant and `unit` (of unit length, zero mean) out of a column.
-fn project(unit: &[f64], column: &mut [f64]) {
-    subtract_mean(column);
-    let share = dot(unit, column);
-    column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
-}
-
 /// Solves a symmetric positive definite 2 × 2 system after scaling; `None` when it is singular to rounding.
-fn solve2(gram: &Matrix2<f64>, moment: &Vector2<f64>) -> Option<Vector2<f64>> {
+pub(crate) fn solve2(gram: &Matrix2<f64>, moment: &Vector2<f64>) -> Option<Vector2<f64>> {
     let scale = Vector2::new(gram[(0, 0)].sqrt().recip(), gram[(1, 1)].sqrt().recip());
     let cosine = gram[(0, 1)] * scale[0] * scale[1];
     let determinant = 1.0 - cosine * cosine;

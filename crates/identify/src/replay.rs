@@ -54,9 +54,9 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     };
     let states = track.simulate(a, &coefficients);
     let residual: Vec<f64> =
-        track.observed().zip(&track.heading).map(|(row, &measured)| measured - states[row].heading).collect();
+        track.observed().iter().zip(&track.heading).map(|(&row, &measured)| measured - states[row].heading).collect();
     let mean_square = residual.iter().map(|e| e * e).sum::<f64>() / residual.len() as f64;
-    let residual_time = track.observed().map(|row| track.time()[row]).collect();
+    let residual_time = track.observed().iter().map(|&row| track.time()[row]).collect();
     mean_square.is_finite().then(|| Replay {
         time: track.time().to_vec(),
         heading: states.iter().map(|state| state.heading).collect(),

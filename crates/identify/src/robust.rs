@@ -1,6 +1,7 @@
 //! Errors of a least-squares estimate whose residual is coloured.
 
-use nalgebra::{DMatrix, DVector, Matrix3};
+use lanes::column::{dot, gram};
+use nalgebra::{DMatrix, Matrix3};
 
 use crate::estimate::{Covariance, Uncertainty};
 
@@ -21,66 +22,87 @@ pub(crate) fn judge(white: Covariance, robust: &Covariance, lag1: f64, rows: usi
 
 /// Lag-1 autocorrelation of residuals, pooled over trials.
 pub(crate) fn lag1_autocorrelation<'a>(residuals: impl Iterator<Item = &'a [f64]> + Clone) -> f64 {
-    let square: f64 = residuals.clone().flatten().map(|e| e * e).sum();
-    let cross: f64 = residuals.map(|trial| trial.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>()).sum();
+    let square: f64 = residuals.clone().map(|trial| dot(trial, trial)).sum();
+    let cross: f64 = residuals.map(|trial| dot(trial.get(1..).unwrap_or(&[]), trial)).sum();
     if square > 0.0 { cross / square } else { 0.0 }
 }
 
 /// Long-run covariance Σ_k w_k Γ_k of scores with Bartlett weights, summed over trials.
 ///
-/// `scores[trial][row]` is residual times Jacobian row, one entry per unknown. The lag grows with the first-order
-/// autocorrelation of the scores (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square of sums
-/// over all windows of one length, which needs one pass.
+/// `scores[trial][unknown]` is the column of residual times Jacobian. The lag grows with the first-order autocorrelation of the
+/// scores (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square of sums over all windows of one
+/// length, which needs one pass.
 ///
 /// Sources: Newey and West (1987); Andrews (1991).
-pub fn newey_west<S: AsRef<[f64]>>(scores: &[Vec<S>]) -> DMatrix<f64> {
-    let unknowns = scores.iter().flatten().next().map_or(0, |row| row.as_ref().len());
-    let covariances = scores.iter().map(|trial| window_covariance(trial, bandwidth(trial, unknowns), unknowns));
-    covariances.fold(DMatrix::zeros(unknowns, unknowns), |sum, one| sum + one)
+pub fn newey_west(scores: &[Vec<Vec<f64>>]) -> DMatrix<f64> {
+    let unknowns = scores.first().map_or(0, Vec::len);
+    let mut sum = DMatrix::zeros(unknowns, unknowns);
+    for trial in scores {
+        let length = bandwidth(trial);
+        let windows: Vec<Vec<f64>> = trial.iter().map(|column| window_sums(column, length)).collect();
+        for i in 0..unknowns {
+            for j in 0..=i {
+                let product = dot(&windows[i], &windows[j]) / length as f64;
+                sum[(i, j)] += product;
+                if i != j {
+                    sum[(j, i)] += product;
+                }
+            }
+        }
+    }
+    sum
 }
 
 /// The same of three unknowns.
-pub(crate) fn newey_west_of_three(scores: &[Vec<[f64; 3]>]) -> Matrix3<f64> {
-    Matrix3::from_iterator(newey_west(scores).iter().copied())
+pub(crate) fn newey_west_of_three(scores: &[[Vec<f64>; 3]]) -> Matrix3<f64> {
+    let mut sum = Matrix3::zeros();
+    for trial in scores {
+        let length = bandwidth(trial);
+        let [x, y, z] = [0, 1, 2].map(|unknown| window_sums(&trial[unknown], length));
+        sum += Matrix3::from(gram([&x, &y, &z])) / length as f64;
+    }
+    sum
 }
 
 /// Window length (lags plus one) from the autocorrelation of the scores, the largest over the unknowns.
-fn bandwidth<S: AsRef<[f64]>>(scores: &[S], unknowns: usize) -> usize {
-    let rows = scores.len();
+fn bandwidth(scores: &[Vec<f64>]) -> usize {
+    let rows = scores.first().map_or(0, Vec::len);
     let longest = (rows / 4).max(1);
-    (0..unknowns)
-        .map(|i| {
-            let at = |row: &S| row.as_ref()[i];
-            let square: f64 = scores.iter().map(|g| at(g) * at(g)).sum();
-            let cross: f64 = scores.windows(2).map(|pair| at(&pair[0]) * at(&pair[1])).sum();
-            let rho = if square > 0.0 { (cross / square).clamp(-0.999, 0.999) } else { 0.0 };
-            let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));
-            (1.1447 * (alpha * rows as f64).cbrt()).ceil() as usize + 1
-        })
-        .max()
-        .unwrap_or(1)
-        .min(longest)
+    let of_column = |column: &Vec<f64>| {
+        let square = dot(column, column);
+        let cross = dot(column.get(1..).unwrap_or(&[]), column);
+        let rho = if square > 0.0 { (cross / square).clamp(-0.999, 0.999) } else { 0.0 };
+        let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));
+        (1.1447 * (alpha * rows as f64).cbrt()).ceil() as usize + 1
+    };
+    scores.iter().map(of_column).max().unwrap_or(1).min(longest)
 }
 
-fn window_covariance<S: AsRef<[f64]>>(scores: &[S], length: usize, unknowns: usize) -> DMatrix<f64> {
-    let mut total = DMatrix::zeros(unknowns, unknowns);
-    let mut window = DVector::<f64>::zeros(unknowns);
-    for end in 0..scores.len() + length - 1 {
-        if let Some(entering) = scores.get(end) {
-            window.iter_mut().zip(entering.as_ref()).for_each(|(sum, g)| *sum += g);
-        }
-        if end >= length {
-            window.iter_mut().zip(scores[end - length].as_ref()).for_each(|(sum, g)| *sum -= g);
-        }
-        total.ger(1.0, &window, &window, 1.0);
-    }
-    total / length as f64
+/// Sums of a column over all windows of `length` rows, those that overlap an end only partly included.
+fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(column.len() + length);
+    let mut window = 0.0;
+    let full = length.min(column.len());
+    sums.extend(column[..full].iter().map(|entering| {
+        window += entering;
+        window
+    }));
+    sums.extend(column[full..].iter().zip(column).map(|(entering, leaving)| {
+        window += entering - leaving;
+        window
+    }));
+    sums.extend(column[column.len() - full..column.len() - 1].iter().map(|leaving| {
+        window -= leaving;
+        window
+    }));
+    sums
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use nalgebra::DVector;
 
     #[test]
     fn windows_are_bartlett_weights() {
@@ -96,9 +118,15 @@ mod tests {
                 }
             }
         }
-        let fast = window_covariance(&scores, length, 3);
+        let columns = [0, 1, 2].map(|unknown| scores.iter().map(|row| row[unknown]).collect::<Vec<f64>>());
+        let [x, y, z] = [0, 1, 2].map(|unknown| window_sums(&columns[unknown], length));
+        let fast = Matrix3::from(gram([&x, &y, &z])) / length as f64;
         for (fast, direct) in fast.iter().zip(direct.iter()) {
             assert_relative_eq!(*fast, *direct, max_relative = 1e-10, epsilon = 1e-10);
+        }
+        let of_any_number = newey_west(&[columns.to_vec()]);
+        for (three, any) in newey_west_of_three(&[columns]).iter().zip(of_any_number.iter()) {
+            assert_relative_eq!(*three, *any, max_relative = 1e-12);
         }
     }
 }

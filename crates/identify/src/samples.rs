@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use lanes::column::extremes;
 use ship::angle::to_deg;
 use trial::Trial;
 
@@ -39,43 +40,39 @@ impl Samples {
     /// [`IdentifyError::OutOfRange`] when times or angles are none of a manoeuvre, and with
     /// [`IdentifyError::TooFewSamples`] when there are fewer than `needed` rows.
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
-        let mut samples = Self::default();
+        check(trial, needed)?;
         let (t, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
+        let rows = trial.len();
+        let first = trial.observed_rows().next().unwrap_or(0);
+        let column = || vec![0.0; rows - first];
+        let mut samples = Self {
+            time: column(),
+            heading: column(),
+            rudder: column(),
+            rudder_integral: column(),
+            rudder_double_integral: column(),
+        };
         let (mut once, mut twice) = (0.0, 0.0);
-        let mut before: Option<usize> = None;
-        let mut start = 0.0;
-        for row in 0..trial.len() {
-            if let Some(last) = before {
-                let h = t[row] - t[last];
-                twice += h * once + h * h * (2.0 * delta[last] + delta[row]) / 6.0;
-                once += 0.5 * h * (delta[last] + delta[row]);
+        let mut seat = 0;
+        for row in first..rows {
+            // Integration starts at the first observed row.
+            if row > first {
+                let h = t[row] - t[row - 1];
+                twice += h * once + h * h * (2.0 * delta[row - 1] + delta[row]) / 6.0;
+                once += 0.5 * h * (delta[row - 1] + delta[row]);
             }
             if psi[row].is_finite() {
-                if before.is_none() {
-                    start = t[row];
-                }
-                samples.time.push(t[row] - start);
-                samples.heading.push(psi[row]);
-                samples.rudder.push(delta[row]);
-                samples.rudder_integral.push(once);
-                samples.rudder_double_integral.push(twice);
+                samples.time[seat] = t[row] - t[first];
+                samples.heading[seat] = psi[row];
+                samples.rudder[seat] = delta[row];
+                samples.rudder_integral[seat] = once;
+                samples.rudder_double_integral[seat] = twice;
+                seat += 1;
             }
-            // Integration starts at the first observed row.
-            before = (before.is_some() || psi[row].is_finite()).then_some(row);
         }
-        let found = samples.len();
-        if found < needed {
-            return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, found });
-        }
-        let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, angle| most.max(angle.abs()));
-        // The rudder between observed rows is integrated and simulated with.
-        let (duration_s, angle_rad) = (samples.time[found - 1], largest(&samples.heading).max(largest(delta)));
-        if !DURATION_S.contains(&duration_s) || angle_rad > LARGEST_ANGLE {
-            return Err(IdentifyError::OutOfRange { trial: trial.name().into(), duration_s, angle_rad });
-        }
-        let (rudder_deg, heading_deg) = (range_deg(&samples.rudder), range_deg(&samples.heading));
-        if rudder_deg < SMALLEST_RANGE_DEG || heading_deg < SMALLEST_RANGE_DEG {
-            return Err(IdentifyError::NotExcited { trial: trial.name().into(), rudder_deg, heading_deg });
+        let Self { time, heading, rudder, rudder_integral, rudder_double_integral } = &mut samples;
+        for column in [time, heading, rudder, rudder_integral, rudder_double_integral] {
+            column.truncate(seat);
         }
         Ok(samples)
     }
@@ -99,9 +96,35 @@ impl Samples {
     }
 }
 
-fn range_deg(values: &[f64]) -> f64 {
-    let (lo, hi) = values.iter().fold((f64::MAX, f64::MIN), |(lo, hi), &x| (lo.min(x), hi.max(x)));
-    to_deg(hi - lo)
+/// What every method asks of a trial; fails as [`Samples::new`] does.
+pub(crate) fn check(trial: &Trial, needed: usize) -> Result<(), IdentifyError> {
+    let (time, delta, psi) = (trial.time(), trial.rudder(), trial.heading());
+    let found = psi.iter().filter(|psi| psi.is_finite()).count();
+    let first = trial.observed_rows().next().unwrap_or(0);
+    let last = psi.iter().rposition(|psi| psi.is_finite()).unwrap_or(0);
+    if found < needed {
+        return Err(IdentifyError::TooFewSamples { trial: trial.name().into(), needed, found });
+    }
+    let largest = |(lo, hi): (f64, f64)| hi.max(-lo);
+    let range_deg = |(lo, hi): (f64, f64)| to_deg(hi - lo);
+    let heading = extremes(psi);
+    // The rudder between observed rows is integrated and simulated with.
+    let (duration_s, angle_rad) = (time[last] - time[first], largest(heading).max(largest(extremes(delta))));
+    if !DURATION_S.contains(&duration_s) || angle_rad > LARGEST_ANGLE {
+        return Err(IdentifyError::OutOfRange { trial: trial.name().into(), duration_s, angle_rad });
+    }
+    let steered = if found == trial.len() {
+        extremes(delta)
+    } else {
+        trial
+            .observed_rows()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), row| (lo.min(delta[row]), hi.max(delta[row])))
+    };
+    let (rudder_deg, heading_deg) = (range_deg(steered), range_deg(heading));
+    if rudder_deg < SMALLEST_RANGE_DEG || heading_deg < SMALLEST_RANGE_DEG {
+        return Err(IdentifyError::NotExcited { trial: trial.name().into(), rudder_deg, heading_deg });
+    }
+    Ok(())
 }
 
 #[cfg(test)]

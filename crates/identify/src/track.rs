@@ -11,7 +11,7 @@ use ship::first_order::{State, TangentTransition, Transition};
 use trial::Trial;
 
 use crate::error::IdentifyError;
-use crate::samples::Samples;
+use crate::samples;
 
 /// Steps whose lengths differ by less than this share use the same transition: far below any clock.
 const SAME_STEP: f64 = 1e-9;
@@ -21,10 +21,21 @@ const SAME_STEP: f64 = 1e-9;
 pub(crate) struct Track {
     time: Vec<f64>,
     rudder: Vec<f64>,
-    /// Index into `heading` for every row that has one.
-    seat: Vec<Option<usize>>,
+    /// Interval after every row but the last, and the rudder rate in it; s and rad/s.
+    intervals: Vec<Interval>,
+    /// Rows that have a heading, in order.
+    observed: Vec<usize>,
     /// Heading of the observed rows, rad.
     pub heading: Vec<f64>,
+}
+
+/// What lies between two rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Interval {
+    /// Length, s.
+    pub length: f64,
+    /// Rudder rate, rad/s.
+    pub rudder_rate: f64,
 }
 
 /// The columns beside the constant one, at the observed rows.
@@ -36,14 +47,6 @@ pub(crate) struct Columns {
     pub rudder: Vec<f64>,
     /// H, s².
     pub constant: Vec<f64>,
-}
-
-impl Columns {
-    fn resize(&mut self, rows: usize) {
-        for column in [&mut self.homogeneous, &mut self.rudder, &mut self.constant] {
-            column.resize(rows, 0.0);
-        }
-    }
 }
 
 /// Coefficients of the four columns.
@@ -73,7 +76,7 @@ impl Track {
     /// Takes the part of a trial that has headings; the record must be excited and hold `needed` of them.
     pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
         // The checks are those of every method.
-        Samples::new(trial, needed)?;
+        samples::check(trial, needed)?;
         Ok(Self::unchecked(trial))
     }
 
@@ -81,30 +84,29 @@ impl Track {
     pub fn unchecked(trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
-        let mut heading = Vec::with_capacity(last + 1 - first);
-        let seat = trial.heading()[first..=last]
-            .iter()
-            .map(|&psi| {
-                psi.is_finite().then(|| {
-                    heading.push(psi);
-                    heading.len() - 1
-                })
-            })
-            .collect();
-        Self { time: trial.time()[first..=last].to_vec(), rudder: trial.rudder()[first..=last].to_vec(), seat, heading }
+        let heading = &trial.heading()[first..=last];
+        let observed: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
+        let heading = observed.iter().map(|&row| heading[row]).collect();
+        Self::of(trial.time()[first..=last].to_vec(), trial.rudder()[first..=last].to_vec(), observed, heading)
+    }
+
+    fn of(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
+        let interval = |(t, delta): (&[f64], &[f64])| {
+            let length = t[1] - t[0];
+            Interval { length, rudder_rate: (delta[1] - delta[0]) / length }
+        };
+        let intervals = time.windows(2).zip(rudder.windows(2)).map(interval).collect();
+        Self { time, rudder, intervals, observed, heading }
     }
 
     /// About `rows` of the observed rows, evenly spread, the first included: enough to see where a minimum lies. The
     /// rudder between them is taken as linear, so its corners are cut.
     pub fn thinned(&self, rows: usize) -> Self {
         let every = (self.len() / rows).max(1);
-        let kept: Vec<usize> = self.observed().step_by(every).collect();
-        Self {
-            time: kept.iter().map(|&row| self.time[row]).collect(),
-            rudder: kept.iter().map(|&row| self.rudder[row]).collect(),
-            seat: (0..kept.len()).map(Some).collect(),
-            heading: self.heading.iter().copied().step_by(every).collect(),
-        }
+        let kept = || self.observed.iter().step_by(every);
+        let column = |values: &[f64]| kept().map(|&row| values[row]).collect::<Vec<f64>>();
+        let heading: Vec<f64> = self.heading.iter().copied().step_by(every).collect();
+        Self::of(column(&self.time), column(&self.rudder), (0..heading.len()).collect(), heading)
     }
 
     /// Number of observed rows.
@@ -117,71 +119,109 @@ impl Track {
         &self.time
     }
 
+    /// Rudder of every row, rad.
+    pub fn rudder(&self) -> &[f64] {
+        &self.rudder
+    }
+
     /// Length in time, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
     }
 
-    /// Visits the rows from the anchor away: (row before, row, step).
-    fn steps(&self, backward: bool) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-        let rows = self.time.len();
-        (1..rows).map(move |k| {
-            let (from, to) = if backward { (rows - k, rows - 1 - k) } else { (k - 1, k) };
-            (from, to, self.time[to] - self.time[from])
-        })
+    /// Number of steps between rows.
+    #[inline(always)]
+    pub fn steps(&self) -> usize {
+        self.intervals.len()
+    }
+
+    /// The `k`-th step from the anchor away: row before, row, signed length (s), rudder rate (rad/s).
+    #[inline(always)]
+    pub fn step(&self, k: usize, backward: bool) -> (usize, usize, f64, f64) {
+        if backward {
+            let row = self.intervals.len() - 1 - k;
+            let Interval { length, rudder_rate } = self.intervals[row];
+            (row + 1, row, -length, rudder_rate)
+        } else {
+            let Interval { length, rudder_rate } = self.intervals[k];
+            (k, k + 1, length, rudder_rate)
+        }
     }
 
     fn anchor_row(&self, backward: bool) -> usize {
         if backward { self.time.len() - 1 } else { 0 }
     }
 
+    /// Leaves the observed rows of a column that was filled in every row.
+    fn keep_observed(&self, column: &mut Vec<f64>) {
+        if self.observed.len() < column.len() {
+            for (seat, &row) in self.observed.iter().enumerate() {
+                column[seat] = column[row];
+            }
+            column.truncate(self.observed.len());
+        }
+    }
+
     /// Fills the columns for a = `inverse_time`, 1/s.
     pub fn fill(&self, inverse_time: f64, columns: &mut Columns) {
-        columns.resize(self.len());
         let backward = is_backward(inverse_time);
-        let mut put = |row: usize, free: State, rudder: State, constant: State| {
-            if let Some(seat) = self.seat[row] {
-                columns.homogeneous[seat] = free.heading;
-                columns.rudder[seat] = rudder.heading;
-                columns.constant[seat] = constant.heading;
-            }
-        };
-        let mut free = State { heading: 0.0, yaw_rate: 1.0 };
-        let (mut rudder, mut constant) = (State::default(), State::default());
-        put(self.anchor_row(backward), free, rudder, constant);
+        let rows = self.time.len();
+        let Columns { homogeneous, rudder, constant } = columns;
+        for column in [&mut *homogeneous, rudder, constant] {
+            column.resize(rows, 0.0);
+            column[self.anchor_row(backward)] = 0.0;
+        }
+        let (free, steered, turned) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
+        // The three motions side by side: φ₁, G, H, and one that rests.
+        let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
-        for (from, to, h) in self.steps(backward) {
+        for k in 0..self.steps() {
+            let (from, to, h, rate) = self.step(k, backward);
             if differs(step.h, h) {
                 step = Transition::new(inverse_time, h);
             }
-            free = step.advance(free, 0.0, 0.0);
-            rudder = step.advance(rudder, self.rudder[from], (self.rudder[to] - self.rudder[from]) / h);
-            constant = step.advance(constant, 1.0, 0.0);
-            put(to, free, rudder, constant);
+            let delta = self.rudder[from];
+            let of_heading = [0.0, step.phi2 * delta + step.phi3 * rate, step.phi2, 0.0];
+            let of_rate = [0.0, step.phi1 * delta + step.phi2 * rate, step.phi1, 0.0];
+            for motion in 0..4 {
+                heading[motion] += step.phi1 * yaw_rate[motion] + of_heading[motion];
+                yaw_rate[motion] = step.decay * yaw_rate[motion] + of_rate[motion];
+            }
+            [free[to], steered[to], turned[to], _] = heading;
+        }
+        for column in [homogeneous, rudder, constant] {
+            self.keep_observed(column);
         }
     }
 
     /// ∂ψ/∂a at the observed rows for fixed coefficients, rad s.
     pub fn sensitivity(&self, inverse_time: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
-        out.resize(self.len(), 0.0);
         let backward = is_backward(inverse_time);
-        let (mut state, mut change) = (coefficients.anchor, State::default());
-        if let Some(seat) = self.seat[self.anchor_row(backward)] {
-            out[seat] = 0.0;
-        }
+        out.resize(self.time.len(), 0.0);
+        out[self.anchor_row(backward)] = 0.0;
+        let column = &mut out[..self.time.len()];
+        let anchor = coefficients.anchor;
+        // The change of the motion and the motion itself, side by side.
+        let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
-        for (from, to, h) in self.steps(backward) {
+        for k in 0..self.steps() {
+            let (from, to, h, rate) = self.step(k, backward);
             if differs(step.value.h, h) {
                 step = TangentTransition::new(inverse_time, h);
             }
+            let (f, d) = (&step.value, &step.by_inverse_T);
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
-            let slope = coefficients.gain * (self.rudder[to] - self.rudder[from]) / h;
-            change = step.advance(state, change, u0, slope);
-            state = step.value.advance(state, u0, slope);
-            if let Some(seat) = self.seat[to] {
-                out[seat] = change.heading;
+            let slope = coefficients.gain * rate;
+            let r = yaw_rate[1];
+            let of_heading = [d.phi1 * r + (d.phi2 * u0 + d.phi3 * slope), f.phi2 * u0 + f.phi3 * slope];
+            let of_rate = [d.decay * r + (d.phi1 * u0 + d.phi2 * slope), f.phi1 * u0 + f.phi2 * slope];
+            for motion in 0..2 {
+                heading[motion] += f.phi1 * yaw_rate[motion] + of_heading[motion];
+                yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
             }
+            column[to] = heading[0];
         }
+        self.keep_observed(out);
     }
 
     /// Heading and yaw rate of every row (observed or not) for given coefficients.
@@ -191,13 +231,13 @@ impl Track {
         let mut state = coefficients.anchor;
         states[self.anchor_row(backward)] = state;
         let mut step = Transition::new(inverse_time, 0.0);
-        for (from, to, h) in self.steps(backward) {
+        for k in 0..self.steps() {
+            let (from, to, h, rate) = self.step(k, backward);
             if differs(step.h, h) {
                 step = Transition::new(inverse_time, h);
             }
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
-            let slope = coefficients.gain * (self.rudder[to] - self.rudder[from]) / h;
-            state = step.advance(state, u0, slope);
+            state = step.advance(state, u0, coefficients.gain * rate);
             states[to] = state;
         }
         states
@@ -205,19 +245,23 @@ impl Track {
 
     /// State at the last row for coefficients anchored at the first, stepping forward whatever the sign of a.
     pub fn last_state_from(&self, inverse_time: f64, coefficients: &Coefficients) -> State {
-        self.steps(false).fold(coefficients.anchor, |state, (from, to, h)| {
+        let mut state = coefficients.anchor;
+        for k in 0..self.steps() {
+            let (from, _, h, rate) = self.step(k, false);
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
-            let slope = coefficients.gain * (self.rudder[to] - self.rudder[from]) / h;
-            Transition::new(inverse_time, h).advance(state, u0, slope)
-        })
+            state = Transition::new(inverse_time, h).advance(state, u0, coefficients.gain * rate);
+        }
+        state
     }
 
     /// Row of the track for every observed heading.
-    pub fn observed(&self) -> impl Iterator<Item = usize> + '_ {
-        self.seat.iter().enumerate().filter_map(|(row, seat)| seat.map(|_| row))
+    pub fn observed(&self) -> &[usize] {
+        &self.observed
     }
 }
 
-fn differs(last: f64, h: f64) -> bool {
+/// Whether a step needs another transition than the last one.
+#[inline(always)]
+pub(crate) fn differs(last: f64, h: f64) -> bool {
     (last - h).abs() > SAME_STEP * h.abs()
 }

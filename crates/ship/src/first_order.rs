@@ -101,8 +101,9 @@ impl Transition {
     #[inline]
     pub fn advance(&self, state: State, u0: f64, slope: f64) -> State {
         State {
-            heading: state.heading + self.phi1 * state.yaw_rate + self.phi2 * u0 + self.phi3 * slope,
-            yaw_rate: self.decay * state.yaw_rate + self.phi1 * u0 + self.phi2 * slope,
+            // The input is added up first: it does not wait for the state, so that steps follow one another sooner.
+            heading: state.heading + (self.phi1 * state.yaw_rate + (self.phi2 * u0 + self.phi3 * slope)),
+            yaw_rate: self.decay * state.yaw_rate + (self.phi1 * u0 + self.phi2 * slope),
         }
     }
 }
@@ -140,11 +141,8 @@ impl TangentTransition {
         let (f, d) = (&self.value, &self.by_inverse_T);
         State {
             heading: sensitivity.heading
-                + f.phi1 * sensitivity.yaw_rate
-                + d.phi1 * state.yaw_rate
-                + d.phi2 * u0
-                + d.phi3 * slope,
-            yaw_rate: f.decay * sensitivity.yaw_rate + d.decay * state.yaw_rate + d.phi1 * u0 + d.phi2 * slope,
+                + (f.phi1 * sensitivity.yaw_rate + (d.phi1 * state.yaw_rate + (d.phi2 * u0 + d.phi3 * slope))),
+            yaw_rate: f.decay * sensitivity.yaw_rate + (d.decay * state.yaw_rate + (d.phi1 * u0 + d.phi2 * slope)),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! White heading noise as the doubly integrated equation sees it, e = n + a ∫n, and what it does to the estimate.
 
-use nalgebra::{Matrix3, Vector3};
+use lanes::column::{dot, gram};
+use nalgebra::Matrix3;
 
 use super::{Piece, SHARED, Solution};
 
@@ -18,25 +19,27 @@ pub(super) struct Noise {
     /// Σ z zᵀ, where z is the derivative of Xᵀe with respect to the noise of one heading; times the variance it is
     /// the covariance of Xᵀe.
     pub influence: Matrix3<f64>,
-    /// z n row by row of every piece, for a covariance that does not take n to be white.
-    pub scores: Vec<Vec<[f64; SHARED]>>,
+    /// z n of every piece, for a covariance that does not take n to be white.
+    pub scores: Vec<[Vec<f64>; SHARED]>,
 }
 
 impl Noise {
     /// From projected pieces and their solution.
     pub fn of(pieces: &[Piece], solution: &Solution) -> Self {
-        let count: usize = pieces.iter().map(|piece| piece.rows.len()).sum();
+        let count: usize = pieces.iter().map(|piece| piece.time.len()).sum();
         let degrees_of_freedom = count as f64 - (SHARED + 2 * pieces.len()) as f64;
         let (mut squares, mut products) = (0.0, 0.0);
         let mut influence = Matrix3::zeros();
         let mut scores = Vec::with_capacity(pieces.len());
-        let mut noise = Vec::with_capacity(count);
         for piece in pieces {
-            noise.clear();
-            heading_noise(piece, solution, &mut noise);
-            squares += noise.iter().map(|n| n * n).sum::<f64>();
-            products += noise.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
-            scores.push(add_influence(piece, solution, &noise, &mut influence));
+            let noise = heading_noise(piece, solution);
+            squares += dot(&noise, &noise);
+            products += dot(&noise[1..], &noise);
+            let mut columns = influences(piece, solution);
+            let [z0, z1, z2] = &columns;
+            influence += Matrix3::from(gram([z0, z1, z2]));
+            columns.iter_mut().for_each(|z| z.iter_mut().zip(&noise).for_each(|(z, n)| *z *= n));
+            scores.push(columns);
         }
         let variance = (degrees_of_freedom > 0.0).then(|| squares / degrees_of_freedom);
         let finite_sample = count as f64 / degrees_of_freedom;
@@ -46,50 +49,56 @@ impl Noise {
 }
 
 /// Solves e = n + a ∫n (trapezoid) for n, in the direction of time in which errors die out.
-fn heading_noise(piece: &Piece, solution: &Solution, noise: &mut Vec<f64>) {
+fn heading_noise(piece: &Piece, solution: &Solution) -> Vec<f64> {
     let [a, b, beta] = solution.parameters.into();
-    noise.extend(piece.rows.iter().map(|&[x0, x1, x2, y]| y - a * x0 - b * x1 - beta * x2));
+    let [x0, x1, x2, y] = &piece.columns;
+    let columns = y.iter().zip(x0.iter().zip(x1.iter().zip(x2)));
+    let mut noise: Vec<f64> = columns.map(|(y, (x0, (x1, x2)))| y - a * x0 - b * x1 - beta * x2).collect();
     let last = noise.len() - 1;
     let half = |k: usize| 0.5 * a * (piece.time[k] - piece.time[k - 1]);
+    // Where the sweep has been, `noise` holds n; where it has not, e.
     if a >= 0.0 {
-        let mut error = noise[0];
+        let (mut before, mut error) = (noise[0], noise[0]);
         for k in 1..=last {
             let (half, change) = (half(k), noise[k] - error);
+            let share = 1.0 / (1.0 + half);
             error = noise[k];
-            noise[k] = noise[k - 1] * ((1.0 - half) / (1.0 + half)) + change / (1.0 + half);
+            before = before * ((1.0 - half) * share) + change * share;
+            noise[k] = before;
         }
     } else {
-        let mut error = noise[last];
+        let (mut after, mut error) = (noise[last], noise[last]);
         for k in (1..=last).rev() {
             let (half, change) = (half(k), error - noise[k - 1]);
+            let share = 1.0 / (1.0 - half);
             error = noise[k - 1];
-            noise[k - 1] = noise[k] * ((1.0 + half) / (1.0 - half)) - change / (1.0 - half);
+            after = after * ((1.0 + half) * share) - change * share;
+            noise[k - 1] = after;
         }
     }
+    noise
 }
 
-/// Adds a stretch to Σ z zᵀ and returns its z n, last row first.
+/// The columns z of a stretch.
 ///
 /// A heading enters its own equation with weight 1 + a h/2 and every later one with a (h + h')/2, where h and h' are
 /// the intervals before and after it; hence one pass backwards with the sum of the later columns.
-fn add_influence(
-    piece: &Piece,
-    solution: &Solution,
-    noise: &[f64],
-    influence: &mut Matrix3<f64>,
-) -> Vec<[f64; SHARED]> {
+fn influences(piece: &Piece, solution: &Solution) -> [Vec<f64>; SHARED] {
     let half_a = 0.5 * solution.parameters[0];
-    let mut later = Vector3::zeros();
+    let [x0, x1, x2, _] = &piece.columns;
+    let rows = piece.time.len();
+    let mut columns = [(); SHARED].map(|()| vec![0.0; rows]);
+    let [z0, z1, z2] = &mut columns;
+    let (mut later0, mut later1, mut later2) = (0.0, 0.0, 0.0);
     let mut after = 0.0;
-    let mut scores = Vec::with_capacity(noise.len());
-    for (k, &[x0, x1, x2, _]) in piece.rows.iter().enumerate().rev() {
+    for k in (0..rows).rev() {
         let before = if k > 0 { piece.time[k] - piece.time[k - 1] } else { 0.0 };
-        let x = Vector3::new(x0, x1, x2);
-        let z = x * (1.0 + half_a * before) + later * (half_a * (before + after));
-        *influence += z * z.transpose();
-        scores.push((z * noise[k]).into());
-        later += x;
+        let (own, others) = (1.0 + half_a * before, half_a * (before + after));
+        z0[k] = x0[k] * own + later0 * others;
+        z1[k] = x1[k] * own + later1 * others;
+        z2[k] = x2[k] * own + later2 * others;
+        (later0, later1, later2) = (later0 + x0[k], later1 + x1[k], later2 + x2[k]);
         after = before;
     }
-    scores
+    columns
 }

@@ -110,7 +110,7 @@ fn normal_equations_agree_with_singular_values() {
     let trial = record("base course", trial.time().to_vec(), heading, trial.rudder().to_vec());
     let samples = Samples::new(&trial, 8).expect("valid");
     let piece = Piece::new(&samples, 0..samples.len());
-    let columns: [Vec<f64>; WIDTH] = std::array::from_fn(|i| piece.rows.iter().map(|row| row[i]).collect());
+    let columns = piece.columns;
     let one = vec![1.0; samples.len()];
     let reference =
         LeastSquares::solve(&[&columns[0], &columns[1], &columns[2], &one, &samples.time], &columns[3], 1e8)

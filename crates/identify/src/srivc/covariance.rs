@@ -40,13 +40,16 @@ impl Residuals {
         let mut scores = Vec::with_capacity(records.len());
         for ((record, block), &start) in records.iter().zip(blocks).zip(&point.starts) {
             let mut own = Vec::with_capacity(record.observed);
-            let mut own_scores: Vec<[f64; 3]> = Vec::with_capacity(record.observed);
+            let mut own_scores = [(); 3].map(|()| Vec::with_capacity(record.observed));
             let (mut sum, mut squares) = (0.0, 0.0);
             Filters::run(record, point.shared, start, |row, filters| {
                 let residual = row.heading - filters.motion.heading;
                 let z = filters.instruments();
                 let projected: Vector3<f64> = z.fixed_rows::<3>(0) - block.along * z.fixed_rows::<2>(3);
-                own_scores.push((projected * residual).into());
+                own_scores
+                    .iter_mut()
+                    .zip(&projected)
+                    .for_each(|(score, z): (&mut Vec<f64>, _)| score.push(z * residual));
                 own.push(residual);
                 rss += residual * residual;
                 sum += row.heading;

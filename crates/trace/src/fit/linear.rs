@@ -195,25 +195,20 @@ impl Linear {
         Some(DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
     }
 
-    /// Whitened residual times whitened columns, row by row, for every record: the scores of the likelihood.
+    /// Whitened residual times whitened columns, one column an unknown, for every record: the scores of the likelihood.
     pub fn scores(&self, whiteners: &[Whitener]) -> Vec<Vec<Vec<f64>>> {
-        self.blocks
-            .iter()
-            .zip(whiteners)
-            .map(|(block, whitener)| {
-                let mut residual = block.residual.clone();
-                whitener.apply(&mut residual);
-                let mut rows = vec![vec![0.0; self.unknowns]; residual.len()];
-                for (at, column) in &block.columns {
-                    let mut column = column.clone();
-                    whitener.apply(&mut column);
-                    for (row, (c, e)) in rows.iter_mut().zip(column.iter().zip(&residual)) {
-                        row[*at] = c * e;
-                    }
-                }
-                rows
-            })
-            .collect()
+        let of_block = |(block, whitener): (&Block, &Whitener)| {
+            let mut residual = block.residual.clone();
+            whitener.apply(&mut residual);
+            let mut scores = vec![vec![0.0; residual.len()]; self.unknowns];
+            for (at, column) in &block.columns {
+                scores[*at].copy_from_slice(column);
+                whitener.apply(&mut scores[*at]);
+                scores[*at].iter_mut().zip(&residual).for_each(|(score, e)| *score *= e);
+            }
+            scores
+        };
+        self.blocks.iter().zip(whiteners).map(of_block).collect()
     }
 }
 

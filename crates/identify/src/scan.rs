@@ -1,0 +1,220 @@
+//! The profiled sum of squares of a first-order fit at many values of 1/T at once.
+//!
+//! What [`crate::profile`] computes by projection, to the last digit and for one 1/T, is computed here by normal equations for
+//! several side by side: half the digits, which is enough to see where the valleys are, in a small part of the time.
+
+use lanes::column::{dot, sum};
+use nalgebra::{Matrix2, Vector2};
+use ship::first_order::Transition;
+
+use crate::profile::solve2;
+use crate::track::{Track, differs, is_backward};
+
+/// Values of 1/T side by side.
+const LANES: usize = 8;
+
+type Lanes = [f64; LANES];
+
+/// The best fit of a ship with a given 1/T.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fit {
+    /// Sum of squares, rad².
+    pub rss: f64,
+    /// b = K/T, 1/s², of any sign.
+    pub gain: f64,
+}
+
+/// The best fit for every value of `inverse_time` (1/s), in increasing order; `None` where the columns are dependent.
+///
+/// Every row of the tracks has to be observed.
+pub(crate) fn fits(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
+    let centred: Vec<Vec<f64>> = tracks.iter().map(|track| centred(&track.heading)).collect();
+    let squares: f64 = centred.iter().map(|heading| dot(heading, heading)).sum();
+    let mut found = Vec::with_capacity(inverse_time.len());
+    // The columns of one block have their anchors at the same end of the record.
+    for same_side in inverse_time.chunk_by(|&one, &other| is_backward(one) == is_backward(other)) {
+        for block in same_side.chunks(LANES) {
+            let values: Lanes = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
+            let mut products = [Products::default(); LANES];
+            for (track, heading) in tracks.iter().zip(&centred) {
+                let own = lanes::run(Sweep { track, heading, inverse_time: &values });
+                products.iter_mut().zip(own).for_each(|(sum, own)| sum.add(&own));
+            }
+            found.extend(products[..block.len()].iter().map(|products| products.fit(squares)));
+        }
+    }
+    found
+}
+
+fn centred(heading: &[f64]) -> Vec<f64> {
+    let mean = sum(heading) / heading.len() as f64;
+    heading.iter().map(|psi| psi - mean).collect()
+}
+
+/// Products of G, H and the heading ψ of one lane, after projection on the complement of (1, φ₁).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Products {
+    gg: f64,
+    gh: f64,
+    hh: f64,
+    g_psi: f64,
+    h_psi: f64,
+    /// What φ₁ explains of the heading, rad².
+    explained: f64,
+}
+
+impl Products {
+    fn add(&mut self, other: &Self) {
+        self.gg += other.gg;
+        self.gh += other.gh;
+        self.hh += other.hh;
+        self.g_psi += other.g_psi;
+        self.h_psi += other.h_psi;
+        self.explained += other.explained;
+    }
+
+    /// The fit, for headings whose squares about their means add up to `squares`.
+    fn fit(&self, squares: f64) -> Option<Fit> {
+        let moment = Vector2::new(self.g_psi, self.h_psi);
+        let steering = solve2(&Matrix2::new(self.gg, self.gh, self.gh, self.hh), &moment)?;
+        let rss = squares - self.explained - steering.dot(&moment);
+        rss.is_finite().then_some(Fit { rss, gain: steering[0] })
+    }
+}
+
+/// One pass over a track with its heading less its mean, all lanes on the same side of zero.
+struct Sweep<'a> {
+    track: &'a Track,
+    heading: &'a [f64],
+    inverse_time: &'a Lanes,
+}
+
+/// Σ over rows of columns and of products of columns, by lane. f, g, h stand for φ₁, G, H.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    f: Lanes,
+    g: Lanes,
+    h: Lanes,
+    ff: Lanes,
+    fg: Lanes,
+    fh: Lanes,
+    gg: Lanes,
+    gh: Lanes,
+    hh: Lanes,
+    f_psi: Lanes,
+    g_psi: Lanes,
+    h_psi: Lanes,
+}
+
+impl Sums {
+    /// Products of one lane, with the constant and φ₁ eliminated.
+    fn projected(&self, lane: usize, rows: f64) -> Products {
+        let [f, g, h] = [self.f[lane], self.g[lane], self.h[lane]];
+        let ff = self.ff[lane] - f * f / rows;
+        let (fg, fh, f_psi) = (self.fg[lane] - f * g / rows, self.fh[lane] - f * h / rows, self.f_psi[lane]);
+        let per = if ff > 0.0 { 1.0 / ff } else { 0.0 };
+        Products {
+            gg: self.gg[lane] - g * g / rows - fg * fg * per,
+            gh: self.gh[lane] - g * h / rows - fg * fh * per,
+            hh: self.hh[lane] - h * h / rows - fh * fh * per,
+            g_psi: self.g_psi[lane] - fg * f_psi * per,
+            h_psi: self.h_psi[lane] - fh * f_psi * per,
+            explained: f_psi * f_psi * per,
+        }
+    }
+}
+
+impl lanes::Kernel for Sweep<'_> {
+    type Output = [Products; LANES];
+
+    /// The recursions of [`Track::fill`] in every lane. The anchor row has only zeros and is left out.
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { track, heading, inverse_time } = self;
+        let mut sums = Sums::default();
+        let (mut f, mut g, mut h) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let (mut f_rate, mut g_rate, mut h_rate) = ([1.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut length = 0.0;
+        let (mut decay, mut phi1, mut phi2, mut phi3) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let rudder = track.rudder();
+        let backward = is_backward(inverse_time[0]);
+        for k in 0..track.steps() {
+            let (from, to, step, rate) = track.step(k, backward);
+            if differs(length, step) {
+                length = step;
+                for lane in 0..LANES {
+                    let transition = Transition::new(inverse_time[lane], step);
+                    (decay[lane], phi1[lane]) = (transition.decay, transition.phi1);
+                    (phi2[lane], phi3[lane]) = (transition.phi2, transition.phi3);
+                }
+            }
+            let (delta, psi) = (rudder[from], heading[to]);
+            for lane in 0..LANES {
+                f[lane] += phi1[lane] * f_rate[lane];
+                f_rate[lane] *= decay[lane];
+                g[lane] += phi1[lane] * g_rate[lane] + (phi2[lane] * delta + phi3[lane] * rate);
+                g_rate[lane] = decay[lane] * g_rate[lane] + (phi1[lane] * delta + phi2[lane] * rate);
+                h[lane] += phi1[lane] * h_rate[lane] + phi2[lane];
+                h_rate[lane] = decay[lane] * h_rate[lane] + phi1[lane];
+            }
+            for lane in 0..LANES {
+                sums.f[lane] += f[lane];
+                sums.g[lane] += g[lane];
+                sums.h[lane] += h[lane];
+                sums.ff[lane] += f[lane] * f[lane];
+                sums.fg[lane] += f[lane] * g[lane];
+                sums.fh[lane] += f[lane] * h[lane];
+                sums.gg[lane] += g[lane] * g[lane];
+                sums.gh[lane] += g[lane] * h[lane];
+                sums.hh[lane] += h[lane] * h[lane];
+                sums.f_psi[lane] += f[lane] * psi;
+                sums.g_psi[lane] += g[lane] * psi;
+                sums.h_psi[lane] += h[lane] * psi;
+            }
+        }
+        let rows = heading.len() as f64;
+        std::array::from_fn(|lane| sums.projected(lane, rows))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::Profile;
+    use crate::testing::Case;
+    use approx::assert_relative_eq;
+
+    fn track(case: Case) -> Track {
+        Track::unchecked(&case.trial()).thinned(200)
+    }
+
+    #[test]
+    fn the_scan_is_the_profile() {
+        let tracks = [
+            track(Case { noise_deg: 0.5, ..Case::default() }),
+            track(Case { noise_deg: 0.2, rudder_deg: 20.0, seed: 2, ..Case::default() }),
+        ];
+        let grid: Vec<f64> = (-15..=15).map(|k| 0.01 * f64::from(k)).collect();
+        let mut profile = Profile::new(tracks.to_vec());
+        for (&a, fit) in grid.iter().zip(fits(&tracks, &grid)) {
+            let fit = fit.expect("the columns are independent");
+            if let Some(rss) = profile.evaluate(a) {
+                assert_relative_eq!(fit.rss, rss, max_relative = 1e-8);
+                assert_relative_eq!(fit.gain, profile.steering().0, max_relative = 1e-7);
+            } else {
+                assert!(fit.gain <= 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bits() {
+        let track = track(Case { noise_deg: 0.5, ..Case::default() });
+        let heading = centred(&track.heading);
+        for sign in [1.0, -1.0] {
+            let inverse_time = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
+            let found = lanes::on_every_set(|| Sweep { track: &track, heading: &heading, inverse_time: &inverse_time });
+            assert!(found.iter().all(|(_, products)| products == &found[0].1), "{found:?}");
+        }
+    }
+}
