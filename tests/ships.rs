@@ -44,7 +44,7 @@ fn unit_of(ship: &Ship) -> f64 {
 
 fn run(simulation: &Simulation, what: &str) -> (Trial, Truth) {
     let simulated = simulation.run(&KEY).unwrap_or_else(|error| panic!("{what}: {error}"));
-    (simulated.trial, simulated.truth)
+    (simulated.trial, Truth::clone(&simulated.truth))
 }
 
 fn assert_finite(what: &str, truth: &Truth) {

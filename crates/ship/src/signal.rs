@@ -21,6 +21,8 @@ pub enum SignalError {
     Point {
         /// Index of the offending point.
         index: usize,
+        /// Time of the point before, s; −∞ for the first.
+        before: f64,
         /// Its time, s.
         time: f64,
         /// Its value.
@@ -48,11 +50,16 @@ impl Polyline {
         if time.is_empty() {
             return Err(SignalError::Empty);
         }
-        for index in 0..time.len() {
-            let increasing = index == 0 || time[index] > time[index - 1];
-            if !increasing || !time[index].is_finite() || !value[index].is_finite() {
-                return Err(SignalError::Point { index, time: time[index], value: value[index] });
-            }
+        // Numbers that increase are finite between finite ends.
+        let increasing = time.windows(2).all(|pair| pair[0] < pair[1]);
+        let sound = increasing && time[0].is_finite() && time[time.len() - 1].is_finite();
+        if !sound || !value.iter().all(|value| value.is_finite()) {
+            let before = |index: usize| if index == 0 { f64::NEG_INFINITY } else { time[index - 1] };
+            let offends =
+                |&index: &usize| !(time[index] > before(index) && time[index].is_finite() && value[index].is_finite());
+            let index = (0..time.len()).find(offends).unwrap_or(0);
+            let point = SignalError::Point { index, before: before(index), time: time[index], value: value[index] };
+            return Err(point);
         }
         Ok(Self { time, value })
     }
@@ -119,6 +126,6 @@ mod tests {
     #[test]
     fn refuses_time_that_runs_backwards() {
         let error = Polyline::new(vec![0.0, 2.0, 1.0], vec![0.0; 3]).expect_err("time runs back");
-        assert_eq!(error, SignalError::Point { index: 2, time: 1.0, value: 0.0 });
+        assert_eq!(error, SignalError::Point { index: 2, before: 1.0, time: 1.0, value: 0.0 });
     }
 }

@@ -174,6 +174,18 @@ impl RudderPath {
         &self.segments
     }
 
+    /// Rudder angles, rad, at times that do not decrease, s.
+    pub fn at_each(&self, times: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut now = 0;
+        let angle = |t| {
+            while self.segments.get(now + 1).is_some_and(|next| next.start <= t) {
+                now += 1;
+            }
+            self.segments[now].at(t)
+        };
+        times.map(angle).collect()
+    }
+
     /// Rudder angle at time `t`, rad; at a jump the angle after it.
     pub fn at(&self, t: f64) -> f64 {
         let after = self.segments.partition_point(|segment| segment.start <= t);

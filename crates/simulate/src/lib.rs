@@ -62,6 +62,6 @@ pub use helm::Helmsman;
 pub use manoeuvre::{Manoeuvre, Side};
 pub use recording::Recording;
 pub use sensor::Sensors;
-pub use simulation::{Approach, Execute, Simulated, Simulation, Truth};
+pub use simulation::{Approach, Execute, Prepared, Simulated, Simulation, Truth};
 pub use stream::{Purpose, StreamKey};
 pub use vessel::{Solver, Vessel};

@@ -1,4 +1,5 @@
-//! From what happened to what was written down: instruments, clocks and drop-outs applied to the samples of a run.
+//! From what happened to what was written down: instruments, clocks and drop-outs. A [`Scene`] is what perfect instruments would
+//! have read; [`write`] adds what chance does to one record of it.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
 use std::collections::BTreeMap;
@@ -20,10 +21,8 @@ use crate::wave_path::Waves;
 /// Two instants closer together than this, s, are one.
 const SAME_INSTANT: f64 = 1e-9;
 
-/// What the instruments are held against, row by row.
-pub(crate) struct Scene<'a> {
-    /// Stamps of the rows, s.
-    pub stamps: &'a [f64],
+/// What the instruments are held against.
+pub(crate) struct View<'a> {
     /// What moves, at the instants it is read.
     pub samples: &'a [Sample],
     /// Deviation of the sampling instants from their stamps, s; empty for none.
@@ -40,6 +39,26 @@ pub(crate) struct Scene<'a> {
     pub particulars: Option<Particulars>,
 }
 
+/// What perfect instruments read, column by column, without waves.
+#[derive(Debug, Clone)]
+pub(crate) struct Scene {
+    /// Stamps of the rows, s.
+    stamps: Vec<f64>,
+    /// Instants at which what moves is read, s.
+    instants: Vec<f64>,
+    /// Heading after the lag of the gyrocompass, rad.
+    gyro: Vec<f64>,
+    /// Yaw rate, rad/s.
+    yaw_rate: Vec<f64>,
+    /// Rudder as it is recorded, rad, and whether an instrument reads it.
+    rudder: Vec<f64>,
+    rudder_is_read: bool,
+    /// Everything that no instrument disturbs.
+    others: Vec<(Channel, Vec<f64>)>,
+    /// What the helmsman read, in the order of time.
+    readings: Vec<Reading>,
+}
+
 /// The record as columns, and which rows are left of it.
 pub(crate) struct Written {
     pub columns: Columns,
@@ -47,37 +66,52 @@ pub(crate) struct Written {
     pub kept: Option<Vec<bool>>,
 }
 
-/// Reads every instrument in every row.
+impl Scene {
+    /// Reads every instrument in every row, `stamps` s.
+    pub fn new(stamps: Vec<f64>, view: &View) -> Self {
+        let column = |value: fn(&Sample) -> f64| view.samples.iter().map(value).collect::<Vec<f64>>();
+        let jitter = |row: usize| view.jitter.get(row).copied().unwrap_or(0.0);
+        let rows = || stamps.iter().enumerate();
+        let path = &view.wake.path;
+        let rudder = match view.assumed {
+            None => path.at_each(rows().map(|(row, &stamp)| stamp + jitter(row))),
+            Some(path) => path.at_each(stamps.iter().copied()),
+        };
+        let mut others = Vec::new();
+        if let Some(first) = view.first_order {
+            let order = |(row, &stamp): (usize, &f64)| order_at(&view.wake.executes, first, stamp + jitter(row));
+            others.push((Channel::RudderOrder, rows().map(order).collect()));
+        }
+        let optional = |value: fn(&Sample) -> Option<f64>| view.samples.iter().map(value).collect::<Option<Vec<f64>>>();
+        others.extend(optional(|sample| sample.motion.speed).map(|speed| (Channel::Speed, speed)));
+        others.extend(optional(|sample| sample.motion.sway).map(|sway| (Channel::Sway, sway)));
+        others.extend(wind_channels(view));
+        Self {
+            instants: column(|sample| sample.time),
+            gyro: column(|sample| sample.gyro),
+            yaw_rate: column(|sample| sample.motion.yaw_rate),
+            rudder,
+            rudder_is_read: view.assumed.is_none(),
+            others,
+            readings: view.wake.readings.clone(),
+            stamps,
+        }
+    }
+}
+
+/// The record that `key` makes of a scene.
 pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: Waves, key: &StreamKey) -> Written {
     let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
-    let jitter = |row: usize| scene.jitter.get(row).copied().unwrap_or(0.0);
-
-    let mut rng = key.rng(Purpose::Rudder);
-    let feedback = |(row, &stamp): (usize, &f64)| {
-        let noise = if sensors.rudder.noise > 0.0 { sensors.rudder.noise * normal(&mut rng) } else { 0.0 };
-        quantise(scene.wake.path.at(stamp + jitter(row)) + noise, sensors.rudder.quantum)
-    };
-    let rudder = match scene.assumed {
-        None => scene.stamps.iter().enumerate().map(feedback).collect(),
-        Some(path) => scene.stamps.iter().map(|&stamp| path.at(stamp)).collect(),
-    };
-
-    let mut channels = BTreeMap::new();
-    channels.insert(Channel::Rudder, rudder);
-    if let Some(first) = scene.first_order {
-        let order = |(row, &stamp): (usize, &f64)| order_at(&scene.wake.executes, first, stamp + jitter(row));
-        channels.insert(Channel::RudderOrder, scene.stamps.iter().enumerate().map(order).collect());
+    let mut rudder = scene.rudder.clone();
+    if scene.rudder_is_read {
+        disturb(&mut rudder, sensors.rudder.noise, key.rng(Purpose::Rudder));
+        quantise_all(&mut rudder, sensors.rudder.quantum);
     }
+    let mut channels: BTreeMap<Channel, Vec<f64>> = scene.others.iter().cloned().collect();
+    channels.insert(Channel::Rudder, rudder);
     if let Some(yaw_rate) = yaw_rate {
         channels.insert(Channel::YawRate, yaw_rate);
     }
-    if let Some(speed) = scene.samples.iter().map(|sample| sample.motion.speed).collect() {
-        channels.insert(Channel::Speed, speed);
-    }
-    if let Some(sway) = scene.samples.iter().map(|sample| sample.motion.sway).collect() {
-        channels.insert(Channel::Sway, sway);
-    }
-    write_wind(scene, &mut channels);
 
     let lost = lost_rows(&sensors.drop_out, scene.stamps.len(), key);
     let mut kept: Option<Vec<bool>> = None;
@@ -92,7 +126,7 @@ pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: Waves, key: &Stream
         }
     }
     channels.insert(Channel::Heading, heading);
-    let mut columns = Columns { time: scene.stamps.to_vec(), channels, unknown: Vec::new() };
+    let mut columns = Columns { time: scene.stamps.clone(), channels, unknown: Vec::new() };
     if let Some(kept) = &kept {
         keep(&mut columns.time, kept);
         columns.channels.values_mut().for_each(|values| keep(values, kept));
@@ -106,6 +140,19 @@ pub(crate) fn keep<T>(values: &mut Vec<T>, kept: &[bool]) {
     values.retain(|_| *rows.next().unwrap_or(&false));
 }
 
+/// Adds white noise of standard deviation `sd`; nothing is drawn where there is none.
+fn disturb(column: &mut [f64], sd: f64, mut rng: ChaCha8Rng) {
+    if sd > 0.0 {
+        column.iter_mut().for_each(|x| *x += sd * normal(&mut rng));
+    }
+}
+
+fn quantise_all(column: &mut [f64], quantum: f64) {
+    if quantum > 0.0 {
+        column.iter_mut().for_each(|x| *x = quantise(*x, quantum));
+    }
+}
+
 fn compass_and_rate(
     sensors: &Sensors,
     scene: &Scene,
@@ -113,22 +160,28 @@ fn compass_and_rate(
     key: &StreamKey,
 ) -> (Vec<f64>, Option<Vec<f64>>) {
     let compass = &sensors.heading;
-    let (mut heading_rng, mut rate_rng) = (key.rng(Purpose::Heading), key.rng(Purpose::YawRate));
-    let mut heading = Vec::with_capacity(scene.samples.len());
-    let mut yaw_rate = sensors.yaw_rate.map(|_| Vec::with_capacity(scene.samples.len()));
-    for sample in scene.samples {
-        let [wave, wave_rate] = waves.at(sample.time);
-        // Drawn in every row, whether used or not, so that what the helmsman reads shifts no later draw.
-        let noise = if compass.noise > 0.0 { compass.noise * normal(&mut heading_rng) } else { 0.0 };
-        heading.push(match reading_at(&scene.wake.readings, sample.time) {
-            Some(reading) => reading.heading,
-            None => quantise(sample.gyro + wave + compass.bias + noise, compass.quantum),
-        });
-        if let (Some(yaw_rate), Some(sensor)) = (&mut yaw_rate, &sensors.yaw_rate) {
-            let r = sample.motion.yaw_rate + wave_rate;
-            let noise = sensor.noise * normal(&mut rate_rng);
-            yaw_rate.push((1.0 + sensor.scale_error) * r + sensor.bias + noise);
+    let (mut heading, mut yaw_rate) = (scene.gyro.clone(), sensors.yaw_rate.map(|_| scene.yaw_rate.clone()));
+    if !waves.are_none() {
+        for (row, &instant) in scene.instants.iter().enumerate() {
+            let [wave, wave_rate] = waves.at(instant);
+            heading[row] += wave;
+            yaw_rate.iter_mut().for_each(|yaw_rate| yaw_rate[row] += wave_rate);
         }
+    }
+    heading.iter_mut().for_each(|psi| *psi += compass.bias);
+    // Drawn in every row, whether used or not, so that what the helmsman reads shifts no later draw.
+    disturb(&mut heading, compass.noise, key.rng(Purpose::Heading));
+    quantise_all(&mut heading, compass.quantum);
+    if !scene.readings.is_empty() {
+        for (psi, &instant) in heading.iter_mut().zip(&scene.instants) {
+            if let Some(reading) = reading_at(&scene.readings, instant) {
+                *psi = reading.heading;
+            }
+        }
+    }
+    if let (Some(yaw_rate), Some(sensor)) = (&mut yaw_rate, &sensors.yaw_rate) {
+        yaw_rate.iter_mut().for_each(|r| *r = (1.0 + sensor.scale_error) * *r + sensor.bias);
+        disturb(yaw_rate, sensor.noise, key.rng(Purpose::YawRate));
     }
     (heading, yaw_rate)
 }
@@ -144,24 +197,24 @@ fn order_at(executes: &[Execute], first: f64, t: f64) -> f64 {
     if given == 0 { first } else { executes[given - 1].order }
 }
 
-fn write_wind(scene: &Scene, channels: &mut BTreeMap<Channel, Vec<f64>>) {
-    let Some(wind) = scene.wind else { return };
-    let Some(mean) = wind.speed else { return };
-    let speeds: Vec<f64> = scene.samples.iter().map(|sample| gusting_speed(mean, sample.gust)).collect();
-    let ship = |sample: &Sample| sample.motion.speed.or(scene.particulars.map(|particulars| particulars.speed));
-    let relative: Option<Vec<(f64, f64)>> = scene
+fn wind_channels(view: &View) -> Vec<(Channel, Vec<f64>)> {
+    let Some((wind, mean)) = view.wind.and_then(|wind| Some((wind, wind.speed?))) else { return Vec::new() };
+    let speeds: Vec<f64> = view.samples.iter().map(|sample| gusting_speed(mean, sample.gust)).collect();
+    let ship = |sample: &Sample| sample.motion.speed.or(view.particulars.map(|particulars| particulars.speed));
+    let relative: Option<Vec<(f64, f64)>> = view
         .samples
         .iter()
         .zip(&speeds)
         .map(|(sample, &speed)| ship(sample).map(|U| wind.relative(speed, U, sample.motion.heading)))
         .collect();
+    let mut channels = Vec::new();
     if let Some(relative) = relative {
         let (speed, from) = relative.into_iter().unzip();
-        channels.insert(Channel::WindRelativeSpeed, speed);
-        channels.insert(Channel::WindRelativeFrom, from);
+        channels.extend([(Channel::WindRelativeSpeed, speed), (Channel::WindRelativeFrom, from)]);
     }
-    channels.insert(Channel::WindTrueFrom, vec![wind.from; speeds.len()]);
-    channels.insert(Channel::WindTrueSpeed, speeds);
+    channels.push((Channel::WindTrueFrom, vec![wind.from; speeds.len()]));
+    channels.push((Channel::WindTrueSpeed, speeds));
+    channels
 }
 
 /// Which rows are lost; `None` when none can be.

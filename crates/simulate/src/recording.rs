@@ -112,8 +112,8 @@ struct Shaking {
 /// Jitter is cut at this share of the period: below a half, so that instants keep their order.
 const LARGEST_JITTER: f64 = 0.45;
 
-/// Rows reserved at once when nobody knows how many there will be.
-const RESERVED: usize = 512;
+/// Most rows reserved at once: a manoeuvre may be over long before its record is full.
+const RESERVED: usize = 4096;
 
 impl Tap {
     /// The stamps of the rows.
@@ -132,7 +132,7 @@ impl Tap {
 
     fn new(start: f64, recording: &Recording, shaking: Option<Shaking>) -> Self {
         let left = recording.rows().unwrap_or(usize::MAX);
-        let samples = Vec::with_capacity(left.min(RESERVED));
+        let samples = Vec::with_capacity(recording.rows().unwrap_or(0).min(RESERVED));
         let mut tap = Self { start, period: recording.period, left, shaking, next: start, samples, jitter: Vec::new() };
         tap.aim();
         tap

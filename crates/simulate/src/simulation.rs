@@ -1,6 +1,8 @@
 //! The whole specification of a simulated trial, and what one run of it gives: the record, as instruments wrote it, and
 //! the truth behind it, which only the judge of an identification may see.
 
+use std::sync::Arc;
+
 use ship::FirstOrder;
 use ship::first_order::State;
 use trial::{Origin, Trial};
@@ -11,10 +13,10 @@ use crate::error::{self, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, Helmsman, Watches};
 use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
-use crate::measure::{self, Scene};
+use crate::measure::{self, Scene, View};
 use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator, Sample};
 use crate::recording::{Recording, RudderColumn, Start, Tap};
-use crate::run::{Progress, Run};
+use crate::run::{Progress, Run, Wake};
 use crate::sensor::Sensors;
 use crate::stream::StreamKey;
 use crate::vessel::{Solver, Vessel};
@@ -101,8 +103,44 @@ pub struct Truth {
 pub struct Simulated {
     /// The record, as instruments wrote it.
     pub trial: Trial,
-    /// What really happened.
-    pub truth: Truth,
+    /// What really happened; shared by the records that differ only in what instruments made of it.
+    pub truth: Arc<Truth>,
+}
+
+/// A run as it happened, whatever chance does to the record of it.
+#[derive(Debug, Clone)]
+struct Passage {
+    scene: Scene,
+    truth: Arc<Truth>,
+}
+
+/// A simulation that is run for many keys. Where nothing random moves ship or helmsman the run is made once, and every key only
+/// draws what the instruments add; the records are those of [`Simulation::run`], bit for bit.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    simulation: Simulation,
+    passage: Option<Passage>,
+}
+
+impl Prepared {
+    /// Checks a simulation and makes as much of it as all keys share.
+    ///
+    /// Fails as [`Simulation::run`] does.
+    pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
+        simulation.validate()?;
+        let passage = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
+        Ok(Self { simulation, passage })
+    }
+
+    /// Makes the one trial that belongs to `key`.
+    ///
+    /// Fails as [`Simulation::run`] does.
+    pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
+        match &self.passage {
+            Some(passage) => self.simulation.record(passage, key),
+            None => self.simulation.record(&self.simulation.sail(key)?, key),
+        }
+    }
 }
 
 /// Default of [`Simulation::longest_wait`], s: no ship of the registry needs ten minutes for one leg of a zig-zag.
@@ -169,6 +207,20 @@ impl Simulation {
     /// start at an execute that is never made, or its rows are too few for a [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
         self.validate()?;
+        self.record(&self.sail(key)?, key)
+    }
+
+    /// Whether chance moves neither the ship nor the helmsman nor the instants of the rows.
+    fn is_repeatable(&self) -> bool {
+        let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
+        let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
+        let seas = waves.is_some() || !self.vessel.random_headings().is_empty();
+        let display = self.helmsman.watches != Watches::TrueHeading && (self.sensors.heading.noise > 0.0 || seas);
+        !weather && !display && self.sensors.clock.jitter == 0.0
+    }
+
+    /// Moves the ship from the beginning to the end of its record.
+    fn sail(&self, key: &StreamKey) -> Result<Passage, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
         let weather = || Weather::new(&self.disturbances, key);
         match self.closed_form() {
@@ -211,7 +263,7 @@ impl Simulation {
         Run::new(propagator, path, &self.gear, helm, display, self.longest_wait)
     }
 
-    fn drive<P: Propagator>(&self, key: &StreamKey, propagator: impl Fn() -> P) -> Result<Simulated, SimulateError> {
+    fn drive<P: Propagator>(&self, key: &StreamKey, propagator: impl Fn() -> P) -> Result<Passage, SimulateError> {
         let mut run = self.begin(key, propagator());
         let start = match self.recording.start {
             Start::Run => 0.0,
@@ -241,8 +293,7 @@ impl Simulation {
                 }
             }
         }
-        let wake = run.finish();
-        self.write(key, rows, instruments, &wake)
+        Ok(self.look_back(rows, instruments, &run.finish()))
     }
 
     /// The rudder as it is rebuilt from the orders; `None` where it is recorded, or followed a record without orders.
@@ -257,23 +308,17 @@ impl Simulation {
         Some(path)
     }
 
-    fn write(
-        &self,
-        key: &StreamKey,
-        mut rows: Tap,
-        mut instruments: Option<Tap>,
-        wake: &crate::run::Wake,
-    ) -> Result<Simulated, SimulateError> {
+    /// What was to be seen, once the run is over.
+    fn look_back(&self, mut rows: Tap, mut instruments: Option<Tap>, wake: &Wake) -> Passage {
         if let Some(tap) = &mut instruments {
             // Cut to the shorter one: with a delay, the end of the manoeuvre parts them.
             let count = rows.samples.len().min(tap.samples.len());
             rows.samples.truncate(count);
             tap.samples.truncate(count);
         }
-        let stamps: Vec<f64> = rows.samples.iter().map(|sample| sample.time).collect();
+        let truth = truth(&rows.samples, wake);
         let assumed = self.assumed_path(&wake.executes);
-        let scene = Scene {
-            stamps: &stamps,
+        let view = View {
             samples: instruments.as_ref().map_or(&rows.samples, |tap| &tap.samples),
             jitter: instruments.as_ref().map_or(&[], |tap| &tap.jitter),
             wake,
@@ -282,12 +327,17 @@ impl Simulation {
             wind: self.disturbances.wind,
             particulars: self.vessel.particulars(),
         };
+        Passage { scene: Scene::new(truth.time.clone(), &view), truth: Arc::new(truth) }
+    }
+
+    /// The record that `key` makes of a passage.
+    fn record(&self, passage: &Passage, key: &StreamKey) -> Result<Simulated, SimulateError> {
         let waves = Waves::new(&self.disturbances, &self.vessel, key);
-        let written = measure::write(&self.sensors, &scene, waves, key);
-        let mut samples = rows.samples;
-        if let Some(kept) = &written.kept {
-            measure::keep(&mut samples, kept);
-        }
+        let written = measure::write(&self.sensors, &passage.scene, waves, key);
+        let truth = match &written.kept {
+            None => Arc::clone(&passage.truth),
+            Some(kept) => Arc::new(passage.truth.keep(kept)),
+        };
         let StreamKey { cell, replicate, .. } = *key;
         let origin = Origin::Simulated { scenario: self.scenario.clone(), cell, replicate };
         let name = format!("{}-{cell}-{replicate}", self.scenario);
@@ -295,18 +345,29 @@ impl Simulation {
         if let Some(particulars) = self.vessel.particulars() {
             trial = trial.with_particulars(particulars);
         }
-        Ok(Simulated { trial, truth: truth(&samples, wake) })
+        Ok(Simulated { trial, truth })
     }
 }
 
-fn truth(samples: &[Sample], wake: &crate::run::Wake) -> Truth {
+impl Truth {
+    /// The rows that are kept.
+    fn keep(&self, kept: &[bool]) -> Self {
+        let mut left = self.clone();
+        let Self { time, heading, yaw_rate, yaw_acceleration, rudder, disturbance, speed, executes: _ } = &mut left;
+        let columns = [time, heading, yaw_rate, yaw_acceleration, rudder, disturbance];
+        columns.into_iter().chain(speed).for_each(|column| measure::keep(column, kept));
+        left
+    }
+}
+
+fn truth(samples: &[Sample], wake: &Wake) -> Truth {
     let column = |value: fn(&Sample) -> f64| samples.iter().map(value).collect();
     Truth {
         time: column(|sample| sample.time),
         heading: column(|sample| sample.motion.heading),
         yaw_rate: column(|sample| sample.motion.yaw_rate),
         yaw_acceleration: column(|sample| sample.motion.yaw_acceleration),
-        rudder: samples.iter().map(|sample| wake.path.at(sample.time)).collect(),
+        rudder: wake.path.at_each(samples.iter().map(|sample| sample.time)),
         disturbance: column(|sample| sample.disturbance),
         speed: samples.iter().map(|sample| sample.motion.speed).collect(),
         executes: wake.executes.clone(),

@@ -63,6 +63,11 @@ impl Waves {
         Self { paths: declared.chain(own).collect() }
     }
 
+    /// Whether there are no waves.
+    pub fn are_none(&self) -> bool {
+        self.paths.is_empty()
+    }
+
     /// Wave heading ξ (rad) and its rate ξ' (rad/s) at time `t` (s), which must not decrease from call to call.
     pub fn at(&mut self, t: f64) -> [f64; 2] {
         self.paths.iter_mut().fold([0.0; 2], |[x, v], path| {

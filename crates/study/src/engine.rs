@@ -17,7 +17,7 @@ use ship::FirstOrder;
 use ship::angle::to_deg;
 use ship::first_order::State;
 use simulate::recording::RudderColumn;
-use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKey};
+use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simulated, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::plan::Task;
@@ -127,13 +127,36 @@ pub struct Bench<'a> {
     scenario: &'a Scenario,
     first_cell: usize,
     yardsticks: Vec<OnceLock<Yardstick>>,
+    /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
+    prepared: Vec<OnceLock<Result<Prepared, SimulateError>>>,
 }
+
+/// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a tenth of a megabyte.
+const MOST_PREPARED: usize = 64;
 
 impl<'a> Bench<'a> {
     /// A bench for trials of these cells.
     pub fn new(scenario: &'a Scenario, cells: std::ops::RangeInclusive<usize>) -> Self {
-        let yardsticks = cells.clone().map(|_| OnceLock::new()).collect();
-        Self { scenario, first_cell: *cells.start(), yardsticks }
+        let count = cells.clone().count();
+        let kept = if count <= MOST_PREPARED { count } else { 0 };
+        Self {
+            scenario,
+            first_cell: *cells.start(),
+            yardsticks: (0..count).map(|_| OnceLock::new()).collect(),
+            prepared: (0..kept).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    fn simulate(&self, cell: usize, specimen: &Specimen, key: &StreamKey) -> Result<Simulated, SimulateError> {
+        let simulation = &specimen.specification.simulation;
+        let is_fixed = self.scenario.cells[cell].is_fixed();
+        match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
+            None => simulation.run(key),
+            Some(prepared) => match prepared.get_or_init(|| Prepared::new(simulation.clone())) {
+                Ok(prepared) => prepared.run(key),
+                Err(error) => Err(error.clone()),
+            },
+        }
     }
 
     /// Runs one trial.
@@ -145,7 +168,7 @@ impl<'a> Bench<'a> {
             Ok(specimen) => specimen,
             Err(refusal) => return nothing(cell, task, None, start.elapsed(), &format!("specification: {refusal}")),
         };
-        let simulated = specimen.specification.simulation.run(&key);
+        let simulated = self.simulate(task.cell, &specimen, &key);
         let simulation = start.elapsed();
         let drawn: Option<Arc<[f64]>> = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
         let simulated = match simulated {
@@ -201,7 +224,7 @@ impl<'a> Bench<'a> {
         let key = key(self.scenario, Task { cell, replicate: 0 });
         let nothing = Yardstick { truth: None, bound: None, validation: None, expected: None };
         let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return nothing };
-        match specimen.specification.simulation.run(&key) {
+        match self.simulate(cell, &specimen, &key) {
             Ok(simulated) => Yardstick::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
             Err(_) => Yardstick { truth: specimen.specification.truth, ..nothing },
         }

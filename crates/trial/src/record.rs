@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use ship::replay::Recorded;
+use ship::signal::SignalError;
 use ship::{Particulars, Polyline};
 use thiserror::Error;
 
@@ -109,6 +110,18 @@ pub struct Trial {
     particulars: Option<Particulars>,
 }
 
+/// The rudder over time, of as many values as times.
+fn signal(time: Vec<f64>, rudder: Vec<f64>) -> Result<Polyline, TrialError> {
+    let found = time.len();
+    Polyline::new(time, rudder).map_err(|error| match error {
+        SignalError::Point { index: row, before, time, .. } if time.is_finite() && time > before => {
+            TrialError::Rudder { row }
+        }
+        SignalError::Point { index: row, before, time, .. } => TrialError::Time { row, before, time },
+        SignalError::Empty | SignalError::Lengths { .. } => TrialError::TooShort { needed: Trial::FEWEST_ROWS, found },
+    })
+}
+
 impl Trial {
     /// Fewest rows with a heading that make a record.
     pub const FEWEST_ROWS: usize = 8;
@@ -124,26 +137,17 @@ impl Trial {
                 return Err(TrialError::Length { channel, found: values.len(), expected: time.len() });
             }
         }
-        for row in 0..time.len() {
-            let before = if row == 0 { f64::NEG_INFINITY } else { time[row - 1] };
-            if !time[row].is_finite() || time[row] <= before {
-                return Err(TrialError::Time { row, before, time: time[row] });
-            }
-        }
         let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
-        if let Some(row) = rudder.iter().position(|delta| !delta.is_finite()) {
-            return Err(TrialError::Rudder { row });
-        }
+        let rudder = signal(time, rudder)?;
         let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
         if heading_from_yaw_rate {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
-            channels.insert(Channel::Heading, integrate(&time, rate));
+            channels.insert(Channel::Heading, integrate(rudder.times(), rate));
         }
         let found = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
         if found < Self::FEWEST_ROWS {
             return Err(TrialError::TooShort { needed: Self::FEWEST_ROWS, found });
         }
-        let rudder = Polyline::new(time, rudder).expect("times and rudder angles were checked above");
         Ok(Self {
             name: name.into(),
             origin,

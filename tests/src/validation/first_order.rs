@@ -1,5 +1,7 @@
 //! Zig-zags of the ship K = 0.1 1/s, T = 16.3 s against an independent simulation, by the closed form and by Runge-Kutta.
 
+use std::sync::Arc;
+
 use ship::angle::to_deg;
 use simulate::helm::Watches;
 use simulate::vessel::Solver;
@@ -73,7 +75,7 @@ impl Way {
 }
 
 /// The truth of a zig-zag (angles in deg, rate in deg/s) recorded every `period` s.
-fn truth(way: Way, rudder_deg: f64, heading_deg: f64, rate_deg_s: f64, period_s: f64) -> Truth {
+fn truth(way: Way, rudder_deg: f64, heading_deg: f64, rate_deg_s: f64, period_s: f64) -> Arc<Truth> {
     let case = Case { rudder_deg, heading_deg, rate_deg_s, period_s, duration_s: LENGTH, ..Case::default() };
     let mut simulation = case.simulation();
     way.set(&mut simulation, rate_deg_s.is_infinite());

@@ -194,7 +194,7 @@ fn characteristics(anchor: &Anchor, way: Way, checks: &mut Vec<Check>) {
 
 fn fit(anchor: &Anchor, checks: &mut Vec<Check>) {
     let Fit { until, k: (k, decimals), t, bias_deg, rms_deg } = anchor.fit;
-    let executes = anchor.run(Way::Stepped, 4.0 * anchor.period, 1.0).truth.executes;
+    let executes = &anchor.run(Way::Stepped, 4.0 * anchor.period, 1.0).truth.executes;
     let trial = anchor.run(Way::Stepped, executes[until - 1].time.floor(), 1.0).trial;
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let found = method.identify(&[trial]).expect("a zig-zag is identified");

@@ -59,12 +59,12 @@ fn heading_noise(piece: &Piece, solution: &Solution) -> Vec<f64> {
     // Where the sweep has been, `noise` holds n; where it has not, e.
     if a >= 0.0 {
         let (mut before, mut error) = (noise[0], noise[0]);
-        for k in 1..=last {
-            let (half, change) = (half(k), noise[k] - error);
+        for (k, noise) in noise.iter_mut().enumerate().skip(1) {
+            let (half, change) = (half(k), *noise - error);
             let share = 1.0 / (1.0 + half);
-            error = noise[k];
+            error = *noise;
             before = before * ((1.0 - half) * share) + change * share;
-            noise[k] = before;
+            *noise = before;
         }
     } else {
         let (mut after, mut error) = (noise[last], noise[last]);

@@ -302,7 +302,7 @@ fn a_rudder_rebuilt_from_orders_is_as_right_as_its_rate() {
     let rudder = |column: RudderColumn| {
         let recording = Recording { rudder: column, ..trial().recording };
         let simulated = Simulation { recording, ..trial() }.run(&KEY).expect("a plain zig-zag");
-        (simulated.trial.time().to_vec(), simulated.trial.rudder().to_vec(), simulated.truth.executes)
+        (simulated.trial.time().to_vec(), simulated.trial.rudder().to_vec(), simulated.truth.executes.clone())
     };
     let (time, feedback, executes) = rudder(RudderColumn::Feedback);
     let (_, same, _) = rudder(RudderColumn::Orders { assumed_rate: trial().gear.rate });

@@ -11,9 +11,9 @@ use crate::disturbance::{GaussMarkov, Squall, Wind};
 use crate::helm::Watches;
 use crate::manoeuvre::{Manoeuvre, PullOut, Side, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
 use crate::recording::Start;
-use crate::sensor::YawRateSensor;
+use crate::sensor::{Clock, DropOut, Loses, YawRateSensor};
 use crate::vessel::Solver;
-use crate::{Simulation, StreamKey, Truth, Vessel};
+use crate::{Prepared, Sensors, Simulated, Simulation, StreamKey, Truth, Vessel};
 
 /// A ship with cubic damping and a rudder that acts late, for which nothing has a closed form.
 struct Cubic {
@@ -54,7 +54,7 @@ fn cubic(dead_time: f64) -> Vessel {
     Vessel::hull(Arc::new(Cubic { base: training_ship(), n3: 2000.0, dead_time }))
 }
 
-fn truth(simulation: &Simulation) -> Truth {
+fn truth(simulation: &Simulation) -> Arc<Truth> {
     simulation.run(&KEY).expect("a run of a stable ship").truth
 }
 
@@ -275,6 +275,44 @@ fn the_same_key_gives_the_same_bits() {
     assert_eq!(bits(&KEY), bits(&KEY));
     for other in [StreamKey { seed: 21, ..KEY }, StreamKey { cell: 4, ..KEY }, StreamKey { replicate: 8, ..KEY }] {
         assert_ne!(bits(&KEY), bits(&other));
+    }
+}
+
+/// What is kept for all keys must not be what one key has drawn: every way in which chance comes in, alone and together.
+#[test]
+fn a_prepared_simulation_gives_the_same_bits() {
+    let shaken: [fn(&mut Simulation); 9] = [
+        |_| {},
+        |simulation| simulation.sensors = Sensors { clock: Clock::default(), ..noisy().sensors },
+        |simulation| simulation.sensors.clock.jitter = 0.1,
+        |simulation| simulation.sensors.clock.heading_delay = 0.4,
+        |simulation| simulation.disturbances.waves = noisy().disturbances.waves,
+        |simulation| simulation.disturbances = noisy().disturbances,
+        |simulation| simulation.helmsman.watches = Watches::Display { period: 1.0 },
+        |simulation| {
+            simulation.sensors.drop_out = DropOut { probability: 0.1, bursts: None, loses: Loses::Row };
+            simulation.vessel = cubic(0.4);
+        },
+        |simulation| *simulation = noisy(),
+    ];
+    for (case, shake) in shaken.into_iter().enumerate() {
+        let mut simulation = zig_zag(10.0, 10.0, 2.32, 270.0);
+        simulation.sensors.heading.noise = from_deg(0.2);
+        shake(&mut simulation);
+        let prepared = Prepared::new(simulation.clone()).expect("a zig-zag");
+        for replicate in 0..3 {
+            let key = StreamKey { replicate, ..KEY };
+            let (one, other) = (simulation.run(&key).expect("a zig-zag"), prepared.run(&key).expect("a zig-zag"));
+            let columns = |simulated: &Simulated| {
+                let trial = &simulated.trial;
+                let bits = |values: &[f64]| values.iter().map(|x| x.to_bits()).collect::<Vec<u64>>();
+                let channels = trial.channels().map(|(channel, values)| (channel, bits(values)));
+                (bits(trial.time()), bits(trial.rudder()), channels.collect::<Vec<_>>())
+            };
+            assert_eq!(columns(&one), columns(&other), "case {case}");
+            assert_eq!(one.truth, other.truth, "case {case}");
+            assert_eq!(one.trial.name(), other.trial.name());
+        }
     }
 }
 
