@@ -15,6 +15,7 @@
 //! | noise, quantisation, lag, clocks, drop-outs | [`sensor`] |
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
+//! | thousands of nonlinear ships at once | [`batch`] |
 //! | what can go wrong | [`error`] |
 //!
 //! ```
@@ -44,6 +45,7 @@ mod tests;
 mod wave_path;
 mod weather;
 
+pub mod batch;
 pub mod disturbance;
 pub mod error;
 pub mod gear;
