@@ -3,7 +3,8 @@
 //! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. Once 1/T is
 //! given the heading is linear in all the others, so the whole problem is a search over one number:
 //! the profiled sum of squares is scanned over both signs of 1/T, every local minimum of the scan is polished by
-//! variable projection with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), and the lowest wins. A local
+//! variable projection with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), on some of the rows and then, where it
+//! is not hopeless, on all, and the lowest wins. A local
 //! minimum therefore cannot be mistaken for the answer unless it is narrower than the scan.
 
 use nalgebra::{Matrix3, Vector3};
@@ -67,11 +68,31 @@ pub struct OutputError {
 /// from a neutrally stable one.
 const SLOWEST: f64 = 0.02;
 
+/// When a polish is over.
+struct Goal {
+    /// Step, relative to 1/T, that counts as none.
+    tolerance: f64,
+    /// Largest number of steps.
+    iterations: usize,
+    /// Sum of squares, rad², to get below.
+    bar: f64,
+}
+
 /// Relative step at which the polish stops.
 const TOLERANCE: f64 = 1e-10;
 
-/// The same for the start of it, on some of the rows: their minimum is another one by a share of its standard deviation.
-const COARSE_TOLERANCE: f64 = 1e-3;
+/// The goal on some of the rows: their minimum is another one by a share of its standard deviation, and where more steps are
+/// needed the residual is large and little is left to gain.
+const COARSE: Goal = Goal { tolerance: 1e-3, iterations: 8, bar: f64::INFINITY };
+
+/// A valley whose sum of squares over some of the rows is this many times the lowest is left there.
+const HOPELESS: f64 = 10.0;
+
+/// Steps taken before a valley is called hopeless.
+const TRIED: usize = 2;
+
+/// By how much the decrease that a step promises may be too small: steps are those of a parabola.
+const BOLD: f64 = 4.0;
 
 /// Share of the sum of squares below which a promised decrease is rounding.
 const ROUNDING: f64 = 1e-14;
@@ -119,16 +140,23 @@ impl OutputError {
         grid
     }
 
+    /// The goal on all rows.
+    fn goal(&self) -> Goal {
+        Goal { tolerance: TOLERANCE, iterations: self.settings.iterations, bar: f64::INFINITY }
+    }
+
     /// Variable projection from a start, with step halving; never leaves a lower point for a higher one.
     ///
-    /// Ends when a step is below `tolerance` of 1/T, or promises less than the sum of squares can tell.
-    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, tolerance: f64) -> Option<Minimum> {
+    /// Ends when a step is below the tolerance, promises less than the sum of squares can tell, or leaves no hope to get below
+    /// the bar.
+    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<Minimum> {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
-        for iterations in 1..=self.settings.iterations {
+        for iterations in 1..=goal.iterations {
             let converged = Minimum { inverse_time, rss, stop: StopReason::Converged, iterations };
             let Step { by: mut step, decrease } = profile.newton_step(inverse_time);
-            if step.abs() <= tolerance * (inverse_time.abs() + resolution) {
+            let hopeless = iterations > TRIED && rss - BOLD * decrease > goal.bar;
+            if step.abs() <= goal.tolerance * (inverse_time.abs() + resolution) || hopeless {
                 return Some(converged);
             }
             if decrease <= ROUNDING * rss {
@@ -147,7 +175,7 @@ impl OutputError {
             let Some(lower) = lower else { return Some(converged) };
             (inverse_time, rss) = (inverse_time + step, lower);
         }
-        Some(Minimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: self.settings.iterations })
+        Some(Minimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
     }
 }
 
@@ -182,14 +210,20 @@ impl Identifier for OutputError {
                 && (k == 0 || height(k - 1) >= height(k))
                 && (k + 1 == grid.len() || height(k + 1) >= height(k))
         });
-        let mut minima = 0usize;
+        let mut valleys: Vec<usize> = valleys.collect();
+        // The deepest first: it tells which of the others are hopeless.
+        valleys.sort_by(|&one, &other| height(one).total_cmp(&height(other)));
+        let mut bar = f64::INFINITY;
         let mut best: Option<(Minimum, bool)> = None;
-        for k in valleys {
-            minima += 1;
+        for &k in &valleys {
+            let place = self.polish(&mut coarse, grid[k], resolution, &Goal { bar, ..COARSE });
+            if place.as_ref().is_some_and(|place| place.rss > bar) {
+                continue;
+            }
+            bar = place.as_ref().map_or(bar, |place| bar.min(HOPELESS * place.rss));
+            let start = place.map_or(grid[k], |place| place.inverse_time);
             let at_end = k == 0 || k + 1 == grid.len();
-            let place = self.polish(&mut coarse, grid[k], resolution, COARSE_TOLERANCE);
-            let start = place.map_or(grid[k], |minimum| minimum.inverse_time);
-            if let Some(minimum) = self.polish(&mut profile, start, resolution, TOLERANCE)
+            if let Some(minimum) = self.polish(&mut profile, start, resolution, &self.goal())
                 && best.as_ref().is_none_or(|(so_far, _)| minimum.rss < so_far.rss)
             {
                 best = Some((minimum, at_end));
@@ -237,7 +271,7 @@ impl Identifier for OutputError {
                 ("r_squared", 1.0 - minimum.rss / profile.total_sum_of_squares()),
                 ("condition", condition),
                 ("iterations", minimum.iterations as f64),
-                ("local_minima", minima as f64),
+                ("local_minima", valleys.len() as f64),
                 ("lag1_autocorrelation", lag1),
                 ("degrees_of_freedom", freedom),
             ],
@@ -358,7 +392,9 @@ mod tests {
             for k in 0..=60 {
                 for sign in [1.0, -1.0] {
                     let start = sign / (2.0 * 250f64.powf(k as f64 / 60.0));
-                    if let Some(minimum) = method().polish(&mut profile, start, 1.0 / trial.duration(), TOLERANCE) {
+                    if let Some(minimum) =
+                        method().polish(&mut profile, start, 1.0 / trial.duration(), &method().goal())
+                    {
                         let rmse = to_deg((minimum.rss / trial.len() as f64).sqrt());
                         assert!(
                             rmse >= best * (1.0 - 1e-9),
