@@ -135,7 +135,7 @@ pub fn table(lines: &[Line]) -> Table {
         Column::left("its time"),
         Column::decimal("ratio"),
         Column::left("reach"),
-        Column::left(""),
+        Column::left("verdict"),
     ]);
     for line in lines {
         let unit = if line.row.work.units > 1.0 { " per unit" } else { "" };
@@ -154,9 +154,12 @@ pub fn table(lines: &[Line]) -> Table {
     table
 }
 
-/// A value and half of its interval.
+/// A value and half of its interval; alone where there is no interval.
 pub fn plus_minus(value: &Measured) -> String {
-    number::with_uncertainty(value.value, Some(value.half_width()))
+    match value.half_width() {
+        half if half > 0.0 => number::with_uncertainty(value.value, Some(half)),
+        _ => significant(value.value, 3),
+    }
 }
 
 const UNITS: [(f64, &str); 4] = [(1e-9, "ns"), (1e-6, "µs"), (1e-3, "ms"), (1.0, "s")];

@@ -5,7 +5,7 @@ mod simulation;
 mod studies;
 mod tracing;
 
-pub use identification::identification;
+pub use identification::{RIVAL, identification};
 pub use simulation::simulation;
 pub use studies::{scenarios, scenarios_folder, studies, throughput};
 pub use tracing::tracing;
