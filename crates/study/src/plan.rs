@@ -228,7 +228,7 @@ mod tests {
             assert_eq!(most.iter().sum::<u64>(), trials);
             assert_eq!(
                 most.iter().max().zip(most.iter().min()).map(|(most, least)| most - least),
-                Some(u64::from(trials % SHARDS != 0))
+                Some(u64::from(!trials.is_multiple_of(SHARDS)))
             );
             // The same from the side of a trial, wherever it is.
             let all: Vec<Plan> = plans(&scenario, SHARDS).collect();

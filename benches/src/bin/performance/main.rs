@@ -1,6 +1,6 @@
 //! `performance [--quick] DIR` measures what simulation, identification, tracing and studies cost on this machine, beside
 //! rivals and beside what is to be reached, and how it grows with samples and trials; it writes a report, tables and figures
-//! into DIR. On a machine that does nothing else it takes about a quarter of an hour; `--quick` does the same with small sizes
+//! into DIR. On a machine that does nothing else it takes some twenty minutes; `--quick` does the same with small sizes
 //! in seconds, to see that it works.
 
 mod child;
