@@ -46,7 +46,7 @@ pub fn srivc_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<Indic
     Some(indices(found.parameter.as_slice()))
 }
 
-/// Output error of r[k] = f r[k−1] + b₀ δ[k] + b₁ δ[k−1] from yaw rate and rudder; T = −period/ln f, K = (b₀ + b₁)/(1 − f).
+/// Output error of rₖ = f rₖ₋₁ + b₀ δₖ + b₁ δₖ₋₁ from yaw rate and rudder; T = −period/ln f, K = (b₀ + b₁)/(1 − f).
 pub fn output_error_gyro(rudder: &[f64], yaw_rate: &[f64], period: f64) -> Option<Indices> {
     let start = oe::Initialization::Sriv(SRIV_ITERATIONS);
     let found = oe::identify(rudder, yaw_rate, &Arx::new(1, 1), &start, &oe::OeOptions::default()).ok()?;

@@ -23,7 +23,9 @@ pub fn write(folder: &Path, measured: &[Measurements], samples: &[Growth], trial
     if let Some(plot) = measured.iter().find(|one| one.group.name == "identify").map(identification) {
         dots(&plot, &theme).write(folder, "identification")?;
     }
-    let with_samples = curves("samples of the record", samples.iter());
+    // The rival is in the table; its line runs among ours.
+    let own = samples.iter().filter(|growth| growth.name != works::RIVAL);
+    let with_samples = curves("samples of the record", own);
     error_curves(&with_samples, &theme).write(folder, "growth-samples")?;
     error_curves(&curves("trials of the study", trials.growth.iter()), &theme).write(folder, "growth-trials")?;
     Ok(())

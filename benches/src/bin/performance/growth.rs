@@ -8,7 +8,10 @@ use kempf_benches::records::{KEY, PERIOD, first_order_zig_zag};
 use kempf_benches::work::Work;
 use kempf_benches::{rivals, works};
 
-use crate::say;
+use study::collect::in_memory;
+use study::scenario::Scenario;
+
+use crate::{Outcome, say};
 
 /// A time beyond this, s, is not waited for.
 const LIMIT: f64 = 60.0;
@@ -56,6 +59,20 @@ pub struct Exponent {
 }
 
 impl Growth {
+    /// The straight line of least relative error; `None` below two sizes.
+    pub fn line(&self) -> Option<Line> {
+        let sum = |value: &dyn Fn(f64, f64) -> f64| self.points.iter().map(|(n, t)| value(*n, t.value)).sum::<f64>();
+        // Normal equations of Σ ((a n + b)/t − 1)².
+        let (nn, n1) = (sum(&|n, t| (n / t).powi(2)), sum(&|n, t| n / (t * t)));
+        let (one, nt, t1) = (sum(&|_, t| 1.0 / (t * t)), sum(&|n, t| n / t), sum(&|_, t| 1.0 / t));
+        let determinant = nn * one - n1 * n1;
+        let (per_sample, fixed) = ((nt * one - t1 * n1) / determinant, (nn * t1 - n1 * nt) / determinant);
+        let off = |(n, t): &(f64, Measured)| ((per_sample * n + fixed) / t.value - 1.0).abs();
+        let worst = self.points.iter().map(off).fold(0.0, f64::max);
+        let range = [self.points.first()?.0, self.points.last()?.0];
+        (self.points.len() > 1).then_some(Line { per_sample, fixed, worst, range })
+    }
+
     /// Of these points, all of them measured.
     pub fn new(name: &str, points: Vec<(f64, Measured)>) -> Self {
         Self { name: name.to_owned(), points, refused: Vec::new(), cut: None }
@@ -94,28 +111,34 @@ impl Growth {
     }
 }
 
-/// Largest record of the cost of a trial: what is simulated and identified by the thousand is not longer.
-const LONGEST_TRIAL: f64 = 2e4;
+/// Lengths of the trials that the cost of a trial is measured on, s; a sample a second.
+const LENGTHS: [u32; 4] = [150, 270, 540, 1080];
 
-/// Time of simulation and all methods (not the rival) together over the samples of a trial, as a straight line of least relative error.
-/// `None` below two sizes at which all have times.
-pub fn cost_of_trial(growths: &[Growth]) -> Option<Line> {
-    let sizes = growths.first()?.points.iter().map(|(size, _)| *size).filter(|size| *size <= LONGEST_TRIAL);
-    let total = |size: f64| {
-        let time = |growth: &Growth| growth.points.iter().find(|point| point.0 == size).map(|point| point.1.value);
-        let own = growths.iter().filter(|growth| growth.name != works::RIVAL);
-        own.map(time).sum::<Option<f64>>().map(|time| (size, time))
+/// Trials of each length.
+const TRIALS: u64 = 48;
+const QUICK_TRIALS: u64 = 2;
+
+/// Time of one trial of a study, with all its methods and what is computed beside them, over its samples: on one thread,
+/// rows kept in memory.
+pub fn of_trials(quick: bool) -> Outcome<Growth> {
+    let effort = if quick { Effort { rounds: 1, ..EFFORT } } else { EFFORT };
+    let trials = if quick { QUICK_TRIALS } else { TRIALS };
+    let document: toml::Table = std::fs::read_to_string(works::throughput())?.parse()?;
+    let work = |length: u32| -> Outcome<Work> {
+        let mut document = document.clone();
+        let recording = document.get_mut("recording").and_then(toml::Value::as_table_mut).ok_or("no recording")?;
+        recording.insert("duration-s".to_owned(), f64::from(length).into());
+        document.insert("replicates".to_owned(), (trials as i64).into());
+        let scenario = Scenario::parse(&works::throughput(), "throughput", toml::to_string(&document)?, None)
+            .map_err(|failure| failure.to_string())?;
+        let work = Work::new(format!("{length} s"), move || in_memory(&scenario).1.len());
+        Ok(work.of_units(trials as usize))
     };
-    let points: Vec<(f64, f64)> = sizes.filter_map(total).collect();
-    let sum = |value: &dyn Fn(f64, f64) -> f64| points.iter().map(|(n, t)| value(*n, *t)).sum::<f64>();
-    // Normal equations of Σ ((a n + b)/t − 1)².
-    let (nn, n1) = (sum(&|n, t| (n / t).powi(2)), sum(&|n, t| n / (t * t)));
-    let (one, nt, t1) = (sum(&|_, t| 1.0 / (t * t)), sum(&|n, t| n / t), sum(&|_, t| 1.0 / t));
-    let determinant = nn * one - n1 * n1;
-    let (per_sample, fixed) = ((nt * one - t1 * n1) / determinant, (nn * t1 - n1 * nt) / determinant);
-    let worst = points.iter().map(|(n, t)| ((per_sample * n + fixed) / t - 1.0).abs()).fold(0.0, f64::max);
-    let range = [points.first()?.0, points.last()?.0];
-    (points.len() > 1).then_some(Line { per_sample, fixed, worst, range })
+    let works: Vec<Work> = LENGTHS.into_iter().map(work).collect::<Outcome<_>>()?;
+    let samples = in_turn(&works.iter().collect::<Vec<_>>(), &effort);
+    let points = LENGTHS.into_iter().zip(samples);
+    let points = points.filter_map(|(length, times)| Some((f64::from(length) + 1.0, Measured::median(times)?)));
+    Ok(Growth::new("one trial", points.collect()))
 }
 
 /// Sizes of records: half decades.
@@ -193,12 +216,10 @@ mod tests {
     }
 
     #[test]
-    fn the_cost_of_a_trial_is_a_line() {
-        let line = |a: f64, b: f64| {
-            let time = |n: f64| Measured { value: a * n + b, interval: [0.0, 1.0], least: None, samples: 1 };
-            Growth::new("line", [100.0, 1000.0, 10_000.0, 1e5].map(|n| (n, time(n))).to_vec())
-        };
-        let found = cost_of_trial(&[line(2.0, 5.0), line(1.0, 10.0)]).expect("four sizes");
+    fn a_line_is_found_again() {
+        let time = |n: f64| Measured { value: 3.0 * n + 15.0, interval: [0.0, 1.0], least: None, samples: 1 };
+        let growth = Growth::new("line", [100.0, 1000.0, 10_000.0].map(|n| (n, time(n))).to_vec());
+        let found = growth.line().expect("three sizes");
         assert!((found.per_sample - 3.0).abs() < 1e-9 && (found.fixed - 15.0).abs() < 1e-6 && found.worst < 1e-9);
         assert_eq!(found.range, [100.0, 10_000.0]);
     }

@@ -8,7 +8,7 @@ use kempf_benches::verdict::{self, Line, Verdict, measured_time, plus_minus, tab
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
 
-use crate::growth::{Growth, cost_of_trial};
+use crate::growth::Growth;
 use crate::machine::Machine;
 use crate::trials::{Study, Trials};
 use crate::{Measurements, Outcome};
@@ -42,7 +42,7 @@ pub fn write(
     };
     put("machine.toml", toml::to_string(machine)?)?;
     put("performance.csv", rows(measured).to_csv())?;
-    put("growth.csv", growth_rows(samples.iter().chain(&trials.growth)).to_csv())?;
+    put("growth.csv", growth_rows(samples.iter().chain(&trials.growth).chain([&trials.of_samples])).to_csv())?;
     put("trials.csv", trial_rows(&trials.studies, trials.methods).to_csv())?;
     let text = report(machine, measured, samples, trials)?;
     print!("{text}");
@@ -114,19 +114,19 @@ fn report(machine: &Machine, measured: &[Measurements], samples: &[Growth], tria
     page += "\n![time over trials](growth-trials.png)\n";
 
     writeln!(page, "\n## What a study will cost\n")?;
-    if let Some(line) = cost_of_trial(samples) {
-        let at = line.per_sample * 271.0 + line.fixed;
+    if let Some(line) = trials.of_samples.line() {
+        let signed = |seconds: f64| if seconds < 0.0 { format!("−{}", time(-seconds)) } else { time(seconds) };
         writeln!(
             page,
-            "Simulation and all methods take a·samples + b per trial on one thread, a = {} and b = {} (from {} to {} samples, at most \
-             {} % off), so {} for 271 samples; a study takes {} per trial and thread, with what it computes beside the methods and with \
-             storing.\n",
-            time(line.per_sample),
-            if line.fixed >= 0.0 { time(line.fixed) } else { format!("−{}", time(-line.fixed)) },
+            "One trial with all methods and what is computed beside them takes a·samples + b on one thread, a = {} and b = {} (fitted to \
+             {} to {} samples a second apart, at most {} % off); in a study of {} trials on one thread, with storing, a trial of \
+             271 samples took {}.\n",
+            signed(line.per_sample),
+            signed(line.fixed),
             fixed(line.range[0], 0),
             fixed(line.range[1], 0),
             significant(100.0 * line.worst, 2),
-            time(at),
+            trials.scaling_trials,
             trials.scaling.first().map_or(MISSING.to_owned(), |one| time(1.0 / one.rate.value)),
         )?;
     }
@@ -202,7 +202,10 @@ fn exactly(value: f64, limit: f64) -> Verdict {
 
 fn goal(line: &Line) -> Option<Goal> {
     let found = match (line.row.reach?, &line.ratio, &line.row.beside) {
-        (kempf_benches::work::Reach::Time(_), ..) => measured_time(&line.time),
+        (kempf_benches::work::Reach::Time(_), ..) => match line.time.least {
+            Some(least) => format!("{}, least {}", measured_time(&line.time), time(least)),
+            None => measured_time(&line.time),
+        },
         (_, Some(ratio), Some(beside)) => format!("{} of {}", plus_minus(ratio), beside.name),
         _ => return None,
     };

@@ -7,7 +7,7 @@ use kempf_benches::works;
 use study::manifest::Manifest;
 use tempfile::TempDir;
 
-use crate::growth::Growth;
+use crate::growth::{self, Growth};
 use crate::{Outcome, child, say};
 
 /// Trials of the study that threads are compared on.
@@ -65,6 +65,8 @@ pub struct Trials {
     pub studies: Vec<Study>,
     /// Time of a study over its trials, and of the whole command.
     pub growth: [Growth; 2],
+    /// Time of one trial over its samples.
+    pub of_samples: Growth,
     /// Methods of the study: rows per trial.
     pub methods: u64,
     /// Time of `study check` on every scenario, s.
@@ -103,6 +105,7 @@ pub fn measure(quick: bool) -> Outcome<Trials> {
     let over =
         |time: fn(&Study) -> f64| studies.iter().map(|study| (study.trials as f64, exactly(time(study)))).collect();
     Ok(Trials {
+        of_samples: growth::of_trials(quick)?,
         scaling_trials,
         scaling: threads.iter().zip(&runs).map(|(&threads, own)| scaling(threads, own, &runs[0])).collect(),
         growth: [
