@@ -39,7 +39,8 @@ pub fn identification() -> Group {
         "identify",
         "One record of 1201 rows (10/10, 600 s at 0.5 s, K 0.08 1/s, T 25 s, heading noise 0.1 deg, gyro noise 0.02 deg/s), on \
          one core. Ours give K, T and the rudder bias with covariance, diagnostics and a typed reason where they fail. Beside \
-         them stands SRIVC of dsmc 0.27 on the heading (one integrator, order one, first-order hold, started at 0.1 rad/s; a good start is 1/T of the ship), which gives K and T alone.",
+         them stands SRIVC of dsmc 0.27 on the heading (one integrator, order one, first-order hold, \
+         started at 0.1 rad/s; a good start is 1/T of the ship), which gives K and T alone.",
     );
     let trial = Arc::new(record(&first_order_zig_zag(ROWS)));
     let [rudder, heading, yaw_rate] = rivals::columns(&trial);

@@ -1,4 +1,4 @@
-//! The program that measures everything again, with small sizes: it ends, and what it writes is whole.
+//! The programs that measure, with small sizes: they end, and what they write is whole.
 
 use std::fs;
 use std::path::Path;
@@ -42,4 +42,18 @@ fn says_how_it_is_used() {
     let output = performance(&[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).starts_with("usage: performance"));
+}
+
+/// Made-up rows are joined as real ones are.
+#[test]
+fn shards_are_joined() {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_shards")).args(["3", "40", "7", "1"]).output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let table = String::from_utf8_lossy(&output.stdout);
+    let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).skip(1).take(4).collect::<Vec<_>>();
+    let lines: Vec<Vec<String>> = table.lines().skip(2).map(cells).collect();
+    assert_eq!(lines, [["3", "120", "840", "15"], ["7", "7", "49", "35"]]);
+    let refused = Command::new(env!("CARGO_BIN_EXE_shards")).args(["3"]).output().expect("the program starts");
+    assert_eq!(refused.status.code(), Some(2));
 }
