@@ -4,10 +4,11 @@ use std::time::Duration;
 
 use identify::registry;
 use kempf_benches::measure::{Effort, Measured, in_turn};
-use kempf_benches::records::{KEY, PERIOD, first_order_zig_zag};
+use kempf_benches::records::{K, KEY, PERIOD, T, first_order_zig_zag};
 use kempf_benches::work::Work;
 use kempf_benches::{rivals, works};
 
+use ship::FirstOrder;
 use study::collect::in_memory;
 use study::scenario::Scenario;
 
@@ -30,6 +31,8 @@ pub struct Growth {
     pub points: Vec<(f64, Measured)>,
     /// Sizes at which there was no answer.
     pub refused: Vec<usize>,
+    /// Sizes at which the answer was far from the ship: its time says little.
+    pub wrong: Vec<usize>,
     /// First size that would have taken too long, and how long it would have taken, s.
     pub cut: Option<(usize, f64)>,
 }
@@ -75,7 +78,7 @@ impl Growth {
 
     /// Of these points, all of them measured.
     pub fn new(name: &str, points: Vec<(f64, Measured)>) -> Self {
-        Self { name: name.to_owned(), points, refused: Vec::new(), cut: None }
+        Self { name: name.to_owned(), points, refused: Vec::new(), wrong: Vec::new(), cut: None }
     }
 
     /// Least squares of ln t on ln n over the upper decades; `None` below three sizes.
@@ -173,14 +176,26 @@ pub fn with_samples(quick: bool) -> Vec<Growth> {
         for (growth, settings) in own.iter_mut().zip(registry::defaults()) {
             let (trial, method) = (trial.clone(), settings.build().expect("default settings are valid"));
             // A method that refuses a short record has no time.
-            if growth.expected(size as f64) <= LIMIT && method.identify(std::slice::from_ref(&trial)).is_err() {
-                growth.refused.push(size);
-                continue;
+            if growth.expected(size as f64) <= LIMIT {
+                match method.identify(std::slice::from_ref(&trial)) {
+                    Err(_) => {
+                        growth.refused.push(size);
+                        continue;
+                    }
+                    Ok(estimate) if is_far(&estimate.response) => growth.wrong.push(size),
+                    Ok(_) => {}
+                }
             }
             time(growth, size, &effort, Work::new(method.id(), move || method.identify(std::slice::from_ref(&trial))));
         }
     }
     growths
+}
+
+/// Whether K or T is off by more than half, which no method is on a record that suits it.
+fn is_far(found: &FirstOrder) -> bool {
+    let off = |found: f64, truth: f64| (found / truth - 1.0).abs() > 0.5;
+    off(found.K(), K) || off(found.T(), T)
 }
 
 fn time(growth: &mut Growth, size: usize, effort: &Effort, work: Work) {

@@ -93,9 +93,17 @@ fn report(machine: &Machine, measured: &[Measurements], samples: &[Growth], tria
                 time(expected)
             )?;
         }
+        let listed = |sizes: &[usize]| sizes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
         if !growth.refused.is_empty() {
-            let sizes: Vec<String> = growth.refused.iter().map(ToString::to_string).collect();
-            writeln!(page, "\n{} gives no answer from {} samples.", growth.name, sizes.join(", "))?;
+            writeln!(page, "\n{} gives no answer from {} samples.", growth.name, listed(&growth.refused))?;
+        }
+        if !growth.wrong.is_empty() {
+            writeln!(
+                page,
+                "\n{} is off by more than half in K or T from {} samples; what it takes there says little.",
+                growth.name,
+                listed(&growth.wrong)
+            )?;
         }
     }
 
