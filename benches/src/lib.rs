@@ -1,26 +1,28 @@
-//! The trials that the benches are measured on.
+//! What the work of this project costs, beside rivals and beside what is to be reached.
+//!
+//! Every piece of work is defined once, in [`works`], with what stands beside it and the limit it is held to. The benches
+//! (`cargo bench -p kempf-benches`) measure all of it with criterion and print one table of ratios each; the program
+//! `performance` (`cargo run --release -p kempf-benches --bin performance -- results/performance`) measures it again with
+//! work and rival in turn, adds how times grow with samples and trials, and writes a report with figures. The program `shards`
+//! measures the bookkeeping of a study in thousands of shards.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | records that are identified | [`records`] |
+//! | pieces of work and their limits | [`work`], [`works`] |
+//! | identification by another library | [`rivals`] |
+//! | many nonlinear ships at once | [`norrbin`] |
+//! | repeated measurements and their intervals | [`measure`] |
+//! | tables of ratios | [`verdict`] |
+//! | peak memory of a process | [`process`] |
+//! | criterion and its estimates | [`harness`] |
 
-use ship::FirstOrder;
-use ship::angle::from_deg;
-use simulate::manoeuvre::ZigZagEnd;
-use simulate::{Manoeuvre, Recording, Sensors, Simulation, SteeringGear, StreamKey, Vessel};
-
-/// A 10/10 zig-zag of a first-order ship, K = 0.08 1/s, T = 25 s, 2.5 deg/s, heading noise 0.1 deg; `rows` rows half a
-/// second apart.
-pub fn first_order_zig_zag(rows: usize) -> Simulation {
-    let period = 0.5;
-    let mut sensors = Sensors::default();
-    sensors.heading.noise = from_deg(0.1);
-    Simulation {
-        gear: SteeringGear::with_rate(from_deg(2.5)),
-        recording: Recording { period, duration: Some(period * (rows - 1) as f64), ..Recording::default() },
-        sensors,
-        ..Simulation::new(
-            Vessel::first_order(FirstOrder::from_indices(0.08, 25.0, 0.0)),
-            Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Record),
-        )
-    }
-}
-
-/// The key of the one trial that is identified.
-pub const KEY: StreamKey = StreamKey { seed: 1957, cell: 0, replicate: 0 };
+pub mod harness;
+pub mod measure;
+pub mod norrbin;
+pub mod process;
+pub mod records;
+pub mod rivals;
+pub mod verdict;
+pub mod work;
+pub mod works;

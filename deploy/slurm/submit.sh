@@ -1,9 +1,9 @@
 #!/bin/bash
-# Submits a study as an array of shards and the job that joins them:
+# Submits a study as an array of shards, or several where Slurm allows no array of that size, and the job that joins them:
 #
 #   deploy/slurm/submit.sh SCENARIO OUT SHARDS [options of sbatch, for the array]
 #
-# Prints the numbers of both jobs.
+# Prints the numbers of all jobs. With LARGEST=N no array has more than N tasks.
 set -euo pipefail
 
 [ $# -ge 3 ] || { echo "usage: submit.sh SCENARIO OUT SHARDS [options of sbatch]" >&2; exit 2; }
@@ -14,6 +14,14 @@ case $shards in
 esac
 here=$(cd "$(dirname "$0")" && pwd)
 
-array=$(sbatch --parsable --array="1-$shards" "$@" "$here/study.sbatch" "$scenario" "$out")
-merge=$(sbatch --parsable --dependency="afterok:$array" "$here/merge.sbatch" "$out")
-echo "array $array, merge $merge"
+# The largest number of a task is one less than MaxArraySize.
+allowed=$(scontrol show config 2> /dev/null | sed -n 's/^MaxArraySize *= *\([0-9]*\)$/\1/p')
+largest=${LARGEST:-$((${allowed:-1001} - 1))}
+arrays=()
+for ((offset = 0; offset < shards; offset += largest)); do
+  tasks=$((shards - offset < largest ? shards - offset : largest))
+  arrays+=("$(SHARDS=$shards OFFSET=$offset sbatch --parsable --array="1-$tasks" "$@" "$here/study.sbatch" "$scenario" "$out")")
+done
+all=$(IFS=:; echo "${arrays[*]}")
+merge=$(sbatch --parsable --dependency="afterok:$all" "$here/merge.sbatch" "$out")
+echo "array ${all//:/ }, merge $merge"

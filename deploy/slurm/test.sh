@@ -63,13 +63,15 @@ wait_for() {
 
 if has_slurm && start_slurm; then
   cd "$work"
-  jobs=$("$here/submit.sh" "$scenario" "$out" "$shards" --cpus-per-task=1 --time=10)
+  # As two arrays, the first of four.
+  jobs=$(LARGEST=4 "$here/submit.sh" "$scenario" "$out" "$shards" --cpus-per-task=1 --time=10)
   echo "$jobs"
-  array=${jobs#array } array=${array%%,*}
+  array=${jobs#array } array=${array%%,*} array=${array// /,}
   merge=${jobs##*merge }
   # Kill the process of one task as a crash would, once it has stored something.
   until compgen -G "$out/shards/2-of-$shards/unfinished/*.parquet" > /dev/null; do sleep 0.05; done
-  pkill -KILL -f -- "--shard 2/$shards" || true
+  # The folder is new, so no process but those of this task names it.
+  pgrep -f -- "--shard 2/$shards --out $out/" | xargs -r kill -KILL || true
   wait_for "$array"
   scancel "$merge" 2> /dev/null || true
   killed

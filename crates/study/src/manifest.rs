@@ -77,17 +77,9 @@ impl Manifest {
         }
     }
 
-    /// The manifest of the whole study, from those of all its shards; the wall time is that of all machines together.
-    ///
-    /// # Panics
-    /// When there is no shard.
-    pub fn joined<'a>(shards: impl IntoIterator<Item = &'a Self>) -> Self {
-        let join = |mut whole: Self, next: Self| {
-            whole.machine.wall_time_s += next.machine.wall_time_s;
-            whole
-        };
-        let whole = shards.into_iter().cloned().reduce(join).expect("a study has at least one shard");
-        Self { shard: Shard::WHOLE, ..whole }
+    /// The manifest of the whole study, from that of a shard and the wall time of all of them together, s.
+    pub fn of_whole(self, wall_time_s: f64) -> Self {
+        Self { shard: Shard::WHOLE, machine: Machine { wall_time_s, ..self.machine }, ..self }
     }
 
     /// What makes the rows of another manifest other rows, in words; empty when they are the same.

@@ -1,5 +1,6 @@
 //! `study merge DIR... --out DIR`: the shards of one study joined to what one run would have given, byte for byte.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::cli::{Common, Style};
@@ -16,9 +17,11 @@ use crate::unfinished;
 /// Missing shards that a message names.
 const SHOWN: usize = 10;
 
-/// A finished shard.
-struct Part<'a> {
-    folder: &'a Path,
+/// All shards of one study.
+struct Shards<'a> {
+    /// Their folders, in their order.
+    folders: Vec<&'a Path>,
+    /// The manifest of the whole.
     manifest: Manifest,
 }
 
@@ -27,8 +30,7 @@ pub fn merge(folders: &[PathBuf], style: &Style, common: &Common) -> Result<(), 
     let Some(out) = &common.out else {
         return Err(Failure::input("no folder for the joined study is given; add --out DIR"));
     };
-    let parts = parts(folders)?;
-    let manifest = Manifest::joined(parts.iter().map(|part| &part.manifest));
+    let Shards { folders, manifest } = shards(folders)?;
     result_folder(out)?;
     if let Some(stored) = store::manifest_of_rows(out)? {
         is_same(&stored, &manifest, out)?;
@@ -39,32 +41,26 @@ pub fn merge(folders: &[PathBuf], style: &Style, common: &Common) -> Result<(), 
             out.display()
         )));
     }
-    let designs: Vec<Design> = parts.iter().map(|part| store::read_design(part.folder)).collect::<Result<_, _>>()?;
-    let mut design = designs[0].clone();
-    for other in &designs[1..] {
-        for (cell, theirs) in design.cells.iter_mut().zip(&other.cells) {
-            cell.bound_percent2 = cell.bound_percent2.or(theirs.bound_percent2);
-        }
-    }
+    let design = design(&folders)?;
     let layout = Layout::of(&design);
     let mut writer = Writer::create(&out.join(store::ROWS), &layout)?;
     let mut last: Option<(Task, usize)> = None;
     let mut timings = Timings::new(design.methods.len());
     let mut showcases = Vec::new();
-    for part in &parts {
-        Reader::open(&part.folder.join(store::ROWS), &layout)?.for_each(|row| {
+    for folder in folders {
+        Reader::open(&folder.join(store::ROWS), &layout)?.for_each(|row| {
             let place = (Task { cell: row.cell as usize, replicate: row.replicate }, row.method);
             if last.is_some_and(|last| place <= last) {
                 return Err(Failure::input(format!(
                     "{}: its rows do not come after those of the shard before it; run this shard again",
-                    part.folder.display()
+                    folder.display()
                 )));
             }
             last = Some(place);
             writer.push([row])
         })?;
-        timings.join(&Timings::read(&part.folder.join(store::TIMINGS), &design)?);
-        showcases.extend(store::read_showcases(part.folder)?);
+        timings.join(&Timings::read(&folder.join(store::TIMINGS), &design)?);
+        showcases.extend(store::read_showcases(folder)?);
     }
     writer.finish()?;
     store::write_design(out, &design)?;
@@ -74,9 +70,25 @@ pub fn merge(folders: &[PathBuf], style: &Style, common: &Common) -> Result<(), 
     publish::report(out, style, common)
 }
 
+/// The design with all that the shards know of its cells. One shard after the other: thousands of designs of thousands of
+/// cells do not fit into memory.
+fn design(folders: &[&Path]) -> Result<Design, Failure> {
+    let (first, others) = folders.split_first().expect("a study has at least one shard");
+    let mut design = store::read_design(first)?;
+    for folder in others {
+        let other = store::read_design(folder)?;
+        for (cell, theirs) in design.cells.iter_mut().zip(&other.cells) {
+            cell.bound_percent2 = cell.bound_percent2.or(theirs.bound_percent2);
+        }
+    }
+    Ok(design)
+}
+
 /// The shards in their order, or what is wrong with them.
-fn parts(folders: &[PathBuf]) -> Result<Vec<Part<'_>>, Failure> {
-    let mut parts: Vec<Part> = Vec::with_capacity(folders.len());
+fn shards(folders: &[PathBuf]) -> Result<Shards<'_>, Failure> {
+    // Of thousands of shards only one manifest is kept: each holds the text of the scenario.
+    let mut lowest: Option<(&Path, Manifest)> = None;
+    let mut found: BTreeMap<u64, (&Path, f64)> = BTreeMap::new();
     for folder in folders {
         let Some(manifest) = store::manifest_of_rows(folder)? else {
             let problem = match unfinished::is_in(folder) {
@@ -85,36 +97,40 @@ fn parts(folders: &[PathBuf]) -> Result<Vec<Part<'_>>, Failure> {
             };
             return Err(Failure::input(format!("{}: {problem}", folder.display())));
         };
-        if let Some(first) = parts.first() {
-            let differences = first.manifest.differences_of_study(&manifest);
+        if let Some((first, known)) = &lowest {
+            let differences = known.differences_of_study(&manifest);
             if !differences.is_empty() {
                 return Err(Failure::input(format!(
                     "{} and {} are not shards of one study (there: the first, here: the second):\n  {}\nmerge shards of the \
                      same scenario, seed and program",
-                    first.folder.display(),
+                    first.display(),
                     folder.display(),
                     differences.join("\n  ")
                 )));
             }
         }
-        if let Some(twice) = parts.iter().find(|part| part.manifest.shard.number == manifest.shard.number) {
+        if let Some((twice, _)) = found.insert(manifest.shard.number, (folder, manifest.machine.wall_time_s)) {
             return Err(Failure::input(format!(
                 "{} and {} are both shard {}; give each one once",
-                twice.folder.display(),
+                twice.display(),
                 folder.display(),
                 manifest.shard
             )));
         }
-        parts.push(Part { folder, manifest });
+        if lowest.as_ref().is_none_or(|(_, known)| manifest.shard.number < known.shard.number) {
+            lowest = Some((folder, manifest));
+        }
     }
-    parts.sort_by_key(|part| part.manifest.shard.number);
-    let of = parts.first().map_or(0, |part| part.manifest.shard.of);
-    let missing: Vec<String> = (1..=of)
-        .filter(|number| parts.iter().all(|part| part.manifest.shard.number != *number))
-        .map(|number| Shard { number, of }.to_string())
-        .collect();
+    let Some((_, manifest)) = lowest else {
+        return Err(Failure::input("no shards are given; name the folders written with --shard"));
+    };
+    let of = manifest.shard.of;
+    let missing: Vec<String> =
+        (1..=of).filter(|number| !found.contains_key(number)).map(|number| Shard { number, of }.to_string()).collect();
     if missing.is_empty() {
-        return Ok(parts);
+        let wall_time_s = found.values().map(|(_, wall_time_s)| wall_time_s).sum();
+        let folders = found.into_values().map(|(folder, _)| folder).collect();
+        return Ok(Shards { folders, manifest: manifest.of_whole(wall_time_s) });
     }
     let shown = missing[..missing.len().min(SHOWN)].join(", ");
     let more = if missing.len() > SHOWN { ", …" } else { "" };

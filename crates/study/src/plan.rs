@@ -179,6 +179,7 @@ impl<'a> Plan<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn shards_are_disjoint_even_and_whole() {
@@ -188,6 +189,100 @@ mod tests {
             assert!(parts.windows(2).all(|pair| pair[0].end == pair[1].start));
             let sizes = parts.iter().map(|part| part.end - part.start);
             assert!(sizes.clone().max().unwrap_or(0) - sizes.min().unwrap_or(0) <= 1);
+        }
+    }
+
+    /// 10⁹ trials of `cells` cells, with more keys of the scenario.
+    fn large(cells: u64, more: &str) -> Scenario {
+        let text = format!(
+            "question = \"?\"\nseed = 1\nreplicates = {}\n[ship.yukun]\n[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 10.0\n\
+             [recording]\nsampling-s = 1.0\nduration-s = 60.0\n[[identifier]]\nmethod.srivc = {{}}\n\
+             [[sweep]]\nkey = \"sensor.heading-noise-deg\"\nlinear = {{ from = 0.1, to = 0.2, points = {cells} }}\n{more}",
+            1_000_000_000 / cells
+        );
+        Scenario::parse(Path::new("large.toml"), "large", text, None).unwrap_or_else(|failure| panic!("{failure}"))
+    }
+
+    const SHARDS: u64 = 10_000;
+
+    fn plans<'a>(scenario: &'a Scenario, of: u64) -> impl Iterator<Item = Plan<'a>> {
+        (1..=of).map(move |number| Plan::new(scenario, Shard { number, of }))
+    }
+
+    /// Every trial belongs to one shard: shards begin where the one before ended, the first at the first trial, the last
+    /// ends with the last. Bookkeeping only, nothing is run.
+    #[test]
+    fn a_thousand_million_trials_belong_to_one_of_ten_thousand_shards_each() {
+        for cells in [2, 7, 1000] {
+            let scenario = large(cells, "");
+            let trials = cells * scenario.replicates;
+            let mut next = Task { cell: 0, replicate: 0 };
+            let mut most = Vec::new();
+            for plan in plans(&scenario, SHARDS) {
+                assert_eq!(plan.first, next);
+                assert!(plan.holds(plan.first) && !plan.holds(plan.end));
+                most.push(plan.most());
+                next = plan.end;
+            }
+            assert_eq!(next, Task { cell: cells as usize, replicate: 0 });
+            assert_eq!(most.iter().sum::<u64>(), trials);
+            assert_eq!(
+                most.iter().max().zip(most.iter().min()).map(|(most, least)| most - least),
+                Some(u64::from(!trials.is_multiple_of(SHARDS)))
+            );
+            // The same from the side of a trial, wherever it is.
+            let all: Vec<Plan> = plans(&scenario, SHARDS).collect();
+            for trial in (0..trials).step_by(10_000_019).chain([trials - 1]) {
+                let task =
+                    Task { cell: (trial / scenario.replicates) as usize, replicate: trial % scenario.replicates };
+                assert_eq!(all.iter().filter(|plan| plan.holds(task)).count(), 1, "{task:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn with_a_stopping_rule_shards_are_whole_cells() {
+        let rule = "[stop]\nfigure = \"rms-T\"\nmethod = \"srivc\"\nstandard-error = 0.05\n";
+        let scenario = large(1000, rule);
+        let mut next = Task { cell: 0, replicate: 0 };
+        let mut empty = 0;
+        for mut plan in plans(&scenario, SHARDS) {
+            assert_eq!((plan.first, plan.first.replicate, plan.end.replicate), (next, 0, 0));
+            empty += u64::from(plan.most() == 0);
+            // More shards than cells: most have nothing to do and say so.
+            assert_eq!(plan.next(10).is_empty(), plan.most() == 0);
+            next = plan.end;
+        }
+        assert_eq!((next.cell, empty), (1000, SHARDS - 1000));
+    }
+
+    /// Wherever a shard was interrupted, it goes on with the next trial and ends with its last.
+    #[test]
+    fn every_shard_goes_on_where_it_was() {
+        let scenario = large(7, "");
+        for mut plan in plans(&scenario, SHARDS) {
+            let whole = plan.most();
+            let first = plan.first;
+            let handed_out = plan.next(3);
+            assert_eq!((handed_out[0], handed_out.len() as u64, plan.left()), (first, 3, whole - 3));
+            plan.go_back_to(handed_out[1]);
+            assert_eq!(plan.left(), whole - 1);
+            let before_last = match plan.end.replicate.checked_sub(2) {
+                Some(replicate) => Task { replicate, ..plan.end },
+                None => Task { cell: plan.end.cell - 1, replicate: scenario.replicates + plan.end.replicate - 2 },
+            };
+            plan.resume_after(before_last);
+            assert_eq!((plan.left(), plan.next(100).len(), plan.left()), (1, 1, 0));
+            assert!(plan.next(1).is_empty());
+        }
+    }
+
+    /// A shell that names the folders of shards with a star names them in their order.
+    #[test]
+    fn folders_of_shards_sort_as_their_numbers() {
+        for of in [9, 10, 10_000, 99_999] {
+            let names: Vec<_> = (1..=of).map(|number| crate::run::default_folder("s", Shard { number, of })).collect();
+            assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{of}");
         }
     }
 

@@ -31,7 +31,8 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     }
 }
 
-fn default_folder(name: &str, shard: Shard) -> PathBuf {
+/// Where a scenario, or a shard of it, is stored unless another folder is named.
+pub(crate) fn default_folder(name: &str, shard: Shard) -> PathBuf {
     let whole = Path::new("results").join(name);
     match shard {
         Shard::WHOLE => whole,

@@ -165,3 +165,31 @@ fn every_column_is_documented() {
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
     }
 }
+
+/// 10⁹ trials of seven methods are 106 812 groups of rows, more than a signed number of 16 bits holds.
+#[test]
+fn a_file_may_have_more_groups_than_sixteen_bits_count() {
+    use parquet::data_type::Int64Type;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::parser::parse_message_type;
+
+    const GROUPS: i64 = 40_000;
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("groups.parquet");
+    let schema = Arc::new(parse_message_type("message rows { required int64 number; }").expect("a schema"));
+    let file = std::fs::File::create(&path).expect("a file");
+    let mut file = SerializedFileWriter::new(file, schema, Arc::default()).expect("a writer");
+    for number in 0..GROUPS {
+        let mut group = file.next_row_group().expect("one more group");
+        let mut column = group.next_column().expect("a column").expect("one column");
+        column.typed::<Int64Type>().write_batch(&[number], None, None).expect("one number");
+        column.close().expect("a column");
+        group.close().expect("a group");
+    }
+    file.close().expect("a file");
+    let file = SerializedFileReader::new(std::fs::File::open(&path).expect("a file")).expect("readable");
+    assert_eq!((file.num_row_groups() as i64, file.metadata().file_metadata().num_rows()), (GROUPS, GROUPS));
+    let last = file.get_row_iter(None).expect("rows").last().expect("a row").expect("readable");
+    assert_eq!(last.get_column_iter().next().map(|(_, field)| field.to_string()), Some((GROUPS - 1).to_string()));
+}

@@ -1,0 +1,58 @@
+//! The trials that everything is measured on.
+
+use std::sync::Arc;
+
+use ship::angle::from_deg;
+use ship::effects::{Effect, NonlinearDamping};
+use ship::{FirstOrder, Response, ResponseModel};
+use simulate::manoeuvre::ZigZagEnd;
+use simulate::sensor::YawRateSensor;
+use simulate::{Manoeuvre, Recording, Sensors, Simulation, SteeringGear, StreamKey, Vessel};
+use trial::Trial;
+
+/// K of the ship, 1/s.
+pub const K: f64 = 0.08;
+
+/// T of the ship, s.
+pub const T: f64 = 25.0;
+
+/// Time between rows, s.
+pub const PERIOD: f64 = 0.5;
+
+/// Rows of the record that methods are compared on: 600 s.
+pub const ROWS: usize = 1201;
+
+/// The key of the one trial that is identified.
+pub const KEY: StreamKey = StreamKey { seed: 1957, cell: 0, replicate: 0 };
+
+/// A 10/10 zig-zag of a first-order ship with K = 0.08 1/s and T = 25 s; rudder 2.5 deg/s, heading noise 0.1 deg, gyro noise
+/// 0.02 deg/s; `rows` rows half a second apart.
+pub fn first_order_zig_zag(rows: usize) -> Simulation {
+    let mut sensors = Sensors::default();
+    sensors.heading.noise = from_deg(0.1);
+    sensors.yaw_rate = Some(YawRateSensor { noise: from_deg(0.02), ..YawRateSensor::default() });
+    Simulation {
+        gear: SteeringGear::with_rate(from_deg(2.5)),
+        recording: Recording { period: PERIOD, duration: Some(PERIOD * (rows - 1) as f64), ..Recording::default() },
+        sensors,
+        ..Simulation::new(
+            Vessel::first_order(FirstOrder::from_indices(K, T, 0.0)),
+            Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Record),
+        )
+    }
+}
+
+/// The same trial of a ship with K = 0.1 1/s, T = 16.3 s and cubic damping.
+pub fn damped_zig_zag(rows: usize) -> Simulation {
+    let effect: Arc<dyn Effect> = Arc::new(NonlinearDamping::Cubic);
+    let ship: Response = ResponseModel::new(vec![effect]).with(vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 80.0]);
+    Simulation { vessel: Vessel::response(ship), ..first_order_zig_zag(rows) }
+}
+
+/// The record of a trial.
+///
+/// # Panics
+/// When the trial cannot be made, which none of this module does.
+pub fn record(simulation: &Simulation) -> Trial {
+    simulation.run(&KEY).expect("a regular trial").trial
+}

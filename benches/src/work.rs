@@ -1,0 +1,167 @@
+//! A piece of work, and a row: work, what stands beside it, and what is to be reached.
+
+use std::fmt;
+use std::hint::black_box;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use rayon::ThreadPool;
+
+/// What a piece of work is done on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cores {
+    /// One thread, whatever the work would like.
+    One,
+    /// As many threads as rayon takes by default.
+    All,
+}
+
+/// K (1/s) and T (s) that a work has found.
+pub type Indices = [f64; 2];
+
+/// Something that can be done again and again.
+pub struct Work {
+    /// Unique within its group; part of a path.
+    pub name: String,
+    /// What it is done on.
+    pub cores: Cores,
+    /// Units of work in one go, so that a time can be quoted per unit.
+    pub units: f64,
+    /// Whether one go takes so long that few of them have to do.
+    pub is_slow: bool,
+    /// Share by which the answer may differ from the ship, for work that has an answer.
+    pub tolerance: Option<f64>,
+    go: Box<dyn Fn() -> Option<Indices> + Send + Sync>,
+}
+
+impl Work {
+    /// Work on one core whose result is only kept from the optimiser.
+    pub fn new<R>(name: impl Into<String>, go: impl Fn() -> R + Send + Sync + 'static) -> Self {
+        let go = Box::new(move || {
+            black_box(go());
+            None
+        });
+        Self { name: name.into(), cores: Cores::One, units: 1.0, is_slow: false, tolerance: None, go }
+    }
+
+    /// Work on one core that finds K and T, at most `tolerance` (a share) from those of the ship.
+    pub fn answering(
+        name: impl Into<String>,
+        tolerance: f64,
+        go: impl Fn() -> Option<Indices> + Send + Sync + 'static,
+    ) -> Self {
+        Self { tolerance: Some(tolerance), go: Box::new(go), ..Self::new(name, || ()) }
+    }
+
+    /// The same on all cores.
+    pub fn on_all_cores(self) -> Self {
+        Self { cores: Cores::All, ..self }
+    }
+
+    /// The same, with so many units in one go.
+    pub fn of_units(self, units: usize) -> Self {
+        Self { units: units as f64, ..self }
+    }
+
+    /// The same, known to be slow.
+    pub fn slow(self) -> Self {
+        Self { is_slow: true, ..self }
+    }
+
+    /// Does it once and returns the answer.
+    pub fn answer(&self) -> Option<Indices> {
+        (self.go)()
+    }
+
+    /// Does it so often and returns the time of all goes together.
+    pub fn time(&self, goes: u64) -> Duration {
+        let all = || {
+            let start = Instant::now();
+            for _ in 0..goes {
+                black_box((self.go)());
+            }
+            start.elapsed()
+        };
+        match self.cores {
+            Cores::One => one_core().install(all),
+            Cores::All => all(),
+        }
+    }
+}
+
+impl fmt::Debug for Work {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Work").field("name", &self.name).field("cores", &self.cores).finish_non_exhaustive()
+    }
+}
+
+/// A pool of one thread, so that nothing inside can use a second one.
+fn one_core() -> &'static ThreadPool {
+    static POOL: OnceLock<ThreadPool> = OnceLock::new();
+    POOL.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one thread"))
+}
+
+/// What is to be reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reach {
+    /// At most this share of the time of what stands beside.
+    Ratio(f64),
+    /// Less than this, s per unit.
+    Time(f64),
+    /// All cores together do at least this share of cores times what one does, which stands beside.
+    Scaling(f64),
+}
+
+/// One line of a table.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// What is measured.
+    pub work: Arc<Work>,
+    /// What it is held against.
+    pub beside: Option<Arc<Work>>,
+    /// What is to be reached; `None` for work that is only shown.
+    pub reach: Option<Reach>,
+}
+
+/// Rows that belong together.
+#[derive(Debug, Clone)]
+pub struct Group {
+    /// Part of a path.
+    pub name: &'static str,
+    /// What a reader has to know to read the table.
+    pub about: &'static str,
+    /// The rows.
+    pub rows: Vec<Row>,
+}
+
+impl Group {
+    /// A group without rows.
+    pub fn new(name: &'static str, about: &'static str) -> Self {
+        Self { name, about, rows: Vec::new() }
+    }
+
+    /// Adds work with nothing beside it.
+    pub fn alone(&mut self, work: Work, reach: Option<Reach>) -> Arc<Work> {
+        let work = Arc::new(work);
+        self.rows.push(Row { work: Arc::clone(&work), beside: None, reach });
+        work
+    }
+
+    /// Adds work beside other work.
+    pub fn beside(&mut self, work: Work, beside: &Arc<Work>, reach: Option<Reach>) -> Arc<Work> {
+        let work = Arc::new(work);
+        self.rows.push(Row { work: Arc::clone(&work), beside: Some(Arc::clone(beside)), reach });
+        work
+    }
+
+    /// All work of the group, everything once.
+    pub fn works(&self) -> Vec<&Arc<Work>> {
+        let mut found: Vec<&Arc<Work>> = Vec::new();
+        for work in self.rows.iter().flat_map(|row| row.beside.iter().chain([&row.work])) {
+            if found.iter().all(|known| known.name != work.name) {
+                found.push(work);
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,49 @@
+//! All pieces of work, in groups: what is measured, what stands beside it and what is to be reached.
+
+mod identification;
+mod simulation;
+mod studies;
+mod tracing;
+
+pub use identification::{RIVAL, identification};
+pub use simulation::simulation;
+pub use studies::{scenarios, scenarios_folder, studies, throughput};
+pub use tracing::tracing;
+
+use crate::work::Group;
+
+/// Every group, in the order of reports.
+pub fn all() -> Vec<Group> {
+    vec![simulation(), identification(), tracing(), studies()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::records::{K, T};
+
+    #[test]
+    fn names_can_be_told_apart_and_be_part_of_a_path() {
+        for group in all() {
+            let mut names: Vec<&str> = group.works().iter().map(|work| work.name.as_str()).collect();
+            assert!(names.iter().all(|name| name.len() < 60 && !name.contains(['/', '"', ':', '?', '*', '|', '^'])));
+            let count = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), count, "{}", group.name);
+        }
+    }
+
+    /// Whoever is fast has to be right as well.
+    #[test]
+    fn answers_are_those_of_the_ship() {
+        for group in all() {
+            for work in group.works() {
+                let Some(tolerance) = work.tolerance else { continue };
+                let [k, t] = work.answer().unwrap_or_else(|| panic!("{} has no answer", work.name));
+                let worst = (k / K - 1.0).abs().max((t / T - 1.0).abs());
+                assert!(worst < tolerance, "{}: K {k} 1/s, T {t} s", work.name);
+            }
+        }
+    }
+}

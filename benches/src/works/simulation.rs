@@ -1,0 +1,40 @@
+//! Simulating trials.
+
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use ship::ships;
+use simulate::{Purpose, Simulation, Solver, StreamKey, Vessel};
+
+use crate::norrbin;
+use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};
+use crate::work::{Group, Reach, Work};
+
+/// The random numbers of a trial alone, from the streams that it uses: heading noise and gyro noise of every row.
+fn bare_draws(key: &StreamKey, rows: usize) -> f64 {
+    let draw = |purpose| {
+        let mut rng = key.rng(purpose);
+        (0..rows).map(|_| rng.sample::<f64, _>(StandardNormal)).sum::<f64>()
+    };
+    draw(Purpose::Heading) + draw(Purpose::YawRate)
+}
+
+/// Trials of one ship, and many ships at once.
+pub fn simulation() -> Group {
+    let mut group = Group::new(
+        "simulate",
+        "A 10/10 zig-zag of 600 s, 1201 rows, with heading and gyro noise, on one core. Beside it stand its random numbers \
+         alone (ChaCha8, standard normal): nothing with that noise can be cheaper. Norrbin ships are timed per step and ship.",
+    );
+    let draws = group.alone(Work::new("bare draws, 2 x 1201", || bare_draws(&KEY, ROWS)), None);
+    let simulated = |name: &str, simulation: Simulation| Work::new(name, move || simulation.run(&KEY));
+    let closed_form = first_order_zig_zag(ROWS);
+    let integrated = Simulation { solver: Solver::RungeKutta(0.1), ..closed_form.clone() };
+    let kvlcc2 = ships::find("kvlcc2").expect("a ship of the registry");
+    let hull = Simulation { vessel: Vessel::ship(&kvlcc2), ..closed_form.clone() };
+    group.beside(simulated("first order, closed form", closed_form), &draws, Some(Reach::Ratio(1.5)));
+    group.beside(simulated("first order, Runge-Kutta 0.1 s", integrated), &draws, None);
+    group.beside(simulated("cubic damping, Runge-Kutta", damped_zig_zag(ROWS)), &draws, None);
+    group.beside(simulated("KVLCC2", hull), &draws, None);
+    norrbin::add_rows(&mut group);
+    group
+}

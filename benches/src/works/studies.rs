@@ -1,0 +1,79 @@
+//! Studies: trials on one core and on all, resolving scenarios, drawing figures.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use report::{Figure, Theme};
+use study::collect::in_memory;
+use study::scenario::Scenario;
+use study::showcase::zigzag_figure;
+use trial::ZigZag;
+
+use crate::records::{ROWS, first_order_zig_zag, record};
+use crate::work::{Group, Reach, Work};
+
+/// Trials of one go.
+const TRIALS: u64 = 256;
+
+/// Figures that are drawn side by side.
+const FIGURES: usize = 8;
+
+/// The folder of the scenarios of the project.
+pub fn scenarios_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios")
+}
+
+/// Files of all scenarios of the project, in the order of their names.
+///
+/// # Panics
+/// When the folder the program was built in is gone.
+pub fn scenarios() -> Vec<PathBuf> {
+    let folder = std::fs::read_dir(scenarios_folder()).expect("the scenarios are in the project");
+    let mut files: Vec<PathBuf> = folder.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    files
+}
+
+/// The scenario that trials per second are measured on: 271 samples, seven methods.
+pub fn throughput() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("throughput.toml")
+}
+
+fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
+    let scenario = Scenario::read(&throughput(), None).expect("a scenario of the project");
+    let scenario = Scenario { replicates: TRIALS, ..scenario };
+    move || in_memory(&scenario).1.len()
+}
+
+fn drawing() -> Figure {
+    let trial = record(&first_order_zig_zag(ROWS));
+    let zigzag = ZigZag::of(&trial).expect("a zig-zag");
+    report::figures::zigzag_trial(&zigzag_figure(&trial, &zigzag), &Theme::screen())
+}
+
+/// Trials, scenarios and figures.
+pub fn studies() -> Group {
+    let mut group = Group::new(
+        "study",
+        "Trials are those of benches/throughput.toml: 271 samples, seven methods, rows kept in memory. The figure is a zig-zag of \
+         1201 rows with its characteristic points, 1800 pixels across (twice the pixels of a screen page).",
+    );
+    let one = group.alone(Work::new("256 trials, one core", trials()).of_units(TRIALS as usize).slow(), None);
+    let all = Work::new("256 trials, all cores", trials()).of_units(TRIALS as usize).slow().on_all_cores();
+    group.beside(all, &one, Some(Reach::Scaling(0.92)));
+    let files = scenarios();
+    let resolve = move || files.iter().filter(|file| Scenario::read(file, None).is_ok()).count();
+    group.alone(Work::new("resolve every scenario", resolve), Some(Reach::Time(0.02)));
+    let figure = Arc::new(drawing());
+    let drawn = Arc::clone(&figure);
+    let one = group.alone(
+        Work::new("one PNG at 2x", move || drawn.png().expect("a small figure")).slow(),
+        Some(Reach::Time(0.12)),
+    );
+    let many = move || (0..FIGURES).into_par_iter().map(|_| figure.png().expect("a small figure").len()).sum::<usize>();
+    let many = Work::new("eight PNGs at 2x, all cores, each", many).of_units(FIGURES).slow().on_all_cores();
+    group.beside(many, &one, None);
+    group
+}
