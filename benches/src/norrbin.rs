@@ -3,6 +3,7 @@
 #![expect(non_snake_case, reason = "K_over_T is a ratio of two indices")]
 
 use ship::angle::from_deg;
+use simulate::batch::{Batch, Norrbin};
 
 use crate::records::{K, PERIOD, ROWS, T};
 use crate::work::{Group, Reach, Work};
@@ -22,23 +23,17 @@ pub const RUDDER_RATE_DEG_S: f64 = 2.5;
 /// Time a batch may take, s per step and ship.
 const REACH: f64 = 3e-9;
 
-/// A ship with cubic damping.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Norrbin {
-    /// 1/T, 1/s.
-    pub inverse_T: f64,
-    /// K/T, 1/s².
-    pub K_over_T: f64,
-    /// n₃/T, s/rad².
-    pub cubic: f64,
-}
-
 /// Ships around the one of [`crate::records`], no two alike, so that executes come at different times.
 pub fn ships(count: usize) -> Vec<Norrbin> {
     let ship = |number: usize| {
         let share = number as f64 / count as f64 - 0.5;
         let inverse_T = 1.0 / (T * (1.0 + 0.4 * share));
-        Norrbin { inverse_T, K_over_T: K * (1.0 - 0.3 * share) * inverse_T, cubic: 40.0 * (1.0 + share) }
+        Norrbin {
+            inverse_T,
+            K_over_T: K * (1.0 - 0.3 * share) * inverse_T,
+            cubic: 40.0 * (1.0 + share),
+            rudder_bias: 0.0,
+        }
     };
     (0..count).map(ship).collect()
 }
@@ -77,14 +72,16 @@ pub fn add_rows(group: &mut Group) {
         fleet.iter().map(|ship| heading_after(ship, STEPS, PERIOD)).sum::<f64>()
     });
     let scalar = group.alone(scalar.of_units(SHIPS * STEPS), None);
-    if let Some(batch) = batch() {
-        group.beside(batch.of_units(SHIPS * STEPS), &scalar, Some(Reach::Time(REACH)));
-    }
+    let fleet = ships(SHIPS);
+    let batch = Work::new(format!("Norrbin, batch of {SHIPS}"), move || zig_zag(PERIOD).run(&fleet));
+    group.beside(batch.of_units(SHIPS * STEPS), &scalar, Some(Reach::Time(REACH)));
 }
 
-/// The same ships and steps by the batch of the simulator, [`SHIPS`] lanes at once; `None` as long as it has none.
-fn batch() -> Option<Work> {
-    None
+/// The same zig-zag for the batch of the simulator, every step kept.
+fn zig_zag(step: f64) -> Batch {
+    let angle = from_deg(ANGLE_DEG);
+    let rate = from_deg(RUDDER_RATE_DEG_S);
+    Batch { rudder: angle, heading: angle, rate, step, steps: STEPS, steps_per_row: 1 }
 }
 
 #[cfg(test)]
@@ -95,6 +92,17 @@ mod tests {
     use ship::{Response, ResponseModel};
     use simulate::{Simulation, Vessel};
     use std::sync::Arc;
+
+    /// The batch does what one ship after the other does.
+    #[test]
+    fn agrees_with_the_batch() {
+        let fleet = ships(SHIPS);
+        let batched = zig_zag(PERIOD).run(&fleet).expect("a valid batch");
+        for (number, ship) in fleet.iter().enumerate() {
+            let heading = batched.rows(number).expect("finite").last().expect("rows").heading;
+            assert!((heading - heading_after(ship, STEPS, PERIOD)).abs() < 1e-9, "ship {number}");
+        }
+    }
 
     /// The plain integration is the ship of the simulator: where no execute falls between two steps the headings agree.
     #[test]

@@ -3,19 +3,18 @@
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::ships;
-use simulate::{Purpose, Simulation, Solver, StreamKey, Vessel};
+use simulate::{Prepared, Purpose, Simulation, Solver, StreamKey, Vessel};
 
 use crate::norrbin;
 use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};
 use crate::work::{Group, Reach, Work};
 
 /// The random numbers of a trial alone, from the streams that it uses: heading noise and gyro noise of every row.
-fn bare_draws(key: &StreamKey, rows: usize) -> f64 {
-    let draw = |purpose| {
+fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
+    [Purpose::Heading, Purpose::YawRate].map(|purpose| {
         let mut rng = key.rng(purpose);
-        (0..rows).map(|_| rng.sample::<f64, _>(StandardNormal)).sum::<f64>()
-    };
-    draw(Purpose::Heading) + draw(Purpose::YawRate)
+        (0..rows).map(|_| rng.sample(StandardNormal)).collect()
+    })
 }
 
 /// Trials of one ship, and many ships at once.
@@ -23,7 +22,9 @@ pub fn simulation() -> Group {
     let mut group = Group::new(
         "simulate",
         "A 10/10 zig-zag of 600 s, 1201 rows, with heading and gyro noise, on one core. Beside it stand its random numbers \
-         alone (ChaCha8, standard normal): nothing with that noise can be cheaper. Norrbin ships are timed per step and ship.",
+         alone (ChaCha8, standard normal): nothing with that noise can be cheaper. A trial of a study shares the motion of its ship \
+         with the other trials of its cell, where chance moves nothing but the instruments; a trial on its own makes it anew, \
+         and so do all others. Norrbin ships are timed per step and ship.",
     );
     let draws = group.alone(Work::new("bare draws, 2 x 1201", || bare_draws(&KEY, ROWS)), None);
     let simulated = |name: &str, simulation: Simulation| Work::new(name, move || simulation.run(&KEY));
@@ -31,7 +32,10 @@ pub fn simulation() -> Group {
     let integrated = Simulation { solver: Solver::RungeKutta(0.1), ..closed_form.clone() };
     let kvlcc2 = ships::find("kvlcc2").expect("a ship of the registry");
     let hull = Simulation { vessel: Vessel::ship(&kvlcc2), ..closed_form.clone() };
-    group.beside(simulated("first order, closed form", closed_form), &draws, Some(Reach::Ratio(1.5)));
+    let prepared = Prepared::new(closed_form.clone()).expect("a zig-zag");
+    let of_a_study = Work::new("first order, trial of a study", move || prepared.run(&KEY));
+    group.beside(of_a_study, &draws, Some(Reach::Ratio(1.5)));
+    group.beside(simulated("first order, on its own", closed_form), &draws, None);
     group.beside(simulated("first order, Runge-Kutta 0.1 s", integrated), &draws, None);
     group.beside(simulated("cubic damping, Runge-Kutta", damped_zig_zag(ROWS)), &draws, None);
     group.beside(simulated("KVLCC2", hull), &draws, None);
