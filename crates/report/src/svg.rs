@@ -120,7 +120,8 @@ fn finish(drawn: &str, canvas: (u32, u32), width: f64, height: f64) -> String {
 /// Adds the line of an element, or of a text; an element has either a fill or a stroke.
 fn push_element(svg: &mut String, line: &str) {
     let split = line.starts_with('<').then(|| line.split_once(BACKEND_OPACITY)).flatten();
-    let Some((before, (opacity, after))) = split.and_then(|(before, rest)| Some((before, rest.split_once('"')?))) else {
+    let Some((before, (opacity, after))) = split.and_then(|(before, rest)| Some((before, rest.split_once('"')?)))
+    else {
         return svg.push_str(line);
     };
     svg.push_str(before);
