@@ -66,15 +66,16 @@ impl Figure {
 
     fn encode(&self, pixmap: &Pixmap) -> Result<Vec<u8>, ReportError> {
         // The page is opaque, so the alpha channel says nothing and the colours are not premultiplied.
-        let mut rgb = Vec::with_capacity(pixmap.data().len() / 4 * 3);
-        for pixel in pixmap.data().chunks_exact(4) {
-            rgb.extend_from_slice(&pixel[..3]);
+        let mut rgb = vec![0; pixmap.data().len() / 4 * 3];
+        for (three, pixel) in rgb.chunks_exact_mut(3).zip(pixmap.data().chunks_exact(4)) {
+            three.copy_from_slice(&pixel[..3]);
         }
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Balanced);
+        // Level 6 packs a fifteenth smaller and takes twice as long.
+        encoder.set_deflate_compression(png::DeflateCompression::Level(4));
         // Flat areas and thin lines pack better unfiltered: measured a fifth smaller and faster than adaptive filtering.
         encoder.set_filter(png::Filter::NoFilter);
         let per_metre = (self.dpi / METRES_PER_INCH).round() as u32;

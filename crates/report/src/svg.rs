@@ -17,6 +17,9 @@ pub(crate) const UNITS: f64 = 20.0;
 const BACKEND_FONT_FACTOR: f64 = 1.24;
 /// The SVG backend shifts the base line by this; removed, because viewers disagree on the size of an ex.
 const BACKEND_SHIFT: &str = " dy=\"-0.5ex\"";
+/// The SVG backend writes the opacity of a whole element, which a rasteriser answers with a layer of its own, slow for a
+/// cloud of points.
+const BACKEND_OPACITY: &str = " opacity=\"";
 const INFALLIBLE: &str = "writing into a string cannot fail";
 
 /// The scene as an SVG document of `width` x `height` points.
@@ -86,7 +89,8 @@ fn draw_text(backend: &mut SVGBackend<'_>, at: (i32, i32), text: &Text) {
     backend.draw_text(&clean, &style, at).expect(INFALLIBLE);
 }
 
-/// Gives the document its size on the page and round joins, and turns the marks around italic type into markup.
+/// Gives the document its size on the page and round joins, makes the opacity that of the ink, and turns the marks around
+/// italic type into markup.
 fn finish(drawn: &str, canvas: (u32, u32), width: f64, height: f64) -> String {
     let body = drawn.split_once('>').map_or("", |(_, body)| body).replace(BACKEND_SHIFT, "");
     let mut svg = format!(
@@ -107,10 +111,25 @@ fn finish(drawn: &str, canvas: (u32, u32), width: f64, height: f64) -> String {
             }
             svg.push('\n');
         } else {
-            svg.push_str(line);
+            push_element(&mut svg, line);
         }
     }
     svg
+}
+
+/// Adds the line of an element, or of a text; an element has either a fill or a stroke.
+fn push_element(svg: &mut String, line: &str) {
+    let split = line.starts_with('<').then(|| line.split_once(BACKEND_OPACITY)).flatten();
+    let Some((before, (opacity, after))) = split.and_then(|(before, rest)| Some((before, rest.split_once('"')?)))
+    else {
+        return svg.push_str(line);
+    };
+    svg.push_str(before);
+    if opacity != "1" {
+        let ink = if line.starts_with("<polyline") { "stroke" } else { "fill" };
+        svg.extend([" ", ink, "-opacity=\"", opacity, "\""]);
+    }
+    svg.push_str(after);
 }
 
 #[cfg(test)]
@@ -134,6 +153,22 @@ mod tests {
         assert!(svg.contains("stroke-width=\"10\""), "0.5 points at 20 units");
         assert!(svg.matches("<polyline").count() > 15, "dashes");
         assert!(svg.trim_end().ends_with("</svg>"));
+    }
+
+    #[test]
+    fn opacity_is_that_of_the_ink() {
+        let mut scene = Scene::default();
+        scene.disc(Layer::Data, (5.0, 5.0), 1.0, INK, 0.45);
+        scene.fill(Layer::Data, [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], INK, 0.85);
+        scene.line(Layer::Data, [(0.0, 0.0), (9.0, 9.0)], Stroke { opacity: 0.55, ..Stroke::solid(INK, 0.5) });
+        scene.text(Layer::Note, (0.0, 9.0), Text::new("a opacity=\"0.3\" b", 8.0));
+        let svg = render(&scene, 10.0, 10.0);
+        let line = |tag: &str| svg.lines().rfind(|line| line.starts_with(tag)).unwrap_or_default();
+        assert!(line("<circle").contains(" fill-opacity=\"0.45\" fill=\"#"), "{svg}");
+        assert!(line("<polygon").contains(" fill-opacity=\"0.85\" fill=\"#"), "{svg}");
+        assert!(line("<polyline").contains(" stroke-opacity=\"0.55\" stroke=\"#"), "{svg}");
+        assert!(!svg.contains(" opacity=\""), "opaque by default, and never that of an element: {svg}");
+        assert!(svg.contains("a opacity=&quot;0.3&quot; b\n"), "text is left alone: {svg}");
     }
 
     #[test]

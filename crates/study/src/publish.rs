@@ -9,6 +9,7 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write as _};
 use std::path::Path;
 
+use rayon::prelude::*;
 use report::{Table, number};
 
 use crate::cli::{Common, Format, Style};
@@ -49,14 +50,14 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
         let path = folder.join(name);
         fs::write(&path, text).on("write", &path)
     };
-    let brief = present::summary_in_brief(&summary, design);
-    if is_readable(design) {
+    let brief = is_readable(design).then(|| present::summary_in_brief(&summary, design));
+    if let Some(brief) = &brief {
         write("summary.md", brief.to_markdown())?;
         write("summary.tex", brief.to_latex())?;
     }
     let drawings = drawings::of(&stored, &summary);
     write_all(&drawings, &theme, folder)?;
-    write("report.md", page(&stored, &summary, &brief, &drawings))?;
+    write("report.md", page(&stored, &summary, brief.as_ref(), &drawings))?;
 
     match common.format {
         _ if common.quiet => Ok(()),
@@ -65,7 +66,10 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
         }
         // Another program reads the table: nothing else may stand beside it.
         Format::Csv => screen::say(fs::read_to_string(&table).on("read", &table)?.trim_end()),
-        format => screen::say(present::render(&brief, format).trim_end()),
+        format => {
+            let brief = brief.unwrap_or_else(|| present::summary_in_brief(&summary, design));
+            screen::say(present::render(&brief, format).trim_end())
+        }
     }
 }
 
@@ -77,15 +81,19 @@ fn is_readable(design: &Design) -> bool {
 }
 
 /// Lines that are turned into text at a time.
-const PIECE: usize = 1000;
+const PIECE: usize = 250;
 
-/// Writes a long table as CSV, a piece at a time.
-fn write_csv<T>(path: &Path, lines: &[T], table: impl Fn(&[T]) -> Table) -> Result<(), Failure> {
+/// Pieces that are made in parallel.
+const PIECES: usize = 16;
+
+/// Writes a long table as CSV, some pieces at a time.
+fn write_csv<T: Sync>(path: &Path, lines: &[T], table: impl Fn(&[T]) -> Table + Sync) -> Result<(), Failure> {
     let mut file = BufWriter::new(File::create(path).on("create", path)?);
     let head = table(&[]).to_csv();
     file.write_all(head.as_bytes()).on("write", path)?;
-    for piece in lines.chunks(PIECE) {
-        file.write_all(&table(piece).to_csv().as_bytes()[head.len()..]).on("write", path)?;
+    for pieces in lines.chunks(PIECE * PIECES) {
+        let texts: Vec<String> = pieces.par_chunks(PIECE).map(|piece| table(piece).to_csv()).collect();
+        texts.iter().try_for_each(|text| file.write_all(&text.as_bytes()[head.len()..])).on("write", path)?;
     }
     file.flush().on("write", path)
 }
@@ -119,7 +127,9 @@ fn on_screen(stored: &Stored, summary: &Summary) -> String {
 }
 
 /// `report.md`.
-fn page(stored: &Stored, summary: &Summary, brief: &Table, drawings: &[Drawing]) -> String {
+///
+/// `brief` holds the cells one by one, where a person may read them all.
+fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings: &[Drawing]) -> String {
     let Stored { manifest, design, showcases, timings, .. } = stored;
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
@@ -160,10 +170,9 @@ fn page(stored: &Stored, summary: &Summary, brief: &Table, drawings: &[Drawing])
         line(&present::overall(summary, design).to_markdown());
         line("### Cell by cell\n");
     }
-    if is_readable(design) {
-        line(&brief.to_markdown());
-    } else {
-        line(&format!("The {} cells are in `summary.csv`.\n", design.cells.len()));
+    match brief {
+        Some(brief) => line(&brief.to_markdown()),
+        None => line(&format!("The {} cells are in `summary.csv`.\n", design.cells.len())),
     }
     line(
         "Errors of K and T are relative to the truth. *median*, *rms*: median and root mean square error, with a bootstrap \

@@ -209,9 +209,14 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
     drawings
 }
 
-/// Draws and writes all of them, in parallel.
+/// Draws and writes all of them, in parallel. Fails with the first in their order that cannot be written.
 pub fn write_all(drawings: &[Drawing], theme: &Theme, folder: &Path) -> Result<(), Failure> {
-    drawings.par_iter().try_for_each(|drawing| write_figure(&(drawing.draw)(theme), folder, &drawing.stem))
+    first_failure(drawings.par_iter().map(|drawing| write_figure(&(drawing.draw)(theme), folder, &drawing.stem)))
+}
+
+/// Does all of it in parallel and fails with the first failure in order, whichever came first in time.
+pub fn first_failure(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
+    work.collect::<Vec<_>>().into_iter().collect()
 }
 
 /// Writes SVG and PNG of a figure.
@@ -235,6 +240,20 @@ pub fn slug(title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_first_failure_in_order_is_told() {
+        let work = (0..64).into_par_iter().map(|k| match k {
+            // The earlier it is in order, the later it comes.
+            8.. => Err(Failure::work(format!("figure {k}"))),
+            7 => {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                Err(Failure::work("figure 7".to_owned()))
+            }
+            _ => Ok(()),
+        });
+        assert_eq!(first_failure(work).map_err(|failure| failure.message), Err("error: figure 7".to_owned()));
+    }
 
     #[test]
     fn no_figure_overwrites_another() {

@@ -6,11 +6,9 @@ use rand_distr::{Distribution as _, Normal, Uniform};
 use serde::Deserialize;
 use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
-use toml::Value;
 
 use super::part::Part;
 use super::problem::{KeyPath, Mark, Problem};
-use super::sweep::Setting;
 
 /// A draw as it is written.
 #[derive(Debug, Clone, Deserialize)]
@@ -178,11 +176,15 @@ impl Draw {
         }
     }
 
-    /// Values to try before anything is run: the middle of the distribution, and the ends of its range where it has any.
-    pub fn extremes(&self) -> Vec<f64> {
+    /// The middle of the distribution, within its range.
+    pub fn middle(&self) -> f64 {
         let [low, high] = self.between;
-        let ends = self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite());
-        std::iter::once(self.shape.middle().clamp(low, high)).chain(ends).collect()
+        self.shape.middle().clamp(low, high)
+    }
+
+    /// The ends of its range, where it has any.
+    pub fn ends(&self) -> impl Iterator<Item = f64> {
+        self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite())
     }
 
     /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution; `cell`
@@ -199,16 +201,6 @@ impl Draw {
 
     fn key_place(&self) -> KeyPath {
         KeyPath::dotted("draw").child(self.index).child("key")
-    }
-
-    /// The key set to a value.
-    pub fn setting(&self, value: f64) -> Setting {
-        Setting {
-            key: self.key.clone(),
-            value: Value::Float(value),
-            key_place: self.key_place(),
-            value_place: self.place.clone(),
-        }
     }
 
     /// Probability of a value within the range.

@@ -36,6 +36,7 @@ use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
 use part::Part;
 use problem::{KeyPath, Problem, suggestion};
+use reader::Gaps;
 pub use resolve::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
 use sweep::Axis;
@@ -99,8 +100,10 @@ pub struct Cell {
 /// What a trial with drawn values is made from.
 struct Drawn {
     draws: Vec<Draw>,
-    /// The document of the cell, as far as it says how a trial is made.
+    /// The document of the cell, as far as it says how a trial is made, with every drawn value in the middle.
     document: Table,
+    /// Where the drawn values stand in it.
+    gaps: Gaps,
     folder: PathBuf,
 }
 
@@ -167,43 +170,46 @@ impl Drawn {
         if draws.is_empty() {
             return Ok(None);
         }
-        let drawn = Self { draws: draws.to_vec(), document: trial_of(document), folder: folder.to_owned() };
-        let middle: Vec<f64> = draws.iter().map(|draw| draw.extremes()[0]).collect();
         let blamed = |index: usize, problem: Problem| {
             let of_key = draws.iter().position(|draw| draw.key.meets(&problem.key));
             (of_key.unwrap_or(index), problem)
         };
+        let middle: Vec<f64> = draws.iter().map(Draw::middle).collect();
+        let mut document = only(document, &[Part::Trial]);
+        for (draw, &value) in draws.iter().zip(&middle) {
+            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
+        }
+        let gaps = Gaps::new(draws.iter().map(|draw| &draw.key));
+        let drawn = Self { draws: draws.to_vec(), document, gaps, folder: folder.to_owned() };
+        let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
         for (index, draw) in draws.iter().enumerate() {
-            for value in draw.extremes() {
+            for value in draw.ends() {
                 let mut values = middle.clone();
                 values[index] = value;
                 drawn.specification(&values).map_err(|problem| blamed(index, problem))?;
             }
         }
-        let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
         Ok(Some((drawn, specification)))
     }
 
+    /// The specification with these values; what they do not touch is as it is in the middle.
     fn specification(&self, values: &[f64]) -> Result<Specification, Problem> {
-        let mut document = self.document.clone();
-        for (draw, &value) in self.draws.iter().zip(values) {
-            sweep::set(&mut document, &draw.setting(value))?;
-        }
-        resolve::specification(&reader::document(&document)?, &self.folder)
+        let values: Vec<Value> = values.iter().copied().map(Value::Float).collect();
+        resolve::specification(&reader::filled(&self.document, &self.gaps, &values)?, &self.folder)
     }
 }
 
-/// The parts of a document that say how a trial is made, and empty ones where a document needs more.
-fn trial_of(document: &Table) -> Table {
-    let mut trial: Table = document
-        .iter()
-        .filter(|(key, _)| Part::of(key) == Part::Trial)
-        .map(|(key, value)| (key.clone(), value.clone()))
-        .collect();
-    trial.insert("question".into(), Value::String(String::new()));
-    trial.insert("seed".into(), Value::Integer(0));
-    trial.insert("identifier".into(), Value::Array(Vec::new()));
-    trial
+/// Some parts of a document, and empty ones where a document needs more.
+fn only(document: &Table, parts: &[Part]) -> Table {
+    let empty = [
+        ("question", Value::String(String::new())),
+        ("seed", Value::Integer(0)),
+        ("identifier", Value::Array(Vec::new())),
+    ];
+    let mut some: Table = empty.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    let kept = document.iter().filter(|(key, _)| parts.contains(&Part::of(key)));
+    some.extend(kept.map(|(key, value)| (key.clone(), value.clone())));
+    some
 }
 
 /// Values of other authors, shown beside the results.
@@ -297,9 +303,10 @@ impl Scenario {
         let combinations = sweep::product(&axes).map_err(&fail)?;
         check_size(wire.replicates, combinations.len()).map_err(&fail)?;
         check_draws(&wire.draw, &axes).map_err(&fail)?;
+        let of_cells = only(&document, &[Part::Trial, Part::Cell]);
         let cells: Vec<Cell> = combinations
             .iter()
-            .map(|points| swept(&document, points, &methods, &folder))
+            .map(|points| swept(&of_cells, points, &methods, &folder))
             .map(|cell| cell.map(|cell| cell.named(name)))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
@@ -427,7 +434,8 @@ fn sha256_of(design: &Table, folder: &Path) -> String {
     hex(&digest.finalize())
 }
 
-/// One cell of the design: the document with the keys of its points changed, resolved like any scenario.
+/// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved like
+/// any scenario.
 fn swept(document: &Table, points: &[&sweep::Point], base: &[Method], folder: &Path) -> Result<Cell, Problem> {
     let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     let settings = || points.iter().flat_map(|point| &point.set);
@@ -442,7 +450,7 @@ fn swept(document: &Table, points: &[&sweep::Point], base: &[Method], folder: &P
     };
     let mut changed = document.clone();
     for setting in settings() {
-        sweep::set(&mut changed, setting).map_err(blame)?;
+        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(blame)?;
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
     let specification = resolve::specification(&wire, folder).map_err(blame)?;

@@ -14,17 +14,104 @@ use super::problem::{KeyPath, Mark, Problem, listed, suggestion};
 ///
 /// Fails with the key, what was found and what was expected.
 pub fn document<'de, T: Deserialize<'de>>(table: &'de Table) -> Result<T, Problem> {
-    self::table(table, &KeyPath::default())
+    read(table, &KeyPath::default(), None)
+}
+
+/// Reads a whole document with `values` at the keys of `gaps`, as if they stood in it.
+///
+/// Fails like [`document`].
+pub fn filled<'de, T: Deserialize<'de>>(table: &'de Table, gaps: &Gaps, values: &'de [Value]) -> Result<T, Problem> {
+    read(table, &KeyPath::default(), Some(Filling { gaps, values }))
 }
 
 /// Reads the table at `key`.
 pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, Problem> {
-    T::deserialize(Reader { node: Node::Table(table), key: key.clone() }).map_err(|error| error.at(key).into())
+    read(table, key, None)
+}
+
+fn read<'de, T: Deserialize<'de>>(
+    table: &'de Table,
+    key: &KeyPath,
+    filling: Option<Filling<'de, '_>>,
+) -> Result<T, Problem> {
+    let place = Place::Root(key);
+    T::deserialize(Reader { node: Node::Table(table), place, filling }).map_err(|error| error.at(&place).into())
+}
+
+/// Keys of a document whose values are given when it is read, as a tree of names. The document has to have them.
+#[derive(Debug, Clone, Default)]
+pub struct Gaps(Vec<(String, Gap)>);
+
+#[derive(Debug, Clone)]
+enum Gap {
+    /// The place of the value among those given.
+    Value(usize),
+    Below(Gaps),
+}
+
+impl Gaps {
+    /// Gaps at these keys, none of which leads to another.
+    pub fn new<'a>(keys: impl IntoIterator<Item = &'a KeyPath>) -> Self {
+        let mut gaps = Self::default();
+        keys.into_iter().enumerate().for_each(|(index, key)| gaps.add(key.parts(), index));
+        gaps
+    }
+
+    fn add(&mut self, parts: &[String], index: usize) {
+        match parts {
+            [] => {}
+            [name] => self.0.push((name.clone(), Gap::Value(index))),
+            [name, rest @ ..] => match self.0.iter_mut().find(|(known, _)| known == name) {
+                Some((_, Gap::Below(below))) => below.add(rest, index),
+                _ => {
+                    let mut below = Self::default();
+                    below.add(rest, index);
+                    self.0.push((name.clone(), Gap::Below(below)));
+                }
+            },
+        }
+    }
+}
+
+/// What is given for the gaps below a node.
+#[derive(Clone, Copy)]
+struct Filling<'de, 'a> {
+    gaps: &'a Gaps,
+    values: &'de [Value],
+}
+
+impl<'de, 'a> Filling<'de, 'a> {
+    /// The value of a node one step below, and what is given for the gaps below that.
+    fn below(self, value: &'de Value, is_it: impl Fn(&str) -> bool) -> (&'de Value, Option<Self>) {
+        match self.gaps.0.iter().find(|(name, _)| is_it(name)) {
+            Some((_, Gap::Value(index))) => (&self.values[*index], None),
+            Some((_, Gap::Below(gaps))) => (value, Some(Self { gaps, ..self })),
+            None => (value, None),
+        }
+    }
 }
 
 /// The problem of a table that lacks a key.
 pub fn missing(table: &KeyPath, name: &'static str) -> Problem {
-    Error::new(table, Fault::MissingKey { name }).into()
+    Error::new(&Place::Root(table), Fault::MissingKey { name }).into()
+}
+
+/// Where a node stands: a chain through the nodes above it, put together only when there is a fault to tell.
+#[derive(Debug, Clone, Copy)]
+enum Place<'a> {
+    Root(&'a KeyPath),
+    Name(&'a Place<'a>, &'a str),
+    Index(&'a Place<'a>, usize),
+}
+
+impl Place<'_> {
+    fn path(&self) -> KeyPath {
+        match self {
+            Self::Root(key) => (*key).clone(),
+            Self::Name(above, name) => above.path().child(name),
+            Self::Index(above, index) => above.path().child(index),
+        }
+    }
 }
 
 /// What is wrong, before it is put into words.
@@ -47,13 +134,13 @@ struct Error {
 }
 
 impl Error {
-    fn new(key: &KeyPath, fault: Fault) -> Self {
-        Self { key: Some(key.clone()), fault }
+    fn new(place: &Place, fault: Fault) -> Self {
+        Self { key: Some(place.path()), fault }
     }
 
-    /// The same error at `key`, unless a more precise key is known.
-    fn at(self, key: &KeyPath) -> Self {
-        Self { key: Some(self.key.unwrap_or_else(|| key.clone())), ..self }
+    /// The same error at `place`, unless a more precise one is known.
+    fn at(self, place: &Place) -> Self {
+        Self { key: Some(self.key.unwrap_or_else(|| place.path())), ..self }
     }
 }
 
@@ -162,12 +249,24 @@ enum Node<'de> {
     Value(&'de Value),
 }
 
-struct Reader<'de> {
+struct Reader<'de, 'a> {
     node: Node<'de>,
-    key: KeyPath,
+    place: Place<'a>,
+    filling: Option<Filling<'de, 'a>>,
 }
 
-impl<'de> Reader<'de> {
+impl<'de, 'a> Reader<'de, 'a> {
+    /// The reader of a value at `place`, one step below the node with this filling.
+    fn below(
+        value: &'de Value,
+        place: Place<'a>,
+        filling: Option<Filling<'de, 'a>>,
+        is_it: impl Fn(&str) -> bool,
+    ) -> Self {
+        let (value, filling) = filling.map_or((value, None), |filling| filling.below(value, is_it));
+        Self { node: Node::Value(value), place, filling }
+    }
+
     fn table(&self) -> Option<&'de Table> {
         match self.node {
             Node::Table(table) => Some(table),
@@ -183,13 +282,13 @@ impl<'de> Reader<'de> {
     }
 
     fn refuse(&self, expected: &'static str) -> Error {
-        Error::new(&self.key, Fault::Type { found: self.value().map_or("a table".into(), described), expected })
+        Error::new(&self.place, Fault::Type { found: self.value().map_or("a table".into(), described), expected })
     }
 
     fn read_table<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
         let Some(table) = self.table() else { return Err(self.refuse(A_TABLE)) };
-        let entries = Entries { rest: table.iter(), value: None, key: &self.key };
-        visitor.visit_map(entries).map_err(|error| error.at(&self.key))
+        let entries = Entries { rest: table.iter(), value: None, place: &self.place, filling: self.filling };
+        visitor.visit_map(entries).map_err(|error| error.at(&self.place))
     }
 
     fn whole_number(&self) -> Result<u64, Error> {
@@ -213,7 +312,7 @@ fn described(value: &Value) -> String {
     }
 }
 
-impl<'de> Deserializer<'de> for Reader<'de> {
+impl<'de> Deserializer<'de> for Reader<'de, '_> {
     type Error = Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
@@ -237,7 +336,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 
     fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_u64(self.whole_number()?).map_err(|error: Error| error.at(&self.key))
+        visitor.visit_u64(self.whole_number()?).map_err(|error: Error| error.at(&self.place))
     }
 
     fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
@@ -270,7 +369,8 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         let Some(items) = self.value().and_then(Value::as_array) else {
             return Err(self.refuse(A_LIST));
         };
-        visitor.visit_seq(Items { rest: items.iter().enumerate(), key: &self.key }).map_err(|error| error.at(&self.key))
+        let entries = Items { rest: items.iter().enumerate(), place: &self.place, filling: self.filling };
+        visitor.visit_seq(entries).map_err(|error| error.at(&self.place))
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
@@ -297,15 +397,16 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         visitor: V,
     ) -> Result<V::Value, Error> {
         if let Some(name) = self.value().and_then(Value::as_str) {
-            return visitor.visit_enum(Choice { name, settings: None, key: self.key.clone() });
+            return visitor.visit_enum(Choice { name, settings: None, place: self.place, filling: None });
         }
         let Some(table) = self.table() else { return Err(self.refuse("a name, with its settings below it")) };
         let mut entries = table.iter();
         match (entries.next(), entries.next()) {
             (Some((name, settings)), None) => {
-                visitor.visit_enum(Choice { name, settings: Some(settings), key: self.key.child(name) })
+                let place = Place::Name(&self.place, name);
+                visitor.visit_enum(Choice { name, settings: Some(settings), place, filling: self.filling })
             }
-            _ => Err(Error::new(&self.key, Fault::NotOneName { found: table.keys().cloned().collect(), known })),
+            _ => Err(Error::new(&self.place, Fault::NotOneName { found: table.keys().cloned().collect(), known })),
         }
     }
 
@@ -318,7 +419,8 @@ impl<'de> Deserializer<'de> for Reader<'de> {
 struct Entries<'de, 'a> {
     rest: toml::map::Iter<'de, String, Value>,
     value: Option<(&'de str, &'de Value)>,
-    key: &'a KeyPath,
+    place: &'a Place<'a>,
+    filling: Option<Filling<'de, 'a>>,
 }
 
 impl<'de> MapAccess<'de> for Entries<'de, '_> {
@@ -327,21 +429,23 @@ impl<'de> MapAccess<'de> for Entries<'de, '_> {
     fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
         let Some((name, value)) = self.rest.next() else { return Ok(None) };
         self.value = Some((name, value));
-        let name = seed.deserialize(StrDeserializer::new(name)).map_err(|error: Error| error.at(self.key))?;
+        let name = seed.deserialize(StrDeserializer::new(name)).map_err(|error: Error| error.at(self.place))?;
         Ok(Some(name))
     }
 
     fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, Error> {
         let (name, value) = self.value.take().expect("serde asks for a value after its key");
-        let key = self.key.child(name);
-        seed.deserialize(Reader { node: Node::Value(value), key: key.clone() }).map_err(|error| error.at(&key))
+        let place = Place::Name(self.place, name);
+        let reader = Reader::below(value, place, self.filling, |gap| gap == name);
+        seed.deserialize(reader).map_err(|error| error.at(&place))
     }
 }
 
 /// The entries of a list.
 struct Items<'de, 'a> {
     rest: std::iter::Enumerate<std::slice::Iter<'de, Value>>,
-    key: &'a KeyPath,
+    place: &'a Place<'a>,
+    filling: Option<Filling<'de, 'a>>,
 }
 
 impl<'de> SeqAccess<'de> for Items<'de, '_> {
@@ -349,21 +453,22 @@ impl<'de> SeqAccess<'de> for Items<'de, '_> {
 
     fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
         let Some((index, value)) = self.rest.next() else { return Ok(None) };
-        let key = self.key.child(index);
-        seed.deserialize(Reader { node: Node::Value(value), key: key.clone() })
-            .map(Some)
-            .map_err(|error| error.at(&key))
+        let place = Place::Index(self.place, index);
+        let reader = Reader::below(value, place, self.filling, |gap| gap.parse() == Ok(index));
+        seed.deserialize(reader).map(Some).map_err(|error| error.at(&place))
     }
 }
 
 /// One of several names, with its settings where it is written as a key.
-struct Choice<'de> {
+struct Choice<'de, 'a> {
     name: &'de str,
     settings: Option<&'de Value>,
-    key: KeyPath,
+    place: Place<'a>,
+    /// Of the node that names it.
+    filling: Option<Filling<'de, 'a>>,
 }
 
-impl<'de> EnumAccess<'de> for Choice<'de> {
+impl<'de> EnumAccess<'de> for Choice<'de, '_> {
     type Error = Error;
     type Variant = Self;
 
@@ -372,38 +477,38 @@ impl<'de> EnumAccess<'de> for Choice<'de> {
             Ok(variant) => Ok((variant, self)),
             Err(Error { fault: Fault::UnknownName { name, known, .. }, .. }) => {
                 let mark = if self.settings.is_some() { Mark::Name } else { Mark::Value };
-                Err(Error::new(&self.key, Fault::UnknownName { name, known, mark }))
+                Err(Error::new(&self.place, Fault::UnknownName { name, known, mark }))
             }
-            Err(error) => Err(error.at(&self.key)),
+            Err(error) => Err(error.at(&self.place)),
         }
     }
 }
 
-impl<'de> Choice<'de> {
-    fn reader(self) -> Result<Reader<'de>, Error> {
+impl<'de, 'a> Choice<'de, 'a> {
+    fn reader(self) -> Result<Reader<'de, 'a>, Error> {
         match self.settings {
-            Some(value) => Ok(Reader { node: Node::Value(value), key: self.key }),
-            None => Err(Error::new(&self.key, Fault::NoSettings { name: self.name.to_owned() })),
+            Some(value) => Ok(Reader::below(value, self.place, self.filling, |gap| gap == self.name)),
+            None => Err(Error::new(&self.place, Fault::NoSettings { name: self.name.to_owned() })),
         }
     }
 }
 
-impl<'de> VariantAccess<'de> for Choice<'de> {
+impl<'de> VariantAccess<'de> for Choice<'de, '_> {
     type Error = Error;
 
     fn unit_variant(self) -> Result<(), Error> {
         match self.settings {
             None => Ok(()),
             Some(_) => Err(Error::new(
-                &self.key,
+                &self.place,
                 Fault::Type { found: "written as a key".into(), expected: "the name alone, as a text in quotes" },
             )),
         }
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
-        let key = self.key.clone();
-        seed.deserialize(self.reader()?).map_err(|error| error.at(&key))
+        let place = self.place;
+        seed.deserialize(self.reader()?).map_err(|error| error.at(&place))
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
@@ -418,6 +523,7 @@ impl<'de> VariantAccess<'de> for Choice<'de> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::sweep;
 
     #[derive(Debug, Deserialize)]
     #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -463,6 +569,34 @@ mod tests {
         assert_eq!((trial.sampling_s, trial.rows, trial.side), (1.0, Some(3), Side::Starboard));
         let Method::Srivc(settings) = &trial.methods[0];
         assert_eq!(settings.limit, 2.5);
+    }
+
+    /// Both ways to change a document: before it is read, and while it is read.
+    fn changed(text: &str, keys: &[&str], value: f64) -> [Result<Trial, Problem>; 2] {
+        let mut table: Table = text.parse().expect("well formed");
+        let keys: Vec<KeyPath> = keys.iter().map(|key| KeyPath::dotted(key)).collect();
+        let values = vec![Value::Float(value); keys.len()];
+        let while_read = filled(&table, &Gaps::new(&keys), &values);
+        for key in &keys {
+            sweep::set(&mut table, key, Value::Float(value)).expect("the key is there");
+        }
+        [document(&table), while_read]
+    }
+
+    #[test]
+    fn gaps_are_filled_in_tables_lists_and_choices() {
+        let text = "sampling-s = 1\nrows = 3\n[[methods]]\nsrivc.limit = 2.5\n[[methods]]\nsrivc.limit = 3.5";
+        for trial in changed(text, &["sampling-s", "methods.1.srivc.limit"], 7.0) {
+            let trial = trial.expect("right");
+            let limits: Vec<f64> = trial.methods.iter().map(|Method::Srivc(settings)| settings.limit).collect();
+            assert_eq!((trial.sampling_s, trial.rows, limits), (7.0, Some(3), vec![2.5, 7.0]));
+        }
+        for key in ["rows", "side", "methods", "methods.0", "methods.1.srivc"] {
+            let [before, while_read] =
+                changed(&format!("side = \"port\"\n{text}"), &[key], 2.5).map(Result::unwrap_err);
+            assert_eq!(before, while_read);
+            assert_eq!(before.found, format!("`{key}` is 2.5"));
+        }
     }
 
     #[test]

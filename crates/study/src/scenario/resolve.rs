@@ -150,11 +150,10 @@ fn orders_are_given(simulation: &Simulation) -> Result<(), Problem> {
 }
 
 fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
-    let known: Vec<String> = ships::all()
-        .iter()
-        .map(|ship| ship.id.to_string())
-        .chain(["first-order", "second-order"].map(str::to_owned))
-        .collect();
+    let known = || -> Vec<String> {
+        let registry = ships::all().into_iter().map(|ship| ship.id.to_string());
+        registry.chain(["first-order", "second-order"].map(str::to_owned)).collect()
+    };
     let mut entries = wire.iter();
     let (Some((id, table)), None) = (entries.next(), entries.next()) else {
         let names: Vec<&str> = wire.keys().map(String::as_str).collect();
@@ -162,7 +161,7 @@ fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
             [] => "`ship` names no ship".to_owned(),
             several => format!("`ship` names {} ships: {}", several.len(), several.join(", ")),
         };
-        let advice = suggestion("", &known);
+        let advice = suggestion("", &known());
         return Err(Problem::name(KeyPath::dotted("ship"), found, "expected exactly one ship", advice));
     };
     let key = KeyPath::dotted("ship").child(id);
@@ -182,10 +181,10 @@ fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
                 .map_err(|error| not_a_ship(&key, table, &error))
         }
         _ if table.is_empty() => ships::find(id).ok_or_else(|| {
-            Problem::name(key, format!("no ship is called `{id}`"), "no such ship", suggestion(id, &known))
+            Problem::name(key, format!("no ship is called `{id}`"), "no such ship", suggestion(id, &known()))
         }),
         _ if ships::find(id).is_none() => {
-            Err(Problem::name(key, format!("no ship is called `{id}`"), "no such ship", suggestion(id, &known)))
+            Err(Problem::name(key, format!("no ship is called `{id}`"), "no such ship", suggestion(id, &known())))
         }
         _ => Err(Problem::name(
             key,
@@ -251,11 +250,12 @@ fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> R
         )
     };
     let checked = |name: &str, value: f64| {
-        let key = key.child(name);
-        let found = format!("`{key}` is {value}");
         let is_right = value.is_finite() && value > 0.0;
-        let problem = || Problem::value(key, found, "expected a finite number above 0", "change the number");
-        is_right.then_some(value).ok_or_else(problem)
+        is_right.then_some(value).ok_or_else(|| {
+            let key = key.child(name);
+            let found = format!("`{key}` is {value}");
+            Problem::value(key, found, "expected a finite number above 0", "change the number")
+        })
     };
     match (length_m, speed_kn) {
         (Some(length), Some(speed)) => {
@@ -297,9 +297,10 @@ fn side(wire: SideWire) -> Side {
 
 /// The manoeuvre at `place`.
 fn manoeuvre(wire: &ManoeuvreWire, place: &str, folder: &Path) -> Result<Manoeuvre, Problem> {
-    let place = KeyPath::dotted(place);
+    // A path is put together only for a problem: a study with drawn values resolves every trial.
+    let place = || KeyPath::dotted(place);
     let both = |name: &str, one: &str, other: &str| {
-        let key = place.child(name);
+        let key = place().child(name);
         Problem::name(
             key.child(other),
             format!("`{key}` has both `{one}` and `{other}`"),
@@ -329,7 +330,7 @@ fn manoeuvre(wire: &ManoeuvreWire, place: &str, folder: &Path) -> Result<Manoeuv
                 (Some(_), Some(_)) => return Err(both("turning-circle", "duration-s", "heading-change-deg")),
                 (None, None) => {
                     return Err(Problem::name(
-                        place.child("turning-circle"),
+                        place().child("turning-circle"),
                         "nothing ends the turning circle",
                         "expected `duration-s` or `heading-change-deg` here",
                         "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
@@ -347,7 +348,7 @@ fn manoeuvre(wire: &ManoeuvreWire, place: &str, folder: &Path) -> Result<Manoeuv
         ManoeuvreWire::Replay(replay) => {
             let path = folder.join(&replay.file);
             let reading = trial::reader::read(&path).map_err(|error| {
-                let key = place.child("replay").child("file");
+                let key = place().child("replay").child("file");
                 let advice = "give a record that `study fit` can read, relative to this file";
                 Problem::value(key, format!("the record to replay: {error}"), "expected a record with a rudder", advice)
             })?;
@@ -377,19 +378,18 @@ fn helmsman(wire: &HelmsmanWire) -> Helmsman {
 
 /// The recording at `place`.
 fn recording(wire: &RecordingWire, place: &str) -> Result<Recording, Problem> {
-    let place = KeyPath::dotted(place);
     let rudder = match (wire.rudder, wire.assumed_rudder_rate_deg_s) {
         (RudderWire::Feedback, None) => RudderColumn::Feedback,
         (RudderWire::Orders, Some(rate)) if rate > 0.0 => RudderColumn::Orders { assumed_rate: from_deg(rate) },
         (RudderWire::Orders, Some(rate)) => {
-            let key = place.child("assumed-rudder-rate-deg-s");
+            let key = KeyPath::dotted(place).child("assumed-rudder-rate-deg-s");
             let found = format!("`{key}` is {rate}");
             let expected = "expected a number above 0, or inf for a rudder that jumps";
             return Err(Problem::value(key, found, expected, "give the rate the analyst assumes, for instance 2.5"));
         }
         (RudderWire::Orders, None) => {
             return Err(Problem::name(
-                place.child("rudder"),
+                KeyPath::dotted(place).child("rudder"),
                 format!("`{place}.rudder` is \"orders\", and nothing says how fast the rudder is taken to move"),
                 "expected `assumed-rudder-rate-deg-s` as well",
                 "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
@@ -397,7 +397,7 @@ fn recording(wire: &RecordingWire, place: &str) -> Result<Recording, Problem> {
         }
         (RudderWire::Feedback, Some(_)) => {
             return Err(Problem::name(
-                place.child("assumed-rudder-rate-deg-s"),
+                KeyPath::dotted(place).child("assumed-rudder-rate-deg-s"),
                 format!("`{place}` has an assumed rate for a rudder that is recorded"),
                 "a rate is assumed for `rudder = \"orders\"` only",
                 "add `rudder = \"orders\"`, or leave the rate out",

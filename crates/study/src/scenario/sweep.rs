@@ -291,14 +291,13 @@ pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
 /// Sets a key in a document, making tables on the way; numbers in the path count the entries of lists from 0.
 ///
 /// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
-pub fn set(document: &mut Table, setting: &Setting) -> Result<(), Problem> {
-    let fault =
-        |problem: String, expected: String| Problem::name(setting.key.clone(), problem, expected, "change the key");
+pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), Problem> {
+    let fault = |problem: String, expected: String| Problem::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
-    let mut parts = setting.key.parts().iter().peekable();
+    let mut parts = key.parts().iter().peekable();
     while let Some(part) = parts.next() {
         if parts.peek().is_none() {
-            place.insert(part.clone(), setting.value.clone());
+            place.insert(part.clone(), value);
             return Ok(());
         }
         let mut next = place.entry(part.clone()).or_insert_with(|| Value::Table(Table::new()));
@@ -312,7 +311,7 @@ pub fn set(document: &mut Table, setting: &Setting) -> Result<(), Problem> {
                 )
             })?;
             if parts.peek().is_none() {
-                *next = setting.value.clone();
+                *next = value;
                 return Ok(());
             }
         }
@@ -367,13 +366,7 @@ mod tests {
     #[test]
     fn sets_keys_in_tables_and_arrays() {
         let mut document: Table = "x = 1\n[[identifier]]\nsrivc = {}".parse().expect("well formed");
-        let mut set = |key: &str, value: Value| {
-            let place = KeyPath::default();
-            super::set(
-                &mut document,
-                &Setting { key: KeyPath::dotted(key), value, key_place: place.clone(), value_place: place },
-            )
-        };
+        let mut set = |key: &str, value: Value| super::set(&mut document, &KeyPath::dotted(key), value);
         set("sensor.noise", Value::Float(0.5)).expect("makes the table");
         set("identifier.0.srivc.n", Value::Integer(3)).expect("indexes the array");
         assert!(set("x.y", Value::Integer(1)).is_err());

@@ -90,25 +90,29 @@ pub struct MethodDetail {
     pub ecdf_k: Vec<(f64, f64)>,
     /// The same of T.
     pub ecdf_t: Vec<(f64, f64)>,
-    /// Errors of K.
+    /// Errors of K, in single cells only.
     pub violin_k: Option<Violin>,
-    /// Errors of T.
+    /// Errors of T, in single cells only.
     pub violin_t: Option<Violin>,
     /// Errors of K and T together, in single cells only.
     pub cloud: Option<Cloud>,
 }
 
 impl MethodDetail {
-    /// From the errors of K and T on so many trials.
+    /// From the errors of K and T on so many trials of a cell.
     pub(super) fn of(k: &Ordered, t: &Ordered, trials: u64, pairs: &[(f64, f64)]) -> Self {
-        let steps = |errors: &Ordered| errors.distances(0.0).steps(trials, STEPS);
         Self {
-            ecdf_k: steps(k),
-            ecdf_t: steps(t),
             violin_k: Violin::of(k),
             violin_t: Violin::of(t),
             cloud: Cloud::of(pairs),
+            ..Self::of_all_cells(k, t, trials)
         }
+    }
+
+    /// From the errors of K and T on so many trials of all cells, of which only the sizes are shown.
+    pub(super) fn of_all_cells(k: &Ordered, t: &Ordered, trials: u64) -> Self {
+        let steps = |errors: &Ordered| errors.distances(0.0).steps(trials, STEPS);
+        Self { ecdf_k: steps(k), ecdf_t: steps(t), ..Self::default() }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Running sums over rows, and the summary they end in.
 
-use std::rc::Rc;
+use std::sync::Arc;
+
+use rayon::prelude::*;
 
 use super::detail::MOST_PAIRS;
 use super::tracing::TraceTally;
@@ -22,12 +24,18 @@ pub struct Tally {
     /// Errors of K and T of the reference on the present trial, and which trial that is.
     trial: Trial,
     overall: Vec<Running>,
-    resamples: Option<Rc<Resamples>>,
+    resamples: Option<Arc<Resamples>>,
+    /// Cells that have ended and are not yet summarised.
+    waiting: Vec<Ended>,
     methods: Vec<MethodSummary>,
     compared: Vec<PairSummary>,
     details: Vec<CellDetail>,
     tracing: TraceTally,
 }
+
+/// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough that
+/// memory does not grow with the design.
+const WAITING: u64 = 1 << 15;
 
 /// Errors of all methods on one trial.
 #[derive(Default)]
@@ -52,6 +60,7 @@ impl Tally {
             trial: Trial { replicate: 0, errors: vec![[None; 2]; methods] },
             overall: vec![Running::default(); methods],
             resamples: None,
+            waiting: Vec::new(),
             methods: Vec::new(),
             compared: Vec::new(),
             details: Vec::new(),
@@ -100,31 +109,29 @@ impl Tally {
         let resamples = self.resamples(most_batches(&self.present));
         let present = std::mem::replace(&mut self.present, vec![Running::default(); self.overall.len()]);
         let pairs = std::mem::replace(&mut self.pairs, vec![Default::default(); self.overall.len()]);
-        if self.detailed.contains(&cell) {
-            let methods = present.iter().map(Running::detail).collect();
-            self.details.push(CellDetail { cell, methods });
+        let detailed = self.detailed.contains(&cell);
+        self.waiting.push(Ended { cell, reference, detailed, present, pairs, resamples });
+        let rows = self.waiting.iter().flat_map(|ended| &ended.present).map(|running| running.trials);
+        if rows.sum::<u64>() >= WAITING {
+            self.summarise();
         }
-        let summaries = present.iter().enumerate();
-        self.methods.extend(summaries.map(|(method, running)| MethodSummary {
-            cell,
-            method,
-            record: running.record(&resamples),
-        }));
-        let others = pairs.iter().enumerate().filter(|(method, _)| *method != reference);
-        self.compared.extend(others.map(|(method, [k, t])| PairSummary {
-            cell,
-            method,
-            trials: k.batches().iter().map(|batch| batch.count).sum::<f64>() as u64,
-            k: comparison(k, &resamples),
-            t: comparison(t, &resamples),
-        }));
+    }
+
+    /// Summarises the cells that wait, in parallel; what is said of each goes down in their order.
+    fn summarise(&mut self) {
+        let summarised: Vec<_> = std::mem::take(&mut self.waiting).into_par_iter().map(Ended::summarised).collect();
+        for (methods, compared, detail) in summarised {
+            self.methods.extend(methods);
+            self.compared.extend(compared);
+            self.details.extend(detail);
+        }
     }
 
     /// Resamples of so many batches; the same for all cells of one size.
-    fn resamples(&mut self, batches: usize) -> Rc<Resamples> {
+    fn resamples(&mut self, batches: usize) -> Arc<Resamples> {
         match &self.resamples {
-            Some(known) if known.batches() == batches => Rc::clone(known),
-            _ => Rc::clone(self.resamples.insert(Rc::new(Resamples::new(batches)))),
+            Some(known) if known.batches() == batches => Arc::clone(known),
+            _ => Arc::clone(self.resamples.insert(Arc::new(Resamples::new(batches)))),
         }
     }
 
@@ -132,9 +139,9 @@ impl Tally {
     pub fn finish(mut self) -> Summary {
         self.end_trial();
         self.end_cell();
+        self.summarise();
         let resamples = self.resamples(most_batches(&self.overall));
-        let overall =
-            self.overall.iter().map(|running| Overall { record: running.record(&resamples), detail: running.detail() });
+        let overall = self.overall.par_iter().map(|running| running.overall(&resamples));
         Summary {
             overall: overall.collect(),
             methods: self.methods,
@@ -143,6 +150,41 @@ impl Tally {
             details: self.details,
             tracing: self.tracing.finish(),
         }
+    }
+}
+
+/// The sums of a cell that has ended.
+struct Ended {
+    cell: usize,
+    reference: usize,
+    detailed: bool,
+    present: Vec<Running>,
+    pairs: Vec<[PairSums; 2]>,
+    resamples: Arc<Resamples>,
+}
+
+impl Ended {
+    /// What is said of the cell: every method, every method against the reference, and the distributions where asked for.
+    fn summarised(self) -> (Vec<MethodSummary>, Vec<PairSummary>, Option<CellDetail>) {
+        let Self { cell, reference, detailed, present, pairs, resamples } = self;
+        let detail = detailed.then(|| CellDetail {
+            cell,
+            methods: present.par_iter().map(Running::detail).collect::<Vec<MethodDetail>>(),
+        });
+        let methods = present.par_iter().enumerate().map(|(method, running)| MethodSummary {
+            cell,
+            method,
+            record: running.record(&resamples),
+        });
+        let others = pairs.par_iter().enumerate().filter(|(method, _)| *method != reference);
+        let compared = others.map(|(method, [k, t])| PairSummary {
+            cell,
+            method,
+            trials: k.batches().iter().map(|batch| batch.count).sum::<f64>() as u64,
+            k: comparison(k, &resamples),
+            t: comparison(t, &resamples),
+        });
+        (methods.collect(), compared.collect(), detail)
     }
 }
 
@@ -222,6 +264,11 @@ impl Running {
             high_validation_rmse_deg: validation.figure(0.9),
             evaluations: (answered > 0).then(|| self.evaluations / answered as f64),
         }
+    }
+
+    fn overall(&self, resamples: &Resamples) -> Overall {
+        let detail = MethodDetail::of_all_cells(&self.k.sample.ordered(), &self.t.sample.ordered(), self.trials);
+        Overall { record: self.record(resamples), detail }
     }
 
     fn detail(&self) -> MethodDetail {

@@ -14,7 +14,7 @@ use trial::Trial;
 
 use super::{Told, page};
 use crate::failure::Failure;
-use crate::publish::drawings::{slug, write_figure};
+use crate::publish::drawings::{first_failure, slug, write_figure};
 use crate::showcase::thinned;
 
 /// Lags of the autocorrelation.
@@ -57,7 +57,7 @@ pub fn draw(told: &Told, theme: &Theme, folder: &Path) -> Result<Vec<(String, St
     let caption =
         "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";
     drawings.push((String::from("candidates"), caption.into(), Box::new(move || candidates(told, theme))));
-    drawings.par_iter().try_for_each(|(stem, _, draw)| write_figure(&draw(), folder, stem))?;
+    first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
     Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
 }
 
