@@ -17,7 +17,7 @@ const SEED: u64 = 1979;
 #[derive(Debug, Clone)]
 pub struct Resamples {
     batches: usize,
-    /// [`RESAMPLES`] times `batches` counts.
+    /// [`RESAMPLES`] counts of every batch.
     counts: Vec<u8>,
 }
 
@@ -26,10 +26,11 @@ impl Resamples {
     pub fn new(batches: usize) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(SEED);
         let mut counts = vec![0u8; RESAMPLES * batches];
-        for resample in counts.chunks_mut(batches.max(1)) {
+        for resample in 0..RESAMPLES {
             for _ in 0..batches {
                 let drawn: usize = rng.random_range(0..batches);
-                resample[drawn] = resample[drawn].saturating_add(1);
+                let count = &mut counts[drawn * RESAMPLES + resample];
+                *count = count.saturating_add(1);
             }
         }
         Self { batches, counts }
@@ -47,37 +48,50 @@ impl Resamples {
         batches: &[Moments],
         statistics: impl Fn(&Moments) -> [Option<f64>; N],
     ) -> [Option<Figure>; N] {
-        let whole = batches.iter().fold(Moments::default(), |sum, batch| plus(sum, batch, 1.0));
+        let whole = batches.iter().fold(Moments::default(), plus);
         let values = statistics(&whole);
         if whole.count < FEWEST as f64 || batches.len() > self.batches {
             return values.map(|value| value.map(|value| Figure { value, ci95: None }));
         }
         let mut resampled: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(RESAMPLES));
-        for counts in self.counts.chunks_exact(self.batches) {
-            let total =
-                batches.iter().zip(counts).fold(Moments::default(), |sum, (batch, &n)| plus(sum, batch, n.into()));
+        for total in self.totals(batches) {
             for (all, value) in resampled.iter_mut().zip(statistics(&total)) {
                 all.extend(value.filter(|value| value.is_finite()));
             }
         }
         std::array::from_fn(|k| {
-            let sorted = &mut resampled[k];
-            sorted.sort_by(f64::total_cmp);
             let value = values[k]?;
-            let end = |p: f64| sorted[((sorted.len() - 1) as f64 * p).round() as usize];
+            let all = &mut resampled[k];
             // A statistic that most resamples do not have is not known.
-            let ci95 = (sorted.len() > RESAMPLES / 2).then(|| [end(0.025), end(0.975)]);
+            let ci95 = (all.len() > RESAMPLES / 2).then(|| {
+                let rank = |p: f64| ((all.len() - 1) as f64 * p).round() as usize;
+                let (low, high) = (rank(0.025), rank(0.975));
+                let (below, &mut high, _) = all.select_nth_unstable_by(high, f64::total_cmp);
+                let (_, &mut low, _) = below.select_nth_unstable_by(low, f64::total_cmp);
+                [low, high]
+            });
             Some(Figure { value, ci95 })
         })
     }
+
+    /// The sums of every resample. Batch by batch, so that many resamples go through the processor together.
+    fn totals(&self, batches: &[Moments]) -> impl Iterator<Item = Moments> {
+        let [mut counts, mut firsts, mut seconds] = [const { [0.0; RESAMPLES] }; 3];
+        for (batch, times) in batches.iter().zip(self.counts.chunks_exact(RESAMPLES)) {
+            let sums = counts.iter_mut().zip(&mut firsts).zip(&mut seconds);
+            for (((count, first), second), &n) in sums.zip(times) {
+                let n = f64::from(n);
+                *count += n * batch.count;
+                *first += n * batch.first;
+                *second += n * batch.second;
+            }
+        }
+        counts.into_iter().zip(firsts).zip(seconds).map(|((count, first), second)| Moments { count, first, second })
+    }
 }
 
-fn plus(sum: Moments, batch: &Moments, times: f64) -> Moments {
-    Moments {
-        count: sum.count + times * batch.count,
-        first: sum.first + times * batch.first,
-        second: sum.second + times * batch.second,
-    }
+fn plus(sum: Moments, batch: &Moments) -> Moments {
+    Moments { count: sum.count + batch.count, first: sum.first + batch.first, second: sum.second + batch.second }
 }
 
 #[cfg(test)]
