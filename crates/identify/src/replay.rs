@@ -3,12 +3,12 @@
 //! Only the initial state is fitted (linear least squares, exact): K, T and δ_r stay as they are, so the error judges
 //! them and not the luck of a start. Works for any sign of T.
 
+use lanes::column::{dot, sum};
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use ship::first_order::State;
 use trial::Trial;
 
-use crate::linear::LeastSquares;
 use crate::track::{Coefficients, Columns, Track};
 
 /// Condition number above which no initial yaw rate is fitted: it is taken to be zero.
@@ -40,18 +40,17 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let mut columns = Columns::default();
     track.fill(a, &mut columns);
     let mut coefficients = Coefficients::of(response);
-    let rest: Vec<f64> = (0..track.len())
-        .map(|k| track.heading[k] - coefficients.gain * columns.rudder[k] - coefficients.offset * columns.constant[k])
+    let forced = columns.rudder.iter().zip(&columns.constant);
+    let rest: Vec<f64> = track
+        .heading
+        .iter()
+        .zip(forced)
+        .map(|(psi, (g, h))| psi - coefficients.gain * g - coefficients.offset * h)
         .collect();
     if rest.iter().any(|value| !value.is_finite()) {
         return None;
     }
-    let ones = vec![1.0; track.len()];
-    coefficients.anchor = match LeastSquares::solve(&[&ones, &columns.homogeneous], &rest, CONDITION_LIMIT) {
-        Ok(fit) => State { heading: fit.parameters[0], yaw_rate: fit.parameters[1] },
-        // The transient of the initial yaw rate dies within a sample: only the heading can be fitted.
-        Err(_) => State { heading: rest.iter().sum::<f64>() / rest.len() as f64, yaw_rate: 0.0 },
-    };
+    coefficients.anchor = best_start(&rest, &columns.homogeneous);
     let states = track.simulate(a, &coefficients);
     let residual: Vec<f64> =
         track.observed().iter().zip(&track.heading).map(|(&row, &measured)| measured - states[row].heading).collect();
@@ -65,4 +64,21 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
         residual_time,
         heading_rmse_deg: to_deg(mean_square.sqrt()),
     })
+}
+
+/// Heading and yaw rate at the anchor whose own motion, 1 and φ₁, comes nearest to `rest`.
+fn best_start(rest: &[f64], homogeneous: &[f64]) -> State {
+    let rows = rest.len() as f64;
+    let (level, mean) = (sum(rest) / rows, sum(homogeneous) / rows);
+    let square = dot(homogeneous, homogeneous);
+    let centred: Vec<f64> = homogeneous.iter().map(|x| x - mean).collect();
+    let spread = dot(&centred, &centred);
+    // With the angle θ between 1 and φ₁ the condition number of the two is 2/θ, and θ² = spread / square.
+    let told_apart = spread.is_finite() && spread * CONDITION_LIMIT.powi(2) > 4.0 * square;
+    if !told_apart {
+        // The transient of the initial yaw rate dies within a sample: only the heading can be fitted.
+        return State { heading: level, yaw_rate: 0.0 };
+    }
+    let yaw_rate = dot(&centred, rest) / spread;
+    State { heading: level - yaw_rate * mean, yaw_rate }
 }
