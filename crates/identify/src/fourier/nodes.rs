@@ -42,9 +42,7 @@ impl Nodes {
     pub fn of_rows(time: &[f64], values: &[f64]) -> Self {
         let rows = time.len();
         let centre = 0.5 * (time[0] + time[rows - 1]);
-        let step = (time[rows - 1] - time[0]) / (rows - 1) as f64;
-        let is_symmetric =
-            time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN * step);
+        let is_symmetric = has_even_steps(time);
         let mut nodes = Self { is_symmetric, ..Self::default() };
         // Of an even record the rows from the middle on, each with its mirror image.
         for row in if is_symmetric { rows / 2 } else { 0 }..rows {
@@ -125,6 +123,13 @@ impl Nodes {
     }
 }
 
+/// Whether times (s, increasing, at least 2) are a step apart to the rounding of a clock: then every one has its mirror
+/// image about the middle.
+pub fn has_even_steps(time: &[f64]) -> bool {
+    let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN * step)
+}
+
 /// Chebyshev polynomials of every other order at given places: Tₖ₊₂ = 2 T₂ Tₖ − Tₖ₋₂.
 struct EveryOther {
     twice_second: Vec<f64>,
@@ -159,15 +164,17 @@ pub fn lanes<T>(values: &[T], start: usize) -> &[T; LANES] {
     values[start..start + LANES].try_into().expect("columns are padded to whole blocks")
 }
 
-/// Σ x y of padded columns.
-fn dot(x: &[f64], y: &[f64]) -> f64 {
+/// Σ x y of columns of one length, [`LANES`] sums at a time.
+pub fn dot(x: &[f64], y: &[f64]) -> f64 {
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
     let mut sums = [0.0; LANES];
-    for (x, y) in x.chunks_exact(LANES).zip(y.chunks_exact(LANES)) {
+    for (x, y) in x.iter().zip(y) {
         for i in 0..LANES {
             sums[i] += x[i] * y[i];
         }
     }
-    sums.iter().sum()
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]
