@@ -6,8 +6,9 @@
 
 use std::f64::consts::PI;
 
-/// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes.
-pub const LANES: usize = 8;
+/// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes, and as few
+/// as stay in registers.
+pub const LANES: usize = 4;
 
 /// Deviation from even steps, as a share of the step, that is rounding of the clock.
 const EVEN: f64 = 1e-7;

@@ -295,10 +295,8 @@ fn accumulate(nodes: &Nodes, phasor: &[[f64; 2]], share: f64, harmonics: usize, 
                 add(&mut sums.even, even, &here);
                 add(&mut sums.odd, &odd, &here);
             }
-            for i in 0..LANES {
-                // Tₖ₊₁ = 2 ξ Tₖ − Tₖ₋₁.
-                (before[i], here[i]) = (here[i], twice[i] * here[i] - before[i]);
-            }
+            // Tₖ₊₁ = 2 ξ Tₖ − Tₖ₋₁.
+            (before, here) = (here, from_fn(|i| twice[i] * here[i] - before[i]));
         }
     }
 }
