@@ -338,6 +338,19 @@ mod tests {
         }
     }
 
+    /// A window that moves on with time sees what one that is looked up anew sees.
+    #[test]
+    fn the_window_of_the_rudder_moves_with_time() {
+        let trial = Case { samples: 120, ..Case::default() }.trial();
+        let (signal, mut points) = (trial.rudder_signal(), 0..0);
+        for t in (0..480).map(|k| 0.25 * f64::from(k)) {
+            let moved = rudder_range(signal, &mut points, t, 2.0);
+            let values = (0..=400).map(|k| signal.at(t - 2.0 + 0.01 * f64::from(k)));
+            let (lo, hi) = values.fold((f64::MAX, f64::MIN), |(lo, hi), x| (lo.min(x), hi.max(x)));
+            assert!((moved - (hi - lo)).abs() < 1e-9, "at {t} s: {moved} and {}", hi - lo);
+        }
+    }
+
     #[test]
     fn a_median_has_an_interval_and_a_mean_has_none() {
         let median = estimate(robust(), &Case::default());

@@ -357,6 +357,37 @@ mod tests {
         }
     }
 
+    /// What a projection leaves is orthogonal to every function, of the record whole or in halves, and derivatives and
+    /// their sums are those of the curve.
+    #[test]
+    fn residuals_are_orthogonal_and_derivatives_agree_with_the_curve() {
+        let even = |rows: i32| (0..rows).map(|i| 1.5 * f64::from(i)).collect::<Vec<f64>>();
+        let uneven = (0..157).map(|i| 1.5 * i as f64 + (i as f64).sin()).collect();
+        for time in [even(156), even(157), uneven] {
+            let values: Vec<f64> = time.iter().map(|t| (0.0004 * t * t).sin()).collect();
+            let basis = Nested::new(&time, 0.03, 7).expect("enough instants").basis(5);
+            let projection = basis.project(&values);
+            let left = basis.moments(&projection.residual);
+            assert_abs_diff_eq!(left.norm(), 0.0, epsilon = 1e-11);
+            let curve = basis.curve(&projection);
+            let rate = basis.derivative(&projection.coefficients);
+            let (fitted, rates) = (basis.values(&projection.coefficients), basis.values(&rate));
+            let accelerations = basis.values(&basis.derivative(&rate));
+            for (i, t) in time.iter().enumerate() {
+                assert_abs_diff_eq!(fitted[i] + projection.residual[i], values[i], epsilon = 1e-13);
+                assert_abs_diff_eq!(fitted[i], curve.heading(*t), epsilon = 1e-12);
+                assert_abs_diff_eq!(rates[i], curve.yaw_rate(*t), epsilon = 1e-12);
+                assert_abs_diff_eq!(accelerations[i], curve.yaw_acceleration(*t), epsilon = 1e-13);
+            }
+            let by_coefficients = basis.moments_of_derivative(&basis.moments(&values));
+            let sum: f64 = rates.iter().zip(&values).map(|(r, y)| r * y).sum();
+            assert_relative_eq!(by_coefficients.dot(&projection.coefficients), sum, max_relative = 1e-11);
+            let covariance = basis.unscaled_covariance();
+            let back = basis.moments(&basis.values(&(&covariance * &left.map(|_| 1.0))));
+            assert_abs_diff_eq!((back - left.map(|_| 1.0)).norm(), 0.0, epsilon = 1e-11);
+        }
+    }
+
     #[test]
     fn whole_periods_give_orthogonal_columns() {
         let time: Vec<f64> = (0..200).map(f64::from).collect();

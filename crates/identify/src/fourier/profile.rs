@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use std::array::from_fn;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::nodes::{LANES, Nodes, lanes};
 
@@ -24,7 +24,7 @@ const SMALLEST_PIVOT: f64 = 1e-6;
 /// Highest fundamental of the coarsest nodes, periods a record; that of the others is doubled from one to the next.
 const COARSEST_REACH: f64 = 1.25;
 
-/// Nodes are made for a record with at least this many times as many rows.
+/// Nodes are made where the record, folded, has at least this many times as many rows.
 const WORTHWHILE: usize = 3;
 
 /// Steps of a walk after which its phasors are computed anew, before rounding adds up.
@@ -39,7 +39,7 @@ pub struct Profile {
     total: f64,
     /// The record itself.
     rows: Nodes,
-    /// Nodes in its place, from the coarsest; made when first wanted.
+    /// Nodes in its place, from the coarsest.
     coarse: Vec<Nodes>,
     /// cos ½wu and sin ½wu of the fundamental evaluated last.
     phasor: Vec<[f64; 2]>,
@@ -68,14 +68,15 @@ impl Profile {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
         let rows = Nodes::of_rows(time, &centred);
+        let length = time[time.len() - 1] - time[0];
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
-            length: time[time.len() - 1] - time[0],
+            length,
             total: centred.iter().map(|v| v * v).sum(),
             phasor: vec![[1.0, 0.0]; rows.time.len()],
+            coarse: coarser(&rows, harmonics, length),
             rows,
-            coarse: Vec::new(),
             sums: vec![Sums::default(); width],
             gram: vec![0.0; width * width],
             right: vec![0.0; width],
@@ -112,29 +113,9 @@ impl Profile {
     }
 
     /// Which nodes stand for the rows at `fundamental`: a place in `coarse`, or its length for the rows themselves.
-    fn level(&mut self, fundamental: f64) -> usize {
-        if self.coarse.is_empty() {
-            self.make_nodes();
-        }
-        let periods = fundamental * self.length / (2.0 * PI);
-        let reach = (0..self.coarse.len()).map(|level| COARSEST_REACH * f64::powi(2.0, level as i32));
-        reach.take_while(|&reach| reach < periods).count()
-    }
-
-    /// Nodes for as many reaches as make fewer of them than there are rows, each from the next finer.
-    fn make_nodes(&mut self) {
-        let most = self.rows.time.len() / WORTHWHILE;
-        let counts: Vec<usize> = (0..32)
-            .map(|level| FRAC_PI_2 * COARSEST_REACH * f64::powi(2.0, level))
-            .map(|quarter| Nodes::needed(2 * self.harmonics, quarter))
-            .take_while(|&count| count / 2 <= most)
-            .collect();
-        for &count in counts.iter().rev() {
-            let finer = self.coarse.last().unwrap_or(&self.rows);
-            let nodes = finer.fewer(count, 0.5 * self.length);
-            self.coarse.push(nodes);
-        }
-        self.coarse.reverse();
+    fn level(&self, fundamental: f64) -> usize {
+        let periods = fundamental * self.length / TAU;
+        (0..self.coarse.len()).take_while(|&level| reach(level) < periods).count()
     }
 
     fn nodes(&self, level: usize) -> &Nodes {
@@ -187,7 +168,7 @@ impl Profile {
         }
     }
 
-    /// The same number from an orthogonal decomposition, for rows on which the series has no full rank.
+    /// The same number from an orthogonal decomposition, where its columns are nearly dependent on the rows there are.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
         let Nodes { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
         let (n, share) = (self.harmonics, cosine_share(fundamental, self.length));
@@ -255,6 +236,26 @@ impl Walk<'_> {
 pub const MOST_HARMONICS: usize = 64;
 
 const MOST_COLUMNS: usize = 2 * MOST_HARMONICS + 1;
+
+/// Highest fundamental of the nodes of a level, periods a record.
+fn reach(level: usize) -> f64 {
+    COARSEST_REACH * f64::powi(2.0, level as i32)
+}
+
+/// Nodes in place of `rows`, from the coarsest: of every level for which they are few against the rows, each made from
+/// the next finer.
+fn coarser(rows: &Nodes, harmonics: usize, length: f64) -> Vec<Nodes> {
+    let counts: Vec<usize> = (0..)
+        .map(|level| Nodes::needed(2 * harmonics, FRAC_PI_2 * reach(level)))
+        .take_while(|&count| count / 2 * WORTHWHILE <= rows.used)
+        .collect();
+    let mut coarse: Vec<Nodes> = Vec::with_capacity(counts.len());
+    for &count in counts.iter().rev() {
+        coarse.push(coarse.last().unwrap_or(rows).fewer(count, 0.5 * length));
+    }
+    coarse.reverse();
+    coarse
+}
 
 /// Share sin² ¼wL of [−1, 1] that cos w u runs through over a record of length L; all of it from one period on.
 fn cosine_share(fundamental: f64, length: f64) -> f64 {
@@ -386,6 +387,44 @@ mod tests {
             let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
             assert_relative_eq!(scanned, exact, max_relative = 1e-8);
             assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-8);
+        }
+    }
+
+    /// Enough rows for three levels of nodes, at 0.4 to 12 periods a record: an even record, an odd number of rows and an
+    /// uneven record.
+    #[test]
+    fn nodes_in_place_of_the_rows_change_nothing() {
+        for (rows, unevenness) in [(1200, 0.0), (1201, 0.0), (1800, 0.4)] {
+            let time: Vec<f64> = (0..rows).map(|i| 0.5 * (i as f64 + unevenness * (i as f64).sin())).collect();
+            let values: Vec<f64> =
+                (0..rows).map(|i| (0.021 * i as f64).sin() + 0.01 * ((i * i) as f64).sin()).collect();
+            let mut profile = Profile::new(&time, &values, 8);
+            assert!(profile.coarse.len() >= 2, "{} levels", profile.coarse.len());
+            let one = TAU / profile.length;
+            let curve = profile.scan(0.4 * one, 0.1 * one, 117);
+            for (k, scanned) in curve.into_iter().enumerate() {
+                let w = (0.4 + 0.1 * k as f64) * one;
+                let basis = Basis::new(&time, w, 8).expect("enough rows");
+                let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
+                assert_relative_eq!(scanned, exact, max_relative = 1e-9);
+                assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-9);
+            }
+        }
+    }
+
+    /// Harmonics beyond the sampling nearly repeat lower ones, and a record that is mostly a gap can hardly tell them apart.
+    #[test]
+    fn goes_on_where_columns_are_nearly_dependent() {
+        let even: Vec<f64> = (0..41).map(f64::from).collect();
+        let gap: Vec<f64> = (0..60).map(|i| f64::from(if i < 30 { i } else { i + 240 })).collect();
+        for (time, w) in [(even, 1.00001 * TAU / 10.0), (gap, 0.02)] {
+            let values: Vec<f64> = time.iter().map(|t| (0.11 * t).sin() + 0.1 * (0.9 * t).cos()).collect();
+            let mut profile = Profile::new(&time, &values, 8);
+            let basis = Basis::new(&time, w, 8).expect("enough rows");
+            assert!(basis.condition() > 1e3, "condition {}", basis.condition());
+            let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
+            assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-6);
+            assert!(explained(&mut profile.gram, &mut profile.right).is_none());
         }
     }
 
