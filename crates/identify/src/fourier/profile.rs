@@ -39,8 +39,9 @@ pub struct Profile {
     total: f64,
     /// The record itself.
     rows: Nodes,
-    /// Nodes in its place, from the coarsest.
-    coarse: Vec<Nodes>,
+    /// Nodes in its place, from the coarsest, made when first wanted, and how many there are of them.
+    coarse: Vec<Option<Nodes>>,
+    counts: Vec<usize>,
     /// cos ½wu and sin ½wu of the fundamental evaluated last.
     phasor: Vec<[f64; 2]>,
     sums: Vec<Sums>,
@@ -68,15 +69,19 @@ impl Profile {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
         let rows = Nodes::of_rows(time, &centred);
-        let length = time[time.len() - 1] - time[0];
+        let counts: Vec<usize> = (0..)
+            .map(|level| Nodes::needed(2 * harmonics, FRAC_PI_2 * reach(level)))
+            .take_while(|&count| count / 2 * WORTHWHILE <= rows.used)
+            .collect();
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
-            length,
+            length: time[time.len() - 1] - time[0],
             total: centred.iter().map(|v| v * v).sum(),
             phasor: vec![[1.0, 0.0]; rows.time.len()],
-            coarse: coarser(&rows, harmonics, length),
             rows,
+            coarse: vec![None; counts.len()],
+            counts,
             sums: vec![Sums::default(); width],
             gram: vec![0.0; width * width],
             right: vec![0.0; width],
@@ -118,14 +123,18 @@ impl Profile {
         (0..self.coarse.len()).take_while(|&level| reach(level) < periods).count()
     }
 
-    fn nodes(&self, level: usize) -> &Nodes {
-        self.coarse.get(level).unwrap_or(&self.rows)
+    /// Makes the nodes of a level, from the next finer there are.
+    fn make(&mut self, level: usize) {
+        if self.coarse.get(level).is_some_and(Option::is_none) {
+            let finer = self.coarse[level..].iter().flatten().next().unwrap_or(&self.rows);
+            self.coarse[level] = Some(finer.fewer(self.counts[level], 0.5 * self.length));
+        }
     }
 
     /// Computes the phasors of `fundamental`.
     fn anchor(&mut self, level: usize, fundamental: f64) {
-        let nodes = self.coarse.get(level).unwrap_or(&self.rows);
-        for (value, u) in self.phasor.iter_mut().zip(&nodes.time) {
+        self.make(level);
+        for (value, u) in self.phasor.iter_mut().zip(&nodes(&self.coarse, &self.rows, level).time) {
             *value = phasor(0.5 * fundamental * u);
         }
     }
@@ -133,7 +142,7 @@ impl Profile {
     fn rss_of_phasor(&mut self, level: usize, fundamental: f64) -> f64 {
         self.evaluations += 1;
         let share = cosine_share(fundamental, self.length);
-        let nodes = self.coarse.get(level).unwrap_or(&self.rows);
+        let nodes = nodes(&self.coarse, &self.rows, level);
         accumulate(nodes, &self.phasor, share, self.harmonics, &mut self.sums);
         self.assemble(share);
         match explained(&mut self.gram, &mut self.right) {
@@ -216,9 +225,10 @@ impl Walk<'_> {
         let level = self.profile.level(fundamental);
         if self.done == 0 || level != self.level {
             self.level = level;
-            self.turn.clear();
-            self.turn.extend(self.profile.nodes(level).time.iter().map(|u| phasor(0.5 * self.step * u)));
             self.profile.anchor(level, fundamental);
+            let nodes = nodes(&self.profile.coarse, &self.profile.rows, level);
+            self.turn.clear();
+            self.turn.extend(nodes.time.iter().map(|u| phasor(0.5 * self.step * u)));
         } else if self.done.is_multiple_of(ANCHOR_STEPS) {
             self.profile.anchor(level, fundamental);
         } else {
@@ -242,19 +252,9 @@ fn reach(level: usize) -> f64 {
     COARSEST_REACH * f64::powi(2.0, level as i32)
 }
 
-/// Nodes in place of `rows`, from the coarsest: of every level for which they are few against the rows, each made from
-/// the next finer.
-fn coarser(rows: &Nodes, harmonics: usize, length: f64) -> Vec<Nodes> {
-    let counts: Vec<usize> = (0..)
-        .map(|level| Nodes::needed(2 * harmonics, FRAC_PI_2 * reach(level)))
-        .take_while(|&count| count / 2 * WORTHWHILE <= rows.used)
-        .collect();
-    let mut coarse: Vec<Nodes> = Vec::with_capacity(counts.len());
-    for &count in counts.iter().rev() {
-        coarse.push(coarse.last().unwrap_or(rows).fewer(count, 0.5 * length));
-    }
-    coarse.reverse();
-    coarse
+/// The nodes of a level, or the rows beyond the last.
+fn nodes<'a>(coarse: &'a [Option<Nodes>], rows: &'a Nodes, level: usize) -> &'a Nodes {
+    coarse.get(level).and_then(Option::as_ref).unwrap_or(rows)
 }
 
 /// Share sin² ¼wL of [−1, 1] that cos w u runs through over a record of length L; all of it from one period on.
