@@ -25,7 +25,7 @@ const SMALLEST_PIVOT: f64 = 1e-6;
 const COARSEST_REACH: f64 = 1.25;
 
 /// Nodes are made where the record, folded, has at least this many times as many rows.
-const WORTHWHILE: usize = 3;
+const WORTHWHILE: usize = 2;
 
 /// Steps of a walk after which its phasors are computed anew, before rounding adds up.
 const ANCHOR_STEPS: usize = 32;
