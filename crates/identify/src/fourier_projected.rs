@@ -19,9 +19,10 @@ use trial::Trial;
 use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::fourier::basis::Nested;
 use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, Response, white_variance};
-use crate::fourier::{self, Basis, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
+use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit};
 
@@ -222,13 +223,13 @@ impl FourierProjected {
             .min(MOST_HARMONICS)
             .min((time.len() / 2 - 1) / 2)
             .max(1);
-        let widest = Basis::new(time, choice.fundamental, most)?;
+        let series = Nested::new(time, choice.fundamental, most)?;
         let rows = time.len() as f64;
-        let rss = widest.nested_rss(heading);
+        let rss = series.rss(heading);
         let harmonics = (least.min(most)..=most)
             .min_by(|&p, &q| score(rows, rss[p], p as f64).total_cmp(&score(rows, rss[q], q as f64)))
             .expect("the range holds at least its end");
-        let basis = if harmonics == most { widest } else { Basis::new(time, choice.fundamental, harmonics)? };
+        let basis = series.basis(harmonics);
         let projection = basis.project(heading);
         let curve = basis.curve(&projection);
         self.accept(Fitted { curve, basis, projection, stop: choice.stop, evaluations: choice.evaluations + 1 })
@@ -251,16 +252,11 @@ impl FourierProjected {
         let trim = self.settings.trim_share * (time[time.len() - 1] - time[0]);
         let from = time.partition_point(|&t| t < time[0] + trim);
         let to = time.partition_point(|&t| t <= time[time.len() - 1] - trim);
-        let projected: Vec<f64>;
         let rudder = match self.settings.rudder {
-            Rudder::Recorded => &rudder[from..to],
-            Rudder::Projected => {
-                let residual = fitted.basis.project(rudder).residual;
-                projected = (from..to).map(|row| rudder[row] - residual[row]).collect();
-                &projected
-            }
+            Rudder::Recorded => rudder,
+            Rudder::Projected => &fitted.basis.values(&fitted.basis.project(rudder).coefficients),
         };
-        equations.add(&fitted.basis, &fitted.projection, &time[from..to], rudder, noise.residual.max(noise.white));
+        equations.add(&fitted.basis, &fitted.projection, from..to, rudder, noise.residual.max(noise.white));
         noise
     }
 }

@@ -9,9 +9,12 @@
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use ship::angle::from_deg;
+use ship::signal::Polyline;
 use statrs::distribution::{Binomial, DiscreteCDF};
 use trial::Trial;
 
@@ -104,24 +107,26 @@ impl FourierPublished {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
         let length = samples.time[samples.len() - 1];
+        let rate = fitted.basis.derivative(&fitted.projection.coefficients);
+        let yaw_rate = fitted.basis.values(&rate);
+        let yaw_acceleration = fitted.basis.values(&fitted.basis.derivative(&rate));
+        let (signal, mut points) = (trial.rudder_signal(), 0..0);
         (0..samples.len())
             .filter(|&row| match self.settings.selection {
                 Selection::Uniform | Selection::Separated { .. } => true,
                 Selection::WellConditioned(rule) => {
                     let t = samples.time[row];
                     (t - 0.5 * length).abs() <= 0.5 * rule.interior_share * length
-                        && rudder_range(trial, start + t, rule.rudder_rest_s) < from_deg(rule.rudder_rest_deg)
+                        && rudder_range(signal, &mut points, start + t, rule.rudder_rest_s)
+                            < from_deg(rule.rudder_rest_deg)
                 }
             })
-            .map(|row| {
-                let time = samples.time[row];
-                Instant {
-                    trial: number,
-                    time,
-                    rudder: samples.rudder[row],
-                    yaw_rate: fitted.curve.yaw_rate(time),
-                    yaw_acceleration: fitted.curve.yaw_acceleration(time),
-                }
+            .map(|row| Instant {
+                trial: number,
+                time: samples.time[row],
+                rudder: samples.rudder[row],
+                yaw_rate: yaw_rate[row],
+                yaw_acceleration: yaw_acceleration[row],
             })
             .collect()
     }
@@ -231,12 +236,15 @@ fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<String> {
 }
 
 /// Range of the recorded rudder, rad, from `reach` seconds before to `reach` after `t` (clock of the record).
-fn rudder_range(trial: &Trial, t: f64, reach: f64) -> f64 {
-    let signal = trial.rudder_signal();
-    let from = signal.times().partition_point(|&point| point < t - reach);
-    let to = signal.times().partition_point(|&point| point <= t + reach);
-    let ends = [signal.at(t - reach), signal.at(t + reach)];
-    let values = ends.iter().chain(&signal.values()[from..to]);
+///
+/// `points` are those of the signal in that time; they are moved on from where they were, so that `t` must not decrease.
+fn rudder_range(signal: &Polyline, points: &mut Range<usize>, t: f64, reach: f64) -> f64 {
+    let passed = |from: usize, holds: &dyn Fn(f64) -> bool| {
+        from + signal.times()[from..].iter().take_while(|&&point| holds(point)).count()
+    };
+    *points = passed(points.start, &|point| point < t - reach)..passed(points.end, &|point| point <= t + reach);
+    let ends = [signal.at_from(t - reach, points.start), signal.at_from(t + reach, points.end)];
+    let values = ends.iter().chain(&signal.values()[points.clone()]);
     let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
     hi - lo
 }
@@ -327,6 +335,19 @@ mod tests {
                 method.curve(&case.trial()).expect("fits").curve.fundamental
             });
             assert_relative_eq!(starts, global, max_relative = 1e-5);
+        }
+    }
+
+    /// A window that moves on with time sees what one that is looked up anew sees.
+    #[test]
+    fn the_window_of_the_rudder_moves_with_time() {
+        let trial = Case { samples: 120, ..Case::default() }.trial();
+        let (signal, mut points) = (trial.rudder_signal(), 0..0);
+        for t in (0..480).map(|k| 0.25 * f64::from(k)) {
+            let moved = rudder_range(signal, &mut points, t, 2.0);
+            let values = (0..=400).map(|k| signal.at(t - 2.0 + 0.01 * f64::from(k)));
+            let (lo, hi) = values.fold((f64::MAX, f64::MIN), |(lo, hi), x| (lo.min(x), hi.max(x)));
+            assert!((moved - (hi - lo)).abs() < 1e-9, "at {t} s: {moved} and {}", hi - lo);
         }
     }
 

@@ -2,24 +2,45 @@
 //! signals as are wanted. It does not choose w: see [`super::fundamental`].
 
 use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use super::FourierFit;
+use super::nodes::{dot, has_even_steps};
 use crate::error::IdentifyError;
 
-/// The basis on given instants, with a stable decomposition of its design matrix X (rows × 2N+1).
+/// The bases with 0, 1, .. N harmonics of one fundamental on given instants: leading columns of one design matrix X
+/// (rows × 2N+1, in the order 1, cos 1, sin 1, cos 2, …), so that one orthogonal decomposition serves all of them.
 ///
 /// Inside, time runs from the middle of the instants: moving the origin turns every pair (cos n, sin n) by an angle,
 /// an orthogonal change that keeps condition number and residuals but makes cos and sin columns nearly orthogonal to
-/// each other.
+/// each other. On even steps they are orthogonal: every instant has a mirror image, and sum and difference of the two,
+/// over √2, turn X into a part with the cosines and another with the sines, half as long each.
 #[derive(Debug, Clone)]
-pub struct Basis {
+pub struct Nested {
     fundamental: f64,
     harmonics: usize,
     centre: f64,
-    design: DMatrix<f64>,
+    rows: usize,
+    /// X, or the two halves of it, column by column.
+    columns: Vec<Vec<f64>>,
+    parts: Vec<Part>,
+}
+
+/// Columns of X that are orthogonal to all others.
+#[derive(Debug, Clone)]
+struct Part {
+    /// Which, in rising order.
+    places: Vec<usize>,
     qr: QR<f64, Dyn, Dyn>,
-    /// Of the triangle of the QR decomposition.
-    svd: SVD<f64, Dyn, Dyn>,
+}
+
+/// The basis of one of the [`Nested`] series.
+#[derive(Debug, Clone)]
+pub struct Basis {
+    harmonics: usize,
+    series: Nested,
+    /// Of the triangle of every part.
+    svd: Vec<SVD<f64, Dyn, Dyn>>,
 }
 
 /// A signal on a [`Basis`]: coefficients in centred time and what is left over.
@@ -33,33 +54,133 @@ pub struct Projection {
     pub r_squared: f64,
 }
 
+impl Part {
+    fn new(places: Vec<usize>, columns: &[Vec<f64>]) -> Self {
+        let values: Vec<f64> = places.iter().flat_map(|&place| &columns[place]).copied().collect();
+        let qr = DMatrix::from_vec(columns[0].len(), places.len(), values).qr();
+        Self { places, qr }
+    }
+
+    /// Those of the columns that belong to a series of `harmonics` harmonics.
+    fn places(&self, harmonics: usize) -> &[usize] {
+        &self.places[..self.places.partition_point(|&place| place <= 2 * harmonics)]
+    }
+
+    /// Qᵀy of the part of a signal.
+    fn rotated(&self, mut signal: DVector<f64>) -> DVector<f64> {
+        self.qr.q_tr_mul(&mut signal);
+        signal
+    }
+}
+
+impl Nested {
+    /// The bases with up to `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
+    ///
+    /// Fails with [`IdentifyError::TooFewPoints`] when there are not more instants than columns of the widest.
+    pub fn new(time: &[f64], fundamental: f64, harmonics: usize) -> Result<Self, IdentifyError> {
+        let (rows, width) = (time.len(), 2 * harmonics + 1);
+        if rows <= width {
+            let (needed, found) = (width + 1, rows);
+            return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, found });
+        }
+        let centre = 0.5 * (time[0] + time[rows - 1]);
+        // Without harmonics there are no sines.
+        let folded = harmonics > 0 && has_even_steps(time);
+        let instants = &time[if folded { rows / 2 } else { 0 }..];
+        let first: Vec<(f64, f64)> = instants.iter().map(|t| (fundamental * (t - centre)).sin_cos()).collect();
+        let (mut c, mut s) = (vec![if folded { SQRT_2 } else { 1.0 }; instants.len()], vec![0.0; instants.len()]);
+        if folded && rows % 2 == 1 {
+            // The middle is its own mirror image.
+            c[0] = 1.0;
+        }
+        let mut columns = Vec::with_capacity(width);
+        columns.push(c.clone());
+        for _ in 1..=harmonics {
+            for ((c, s), (s1, c1)) in c.iter_mut().zip(&mut s).zip(&first) {
+                (*s, *c) = (*s * c1 + *c * s1, *c * c1 - *s * s1);
+            }
+            columns.push(c.clone());
+            columns.push(s.clone());
+        }
+        let places = |holds: fn(usize) -> bool| (0..width).filter(|&place| holds(place)).collect::<Vec<_>>();
+        let parts = if folded {
+            let [even, odd] =
+                [places(|place| place == 0 || place % 2 == 1), places(|place| place > 0 && place % 2 == 0)];
+            [even, odd].into_iter().map(|places| Part::new(places, &columns)).collect()
+        } else {
+            vec![Part::new(places(|_| true), &columns)]
+        };
+        Ok(Self { fundamental, harmonics, centre, rows, columns, parts })
+    }
+
+    /// Residual sums of squares of the series with 0, 1, .. N harmonics.
+    pub fn rss(&self, values: &[f64]) -> Vec<f64> {
+        let mut rss = vec![0.0; self.harmonics + 1];
+        for (part, signal) in self.parts.iter().zip(self.split(values)) {
+            let rotated = part.rotated(signal);
+            for (harmonics, rss) in rss.iter_mut().enumerate() {
+                *rss += rotated.rows_range(part.places(harmonics).len()..).norm_squared();
+            }
+        }
+        rss
+    }
+
+    /// The basis with the first `harmonics` of its harmonics, at least one where there are any.
+    pub fn basis(self, harmonics: usize) -> Basis {
+        let triangle = |part: &Part| {
+            let width = part.places(harmonics).len();
+            part.qr.r().view((0, 0), (width, width)).into_owned().svd(true, true)
+        };
+        Basis { svd: self.parts.iter().map(triangle).collect(), harmonics, series: self }
+    }
+
+    /// A signal given at the instants, as the parts see it.
+    fn split(&self, values: &[f64]) -> Vec<DVector<f64>> {
+        if self.parts.len() == 1 {
+            return vec![DVector::from_column_slice(values)];
+        }
+        let half = self.columns[0].len();
+        let (mut even, mut odd) = (DVector::zeros(half), DVector::zeros(half));
+        for k in 0..half {
+            let (here, there) = (values[self.rows - half + k], values[half - 1 - k]);
+            (even[k], odd[k]) = if self.is_middle(k) {
+                (here, 0.0)
+            } else {
+                (FRAC_1_SQRT_2 * (here + there), FRAC_1_SQRT_2 * (here - there))
+            };
+        }
+        vec![even, odd]
+    }
+
+    /// The inverse of [`Self::split`].
+    fn join(&self, parts: &[DVector<f64>]) -> Vec<f64> {
+        let [even, odd] = parts else { return parts[0].as_slice().to_vec() };
+        let half = even.len();
+        let mut values = vec![0.0; self.rows];
+        for k in 0..half {
+            let there = FRAC_1_SQRT_2 * (even[k] - odd[k]);
+            values[half - 1 - k] = there;
+            values[self.rows - half + k] = if self.is_middle(k) { even[k] } else { FRAC_1_SQRT_2 * (even[k] + odd[k]) };
+        }
+        values
+    }
+
+    fn is_middle(&self, k: usize) -> bool {
+        k == 0 && self.rows % 2 == 1
+    }
+}
+
 impl Basis {
     /// The basis of `harmonics` harmonics of `fundamental` (rad/s, positive) on `time` (s, increasing).
     ///
     /// Fails with [`IdentifyError::TooFewPoints`] when there are not more instants than columns.
     pub fn new(time: &[f64], fundamental: f64, harmonics: usize) -> Result<Self, IdentifyError> {
-        let width = 2 * harmonics + 1;
-        if time.len() <= width {
-            let (needed, found) = (width + 1, time.len());
-            return Err(IdentifyError::TooFewPoints { what: "headings for the Fourier series", needed, found });
-        }
-        let centre = 0.5 * (time[0] + time[time.len() - 1]);
-        let mut design = DMatrix::zeros(time.len(), width);
-        let mut row = vec![0.0; width];
-        for (i, t) in time.iter().enumerate() {
-            fill_row(fundamental, harmonics, t - centre, 0, &mut row);
-            for (column, value) in row.iter().enumerate() {
-                design[(i, column)] = *value;
-            }
-        }
-        let qr = design.clone().qr();
-        let svd = qr.r().svd(true, true);
-        Ok(Self { fundamental, harmonics, centre, design, qr, svd })
+        Ok(Nested::new(time, fundamental, harmonics)?.basis(harmonics))
     }
 
     /// Fundamental w, rad/s.
     pub fn fundamental(&self) -> f64 {
-        self.fundamental
+        self.series.fundamental
     }
 
     /// Number of harmonics N.
@@ -69,8 +190,18 @@ impl Basis {
 
     /// Condition number of X, columns as they are (√2 for whole periods); infinite when X has no full rank.
     pub fn condition(&self) -> f64 {
-        let (largest, smallest) = (self.svd.singular_values.max(), self.svd.singular_values.min());
+        let largest = self.largest_singular_value();
+        let smallest = self.svd.iter().map(|svd| svd.singular_values.min()).fold(f64::INFINITY, f64::min);
         if smallest > 0.0 { largest / smallest } else { f64::INFINITY }
+    }
+
+    fn largest_singular_value(&self) -> f64 {
+        self.svd.iter().map(|svd| svd.singular_values.max()).fold(0.0, f64::max)
+    }
+
+    /// The parts of the series with the places of their columns in this basis and the decomposition of their triangle.
+    fn parts(&self) -> impl Iterator<Item = (&Part, &[usize], &SVD<f64, Dyn, Dyn>)> {
+        self.series.parts.iter().zip(&self.svd).map(|(part, svd)| (part, part.places(self.harmonics), svd))
     }
 
     /// Least-squares projection of a signal given at the instants of the basis.
@@ -78,14 +209,19 @@ impl Basis {
     /// Directions whose singular value is below 1e-14 of the largest are left out, so that a basis that is singular to
     /// rounding still gives the smallest of its solutions.
     pub fn project(&self, values: &[f64]) -> Projection {
-        let y = DVector::from_column_slice(values);
-        let mut rotated = y.clone();
-        self.qr.q_tr_mul(&mut rotated);
-        let head = rotated.rows(0, self.design.ncols()).into_owned();
-        let floor = 1e-14 * self.svd.singular_values.max();
-        let coefficients = self.svd.solve(&head, floor).expect("both sides of the decomposition were asked for");
-        let residual: Vec<f64> = (&y - &self.design * &coefficients).iter().copied().collect();
-        let mean = y.mean();
+        let floor = 1e-14 * self.largest_singular_value();
+        let mut coefficients = DVector::zeros(2 * self.harmonics + 1);
+        let mut residual = self.series.split(values);
+        for ((part, places, svd), signal) in self.parts().zip(&mut residual) {
+            let head = part.rotated(signal.clone()).rows(0, places.len()).into_owned();
+            let solution = svd.solve(&head, floor).expect("both sides of the decomposition were asked for");
+            for (&place, &coefficient) in places.iter().zip(&solution) {
+                coefficients[place] = coefficient;
+                add(signal.as_mut_slice(), -coefficient, &self.series.columns[place]);
+            }
+        }
+        let residual = self.series.join(&residual);
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
         let total: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
         let left: f64 = residual.iter().map(|e| e * e).sum();
         let r_squared = if total > 0.0 { 1.0 - left / total } else { 1.0 };
@@ -94,38 +230,79 @@ impl Basis {
 
     /// Residual sums of squares of the series with 0, 1, .. N harmonics of the same fundamental.
     pub fn nested_rss(&self, values: &[f64]) -> Vec<f64> {
-        let mut rotated = DVector::from_column_slice(values);
-        self.qr.q_tr_mul(&mut rotated);
-        let squares = |from: usize| rotated.rows_range(from..).norm_squared();
-        // Columns come harmonic by harmonic, so that every leading block is a series of its own.
-        (0..=self.harmonics).map(|harmonics| squares(2 * harmonics + 1)).collect()
+        let mut rss = self.series.rss(values);
+        rss.truncate(self.harmonics + 1);
+        rss
     }
 
     /// (XᵀX)⁻¹ in the order of [`Projection::coefficients`]: times a white noise variance, their covariance.
     pub fn unscaled_covariance(&self) -> DMatrix<f64> {
-        let v_t = self.svd.v_t.as_ref().expect("both sides of the decomposition were asked for");
-        let inverse_squares = self.svd.singular_values.map(|s| 1.0 / (s * s));
-        v_t.transpose() * DMatrix::from_diagonal(&inverse_squares) * v_t
+        let width = 2 * self.harmonics + 1;
+        let mut covariance = DMatrix::zeros(width, width);
+        for (_, places, svd) in self.parts() {
+            let v_t = svd.v_t.as_ref().expect("both sides of the decomposition were asked for");
+            let mut scaled = v_t.clone();
+            for (mut row, s) in scaled.row_iter_mut().zip(&svd.singular_values) {
+                row /= *s;
+            }
+            let part = scaled.tr_mul(&scaled);
+            for (i, &row) in places.iter().enumerate() {
+                for (j, &column) in places.iter().enumerate() {
+                    covariance[(row, column)] = part[(i, j)];
+                }
+            }
+        }
+        covariance
     }
 
-    /// Writes the basis functions, differentiated `order` times (0, 1 or 2), at time `t` (s) into `row` (2N+1 long).
-    pub fn row(&self, t: f64, order: u8, row: &mut [f64]) {
-        fill_row(self.fundamental, self.harmonics, t - self.centre, order, row);
+    /// Xθ: the values at the instants of a series with `coefficients` θ.
+    pub fn values(&self, coefficients: &DVector<f64>) -> Vec<f64> {
+        let sum = |places: &[usize]| {
+            let mut values = DVector::zeros(self.series.columns[0].len());
+            places.iter().for_each(|&p| add(values.as_mut_slice(), coefficients[p], &self.series.columns[p]));
+            values
+        };
+        self.series.join(&self.parts().map(|(_, places, _)| sum(places)).collect::<Vec<_>>())
+    }
+
+    /// Xᵀy: the sums of the products of `values` y, one an instant, with every function of the basis.
+    pub fn moments(&self, values: &[f64]) -> DVector<f64> {
+        let mut moments = DVector::zeros(2 * self.harmonics + 1);
+        for ((_, places, _), signal) in self.parts().zip(self.series.split(values)) {
+            places.iter().for_each(|&place| moments[place] = dot(&self.series.columns[place], signal.as_slice()));
+        }
+        moments
+    }
+
+    /// D θ: the coefficients of the derivative of a series, n w (bₙ cos n w t − aₙ sin n w t).
+    pub fn derivative(&self, coefficients: &DVector<f64>) -> DVector<f64> {
+        let mut derivative = DVector::zeros(coefficients.len());
+        for n in 1..=self.harmonics {
+            let rate = n as f64 * self.series.fundamental;
+            derivative[2 * n - 1] = rate * coefficients[2 * n];
+            derivative[2 * n] = -rate * coefficients[2 * n - 1];
+        }
+        derivative
+    }
+
+    /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the other function of its pair.
+    pub fn moments_of_derivative(&self, moments: &DVector<f64>) -> DVector<f64> {
+        -self.derivative(moments)
     }
 
     /// The curve of a projection, with coefficients in the time of the record.
     pub fn curve(&self, projection: &Projection) -> FourierFit {
-        let n = self.harmonics;
+        let (n, fundamental) = (self.harmonics, self.series.fundamental);
         let theta = &projection.coefficients;
         let (mut cosine, mut sine) = (Vec::with_capacity(n), Vec::with_capacity(n));
         for harmonic in 1..=n {
-            let (s, c) = (harmonic as f64 * self.fundamental * self.centre).sin_cos();
+            let (s, c) = (harmonic as f64 * fundamental * self.series.centre).sin_cos();
             let (a, b) = (theta[2 * harmonic - 1], theta[2 * harmonic]);
             cosine.push(a * c - b * s);
             sine.push(a * s + b * c);
         }
         FourierFit {
-            fundamental: self.fundamental,
+            fundamental,
             mean: theta[0],
             cosine,
             sine,
@@ -135,20 +312,9 @@ impl Basis {
     }
 }
 
-/// Basis functions or their derivatives at `u`: order 0, 1 or 2.
-fn fill_row(fundamental: f64, harmonics: usize, u: f64, order: u8, row: &mut [f64]) {
-    let (s1, c1) = (fundamental * u).sin_cos();
-    let (mut s, mut c) = (s1, c1);
-    row[0] = if order == 0 { 1.0 } else { 0.0 };
-    for harmonic in 1..=harmonics {
-        let rate = harmonic as f64 * fundamental;
-        (row[2 * harmonic - 1], row[2 * harmonic]) = match order {
-            0 => (c, s),
-            1 => (-rate * s, rate * c),
-            _ => (-rate * rate * c, -rate * rate * s),
-        };
-        (s, c) = (s * c1 + c * s1, c * c1 - s * s1);
-    }
+/// `values` + `factor` `column`, in place.
+fn add(values: &mut [f64], factor: f64, column: &[f64]) {
+    values.iter_mut().zip(column).for_each(|(value, x)| *value += factor * x);
 }
 
 #[cfg(test)]
@@ -188,6 +354,37 @@ mod tests {
         for (harmonics, rss) in nested.into_iter().enumerate() {
             let alone = Basis::new(&time, 0.045, harmonics).expect("enough instants").project(&values);
             assert_relative_eq!(rss, alone.residual.iter().map(|e| e * e).sum(), max_relative = 1e-9);
+        }
+    }
+
+    /// What a projection leaves is orthogonal to every function, of the record whole or in halves, and derivatives and
+    /// their sums are those of the curve.
+    #[test]
+    fn residuals_are_orthogonal_and_derivatives_agree_with_the_curve() {
+        let even = |rows: i32| (0..rows).map(|i| 1.5 * f64::from(i)).collect::<Vec<f64>>();
+        let uneven = (0..157).map(|i| 1.5 * i as f64 + (i as f64).sin()).collect();
+        for time in [even(156), even(157), uneven] {
+            let values: Vec<f64> = time.iter().map(|t| (0.0004 * t * t).sin()).collect();
+            let basis = Nested::new(&time, 0.03, 7).expect("enough instants").basis(5);
+            let projection = basis.project(&values);
+            let left = basis.moments(&projection.residual);
+            assert_abs_diff_eq!(left.norm(), 0.0, epsilon = 1e-11);
+            let curve = basis.curve(&projection);
+            let rate = basis.derivative(&projection.coefficients);
+            let (fitted, rates) = (basis.values(&projection.coefficients), basis.values(&rate));
+            let accelerations = basis.values(&basis.derivative(&rate));
+            for (i, t) in time.iter().enumerate() {
+                assert_abs_diff_eq!(fitted[i] + projection.residual[i], values[i], epsilon = 1e-13);
+                assert_abs_diff_eq!(fitted[i], curve.heading(*t), epsilon = 1e-12);
+                assert_abs_diff_eq!(rates[i], curve.yaw_rate(*t), epsilon = 1e-12);
+                assert_abs_diff_eq!(accelerations[i], curve.yaw_acceleration(*t), epsilon = 1e-13);
+            }
+            let by_coefficients = basis.moments_of_derivative(&basis.moments(&values));
+            let sum: f64 = rates.iter().zip(&values).map(|(r, y)| r * y).sum();
+            assert_relative_eq!(by_coefficients.dot(&projection.coefficients), sum, max_relative = 1e-11);
+            let covariance = basis.unscaled_covariance();
+            let back = basis.moments(&basis.values(&(&covariance * &left.map(|_| 1.0))));
+            assert_abs_diff_eq!((back - left.map(|_| 1.0)).norm(), 0.0, epsilon = 1e-11);
         }
     }
 

@@ -9,11 +9,13 @@
 //! | choosing w | [`fundamental`] |
 //! | the series on the instants of a record | [`basis`] |
 //! | RSS as a function of w | [`profile`] |
+//! | fewer instants in place of the rows | [`nodes`] |
 //! | triples of instants, eq. (10) of the paper | [`triples`] |
 //! | regression on a pair of projected signals | [`regression`] |
 
 pub mod basis;
 pub mod fundamental;
+pub mod nodes;
 pub mod profile;
 pub mod regression;
 pub mod triples;

@@ -1,89 +1,88 @@
 //! The residual sum of squares as a function of the fundamental alone, the coefficients eliminated: cheap enough to
 //! scan. The problem has many local minima in w, so a search from one start is only as good as its start.
 //!
+//! With time u from the middle of a record of length L, cos k w u is a polynomial of degree k in cos w u, and sin k w u
+//! is sin w u times one of degree k − 1. Over less than one period cos w u runs through a part of [−1, 1] only and its
+//! Chebyshev polynomials are nearly dependent; those of ξ = 1 − 2 (sin ½wu / sin ¼wL)², which always runs through all of
+//! it, span the same space and are not: Tₖ(ξ), k = 0..N, and sin w u Tₖ(ξ), k < N. Their normal equations hold only
+//! Σ Tₖ(ξ) and Σ sin w u Tₖ(ξ), and are well conditioned down to the lowest w. Where sums over rows are too many, they
+//! are taken over fewer [`Nodes`].
+//!
 //! Source of the elimination: Golub and Pereyra (1973), variable projection.
 
 use nalgebra::{DMatrix, DVector};
+use std::array::from_fn;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Instants handled together; eight doubles fill the widest vector registers in use.
-const LANES: usize = 8;
+use super::nodes::{LANES, Nodes, lanes};
 
 /// Below this pivot against its column QR is used. A pivot of size p leaves an error of about ε/p in the pivots after
-/// it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error and false minima appear.
+/// it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error and false minima appear. It happens where
+/// gaps leave too little of the record, and where the highest harmonics are beyond the sampling.
 const SMALLEST_PIVOT: f64 = 1e-6;
 
-/// Deviation from even steps, as a share of the step, that is rounding of the clock.
-const EVEN: f64 = 1e-7;
+/// Highest fundamental of the coarsest nodes, periods a record; that of the others is doubled from one to the next.
+const COARSEST_REACH: f64 = 1.25;
+
+/// Nodes are made where the record, folded, has at least this many times as many rows.
+const WORTHWHILE: usize = 2;
+
+/// Steps of a walk after which its phasors are computed anew, before rounding adds up.
+const ANCHOR_STEPS: usize = 32;
 
 /// RSS(w) of the best series with N harmonics of w, with its work space allocated once.
-///
-/// The Gram matrix of the basis holds only Σ cos k w t and Σ sin k w t, k = 0..2N, so that one pass over the instants
-/// with a recurrence in k makes the normal equations. On even steps these sums have a closed form, and the record is
-/// folded about its middle: the cosines see only the even part of the signal, the sines only the odd part.
 #[derive(Debug, Clone)]
 pub struct Profile {
     harmonics: usize,
-    rows: usize,
-    /// Step of an even record, s.
-    step: Option<f64>,
-    /// Time from the middle of the record, padded to whole blocks; of an even record the second half only.
-    time: Vec<f64>,
-    /// Signal less its mean, zero in the padding: sum and difference of the two halves when folded.
-    even: Vec<f64>,
-    odd: Vec<f64>,
-    /// Instants behind a value: 0 in the padding, 2 for a folded pair.
-    weight: Vec<f64>,
-    /// cos w t and sin w t of the fundamental evaluated last.
-    phasor: Vec<[f64; 2]>,
+    /// Length of the record, s.
+    length: f64,
     total: f64,
-    sums: Vec<[[f64; LANES]; 4]>,
+    /// The record itself.
+    rows: Nodes,
+    /// Nodes in its place, from the coarsest, made when first wanted, and how many there are of them.
+    coarse: Vec<Option<Nodes>>,
+    counts: Vec<usize>,
+    /// cos ½wu and sin ½wu of the fundamental evaluated last.
+    phasor: Vec<[f64; 2]>,
+    sums: Vec<Sums>,
     gram: Vec<f64>,
     right: Vec<f64>,
     evaluations: usize,
 }
 
+/// Sums over nodes with one Chebyshev polynomial Tₖ(ξ), lane by lane.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Σ Tₖ.
+    weight: [f64; LANES],
+    /// Σ sin w u Tₖ, zero for even steps.
+    skew: [f64; LANES],
+    /// Σ y Tₖ.
+    even: [f64; LANES],
+    /// Σ y sin w u Tₖ.
+    odd: [f64; LANES],
+}
+
 impl Profile {
     /// The profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MOST_HARMONICS`] harmonics.
     pub fn new(time: &[f64], values: &[f64], harmonics: usize) -> Self {
-        let rows = time.len();
-        let centre = 0.5 * (time[0] + time[rows - 1]);
-        let mean = values.iter().sum::<f64>() / rows as f64;
-        let step = (time[rows - 1] - time[0]) / (rows - 1) as f64;
-        let is_even = time.iter().enumerate().all(|(row, t)| (t - time[0] - row as f64 * step).abs() <= EVEN * step);
-        // Of an even record the rows from the middle on, each with its mirror image.
-        let first = if is_even { rows / 2 } else { 0 };
-        let (mut even, mut odd, mut weight) = (Vec::new(), Vec::new(), Vec::new());
-        for row in first..rows {
-            let here = values[row] - mean;
-            let mirror = rows - 1 - row;
-            if is_even && mirror != row {
-                let there = values[mirror] - mean;
-                even.push(here + there);
-                odd.push(here - there);
-                weight.push(2.0);
-            } else {
-                even.push(here);
-                odd.push(here);
-                weight.push(1.0);
-            }
-        }
-        let mut half: Vec<f64> = time[first..].iter().map(|t| t - centre).collect();
-        let padded = half.len().next_multiple_of(LANES);
-        for column in [&mut half, &mut even, &mut odd, &mut weight] {
-            column.resize(padded, 0.0);
-        }
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();
+        let rows = Nodes::of_rows(time, &centred);
+        let counts: Vec<usize> = (0..)
+            .map(|level| Nodes::needed(2 * harmonics, FRAC_PI_2 * reach(level)))
+            .take_while(|&count| count / 2 * WORTHWHILE <= rows.used)
+            .collect();
         let width = 2 * harmonics + 1;
         Self {
             harmonics,
+            length: time[time.len() - 1] - time[0],
+            total: centred.iter().map(|v| v * v).sum(),
+            phasor: vec![[1.0, 0.0]; rows.time.len()],
             rows,
-            step: is_even.then_some(step),
-            time: half,
-            even,
-            odd,
-            weight,
-            phasor: vec![[1.0, 0.0]; padded],
-            total: values.iter().map(|v| (v - mean) * (v - mean)).sum(),
-            sums: vec![[[0.0; LANES]; 4]; width],
+            coarse: vec![None; counts.len()],
+            counts,
+            sums: vec![Sums::default(); width],
             gram: vec![0.0; width * width],
             right: vec![0.0; width],
             evaluations: 0,
@@ -102,10 +101,9 @@ impl Profile {
 
     /// RSS at `fundamental` (rad/s, positive).
     pub fn rss(&mut self, fundamental: f64) -> f64 {
-        for (value, u) in self.phasor.iter_mut().zip(&self.time) {
-            *value = phasor(fundamental * u);
-        }
-        self.rss_of_phasor(fundamental)
+        let level = self.level(fundamental);
+        self.anchor(level, fundamental);
+        self.rss_of_phasor(level, fundamental)
     }
 
     /// RSS at `count` fundamentals from `lowest` in steps of `step` (rad/s).
@@ -116,110 +114,95 @@ impl Profile {
 
     /// Fundamentals from `from` in steps of `step` (rad/s, either sign).
     pub fn walk(&mut self, from: f64, step: f64) -> Walk<'_> {
-        let turn = self.time.iter().map(|u| phasor(step * u)).collect();
-        Walk { profile: self, turn, from, step, done: 0 }
+        Walk { profile: self, turn: Vec::new(), level: 0, from, step, done: 0 }
     }
 
-    fn rss_of_phasor(&mut self, fundamental: f64) -> f64 {
+    /// Which nodes stand for the rows at `fundamental`: a place in `coarse`, or its length for the rows themselves.
+    fn level(&self, fundamental: f64) -> usize {
+        let periods = fundamental * self.length / TAU;
+        (0..self.coarse.len()).take_while(|&level| reach(level) < periods).count()
+    }
+
+    /// Makes the nodes of a level, from the next finer there are.
+    fn make(&mut self, level: usize) {
+        if self.coarse.get(level).is_some_and(Option::is_none) {
+            let finer = self.coarse[level..].iter().flatten().next().unwrap_or(&self.rows);
+            self.coarse[level] = Some(finer.fewer(self.counts[level], 0.5 * self.length));
+        }
+    }
+
+    /// Computes the phasors of `fundamental`.
+    fn anchor(&mut self, level: usize, fundamental: f64) {
+        self.make(level);
+        for (value, u) in self.phasor.iter_mut().zip(&nodes(&self.coarse, &self.rows, level).time) {
+            *value = phasor(0.5 * fundamental * u);
+        }
+    }
+
+    fn rss_of_phasor(&mut self, level: usize, fundamental: f64) -> f64 {
         self.evaluations += 1;
-        self.accumulate();
-        self.assemble(fundamental);
-        let width = 2 * self.harmonics + 1;
-        match explained(&mut self.gram, &mut self.right, width) {
+        let share = cosine_share(fundamental, self.length);
+        let nodes = nodes(&self.coarse, &self.rows, level);
+        accumulate(nodes, &self.phasor, share, self.harmonics, &mut self.sums);
+        self.assemble(share);
+        match explained(&mut self.gram, &mut self.right) {
             Some(explained) => (self.total - explained).max(0.0),
             None => self.rss_by_qr(fundamental),
         }
     }
 
-    /// Sums of y cos k, y sin k (k ≤ N) and, on uneven steps, of cos k, sin k (k ≤ 2N), lane by lane.
-    fn accumulate(&mut self) {
+    /// Upper triangle of XᵀX and Xᵀy from the sums, order Tₖ, sin w u Tₖ.
+    fn assemble(&mut self, share: f64) {
         let n = self.harmonics;
-        let highest = if self.step.is_some() { n } else { 2 * n };
-        self.sums.fill([[0.0; LANES]; 4]);
-        for start in (0..self.time.len()).step_by(LANES) {
-            let (even, odd) = (lanes(&self.even, start), lanes(&self.odd, start));
-            let (weight, phasor) = (lanes(&self.weight, start), lanes(&self.phasor, start));
-            let c1: [f64; LANES] = std::array::from_fn(|i| phasor[i][0]);
-            let (mut c0, mut s0) = ([1.0; LANES], [0.0; LANES]);
-            let mut c = c1;
-            let mut s: [f64; LANES] = std::array::from_fn(|i| phasor[i][1]);
-            for k in 1..=highest {
-                let sums = &mut self.sums[k];
-                if self.step.is_none() {
-                    add(&mut sums[0], weight, &c);
-                    add(&mut sums[1], weight, &s);
-                }
-                if k <= n {
-                    add(&mut sums[2], even, &c);
-                    add(&mut sums[3], odd, &s);
-                }
-                for i in 0..LANES {
-                    // Chebyshev: cos (k+1)x = 2 cos x cos kx − cos (k−1)x, and the same for sin.
-                    let (next_c, next_s) = (2.0 * c1[i] * c[i] - c0[i], 2.0 * c1[i] * s[i] - s0[i]);
-                    (c0[i], s0[i]) = (c[i], s[i]);
-                    (c[i], s[i]) = (next_c, next_s);
-                }
-            }
+        let (cosines, width) = (n + 1, 2 * n + 1);
+        let sum = |lanes: [f64; LANES]| lanes.iter().sum::<f64>();
+        // Σ Tₖ, Σ sin w u Tₖ and Σ sin² w u Tₖ.
+        let (mut plain, mut sine) = ([0.0; MOST_COLUMNS], [0.0; MOST_COLUMNS]);
+        for (k, sums) in self.sums.iter().enumerate() {
+            (plain[k], sine[k]) = (sum(sums.weight), sum(sums.skew));
         }
-    }
-
-    /// Lower triangle of XᵀX and Xᵀy from the sums, order 1, cos 1..N, sin 1..N.
-    fn assemble(&mut self, fundamental: f64) {
-        let n = self.harmonics;
-        let width = 2 * n + 1;
-        let sum = |k: usize, part: usize| self.sums[k][part].iter().sum::<f64>();
-        let (mut cosines, mut sines) = ([0.0; 2 * MOST_HARMONICS + 1], [0.0; 2 * MOST_HARMONICS + 1]);
-        cosines[0] = self.rows as f64;
-        for k in 1..width {
-            (cosines[k], sines[k]) = match self.step {
-                Some(step) => (even_cosines(self.rows as f64, k as f64 * fundamental * step), 0.0),
-                None => (sum(k, 0), sum(k, 1)),
-            };
-        }
-        self.right[0] = 0.0;
-        for p in 1..=n {
-            (self.right[p], self.right[n + p]) = (sum(p, 2), sum(p, 3));
-        }
+        let square = with_square_of_sine(&plain[..width], share);
+        // 2 Tₚ T_q = Tₚ₊_q + T_|p−q|.
+        let product = |sums: &[f64], p: usize, q: usize| 0.5 * (sums[p + q] + sums[p.abs_diff(q)]);
         for p in 0..=n {
-            for q in 0..=p {
-                self.gram[p * width + q] = 0.5 * (cosines[p - q] + cosines[p + q]);
-            }
+            let row = &mut self.gram[p * width..][..width];
+            (p..=n).for_each(|q| row[q] = product(&plain, p, q));
+            (0..n).for_each(|q| row[cosines + q] = product(&sine, p, q));
+            self.right[p] = sum(self.sums[p].even);
         }
-        for p in 1..=n {
-            let row = (n + p) * width;
-            for q in 0..=n {
-                // sin p cos q = ½ (sin (p+q) + sin (p−q)).
-                let difference = if p >= q { sines[p - q] } else { -sines[q - p] };
-                self.gram[row + q] = 0.5 * (sines[p + q] + difference);
-            }
-            for q in 1..=p {
-                self.gram[row + n + q] = 0.5 * (cosines[p - q] - cosines[p + q]);
-            }
+        for p in 0..n {
+            let row = &mut self.gram[(cosines + p) * width..][..width];
+            (p..n).for_each(|q| row[cosines + q] = product(&square, p, q));
+            self.right[cosines + p] = sum(self.sums[p].odd);
         }
     }
 
-    /// The same number from orthogonal decompositions, for fundamentals far below one period a record.
+    /// The same number from an orthogonal decomposition, where its columns are nearly dependent on the rows there are.
     fn rss_by_qr(&self, fundamental: f64) -> f64 {
-        let n = self.harmonics;
-        let values = self.weight.iter().position(|&weight| weight == 0.0).unwrap_or(self.time.len());
-        let cosine = |row: usize, k: usize| (k as f64 * fundamental * self.time[row]).cos();
-        let sine = |row: usize, k: usize| (k as f64 * fundamental * self.time[row]).sin();
-        if self.step.is_none() {
-            let design = DMatrix::from_fn(values, 2 * n + 1, |row, column| {
-                if column <= n { cosine(row, column) } else { sine(row, column - n) }
-            });
-            return left_over(design, DVector::from_column_slice(&self.even[..values]));
+        let Nodes { time, even, odd, weight, skew, is_symmetric, used } = &self.rows;
+        let (n, share) = (self.harmonics, cosine_share(fundamental, self.length));
+        let (mut cosines, mut sines) = (DMatrix::zeros(*used, n + 1), DMatrix::zeros(*used, n));
+        // A pair of instants weighs √2; an instant alone has the sign of its side in `skew`.
+        let root: Vec<f64> = weight[..*used].iter().map(|weight| weight.sqrt()).collect();
+        for row in 0..*used {
+            let [xi, sine] = arguments(phasor(0.5 * fundamental * time[row]), share);
+            let (mut before, mut here) = (xi, 1.0);
+            for k in 0..=n {
+                cosines[(row, k)] = root[row] * here;
+                if k < n {
+                    sines[(row, k)] = if *is_symmetric { root[row] } else { skew[row] } * sine * here;
+                }
+                (before, here) = (here, 2.0 * xi * here - before);
+            }
         }
-        // Even and odd part stand apart; a pair of instants weighs √2.
-        let root: Vec<f64> = self.weight[..values].iter().map(|weight| weight.sqrt()).collect();
-        let part = |signal: &[f64]| DVector::from_fn(values, |row, _| signal[row] / root[row]);
-        let cosines = DMatrix::from_fn(values, n + 1, |row, column| root[row] * cosine(row, column));
-        let even = left_over(cosines, part(&self.even));
-        // The middle row of an odd number has no odd part.
-        let first = usize::from(root[0] == 1.0);
-        let sines =
-            DMatrix::from_fn(values - first, n, |row, column| root[first + row] * sine(first + row, column + 1));
-        even + left_over(sines, part(&self.odd).rows_range(first..).into_owned())
+        let part = |signal: &[f64]| DVector::from_fn(*used, |row, _| signal[row] / root[row]);
+        if *is_symmetric {
+            // The cosines see only the even part of the record, the sines only the odd part.
+            return left_over(cosines, part(even)) + left_over(sines, part(odd));
+        }
+        let mut design = cosines.resize_horizontally(2 * n + 1, 0.0);
+        design.columns_mut(n + 1, n).copy_from(&sines);
+        left_over(design, part(even))
     }
 }
 
@@ -228,6 +211,8 @@ impl Profile {
 pub struct Walk<'a> {
     profile: &'a mut Profile,
     turn: Vec<[f64; 2]>,
+    /// Of the nodes that phasors and turn belong to.
+    level: usize,
     from: f64,
     step: f64,
     done: usize,
@@ -237,28 +222,84 @@ impl Walk<'_> {
     /// RSS at the next fundamental, the first time at the start of the walk.
     pub fn next_rss(&mut self) -> f64 {
         let fundamental = self.from + self.done as f64 * self.step;
+        let level = self.profile.level(fundamental);
+        if self.done == 0 || level != self.level {
+            self.level = level;
+            self.profile.anchor(level, fundamental);
+            let nodes = nodes(&self.profile.coarse, &self.profile.rows, level);
+            self.turn.clear();
+            self.turn.extend(nodes.time.iter().map(|u| phasor(0.5 * self.step * u)));
+        } else if self.done.is_multiple_of(ANCHOR_STEPS) {
+            self.profile.anchor(level, fundamental);
+        } else {
+            for (phasor, turn) in self.profile.phasor.iter_mut().zip(&self.turn) {
+                let [c, s] = *phasor;
+                *phasor = [c * turn[0] - s * turn[1], s * turn[0] + c * turn[1]];
+            }
+        }
         self.done += 1;
-        if self.done == 1 {
-            return self.profile.rss(fundamental);
-        }
-        for (phasor, turn) in self.profile.phasor.iter_mut().zip(&self.turn) {
-            let [c, s] = *phasor;
-            *phasor = [c * turn[0] - s * turn[1], s * turn[0] + c * turn[1]];
-        }
-        self.profile.rss_of_phasor(fundamental)
+        self.profile.rss_of_phasor(level, fundamental)
     }
 }
 
 /// Most harmonics a series may have; far beyond what a zig-zag record can carry.
 pub const MOST_HARMONICS: usize = 64;
 
+const MOST_COLUMNS: usize = 2 * MOST_HARMONICS + 1;
+
+/// Highest fundamental of the nodes of a level, periods a record.
+fn reach(level: usize) -> f64 {
+    COARSEST_REACH * f64::powi(2.0, level as i32)
+}
+
+/// The nodes of a level, or the rows beyond the last.
+fn nodes<'a>(coarse: &'a [Option<Nodes>], rows: &'a Nodes, level: usize) -> &'a Nodes {
+    coarse.get(level).and_then(Option::as_ref).unwrap_or(rows)
+}
+
+/// Share sin² ¼wL of [−1, 1] that cos w u runs through over a record of length L; all of it from one period on.
+fn cosine_share(fundamental: f64, length: f64) -> f64 {
+    (0.25 * fundamental * length).min(FRAC_PI_2).sin().powi(2)
+}
+
+/// cos and sin of an angle.
 fn phasor(angle: f64) -> [f64; 2] {
     let (s, c) = angle.sin_cos();
     [c, s]
 }
 
-fn lanes<T>(values: &[T], start: usize) -> &[T; LANES] {
-    values[start..start + LANES].try_into().expect("columns are padded to whole blocks")
+/// ξ and sin w u from cos and sin of ½wu.
+fn arguments([c, s]: [f64; 2], share: f64) -> [f64; 2] {
+    [1.0 - 2.0 * (s * s) / share, 2.0 * c * s]
+}
+
+/// Sums over `nodes` with Tₖ(ξ) for k ≤ 2N; those of the signal stop at the harmonics.
+fn accumulate(nodes: &Nodes, phasor: &[[f64; 2]], share: f64, harmonics: usize, sums: &mut [Sums]) {
+    sums.fill(Sums::default());
+    for start in (0..nodes.time.len()).step_by(LANES) {
+        let turned = lanes(phasor, start);
+        let (even, odd) = (lanes(&nodes.even, start), lanes(&nodes.odd, start));
+        let (weight, skew) = (lanes(&nodes.weight, start), lanes(&nodes.skew, start));
+        let arguments = turned.map(|phasor| arguments(phasor, share));
+        let xi = arguments.map(|[xi, _]| xi);
+        let twice = xi.map(|xi| 2.0 * xi);
+        let odd: [f64; LANES] = from_fn(|i| arguments[i][1] * odd[i]);
+        let skew: [f64; LANES] = from_fn(|i| arguments[i][1] * skew[i]);
+        // T₋₁ = T₁.
+        let (mut before, mut here) = (xi, [1.0; LANES]);
+        for (k, sums) in sums.iter_mut().enumerate() {
+            add(&mut sums.weight, weight, &here);
+            if !nodes.is_symmetric {
+                add(&mut sums.skew, &skew, &here);
+            }
+            if k <= harmonics {
+                add(&mut sums.even, even, &here);
+                add(&mut sums.odd, &odd, &here);
+            }
+            // Tₖ₊₁ = 2 ξ Tₖ − Tₖ₋₁.
+            (before, here) = (here, from_fn(|i| twice[i] * here[i] - before[i]));
+        }
+    }
 }
 
 fn add(total: &mut [f64; LANES], factor: &[f64; LANES], term: &[f64; LANES]) {
@@ -267,12 +308,22 @@ fn add(total: &mut [f64; LANES], factor: &[f64; LANES], term: &[f64; LANES]) {
     }
 }
 
-/// Σ cos of `count` angles in steps of `angle`, symmetric about zero: sin(n x/2)/sin(x/2), Dirichlet's kernel.
-fn even_cosines(count: f64, angle: f64) -> f64 {
-    let (half, many) = (0.5 * angle, 0.5 * count * angle);
-    let (above, below) = (many.sin(), half.sin());
-    // At a multiple of the sampling frequency both vanish.
-    if below.abs() < 1e-9 { count * many.cos() / half.cos() } else { above / below }
+/// Σ sin² w u Tₖ from Σ Tₖ, for two orders less: sin² w u = x (2 − x), x = 1 − cos w u = `share` (1 − ξ), and
+/// (1 − ξ) Tₖ = Tₖ − ½ (Tₖ₊₁ + T_|k−1|).
+fn with_square_of_sine(sums: &[f64], share: f64) -> [f64; MOST_COLUMNS] {
+    let by_x = |sums: &[f64], orders: usize| {
+        let mut product = [0.0; MOST_COLUMNS];
+        for k in 0..orders {
+            product[k] = share * (sums[k] - 0.5 * (sums[k + 1] + sums[k.abs_diff(1)]));
+        }
+        product
+    };
+    let once = by_x(sums, sums.len() - 1);
+    let mut twice = by_x(&once, sums.len() - 2);
+    for k in 0..sums.len() - 2 {
+        twice[k] = 2.0 * once[k] - twice[k];
+    }
+    twice
 }
 
 /// Squared length of what a design leaves of a signal.
@@ -282,26 +333,32 @@ fn left_over(design: DMatrix<f64>, mut signal: DVector<f64>) -> f64 {
     signal.rows_range(width..).norm_squared()
 }
 
-/// bᵀ G⁻¹ b by Cholesky in place on the lower triangle; `None` when a pivot is down to rounding.
-fn explained(gram: &mut [f64], right: &mut [f64], width: usize) -> Option<f64> {
+/// bᵀ G⁻¹ b by elimination in place in the upper triangle; `None` when a pivot is down to rounding.
+fn explained(gram: &mut [f64], right: &mut [f64]) -> Option<f64> {
+    let width = right.len();
+    let mut diagonal = [0.0; MOST_COLUMNS];
+    for p in 0..width {
+        diagonal[p] = gram[p * width + p];
+    }
     let mut explained = 0.0;
     for p in 0..width {
-        let diagonal = gram[p * width + p];
-        let (done, rest) = gram.split_at_mut(p * width);
-        let row = &mut rest[..=p];
-        for q in 0..p {
-            let above = &done[q * width..q * width + q + 1];
-            let dot: f64 = row[..q].iter().zip(&above[..q]).map(|(x, y)| x * y).sum();
-            row[q] = (row[q] - dot) / above[q];
-        }
-        let pivot = diagonal - row[..p].iter().map(|x| x * x).sum::<f64>();
-        if pivot <= SMALLEST_PIVOT * diagonal || pivot.is_nan() {
+        let (done, rest) = gram.split_at_mut((p + 1) * width);
+        let row = &done[p * width..];
+        let pivot = row[p];
+        if pivot <= SMALLEST_PIVOT * diagonal[p] || pivot.is_nan() {
             return None;
         }
-        row[p] = pivot.sqrt();
-        let dot: f64 = row[..p].iter().zip(right.iter()).map(|(x, y)| x * y).sum();
-        right[p] = (right[p] - dot) / row[p];
-        explained += right[p] * right[p];
+        let inverse = 1.0 / pivot;
+        for (i, below) in (p + 1..).zip(rest.chunks_exact_mut(width)) {
+            let factor = row[i] * inverse;
+            // On even steps cosines and sines have nothing in common.
+            if factor == 0.0 {
+                continue;
+            }
+            below[i..].iter_mut().zip(&row[i..]).for_each(|(value, above)| *value -= factor * above);
+            right[i] -= factor * right[p];
+        }
+        explained += right[p] * right[p] * inverse;
     }
     Some(explained)
 }
@@ -330,6 +387,44 @@ mod tests {
             let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
             assert_relative_eq!(scanned, exact, max_relative = 1e-8);
             assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-8);
+        }
+    }
+
+    /// Enough rows for three levels of nodes, at 0.4 to 12 periods a record: an even record, an odd number of rows and an
+    /// uneven record.
+    #[test]
+    fn nodes_in_place_of_the_rows_change_nothing() {
+        for (rows, unevenness) in [(1200, 0.0), (1201, 0.0), (1800, 0.4)] {
+            let time: Vec<f64> = (0..rows).map(|i| 0.5 * (i as f64 + unevenness * (i as f64).sin())).collect();
+            let values: Vec<f64> =
+                (0..rows).map(|i| (0.021 * i as f64).sin() + 0.01 * ((i * i) as f64).sin()).collect();
+            let mut profile = Profile::new(&time, &values, 8);
+            assert!(profile.coarse.len() >= 2, "{} levels", profile.coarse.len());
+            let one = TAU / profile.length;
+            let curve = profile.scan(0.4 * one, 0.1 * one, 117);
+            for (k, scanned) in curve.into_iter().enumerate() {
+                let w = (0.4 + 0.1 * k as f64) * one;
+                let basis = Basis::new(&time, w, 8).expect("enough rows");
+                let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
+                assert_relative_eq!(scanned, exact, max_relative = 1e-9);
+                assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-9);
+            }
+        }
+    }
+
+    /// Harmonics beyond the sampling nearly repeat lower ones, and a record that is mostly a gap can hardly tell them apart.
+    #[test]
+    fn goes_on_where_columns_are_nearly_dependent() {
+        let even: Vec<f64> = (0..41).map(f64::from).collect();
+        let gap: Vec<f64> = (0..60).map(|i| f64::from(if i < 30 { i } else { i + 240 })).collect();
+        for (time, w) in [(even, 1.00001 * TAU / 10.0), (gap, 0.02)] {
+            let values: Vec<f64> = time.iter().map(|t| (0.11 * t).sin() + 0.1 * (0.9 * t).cos()).collect();
+            let mut profile = Profile::new(&time, &values, 8);
+            let basis = Basis::new(&time, w, 8).expect("enough rows");
+            assert!(basis.condition() > 1e3, "condition {}", basis.condition());
+            let exact: f64 = basis.project(&values).residual.iter().map(|e| e * e).sum();
+            assert_relative_eq!(profile.rss(w), exact, max_relative = 1e-6);
+            assert!(explained(&mut profile.gram, &mut profile.right).is_none());
         }
     }
 

@@ -3,7 +3,9 @@
 
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
-use nalgebra::{DMatrix, Matrix3, RowVector3, Vector3};
+use std::ops::Range;
+
+use nalgebra::{DMatrix, DVector, Matrix3, RowVector3, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 
@@ -34,11 +36,15 @@ pub struct Equations {
     trials: Vec<Block>,
 }
 
+/// Places of the rudder and of 1 among the signals of [`Block::moments`].
+const RUDDER: usize = 2;
+const ONE: usize = 3;
+
 /// What noise on the heading of one trial does to its equations.
 #[derive(Debug, Clone)]
 struct Block {
-    /// Derivative of r and of r' by the coefficients, equations × 2N+1.
-    by_coefficients: [DMatrix<f64>; 2],
+    /// Σ f ∂r/∂θ and Σ f ∂r'/∂θ over the equations, θ the 2N+1 coefficients, for f = r, r', δ and 1.
+    moments: [[DVector<f64>; 4]; 2],
     /// Covariance of the coefficients, (2N+1)².
     covariance: DMatrix<f64>,
 }
@@ -55,26 +61,35 @@ pub struct Solution {
 }
 
 impl Equations {
-    /// Adds equations at `time` (s) of one trial: r and r' of the heading on `basis`, `rudder` (rad) as given.
+    /// Adds equations at `rows` of the instants of `basis`: r and r' of the heading on it, `rudder` (rad) as given for all
+    /// instants.
     ///
     /// `noise_variance`, rad², is that of white noise on the heading.
-    pub fn add(&mut self, basis: &Basis, heading: &Projection, time: &[f64], rudder: &[f64], noise_variance: f64) {
-        let width = 2 * basis.harmonics() + 1;
-        let mut row = vec![0.0; width];
-        let by_coefficients = [1, 2].map(|order| {
-            let mut matrix = DMatrix::zeros(time.len(), width);
-            for (i, t) in time.iter().enumerate() {
-                basis.row(*t, order, &mut row);
-                for (column, value) in row.iter().enumerate() {
-                    matrix[(i, column)] = *value;
-                }
-            }
-            matrix
+    pub fn add(
+        &mut self,
+        basis: &Basis,
+        heading: &Projection,
+        rows: Range<usize>,
+        rudder: &[f64],
+        noise_variance: f64,
+    ) {
+        let rate = basis.derivative(&heading.coefficients);
+        let acceleration = basis.derivative(&rate);
+        let signals = [basis.values(&rate), basis.values(&acceleration), rudder.to_vec(), vec![1.0; rudder.len()]];
+        for (column, signal) in
+            [&mut self.yaw_rate, &mut self.yaw_acceleration, &mut self.rudder].into_iter().zip(&signals)
+        {
+            column.extend_from_slice(&signal[rows.clone()]);
+        }
+        let by_heading = signals.map(|mut signal| {
+            signal[..rows.start].fill(0.0);
+            signal[rows.end..].fill(0.0);
+            basis.moments(&signal)
         });
-        self.yaw_rate.extend((&by_coefficients[0] * &heading.coefficients).iter());
-        self.yaw_acceleration.extend((&by_coefficients[1] * &heading.coefficients).iter());
-        self.rudder.extend_from_slice(rudder);
-        self.trials.push(Block { by_coefficients, covariance: basis.unscaled_covariance() * noise_variance });
+        let by_rate = by_heading.each_ref().map(|moments| basis.moments_of_derivative(moments));
+        let by_acceleration = by_rate.each_ref().map(|moments| basis.moments_of_derivative(moments));
+        let covariance = basis.unscaled_covariance() * noise_variance;
+        self.trials.push(Block { moments: [by_rate, by_acceleration], covariance });
     }
 
     /// Number of equations.
@@ -137,29 +152,19 @@ impl Equations {
     /// the truncated series leaves of them. dx and dy are linear in the coefficients, whose covariance is σ²(XᵀX)⁻¹.
     fn spread_of_moments(&self, response: Response, parameters: &Vector3<f64>) -> Matrix3<f64> {
         let (p, q, s) = (parameters[0], parameters[1], parameters[2]);
-        let (y, x) = self.sides(response);
         let mut total = Matrix3::zeros();
-        let mut start = 0;
-        for Block { by_coefficients: [rate, acceleration], covariance } in &self.trials {
-            let (dy, dx) = match response {
-                Response::YawAcceleration => (acceleration, rate),
-                Response::YawRate => (rate, acceleration),
+        for Block { moments: [by_rate, by_acceleration], covariance } in &self.trials {
+            // Places of y and x among the signals.
+            let (dy, dx, y, x) = match response {
+                Response::YawAcceleration => (by_acceleration, by_rate, 1, 0),
+                Response::YawRate => (by_rate, by_acceleration, 0, 1),
             };
-            let width = dy.ncols();
-            let mut gradient = DMatrix::zeros(3, width);
-            for column in 0..width {
-                let mut sum = Vector3::zeros();
-                for i in 0..dy.nrows() {
-                    let k = start + i;
-                    let left = y[k] + p * x[k] - q * self.rudder[k] - s;
-                    let equation = dy[(i, column)] + p * dx[(i, column)];
-                    sum += Vector3::new(-x[k] * equation - left * dx[(i, column)], self.rudder[k] * equation, equation);
-                }
-                gradient.set_column(column, &sum);
-            }
-            let spread = &gradient * covariance * gradient.transpose();
+            let with_equation = |signal: usize| &dy[signal] + p * &dx[signal];
+            let with_rest = &dx[y] + p * &dx[x] - q * &dx[RUDDER] - s * &dx[ONE];
+            let gradient =
+                DMatrix::from_columns(&[-with_equation(x) - with_rest, with_equation(RUDDER), with_equation(ONE)]);
+            let spread = gradient.transpose() * covariance * &gradient;
             total += Matrix3::from_fn(|i, j| spread[(i, j)]);
-            start += dy.nrows();
         }
         total
     }
