@@ -9,7 +9,7 @@ mod noise;
 
 use std::ops::Range;
 
-use lanes::column::{dot, gram, sum};
+use lanes::column::{dot, gram, project, sum};
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
@@ -202,18 +202,15 @@ impl<'a> Piece<'a> {
     fn project(&mut self, lengths: &mut Vector3<f64>, products: &mut Matrix4<f64>) {
         let count = self.time.len() as f64;
         let middle = sum(self.time) / count;
-        let since: Vec<f64> = self.time.iter().map(|t| t - middle).collect();
-        let spread = dot(&since, &since);
-        let mut removed = [0.0; WIDTH];
-        for (column, removed) in self.columns.iter_mut().zip(&mut removed) {
-            let (mean, slope) = (sum(column) / count, dot(&since, column) / spread);
-            column.iter_mut().zip(&since).for_each(|(x, s)| *x -= mean + slope * s);
-            *removed = count * mean * mean + spread * slope * slope;
-        }
+        let mut unit: Vec<f64> = self.time.iter().map(|t| t - middle).collect();
+        let length = dot(&unit, &unit).sqrt();
+        let scale = 1.0 / length;
+        unit.iter_mut().for_each(|s| *s *= scale);
+        let removed = self.columns.each_mut().map(|column| project(&unit, column));
         let [x0, x1, x2, y] = &self.columns;
         let sums = Matrix4::from(gram([x0, x1, x2, y]));
         for i in 0..SHARED {
-            lengths[i] += sums[(i, i)] + removed[i];
+            lengths[i] += sums[(i, i)] + count * removed[i].mean.powi(2) + removed[i].share.powi(2);
         }
         *products += sums;
     }
