@@ -1,6 +1,8 @@
 //! What a method returns: the response, how sure it is, and how it got there.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
+use std::cell::Cell;
+
 use nalgebra::{Matrix3, Vector3};
 use ship::FirstOrder;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
@@ -140,15 +142,29 @@ impl Covariance {
 
     /// Two-sided 95 % quantile: Student's t for an estimated variance, normal for a known one.
     pub fn quantile95(&self) -> f64 {
-        let normal = || Normal::standard().inverse_cdf(0.975);
-        match self.degrees_of_freedom {
-            Some(freedom) => StudentsT::new(0.0, 1.0, freedom).map_or_else(|_| normal(), |t| t.inverse_cdf(0.975)),
-            None => normal(),
+        // Every quantity of an estimate asks for the same one.
+        thread_local!(static LAST: Cell<Option<(Option<f64>, f64)>> = const { Cell::new(None) });
+        match LAST.get() {
+            Some((freedom, quantile)) if freedom == self.degrees_of_freedom => quantile,
+            _ => {
+                let quantile = quantile95(self.degrees_of_freedom);
+                LAST.set(Some((self.degrees_of_freedom, quantile)));
+                quantile
+            }
         }
     }
 
     fn sd_along(&self, gradient: &Vector3<f64>) -> f64 {
         gradient.dot(&(self.matrix * gradient)).max(0.0).sqrt()
+    }
+}
+
+/// Two-sided 95 % quantile of Student's t, or of the normal distribution without degrees of freedom.
+fn quantile95(degrees_of_freedom: Option<f64>) -> f64 {
+    let normal = || Normal::standard().inverse_cdf(0.975);
+    match degrees_of_freedom {
+        Some(freedom) => StudentsT::new(0.0, 1.0, freedom).map_or_else(|_| normal(), |t| t.inverse_cdf(0.975)),
+        None => normal(),
     }
 }
 
