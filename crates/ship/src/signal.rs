@@ -126,6 +126,6 @@ mod tests {
     #[test]
     fn refuses_time_that_runs_backwards() {
         let error = Polyline::new(vec![0.0, 2.0, 1.0], vec![0.0; 3]).expect_err("time runs back");
-        assert_eq!(error, SignalError::Point { index: 2, before: 1.0, time: 1.0, value: 0.0 });
+        assert_eq!(error, SignalError::Point { index: 2, before: 2.0, time: 1.0, value: 0.0 });
     }
 }

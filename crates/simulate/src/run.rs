@@ -6,7 +6,8 @@ use crate::display::{Display, Reading};
 use crate::error::SimulateError;
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Cue, Helm};
-use crate::propagate::{Crossing, Propagator, Sample};
+use crate::propagate::{Crossing, Limits, Propagator, Sample};
+use crate::recording::Tap;
 use crate::simulation::Execute;
 
 /// Heading, rad, beyond which a run has diverged: a hundred turns.
@@ -84,7 +85,7 @@ impl<'a, P: Propagator> Run<'a, P> {
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulateError> {
         loop {
             let end = self.helm.end() + END_TOLERANCE;
-            let deadline = self.executes.last().map_or(0.0, |execute| execute.time) + self.longest_wait;
+            let deadline = self.deadline();
             let cue = self.helm.cue();
             let mut to = until.min(end);
             let mut watch = None;
@@ -134,6 +135,26 @@ impl<'a, P: Propagator> Run<'a, P> {
                 return Err(SimulateError::NeverReached { execute, angle, waited: self.longest_wait });
             }
         }
+    }
+
+    /// Records the rows that come before anything can happen.
+    pub fn coast(&mut self, rows: &mut Tap) {
+        // A display is read at instants of its own.
+        if self.display.is_some() {
+            return;
+        }
+        let (time, watch) = match self.helm.cue() {
+            Cue::At(time) => (time, None),
+            Cue::Deviation { side, angle } => (self.deadline(), Some(Crossing { base: self.base, side, angle })),
+            Cue::Nothing => (f64::INFINITY, None),
+        };
+        let limits = Limits { before: time.min(self.helm.end()), watch, base: self.base, furthest: TOO_FAR };
+        self.propagator.coast(&self.path, &limits, rows);
+    }
+
+    /// Time, s, by which a heading that is waited for has to be reached.
+    fn deadline(&self) -> f64 {
+        self.executes.last().map_or(0.0, |execute| execute.time) + self.longest_wait
     }
 
     /// What can be recorded now.

@@ -277,6 +277,9 @@ impl Simulation {
             run = self.begin(key, propagator());
         }
         loop {
+            if instruments.is_none() {
+                run.coast(&mut rows);
+            }
             let next = instruments.as_ref().map_or(rows.next(), |tap| tap.next().min(rows.next()));
             if next == f64::INFINITY {
                 break;

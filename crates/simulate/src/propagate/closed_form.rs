@@ -3,8 +3,9 @@
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
-use super::{Propagator, Sample, acting};
+use super::{Limits, Propagator, Sample, acting};
 use crate::gear::{RudderPath, Segment, Shape};
+use crate::recording::Tap;
 use crate::weather::{GRID, Weather};
 
 /// Longest step, s, and longest step in units of |T|: a course-unstable ship must be caught before it overflows.
@@ -59,6 +60,22 @@ impl ClosedForm {
     }
 }
 
+impl ClosedForm {
+    /// What can be recorded now, under the steering term `u0`, rad/s².
+    fn sample_under(&self, u0: f64) -> Sample {
+        let State { heading, yaw_rate } = self.state;
+        let yaw_acceleration = u0 - self.ship.inverse_T * yaw_rate;
+        let cell = self.weather.cell();
+        Sample {
+            time: self.time,
+            motion: Motion { heading, yaw_rate, yaw_acceleration, speed: None, sway: None },
+            gyro: heading,
+            disturbance: cell.moment(self.time),
+            gust: cell.gust(self.time),
+        }
+    }
+}
+
 impl Propagator for ClosedForm {
     fn time(&self) -> f64 {
         self.time
@@ -100,15 +117,37 @@ impl Propagator for ClosedForm {
     fn sample(&mut self, path: &RudderPath) -> Sample {
         let segment = acting(path, &mut self.cursor, self.time, 0.0);
         let (u0, _) = self.steering(segment);
-        let State { heading, yaw_rate } = self.state;
-        let yaw_acceleration = u0 - self.ship.inverse_T * yaw_rate;
-        let cell = self.weather.cell();
-        Sample {
-            time: self.time,
-            motion: Motion { heading, yaw_rate, yaw_acceleration, speed: None, sway: None },
-            gyro: heading,
-            disturbance: cell.moment(self.time),
-            gust: cell.gust(self.time),
+        self.sample_under(u0)
+    }
+
+    fn coast(&mut self, path: &RudderPath, limits: &Limits, rows: &mut Tap) {
+        let segment = acting(path, &mut self.cursor, self.time, 0.0);
+        let still = segment.shape == Shape::Hold && self.weather.cell().end == f64::INFINITY;
+        if !still {
+            return;
+        }
+        let (u0, _) = self.steering(segment);
+        let [step, _] = self.usual;
+        let before = limits.before.min(segment.end);
+        loop {
+            let next = rows.next();
+            let usual = (next - self.time - step.h).abs() < SAME_STEP && next <= self.time + self.longest;
+            if !usual || next >= before {
+                return;
+            }
+            let from = self.state;
+            let to = step.advance(from, u0, 0.0);
+            // The yaw rate is monotone: a heading that is crossed and left again within the step has an extremum there.
+            let crossed = limits.watch.is_some_and(|watch| {
+                let turns = watch.side * from.yaw_rate > 0.0 && watch.side * to.yaw_rate < 0.0;
+                turns || watch.excess(from.heading) >= 0.0 || watch.excess(to.heading) >= 0.0
+            });
+            let sane = to.yaw_rate.is_finite() && (to.heading - limits.base).abs() < limits.furthest;
+            if crossed || !sane {
+                return;
+            }
+            (self.state, self.time) = (to, next);
+            rows.take(&self.sample_under(u0));
         }
     }
 }

@@ -15,6 +15,7 @@ use ship::Motion;
 use ship::first_order::State;
 
 use crate::gear::{RudderPath, Segment};
+use crate::recording::Tap;
 use crate::root;
 
 /// Everything that can be recorded at one instant, before any instrument.
@@ -51,6 +52,23 @@ pub(crate) trait Propagator {
 
     /// What can be recorded now.
     fn sample(&mut self, path: &RudderPath) -> Sample;
+
+    /// Records row after row as long as nothing happens on the way, as going there step by step would, bit for bit; stops before
+    /// the first row that needs a closer look, which may be the next one.
+    fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Tap) {}
+}
+
+/// What ends a stretch in which nothing happens.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Time before which it has to end, s.
+    pub before: f64,
+    /// Heading whose crossing ends it.
+    pub watch: Option<Crossing>,
+    /// Heading, rad, about which it ends when the ship is further away than `furthest`, rad.
+    pub base: f64,
+    /// See `base`.
+    pub furthest: f64,
 }
 
 /// The segment that acts at time `t` behind a dead time, found by moving `cursor` forward.

@@ -122,7 +122,9 @@ fn a_delayed_heading_is_the_heading_of_then() {
     let late = run(&simulation);
     // The delay is a whole number of rows; the first two rows look back before the execute.
     assert_eq!(late.trial.time(), prompt.trial.time());
-    assert_eq!(late.trial.rudder(), prompt.trial.rudder());
+    for (late, prompt) in late.trial.rudder().iter().zip(prompt.trial.rudder()) {
+        assert_abs_diff_eq!(late, prompt, epsilon = 1e-12);
+    }
     for row in 2..late.trial.len() {
         assert_abs_diff_eq!(late.trial.heading()[row], prompt.trial.heading()[row - 2], epsilon = 1e-12);
         assert_abs_diff_eq!(late.truth.heading[row], prompt.truth.heading[row], epsilon = 1e-12);
