@@ -8,11 +8,13 @@
 //! T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a (Liénard form: no derivative of the rudder
 //! is needed, and a Bech polynomial in r keeps its place).
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
 use crate::effects::{Effect, Now, Parameter, Scale, SwayCoupling};
 use crate::first_order::FirstOrder;
+use crate::number::Real;
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETERS: usize = 3;
@@ -31,6 +33,16 @@ struct Place {
     states: (usize, usize),
 }
 
+impl Place {
+    fn parameters(&self) -> Range<usize> {
+        self.parameters.0..self.parameters.1
+    }
+
+    fn states(&self) -> Range<usize> {
+        self.states.0..self.states.1
+    }
+}
+
 /// Structure of a response model: base plus effects. Parameters travel beside it, base first.
 #[derive(Debug, Clone, Default)]
 pub struct ResponseModel {
@@ -43,10 +55,10 @@ pub struct ResponseModel {
 }
 
 /// What the effects make of one instant.
-struct Instant {
-    rudder: f64,
-    scale: Scale,
-    acceleration: f64,
+struct Instant<R> {
+    rudder: R,
+    scale: Scale<R>,
+    acceleration: R,
 }
 
 impl ResponseModel {
@@ -62,7 +74,7 @@ impl ResponseModel {
             };
             (parameters, states) = (place.parameters.1, place.states.1);
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
-            if effect.sway_coupling(&neutral).is_some() {
+            if f64::acts(effect.as_ref()).sway_coupling(&neutral).is_some() {
                 second_order = Some(index);
             }
             places.push(place);
@@ -94,38 +106,25 @@ impl ResponseModel {
     ///
     /// # Panics
     /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a user.
-    pub fn with(self, parameters: Vec<f64>) -> Response {
+    pub fn with<R: Real>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         Response { model: self, parameters }
     }
 }
 
 /// A response model with its parameters: a ship that can be simulated or replayed.
+///
+/// With parameters that carry derivatives, its motion carries them, too.
 #[derive(Debug, Clone)]
-pub struct Response {
+pub struct Response<R = f64> {
     model: ResponseModel,
-    parameters: Vec<f64>,
+    parameters: Vec<R>,
 }
 
 impl Response {
     /// A purely first-order ship.
     pub fn first_order_ship(base: FirstOrder) -> Self {
         ResponseModel::first_order().with(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
-    }
-
-    /// The structure.
-    pub fn model(&self) -> &ResponseModel {
-        &self.model
-    }
-
-    /// The values, base first.
-    pub fn parameters(&self) -> &[f64] {
-        &self.parameters
-    }
-
-    /// The values, to be changed in place between replays.
-    pub fn parameters_mut(&mut self) -> &mut [f64] {
-        &mut self.parameters
     }
 
     /// The base.
@@ -138,6 +137,29 @@ impl Response {
         self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
     }
 
+    /// The same ship with parameters that carry derivatives, none as yet.
+    pub fn constant<R: Real>(&self) -> Response<R> {
+        let parameters = self.parameters.iter().map(|&value| R::from(value)).collect();
+        Response { model: self.model.clone(), parameters }
+    }
+}
+
+impl<R: Real> Response<R> {
+    /// The structure.
+    pub fn model(&self) -> &ResponseModel {
+        &self.model
+    }
+
+    /// The values, base first.
+    pub fn parameters(&self) -> &[R] {
+        &self.parameters
+    }
+
+    /// The values, to be changed in place between replays.
+    pub fn parameters_mut(&mut self) -> &mut [R] {
+        &mut self.parameters
+    }
+
     /// Measured channels that effects of this response need.
     pub fn needs(&self, channel: Regressor) -> bool {
         self.model.effects.iter().any(|effect| effect.needs() == Some(channel))
@@ -145,20 +167,22 @@ impl Response {
 
     /// Shortest time constant of base and effects, s.
     pub fn shortest_time(&self) -> f64 {
-        let own = self.parameters[0].abs().recip();
-        self.effects().map(|(effect, p, _)| effect.shortest_time(p)).fold(own, f64::min)
+        let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
+        let own = values[0].abs().recip();
+        let effects = self.model.effects.iter().zip(&self.model.places);
+        effects.map(|(effect, place)| effect.shortest_time(&values[place.parameters()])).fold(own, f64::min)
     }
 
     /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is
     /// that of a rudder that has stood there.
-    pub fn enter(&self, heading: f64, yaw_rate: f64, input: &Input, state: &mut [f64]) {
-        state.fill(0.0);
+    pub fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+        state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
         let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
         for (effect, p, place) in self.effects() {
-            let z = &mut state[place.states.0..place.states.1];
-            effect.approach(p, &now, z);
-            now.rudder = effect.rudder(p, z, now.rudder);
+            let z = &mut state[place.states()];
+            R::acts(effect).approach(p, &now, z);
+            now.rudder = R::acts(effect).rudder(p, z, now.rudder);
         }
         if let Some((coupling, s)) = self.sway_coupling() {
             // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
@@ -169,23 +193,23 @@ impl Response {
 
     /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the state s
     /// of a second-order response follows so that the yaw acceleration stays what it is.
-    pub fn restart(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+    pub fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);
         if let Some((coupling, s)) = self.sway_coupling() {
-            state[s] += (1.0 + coupling.second_time * self.parameters[0]) * change;
+            state[s] = state[s] + (coupling.second_time * self.parameters[0] + 1.0) * change;
         }
     }
 
-    fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[f64], Place)> {
+    fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[R], Place)> {
         self.model
             .effects
             .iter()
             .zip(&self.model.places)
-            .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters.0..place.parameters.1], place))
+            .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters()], place))
     }
 
-    fn now<'a>(&self, t: f64, state: &[f64], rudder: f64, input: &'a Input) -> Now<'a> {
+    fn now<'a>(&self, t: f64, state: &[R], rudder: R, input: &'a Input<R>) -> Now<'a, R> {
         Now {
             t,
             heading: state[0],
@@ -193,61 +217,72 @@ impl Response {
             rudder,
             inverse_time: self.parameters[0],
             gain: self.parameters[1],
-            input,
+            measured: &input.measured,
         }
     }
 
-    fn instant(&self, t: f64, state: &[f64], input: &Input) -> Instant {
+    #[inline]
+    fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
         for (effect, p, place) in self.effects() {
-            rudder = effect.rudder(p, &state[place.states.0..place.states.1], rudder);
+            rudder = R::acts(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
-        let mut scale = Scale::NONE;
-        let mut acceleration = 0.0;
+        let mut scale = Scale::none();
+        let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
-            let z = &state[place.states.0..place.states.1];
-            let own = effect.scale(p, z, &now);
-            scale.damping *= own.damping;
-            scale.gain *= own.gain;
-            acceleration += effect.yaw_acceleration(p, z, &now);
+            let z = &state[place.states()];
+            let own = R::acts(effect).scale(p, z, &now);
+            scale.damping = scale.damping * own.damping;
+            scale.gain = scale.gain * own.gain;
+            acceleration = acceleration + R::acts(effect).yaw_acceleration(p, z, &now);
         }
         Instant { rudder, scale, acceleration }
     }
 
-    fn sway_coupling(&self) -> Option<(SwayCoupling, usize)> {
+    /// T₂ and T₃ of a second-order response, and the place of its state s.
+    #[inline]
+    fn sway_coupling(&self) -> Option<(SwayCoupling<R>, usize)> {
         let place = self.model.places[self.model.second_order?];
         let effect = &self.model.effects[self.model.second_order?];
-        let coupling = effect.sway_coupling(&self.parameters[place.parameters.0..place.parameters.1])?;
+        let coupling = R::acts(effect.as_ref()).sway_coupling(&self.parameters[place.parameters()])?;
         Some((coupling, place.states.0))
     }
 
     /// f of the module's equation and, for a second-order response, r' as well.
-    fn accelerations(&self, state: &[f64], input: &Input, instant: &Instant) -> (f64, f64) {
+    #[inline]
+    fn accelerations(
+        &self,
+        state: &[R],
+        input: &Input<R>,
+        instant: &Instant<R>,
+        coupling: Option<(SwayCoupling<R>, usize)>,
+    ) -> (R, R) {
         let a = self.parameters[0] * instant.scale.damping;
         let b = self.parameters[1] * instant.scale.gain;
         let steering = instant.rudder + self.parameters[2] + input.disturbance;
         let f = -a * state[1] + b * steering + instant.acceleration;
-        match self.sway_coupling() {
+        match coupling {
             Some((coupling, s)) => {
                 let (t2, t3) = (coupling.second_time, coupling.rudder_time);
-                (f, (state[s] - (1.0 + t2 * a) * state[1] + b * t3 * (instant.rudder + self.parameters[2])) / t2)
+                let lead = b * t3 * (instant.rudder + self.parameters[2]);
+                (f, (state[s] - (t2 * a + 1.0) * state[1] + lead) / t2)
             }
             None => (f, f),
         }
     }
 }
 
-impl Dynamics for Response {
+impl<R: Real> Dynamics<R> for Response<R> {
     fn dimension(&self) -> usize {
         self.model.states
     }
 
-    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+    fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         self.enter(heading, yaw_rate, &Input::default(), state);
     }
 
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
         if self.model.effects.is_empty() {
             let [a, b, bias] = [self.parameters[0], self.parameters[1], self.parameters[2]];
             rate[0] = state[1];
@@ -255,41 +290,50 @@ impl Dynamics for Response {
             return;
         }
         let instant = self.instant(t, state, input);
-        let (f, yaw_acceleration) = self.accelerations(state, input, &instant);
+        let coupling = self.sway_coupling();
+        let (f, yaw_acceleration) = self.accelerations(state, input, &instant, coupling);
         rate[0] = state[1];
         rate[1] = yaw_acceleration;
         if self.model.states > 2 {
             let now = self.now(t, state, instant.rudder, input);
             let mut before = input.rudder;
             for (effect, p, place) in self.effects() {
-                let own = place.states.0..place.states.1;
-                let z = &state[own.clone()];
-                effect.rates(p, z, &now, before, &mut rate[own]);
-                before = effect.rudder(p, z, before);
+                let z = &state[place.states()];
+                R::acts(effect).rates(p, z, &now, before, &mut rate[place.states()]);
+                before = R::acts(effect).rudder(p, z, before);
             }
-            if let Some((_, s)) = self.sway_coupling() {
+            if let Some((_, s)) = coupling {
                 rate[s] = f;
             }
         }
     }
 
-    fn settle(&self, _t: f64, state: &mut [f64], input: &Input) {
+    fn settle(&self, _t: f64, state: &mut [R], input: &Input<R>) {
+        if self.model.states == 2 {
+            return;
+        }
         let mut before = input.rudder;
         for (effect, p, place) in self.effects() {
-            let z = &mut state[place.states.0..place.states.1];
-            effect.settle(p, z, before);
-            before = effect.rudder(p, z, before);
+            let z = &mut state[place.states()];
+            R::acts(effect).settle(p, z, before);
+            before = R::acts(effect).rudder(p, z, before);
         }
     }
 
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion {
         let instant = self.instant(t, state, input);
-        let (_, yaw_acceleration) = self.accelerations(state, input, &instant);
-        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed: None, sway: None }
+        let (_, yaw_acceleration) = self.accelerations(state, input, &instant, self.sway_coupling());
+        Motion {
+            heading: state[0].value(),
+            yaw_rate: state[1].value(),
+            yaw_acceleration: yaw_acceleration.value(),
+            speed: None,
+            sway: None,
+        }
     }
 
-    fn dead_time(&self) -> f64 {
-        self.effects().map(|(effect, p, _)| effect.dead_time(p)).sum()
+    fn dead_time(&self) -> R {
+        self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::acts(effect).dead_time(p))
     }
 
     /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.

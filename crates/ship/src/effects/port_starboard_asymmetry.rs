@@ -1,6 +1,7 @@
 //! A rudder gain that differs by side.
 
-use super::{Effect, Parameter};
+use super::{Acts, Effect, Parameter};
+use crate::number::Real;
 
 /// K (δ + a |δ| + δ_r): gain 1 + a to starboard, 1 − a to port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,8 +26,10 @@ impl Effect for PortStarboardAsymmetry {
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
     }
+}
 
-    fn rudder(&self, p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+impl<R: Real> Acts<R> for PortStarboardAsymmetry {
+    fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
         rudder + p[0] * rudder.abs()
     }
 }

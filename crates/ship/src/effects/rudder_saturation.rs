@@ -1,6 +1,7 @@
 //! A rudder that loses lift at large angles.
 
-use super::{Effect, Parameter};
+use super::{Acts, Effect, Parameter};
+use crate::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,8 +27,10 @@ impl Effect for RudderSaturation {
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
     }
+}
 
-    fn rudder(&self, p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+impl<R: Real> Acts<R> for RudderSaturation {
+    fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
         rudder - p[0] * rudder * rudder * rudder
     }
 }
