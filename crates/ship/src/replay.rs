@@ -29,13 +29,11 @@ impl<'a> Recorded<'a> {
         Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
     }
 
-    /// What acts at time `t` on a ship whose rudder is late by `dead_time`; `piece` is a hint into the rudder signal.
-    pub fn input(&self, t: f64, dead_time: f64, piece: usize) -> Input {
-        Input {
-            rudder: self.rudder.at_from(t - dead_time, piece),
-            disturbance: 0.0,
-            measured: self.measured(t, piece),
-        }
+    /// What acts at time `t` on a ship whose rudder is late by `dead_time`.
+    pub fn input<R: Real>(&self, t: f64, dead_time: R) -> Input<R> {
+        let corner = self.rudder.times().partition_point(|&c| c + dead_time.value() <= t);
+        let rudder = Ramp::before(self.rudder, corner).at(t, dead_time);
+        Input { rudder, disturbance: 0.0, measured: self.measured(t, corner.saturating_sub(1)) }
     }
 
     fn measured(&self, t: f64, piece: usize) -> Measured {
@@ -125,12 +123,15 @@ pub fn replay_states<R, D, V>(
     let mut solver = RungeKutta4::new(dynamics.dimension());
     let mut corner = corners.partition_point(|&c| c + late <= start);
     let mut ramp = Ramp::before(recorded.rudder, corner);
-    let input = |t: f64, ramp: &Ramp, corner: usize| Input {
-        rudder: ramp.at(t, dead_time),
-        disturbance: 0.0,
-        measured: if has_channels { recorded.measured(t, corner.saturating_sub(1)) } else { Measured::default() },
+    // What acts at the beginning, in the middle and at the end of a step.
+    let mut inputs = [Input::default(); 3];
+    let act = |input: &mut Input<R>, t: f64, ramp: &Ramp, corner: usize| {
+        input.rudder = ramp.at(t, dead_time);
+        if has_channels {
+            input.measured = recorded.measured(t, corner.saturating_sub(1));
+        }
     };
-    let mut now = input(start, &ramp, corner);
+    act(&mut inputs[2], start, &ramp, corner);
     let mut t = start;
     for (index, &until) in times.iter().enumerate() {
         while t < until {
@@ -140,7 +141,7 @@ pub fn replay_states<R, D, V>(
                 }
                 ramp = Ramp::before(recorded.rudder, corner);
                 // The rudder has no jump here, but its derivative by the dead time has.
-                now.rudder = ramp.at(t, dead_time);
+                inputs[2].rudder = ramp.at(t, dead_time);
             }
             let end = match corners.get(corner) {
                 Some(&c) if c + late < until => c + late,
@@ -150,13 +151,14 @@ pub fn replay_states<R, D, V>(
             let h = (end - t) / steps;
             for k in 0..steps as usize {
                 let from = t + k as f64 * h;
-                let inputs = [now, input(from + 0.5 * h, &ramp, corner), input(from + h, &ramp, corner)];
+                inputs[0] = inputs[2];
+                act(&mut inputs[1], from + 0.5 * h, &ramp, corner);
+                act(&mut inputs[2], from + h, &ramp, corner);
                 solver.step_with(dynamics, from, h, state, &inputs);
-                now = inputs[2];
-                dynamics.settle(from + h, state, &now);
+                dynamics.settle(from + h, state, &inputs[2]);
             }
             t = end;
         }
-        visit(index, state, &now);
+        visit(index, state, &inputs[2]);
     }
 }

@@ -289,30 +289,49 @@ impl Whitener {
         self.count
     }
 
-    /// Makes a column white in place.
-    pub fn apply(&self, column: &mut [f64]) {
+    /// Makes columns white in place.
+    pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         match self.states {
             0 => {}
-            2 => self.run::<2>(column),
-            3 => self.run::<3>(column),
-            4 => self.run::<4>(column),
-            _ => self.run::<5>(column),
+            2 => self.apply_all::<2>(columns),
+            3 => self.apply_all::<3>(columns),
+            4 => self.apply_all::<4>(columns),
+            _ => self.apply_all::<5>(columns),
         }
     }
 
-    fn run<const N: usize>(&self, column: &mut [f64]) {
-        let mut x = [0.0; N];
-        for (value, (step, gain, weight)) in column.iter_mut().zip(&self.rows) {
+    /// Several columns at once: the filter waits for the last row of each, but not for the other columns.
+    fn apply_all<const N: usize>(&self, columns: &mut [&mut Vec<f64>]) {
+        let (fours, rest) = columns.as_chunks_mut::<4>();
+        fours.iter_mut().for_each(|columns| self.run::<N, 4>(columns));
+        let (twos, rest) = rest.as_chunks_mut::<2>();
+        twos.iter_mut().for_each(|columns| self.run::<N, 2>(columns));
+        rest.as_chunks_mut::<1>().0.iter_mut().for_each(|columns| self.run::<N, 1>(columns));
+    }
+
+    fn run<const N: usize, const COLUMNS: usize>(&self, columns: &mut [&mut Vec<f64>; COLUMNS]) {
+        let columns = columns.each_mut().map(|column| column.as_mut_slice());
+        let mut x = [[0.0; COLUMNS]; N];
+        for (row, (step, gain, weight)) in self.rows.iter().enumerate() {
             let f = &self.steps[*step];
-            let mut next = [0.0; N];
-            for (next, row) in next.iter_mut().zip(f) {
-                *next = row.iter().zip(&x).map(|(f, x)| f * x).sum();
+            let mut next = [[0.0; COLUMNS]; N];
+            for (next, f) in next.iter_mut().zip(f) {
+                for (x, f) in x.iter().zip(f) {
+                    for k in 0..COLUMNS {
+                        next[k] += f * x[k];
+                    }
+                }
             }
-            let innovation = *value - next[0];
+            let mut innovation = [0.0; COLUMNS];
+            for k in 0..COLUMNS {
+                innovation[k] = columns[k][row] - next[0][k];
+                columns[k][row] = innovation[k] * weight;
+            }
             for ((x, next), gain) in x.iter_mut().zip(next).zip(gain) {
-                *x = next + gain * innovation;
+                for k in 0..COLUMNS {
+                    x[k] = next[k] + gain * innovation[k];
+                }
             }
-            *value = innovation * weight;
         }
     }
 }
@@ -392,7 +411,7 @@ mod tests {
                 );
                 let y = DVector::from_fn(time.len(), |i, _| (0.7 * i as f64).sin() + 0.1 * i as f64);
                 let mut white: Vec<f64> = y.iter().copied().collect();
-                whitener.apply(&mut white);
+                whitener.apply(&mut [&mut white]);
                 let square: f64 = white.iter().map(|x| x * x).sum();
                 let quadratic = y.dot(&dense.solve(&y));
                 assert!((square / quadratic - 1.0).abs() < 2e-3, "{colour:?}: {square} is not {quadratic}");
@@ -405,7 +424,7 @@ mod tests {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
         let whitener = Grain::new(&record(&time), 0.1, 19.0).whitener(&Colour::WHITE);
         let mut column: Vec<f64> = time.clone();
-        whitener.apply(&mut column);
+        whitener.apply(&mut [&mut column]);
         assert_eq!((column, whitener.log_variance, whitener.rows()), (time, 0.0, 20));
     }
 }
