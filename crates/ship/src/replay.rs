@@ -97,22 +97,24 @@ pub fn replay<D, V>(
     D: Dynamics + ?Sized,
     V: FnMut(usize, &Motion),
 {
-    replay_states(dynamics, recorded, times, largest_step, state, |index, state, input| {
+    replay_states(dynamics, recorded, times, |_, _| largest_step, state, |index, state, input| {
         visit(index, &dynamics.motion(times[index], state, input));
     });
 }
 
-/// The same for every kind of number, with the state itself: calls `visit(index, state, input)` at every time.
-pub fn replay_states<R, D, V>(
+/// The same for every kind of number, with the state itself: calls `visit(index, state, input)` at every time. Steps
+/// between two times are no longer than `largest_step` of them (s).
+pub fn replay_states<R, D, S, V>(
     dynamics: &D,
     recorded: &Recorded,
     times: &[f64],
-    largest_step: f64,
+    largest_step: S,
     state: &mut [R],
     mut visit: V,
 ) where
     R: Real,
     D: Dynamics<R> + ?Sized,
+    S: Fn(f64, f64) -> f64,
     V: FnMut(usize, &[R], &Input<R>),
 {
     let Some(&start) = times.first() else { return };
@@ -147,7 +149,7 @@ pub fn replay_states<R, D, V>(
                 Some(&c) if c + late < until => c + late,
                 _ => until,
             };
-            let steps = ((end - t) / largest_step).ceil().max(1.0);
+            let steps = ((end - t) / largest_step(t, end)).ceil().max(1.0);
             let h = (end - t) / steps;
             for k in 0..steps as usize {
                 let from = t + k as f64 * h;

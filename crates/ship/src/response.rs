@@ -112,6 +112,21 @@ impl ResponseModel {
     }
 }
 
+/// Time constants that steps have to resolve: one at all times, others within a span.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pace {
+    always: f64,
+    spans: Vec<([f64; 2], f64)>,
+}
+
+impl Pace {
+    /// Shortest time constant, s, between two times, s.
+    pub fn shortest(&self, from: f64, to: f64) -> f64 {
+        let meets = |span: &[f64; 2]| span[0] < to && from < span[1];
+        self.spans.iter().filter(|(span, _)| meets(span)).fold(self.always, |least, (_, time)| least.min(*time))
+    }
+}
+
 /// A response model with its parameters: a ship that can be simulated or replayed.
 ///
 /// With parameters that carry derivatives, its motion carries them, too.
@@ -167,10 +182,23 @@ impl<R: Real> Response<R> {
 
     /// Shortest time constant of base and effects, s.
     pub fn shortest_time(&self) -> f64 {
+        self.pace().shortest(f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// The time constants that steps have to resolve.
+    pub fn pace(&self) -> Pace {
         let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
-        let own = values[0].abs().recip();
-        let effects = self.model.effects.iter().zip(&self.model.places);
-        effects.map(|(effect, place)| effect.shortest_time(&values[place.parameters()])).fold(own, f64::min)
+        let mut pace = Pace { always: values[0].abs().recip(), spans: Vec::new() };
+        for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
+            let p = &values[place.parameters()];
+            let (time, span) = (effect.shortest_time(p), effect.brisk(p));
+            if span == [f64::NEG_INFINITY, f64::INFINITY] {
+                pace.always = pace.always.min(time);
+            } else {
+                pace.spans.push((span, time));
+            }
+        }
+        pace
     }
 
     /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is

@@ -220,17 +220,10 @@ impl Search<'_> {
     /// Fits a model with one more term from every start of a candidate, under the colour of `from`, a fit of the model.
     fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, known: &Known) -> (Structure, Fit) {
         let structure = model.structure.with(candidate.term.clone());
-        let own = model.structure.free_count();
         let best = self
             .starts(candidate, from, known)
             .iter()
-            .map(|start| {
-                let theta = [from.theta.as_slice(), start].concat();
-                let (_, tangents) = self.problem.columns_of_last(&structure, &theta, &from.initial, &known.headings);
-                let mut columns = known.columns.clone();
-                columns.insert(own, &tangents, &known.whiteners);
-                self.problem.fit_from(&structure, &theta, &from.initial, &from.colour, &known.whiteners, columns)
-            })
+            .map(|start| self.problem.fit_with(&structure, start, from, known))
             .min_by(|one, other| one.deviance.total_cmp(&other.deviance));
         match best {
             Some(fit) => (structure, fit),

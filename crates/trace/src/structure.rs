@@ -188,9 +188,10 @@ impl Structure {
     }
 }
 
-/// Step of the solver for a response on rows `spacing` seconds apart.
-pub fn step<R: Real>(response: &Response<R>, spacing: f64) -> f64 {
-    (response.shortest_time() / STEPS).max(spacing / MOST_STEPS)
+/// Step of the solver for a response on rows `spacing` seconds apart, between two times.
+pub fn step<R: Real>(response: &Response<R>, spacing: f64) -> impl Fn(f64, f64) -> f64 {
+    let pace = response.pace();
+    move |from, to| (pace.shortest(from, to) / STEPS).max(spacing / MOST_STEPS)
 }
 
 /// Replays a response along a record, from its first row, and visits the heading at every observed row.

@@ -138,6 +138,11 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     fn shortest_time(&self, _p: &[f64]) -> f64 {
         f64::INFINITY
     }
+
+    /// Span of time, s, in which steps have to resolve that time; outside of it nothing happens so fast.
+    fn brisk(&self, _p: &[f64]) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    }
 }
 
 /// What an effect does, written once for every kind of number.

@@ -37,6 +37,12 @@ impl Effect for TransientDisturbance {
     fn shortest_time(&self, p: &[f64]) -> f64 {
         EDGE * p[2]
     }
+
+    /// Fifteen widths beyond the edges: tanh is there one to 10⁻¹³.
+    fn brisk(&self, p: &[f64]) -> [f64; 2] {
+        let reach = (0.5 + 15.0 * EDGE) * p[2];
+        [p[1] - reach, p[1] + reach]
+    }
 }
 
 impl<R: Real> Acts<R> for TransientDisturbance {

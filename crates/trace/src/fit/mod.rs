@@ -3,11 +3,15 @@
 
 mod linear;
 
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
 use nalgebra::DVector;
 
 use crate::noise::{Colour, Grain, Moment, Whitener};
 use crate::record::Record;
-use crate::structure::{Entry, Structure, headings};
+use crate::search::Known;
+use crate::structure::{Entry, Structure, Term, headings};
 use ship::Tangent;
 use ship::narrow_band::NarrowBand;
 use ship::number::DIRECTIONS;
@@ -63,7 +67,12 @@ pub struct Problem {
     inverse_time_scale: f64,
     gain_scale: f64,
     floor: f64,
+    /// Fits that were asked for before: a search comes back to the same models, and a report to those of the search.
+    finished: Arc<Mutex<HashMap<Question, Fit>>>,
 }
+
+/// What decides a fit: names of the terms, and every number that goes into it, by its bits.
+type Question = (Vec<(&'static str, &'static str, Option<usize>)>, Vec<u64>);
 
 /// A fitted structure.
 #[derive(Debug, Clone)]
@@ -120,14 +129,15 @@ impl Problem {
         let inverse_time_scale = inverse_time.abs().max(1.0 / longest);
         let time = inverse_time_scale.recip().min(0.1 * longest);
         let floor = records.iter().map(|record| blur(record, gain * time)).fold(FINEST, f64::max).powi(2);
-        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain, floor }
+        let finished = Arc::default();
+        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain, floor, finished }
     }
 
     /// The same ship on other records.
     pub fn on(&self, records: Vec<Record>) -> Self {
         let damping = self.inverse_time;
         let grains = records.iter().map(|record| Grain::new(record, damping, self.longest())).collect();
-        Self { records, grains, ..*self }
+        Self { records, grains, finished: Arc::default(), ..*self }
     }
 
     /// Length of the longest record, s.
@@ -269,28 +279,40 @@ impl Problem {
 
     /// Fits a structure from a start, under one colour of noise.
     pub fn fit(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], colour: &Colour) -> Fit {
-        let theta = self.inside(structure, theta);
-        let whiteners = self.whiteners(colour);
-        let linear = self.linear(structure, &theta, initial);
-        let columns = linear.whitened(&whiteners);
-        let start = Point::new(theta, initial.to_vec(), linear.into_residual(), &whiteners);
-        self.search(structure, start, (columns, true), &whiteners, colour)
+        self.once(question(structure, theta, initial, colour, None), || {
+            let theta = self.inside(structure, theta);
+            let whiteners = self.whiteners(colour);
+            let linear = self.linear(structure, &theta, initial);
+            let columns = linear.whitened(&whiteners);
+            let start = Point::new(theta, initial.to_vec(), linear.into_residual(), &whiteners);
+            self.search(structure, start, (columns, true), &whiteners, colour)
+        })
     }
 
-    /// Fits a structure of which whitened sensitivities near the start are known.
-    pub fn fit_from(
-        &self,
-        structure: &Structure,
-        theta: &[f64],
-        initial: &[[f64; 2]],
-        colour: &Colour,
-        whiteners: &[Whitener],
-        known: Columns,
-    ) -> Fit {
-        let theta = self.inside(structure, theta);
-        let residual = self.residual(structure, &theta, initial);
-        let start = Point::new(theta, initial.to_vec(), residual, whiteners);
-        self.search(structure, start, (known, false), whiteners, colour)
+    /// Fits a fitted model with one more term from a start of it; the sensitivities of the model are known.
+    pub fn fit_with(&self, structure: &Structure, start: &[f64], from: &Fit, known: &Known) -> Fit {
+        self.once(question(structure, &from.theta, &from.initial, &from.colour, Some(start)), || {
+            let theta = [from.theta.as_slice(), start].concat();
+            let (_, tangents) = self.columns_of_last(structure, &theta, &from.initial, &known.headings);
+            let mut columns = known.columns.clone();
+            let own = tangents.len();
+            columns.insert(structure.free_count() - own, &tangents, &known.whiteners);
+            let theta = self.inside(structure, &theta);
+            let residual = self.residual(structure, &theta, &from.initial);
+            let start = Point::new(theta, from.initial.clone(), residual, &known.whiteners);
+            self.search(structure, start, (columns, false), &known.whiteners, &from.colour)
+        })
+    }
+
+    /// The answer to a question, looked up where it was asked before.
+    fn once(&self, question: Question, fit: impl FnOnce() -> Fit) -> Fit {
+        let finished = || self.finished.lock().expect("no fit panics while it holds the lock");
+        if let Some(known) = finished().get(&question) {
+            return known.clone();
+        }
+        let fit = fit();
+        finished().insert(question, fit.clone());
+        fit
     }
 
     fn inside(&self, structure: &Structure, theta: &[f64]) -> Vec<f64> {
@@ -349,7 +371,9 @@ impl Problem {
                     damping = if damping <= 1e-6 { SMALLEST_DAMPING } else { 0.1 * damping };
                     break;
                 }
-                damping = (damping * 8.0).max(1e-4);
+                if fresh {
+                    damping = (damping * 8.0).max(1e-4);
+                }
             }
             let Some((next, promised)) = improved else {
                 if fresh {
@@ -444,6 +468,24 @@ impl Problem {
         let (level, deviance) = minimum(lo, hi, 12, value);
         (Colour { moment: Some((kind, level.exp())), waves }, deviance)
     }
+}
+
+/// What decides a fit; `start` are the parameters of a last term whose fit begins with known sensitivities.
+fn question(
+    structure: &Structure,
+    theta: &[f64],
+    initial: &[[f64; 2]],
+    colour: &Colour,
+    start: Option<&[f64]>,
+) -> Question {
+    let names = structure.terms.iter().map(Term::name).collect();
+    let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
+    let moment = colour.moment.map_or([0.0; 3], |(kind, level)| [1.0, f64::from(kind == Moment::Walk), level]);
+    let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
+    let shape = [f64::from(structure.own_bias), f64::from(start.is_some())];
+    let own = start.unwrap_or_default();
+    let numbers = shape.iter().chain(&moment).chain(&waves).chain(bounds).chain(initial.as_flattened()).chain(theta).chain(own);
+    (names, numbers.map(|x| x.to_bits()).collect())
 }
 
 /// Puts measured less replayed headings in the place of the replayed ones.
