@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{Effect, Now, Parameter, Scale, SwayCoupling};
+use crate::effects::{Effect, Now, Parameter, Places, Scale, SwayCoupling};
 use crate::first_order::FirstOrder;
 use crate::number::Real;
 
@@ -31,6 +31,7 @@ pub const BASE: [Parameter; BASE_PARAMETERS] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
+    acts: Places,
 }
 
 impl Place {
@@ -71,6 +72,7 @@ impl ResponseModel {
             let place = Place {
                 parameters: (parameters, parameters + effect.parameters().len()),
                 states: (states, states + effect.states()),
+                acts: effect.places(),
             };
             (parameters, states) = (place.parameters.1, place.states.1);
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
@@ -252,7 +254,7 @@ impl<R: Real> Response<R> {
     #[inline]
     fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
-        for (effect, p, place) in self.effects() {
+        for (effect, p, place) in self.effects().filter(|(.., place)| place.acts.rudder) {
             rudder = R::acts(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
@@ -260,10 +262,14 @@ impl<R: Real> Response<R> {
         let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
             let z = &state[place.states()];
-            let own = R::acts(effect).scale(p, z, &now);
-            scale.damping = scale.damping * own.damping;
-            scale.gain = scale.gain * own.gain;
-            acceleration = acceleration + R::acts(effect).yaw_acceleration(p, z, &now);
+            if place.acts.scale {
+                let own = R::acts(effect).scale(p, z, &now);
+                scale.damping = scale.damping * own.damping;
+                scale.gain = scale.gain * own.gain;
+            }
+            if place.acts.moment {
+                acceleration = acceleration + R::acts(effect).yaw_acceleration(p, z, &now);
+            }
         }
         Instant { rudder, scale, acceleration }
     }
@@ -327,8 +333,12 @@ impl<R: Real> Dynamics<R> for Response<R> {
             let mut before = input.rudder;
             for (effect, p, place) in self.effects() {
                 let z = &state[place.states()];
-                R::acts(effect).rates(p, z, &now, before, &mut rate[place.states()]);
-                before = R::acts(effect).rudder(p, z, before);
+                if !z.is_empty() {
+                    R::acts(effect).rates(p, z, &now, before, &mut rate[place.states()]);
+                }
+                if place.acts.rudder {
+                    before = R::acts(effect).rudder(p, z, before);
+                }
             }
             if let Some((_, s)) = coupling {
                 rate[s] = f;
@@ -376,7 +386,8 @@ mod tests {
     use crate::dynamics::Measured;
     use crate::effects;
     use crate::first_order::{State, Transition};
-    use crate::replay::{Recorded, replay};
+    use crate::number::Tangent;
+    use crate::replay::{Recorded, replay, replay_states};
     use crate::signal::Polyline;
     use approx::assert_relative_eq;
 
@@ -476,6 +487,74 @@ mod tests {
                 &mut rate,
             );
             assert_relative_eq!(rate[1], -BASE_VALUES[0] * 0.01 + BASE_VALUES[1] * 0.11, max_relative = 1e-12);
+        }
+    }
+
+    #[test]
+    fn an_effect_acts_where_it_says() {
+        let measured = Measured {
+            speed: Some(0.8),
+            sway: Some(0.2),
+            wind_speed: Some(3.0),
+            wind_from: Some(0.8),
+            propeller: Some(1.2),
+        };
+        let now = Now {
+            t: 95.0,
+            heading: 0.3,
+            yaw_rate: 0.01,
+            rudder: 0.2,
+            inverse_time: 0.06,
+            gain: 0.006,
+            measured: &measured,
+        };
+        for effect in effects::all() {
+            let p: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
+            let z = vec![0.15; effect.states()];
+            let acts = f64::acts(effect.as_ref());
+            let found = Places {
+                rudder: acts.rudder(&p, &z, 0.2) != 0.2,
+                scale: acts.scale(&p, &z, &now) != Scale::none(),
+                moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
+            };
+            assert_eq!(found, effect.places(), "{} ({})", effect.id(), effect.form());
+        }
+    }
+
+    /// One replay with derivatives is the replay itself, and its derivatives are those of small changes.
+    #[test]
+    fn a_replay_carries_its_derivatives() {
+        let signal = rudder(1.0);
+        let times: Vec<f64> = (0..=100).map(f64::from).collect();
+        let end = |model: &ResponseModel, values: &[Tangent]| {
+            let response = model.clone().with(values.to_vec());
+            let recorded = Recorded::rudder(&signal);
+            let mut state = vec![Tangent::default(); response.dimension()];
+            let zero = Tangent::default();
+            response.enter(zero, zero, &recorded.input(0.0, response.dead_time()), &mut state);
+            replay_states(&response, &recorded, &times, |_, _| 0.25, &mut state, |_, _, _| {});
+            state[0]
+        };
+        for effect in effects::all().into_iter().filter(|effect| effect.needs().is_none()) {
+            let mut values = BASE_VALUES.to_vec();
+            values.extend(effect.parameters().iter().map(|p| p.typical));
+            let model = ResponseModel::new(vec![Arc::clone(&effect)]);
+            let constant = |values: &[f64]| values.iter().map(|&x| Tangent::from(x)).collect::<Vec<_>>();
+            for k in 0..values.len() {
+                let name = format!("{} ({}), {k}", effect.id(), effect.form());
+                let mut seeded = constant(&values);
+                seeded[k] = Tangent::variable(values[k], 1);
+                let found = end(&model, &seeded);
+                assert_eq!(found.value, end(&model, &constant(&values)).value, "{name}");
+                let h = 1e-5 * values[k];
+                let moved = |by: f64| {
+                    let mut moved = values.clone();
+                    moved[k] += by;
+                    end(&model, &constant(&moved)).value
+                };
+                let slope = (moved(h) - moved(-h)) / (2.0 * h);
+                assert_relative_eq!(found.by[1], slope, max_relative = 2e-5, epsilon = 1e-7);
+            }
         }
     }
 

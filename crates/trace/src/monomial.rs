@@ -1,6 +1,6 @@
 //! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect carries.
 
-use ship::effects::{Acts, Effect, Now, Parameter};
+use ship::effects::{Acts, Effect, Now, Parameter, Places};
 use ship::{Real, Regressor};
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
@@ -69,6 +69,10 @@ impl Effect for Monomial {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {

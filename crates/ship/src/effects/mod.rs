@@ -103,6 +103,28 @@ pub struct SwayCoupling<R = f64> {
     pub rudder_time: R,
 }
 
+/// Where an effect acts beside its own states; the other places need not be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Places {
+    /// It changes the rudder that acts.
+    pub rudder: bool,
+    /// It scales damping and gain.
+    pub scale: bool,
+    /// It adds a yaw acceleration.
+    pub moment: bool,
+}
+
+impl Places {
+    /// In none of these places.
+    pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
+    /// In the rudder.
+    pub const RUDDER: Self = Self { rudder: true, ..Self::NONE };
+    /// In damping and gain.
+    pub const SCALE: Self = Self { scale: true, ..Self::NONE };
+    /// In the yaw acceleration.
+    pub const MOMENT: Self = Self { moment: true, ..Self::NONE };
+}
+
 /// Something a first-order response lacks: what it is. What it does is said by [`Acts`].
 ///
 /// `p` is always the effect's own parameters.
@@ -123,6 +145,9 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     fn needs(&self) -> Option<Regressor> {
         None
     }
+
+    /// Where it acts.
+    fn places(&self) -> Places;
 
     /// Number of own states.
     fn states(&self) -> usize {

@@ -1,6 +1,6 @@
 //! A slow trend of the yaw moment over the record.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::number::Real;
 
 /// m (t − t₀) as an equivalent rudder angle.
@@ -28,6 +28,10 @@ impl Effect for MomentDrift {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 }
 

@@ -1,6 +1,6 @@
 //! Damping that grows with the yaw rate: the terms of Norrbin and Bech.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::number::Real;
 
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when
@@ -57,6 +57,10 @@ impl Effect for NonlinearDamping {
             Self::Quadratic => &QUADRATIC,
             Self::Square => &SQUARE,
         }
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 }
 

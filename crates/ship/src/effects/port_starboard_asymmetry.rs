@@ -1,6 +1,6 @@
 //! A rudder gain that differs by side.
 
-use super::{Acts, Effect, Parameter};
+use super::{Acts, Effect, Parameter, Places};
 use crate::number::Real;
 
 /// K (δ + a |δ| + δ_r): gain 1 + a to starboard, 1 − a to port.
@@ -25,6 +25,10 @@ impl Effect for PortStarboardAsymmetry {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::RUDDER
     }
 }
 

@@ -1,6 +1,6 @@
 //! Play between the recorded and the acting rudder.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::number::Real;
 
 /// Backlash or dead band of half-width g.
@@ -36,6 +36,10 @@ impl Effect for RudderDeadband {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::RUDDER
     }
 
     fn states(&self) -> usize {

@@ -1,6 +1,6 @@
 //! A rudder that loses lift at large angles.
 
-use super::{Acts, Effect, Parameter};
+use super::{Acts, Effect, Parameter, Places};
 use crate::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
@@ -26,6 +26,10 @@ impl Effect for RudderSaturation {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::RUDDER
     }
 }
 

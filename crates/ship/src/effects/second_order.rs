@@ -1,6 +1,6 @@
 //! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
 
-use super::{Acts, Effect, Parameter, SwayCoupling};
+use super::{Acts, Effect, Parameter, Places, SwayCoupling};
 use crate::number::Real;
 
 /// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
@@ -29,6 +29,10 @@ impl Effect for SecondOrder {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::NONE
     }
 
     /// One state, s of [`crate::response`]; the response itself steps it.

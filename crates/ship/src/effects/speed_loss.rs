@@ -1,6 +1,6 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
-use super::{Acts, Effect, Now, Parameter, Scale};
+use super::{Acts, Effect, Now, Parameter, Places, Scale};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -67,6 +67,10 @@ impl Effect for SpeedLoss {
             Self::Measured { .. } => &MEASURED,
             Self::Propeller { .. } => &PROPELLER,
         }
+    }
+
+    fn places(&self) -> Places {
+        Places::SCALE
     }
 
     fn needs(&self) -> Option<Regressor> {

@@ -1,6 +1,6 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::number::Real;
 
 /// Lag between the recorded and the acting rudder.
@@ -43,6 +43,13 @@ impl Effect for SteeringLag {
         match self {
             Self::DeadTime => &DEAD_TIME,
             Self::FirstOrder => &FIRST_ORDER,
+        }
+    }
+
+    fn places(&self) -> Places {
+        match self {
+            Self::DeadTime => Places::NONE,
+            Self::FirstOrder => Places::RUDDER,
         }
     }
 

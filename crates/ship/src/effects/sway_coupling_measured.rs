@@ -1,6 +1,6 @@
 //! Sway velocity as a regressor, where the record has it.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -33,6 +33,10 @@ impl Effect for SwayCouplingMeasured {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {

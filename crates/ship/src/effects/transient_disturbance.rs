@@ -1,6 +1,6 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::number::Real;
 
 /// m over a span of time with smooth edges, as an equivalent rudder angle:
@@ -32,6 +32,10 @@ impl Effect for TransientDisturbance {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 
     fn shortest_time(&self, p: &[f64]) -> f64 {

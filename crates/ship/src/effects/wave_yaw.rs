@@ -1,6 +1,6 @@
 //! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
 
-use super::{Acts, Effect, Parameter};
+use super::{Acts, Effect, Parameter, Places};
 use crate::narrow_band::NarrowBand;
 use crate::number::Real;
 
@@ -29,6 +29,10 @@ impl Effect for WaveYaw {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn places(&self) -> Places {
+        Places::NONE
     }
 
     fn random_heading(&self, p: &[f64]) -> Option<NarrowBand> {

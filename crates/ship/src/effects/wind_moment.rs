@@ -1,6 +1,6 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
-use super::{Acts, Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -51,6 +51,10 @@ impl Effect for WindMoment {
             Self::Steady => &STEADY,
             Self::Measured => &MEASURED,
         }
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 
     fn needs(&self) -> Option<Regressor> {

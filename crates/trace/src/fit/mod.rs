@@ -347,6 +347,7 @@ impl Problem {
             });
             let normal = columns.normal(&now.white);
             let mut improved = None;
+            let at_first = damping;
             for _ in 0..if fresh { MOST_DAMPINGS } else { 1 } {
                 let Some((step, promised)) = self.step(&normal, damping, &now.theta, &entries, &fitted) else {
                     damping = 10.0 * damping.max(1e-7);
@@ -368,11 +369,16 @@ impl Problem {
                 let next = Point::new(theta, initial, residual, whiteners);
                 if next.rss < now.rss {
                     improved = Some((next, promised));
-                    damping = if damping <= 1e-6 { SMALLEST_DAMPING } else { 0.1 * damping };
+                    // What was too little a moment ago is not tried again at once.
+                    damping = match damping {
+                        ..=1e-6 => SMALLEST_DAMPING,
+                        _ if damping > at_first => damping,
+                        _ => 0.2 * damping,
+                    };
                     break;
                 }
                 if fresh {
-                    damping = (damping * 8.0).max(1e-4);
+                    damping = (damping * 3.0).max(1e-4);
                 }
             }
             let Some((next, promised)) = improved else {
