@@ -110,7 +110,12 @@ impl ResponseModel {
     /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a user.
     pub fn with<R: Real>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
-        Response { model: self, parameters }
+        let coupling = self.second_order.and_then(|index| {
+            let place = self.places[index];
+            let effect = R::acts(self.effects[index].as_ref());
+            Some((effect.sway_coupling(&parameters[place.parameters()])?, place.states.0))
+        });
+        Response { model: self, parameters, coupling }
     }
 }
 
@@ -136,6 +141,8 @@ impl Pace {
 pub struct Response<R = f64> {
     model: ResponseModel,
     parameters: Vec<R>,
+    /// T₂ and T₃ of a second-order response, and the place of its state s.
+    coupling: Option<(SwayCoupling<R>, usize)>,
 }
 
 impl Response {
@@ -156,8 +163,7 @@ impl Response {
 
     /// The same ship with parameters that carry derivatives, none as yet.
     pub fn constant<R: Real>(&self) -> Response<R> {
-        let parameters = self.parameters.iter().map(|&value| R::from(value)).collect();
-        Response { model: self.model.clone(), parameters }
+        self.model.clone().with(self.parameters.iter().map(|&value| R::from(value)).collect())
     }
 }
 
@@ -170,11 +176,6 @@ impl<R: Real> Response<R> {
     /// The values, base first.
     pub fn parameters(&self) -> &[R] {
         &self.parameters
-    }
-
-    /// The values, to be changed in place between replays.
-    pub fn parameters_mut(&mut self) -> &mut [R] {
-        &mut self.parameters
     }
 
     /// Measured channels that effects of this response need.
@@ -214,7 +215,7 @@ impl<R: Real> Response<R> {
             R::acts(effect).approach(p, &now, z);
             now.rudder = R::acts(effect).rudder(p, z, now.rudder);
         }
-        if let Some((coupling, s)) = self.sway_coupling() {
+        if let Some((coupling, s)) = self.coupling {
             // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
             let lead = coupling.second_time - coupling.rudder_time;
             state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
@@ -226,7 +227,7 @@ impl<R: Real> Response<R> {
     pub fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);
-        if let Some((coupling, s)) = self.sway_coupling() {
+        if let Some((coupling, s)) = self.coupling {
             state[s] = state[s] + (coupling.second_time * self.parameters[0] + 1.0) * change;
         }
     }
@@ -274,33 +275,18 @@ impl<R: Real> Response<R> {
         Instant { rudder, scale, acceleration }
     }
 
-    /// T₂ and T₃ of a second-order response, and the place of its state s.
-    #[inline]
-    fn sway_coupling(&self) -> Option<(SwayCoupling<R>, usize)> {
-        let place = self.model.places[self.model.second_order?];
-        let effect = &self.model.effects[self.model.second_order?];
-        let coupling = R::acts(effect.as_ref()).sway_coupling(&self.parameters[place.parameters()])?;
-        Some((coupling, place.states.0))
-    }
-
     /// f of the module's equation and, for a second-order response, r' as well.
     #[inline]
-    fn accelerations(
-        &self,
-        state: &[R],
-        input: &Input<R>,
-        instant: &Instant<R>,
-        coupling: Option<(SwayCoupling<R>, usize)>,
-    ) -> (R, R) {
+    fn accelerations(&self, state: &[R], input: &Input<R>, instant: &Instant<R>) -> (R, R) {
         let a = self.parameters[0] * instant.scale.damping;
         let b = self.parameters[1] * instant.scale.gain;
         let steering = instant.rudder + self.parameters[2] + input.disturbance;
         let f = -a * state[1] + b * steering + instant.acceleration;
-        match coupling {
+        match &self.coupling {
             Some((coupling, s)) => {
                 let (t2, t3) = (coupling.second_time, coupling.rudder_time);
                 let lead = b * t3 * (instant.rudder + self.parameters[2]);
-                (f, (state[s] - (t2 * a + 1.0) * state[1] + lead) / t2)
+                (f, (state[*s] - (t2 * a + 1.0) * state[1] + lead) / t2)
             }
             None => (f, f),
         }
@@ -324,8 +310,7 @@ impl<R: Real> Dynamics<R> for Response<R> {
             return;
         }
         let instant = self.instant(t, state, input);
-        let coupling = self.sway_coupling();
-        let (f, yaw_acceleration) = self.accelerations(state, input, &instant, coupling);
+        let (f, yaw_acceleration) = self.accelerations(state, input, &instant);
         rate[0] = state[1];
         rate[1] = yaw_acceleration;
         if self.model.states > 2 {
@@ -340,7 +325,7 @@ impl<R: Real> Dynamics<R> for Response<R> {
                     before = R::acts(effect).rudder(p, z, before);
                 }
             }
-            if let Some((_, s)) = coupling {
+            if let Some((_, s)) = self.coupling {
                 rate[s] = f;
             }
         }
@@ -360,7 +345,7 @@ impl<R: Real> Dynamics<R> for Response<R> {
 
     fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion {
         let instant = self.instant(t, state, input);
-        let (_, yaw_acceleration) = self.accelerations(state, input, &instant, self.sway_coupling());
+        let (_, yaw_acceleration) = self.accelerations(state, input, &instant);
         Motion {
             heading: state[0].value(),
             yaw_rate: state[1].value(),
