@@ -172,6 +172,7 @@ impl Sub for Tangent {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the product")]
 impl Mul for Tangent {
     type Output = Self;
 
@@ -181,6 +182,7 @@ impl Mul for Tangent {
     }
 }
 
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the quotient")]
 impl Div for Tangent {
     type Output = Self;
 

@@ -97,9 +97,16 @@ pub fn replay<D, V>(
     D: Dynamics + ?Sized,
     V: FnMut(usize, &Motion),
 {
-    replay_states(dynamics, recorded, times, |_, _| largest_step, state, |index, state, input| {
-        visit(index, &dynamics.motion(times[index], state, input));
-    });
+    replay_states(
+        dynamics,
+        recorded,
+        times,
+        |_, _| largest_step,
+        state,
+        |index, state, input| {
+            visit(index, &dynamics.motion(times[index], state, input));
+        },
+    );
 }
 
 /// The same for every kind of number, with the state itself: calls `visit(index, state, input)` at every time. Steps

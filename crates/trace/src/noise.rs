@@ -162,12 +162,7 @@ impl Grain {
     }
 
     /// The filter of N states, of which the first `own` are those of a random moment.
-    fn filter<const N: usize>(
-        &self,
-        drift: Option<(&Drift, f64)>,
-        own: usize,
-        waves: &Option<NarrowBand>,
-    ) -> Whitener {
+    fn filter<const N: usize>(&self, drift: Option<(&Drift, f64)>, own: usize, waves: &Option<NarrowBand>) -> Whitener {
         let rows = self.durations.len();
         let mut observe = [0.0; N];
         observe[0] = 1.0;

@@ -247,8 +247,7 @@ impl Search<'_> {
             .iter()
             .map(|start| {
                 let theta = [fit.theta.as_slice(), start].concat();
-                let (being, mut new) =
-                    self.problem.columns_of_last(&structure, &theta, &fit.initial, &known.headings);
+                let (being, mut new) = self.problem.columns_of_last(&structure, &theta, &fit.initial, &known.headings);
                 if acts(&being) {
                     new.insert(0, being);
                 }

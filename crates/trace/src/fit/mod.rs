@@ -342,9 +342,9 @@ impl Problem {
             if !now.rss.is_finite() {
                 break;
             }
-            let (mut columns, fresh) = sensitivities.take().unwrap_or_else(|| {
-                (self.linear(structure, &now.theta, &now.initial).whitened(whiteners), true)
-            });
+            let (mut columns, fresh) = sensitivities
+                .take()
+                .unwrap_or_else(|| (self.linear(structure, &now.theta, &now.initial).whitened(whiteners), true));
             let normal = columns.normal(&now.white);
             let mut improved = None;
             let at_first = damping;
@@ -490,7 +490,8 @@ fn question(
     let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
     let shape = [f64::from(structure.own_bias), f64::from(start.is_some())];
     let own = start.unwrap_or_default();
-    let numbers = shape.iter().chain(&moment).chain(&waves).chain(bounds).chain(initial.as_flattened()).chain(theta).chain(own);
+    let numbers =
+        shape.iter().chain(&moment).chain(&waves).chain(bounds).chain(initial.as_flattened()).chain(theta).chain(own);
     (names, numbers.map(|x| x.to_bits()).collect())
 }
 
