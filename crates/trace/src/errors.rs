@@ -24,6 +24,9 @@ const FEWEST: usize = 4;
 const STEPS: usize = 12;
 const HALVINGS: i32 = 10;
 
+/// Initial states whose heading, rad, is this near at either end are one.
+const SAME: f64 = 1e-6;
+
 /// A step that promises to lower the sum of squares by less than this share ends the search.
 const NEGLIGIBLE: f64 = 1e-7;
 
@@ -61,10 +64,12 @@ pub struct Errors {
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
 pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option<Replayed> {
     let rows = 0..record.time.len();
-    let (_, start) = starts
-        .iter()
-        .filter_map(|&start| settle(response, record, rows.clone(), start, None))
-        .min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let mut found: Vec<(f64, [f64; 2])> = Vec::new();
+    for &start in starts {
+        let known: Vec<[f64; 2]> = found.iter().map(|(_, initial)| *initial).collect();
+        found.extend(settle(response, record, rows.clone(), start, None, &known));
+    }
+    let (_, start) = found.into_iter().min_by(|one, other| one.0.total_cmp(&other.0))?;
     let mut state = vec![0.0; response.dimension()];
     enter(response, record, 0, start, None, &mut state);
     let count = record.time.len();
@@ -165,7 +170,7 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
         }
         let memory = state.clone();
         let start = [state[0], state[1]];
-        let (found, best) = settle(response, record, from..to, start, Some(&memory))?;
+        let (found, best) = settle(response, record, from..to, start, Some(&memory), &[])?;
         square += found;
         rows += seen;
         enter(response, record, from, best, Some(&memory), &mut state);
@@ -224,13 +229,14 @@ struct Point {
 }
 
 /// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving), and
-/// the sum of squares they leave.
+/// the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
 fn settle(
     response: &Response,
     record: &Record,
     rows: Range<usize>,
     start: [f64; 2],
     memory: Option<&[f64]>,
+    known: &[[f64; 2]],
 ) -> Option<(f64, [f64; 2])> {
     let response = response.constant::<Tangent>();
     let span = (record.time[rows.end - 1] - record.time[rows.start]).max(record.spacing);
@@ -257,6 +263,11 @@ fn settle(
         let Some(direction) = matrix.lu().solve(&gradient) else { break };
         if direction.dot(&gradient) < NEGLIGIBLE * now.square {
             break;
+        }
+        let ahead = [now.initial[0] + direction[0], now.initial[1] + direction[1] / span];
+        let is_ahead = |known: &[f64; 2]| (known[0] - ahead[0]).abs().max((known[1] - ahead[1]).abs() * span) < SAME;
+        if known.iter().any(is_ahead) {
+            return None;
         }
         let shares = (0..HALVINGS).map(|k| 0.4_f64.powi(k));
         let next = shares
