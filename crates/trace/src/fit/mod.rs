@@ -347,7 +347,6 @@ impl Problem {
                 .unwrap_or_else(|| (self.linear(structure, &now.theta, &now.initial).whitened(whiteners), true));
             let normal = columns.normal(&now.white);
             let mut improved = None;
-            let at_first = damping;
             for _ in 0..if fresh { MOST_DAMPINGS } else { 1 } {
                 let Some((step, promised)) = self.step(&normal, damping, &now.theta, &entries, &fitted) else {
                     damping = 10.0 * damping.max(1e-7);
@@ -369,17 +368,10 @@ impl Problem {
                 let next = Point::new(theta, initial, residual, whiteners);
                 if next.rss < now.rss {
                     improved = Some((next, promised));
-                    // What was too little a moment ago is not tried again at once.
-                    damping = match damping {
-                        ..=1e-6 => SMALLEST_DAMPING,
-                        _ if damping > at_first => damping,
-                        _ => 0.2 * damping,
-                    };
+                    damping = if damping <= 1e-6 { SMALLEST_DAMPING } else { 0.1 * damping };
                     break;
                 }
-                if fresh {
-                    damping = (damping * 3.0).max(1e-4);
-                }
+                damping = (damping * 8.0).max(1e-4);
             }
             let Some((next, promised)) = improved else {
                 if fresh {
