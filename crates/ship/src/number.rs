@@ -105,8 +105,9 @@ impl Real for f64 {
     }
 }
 
-/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response.
-pub const DIRECTIONS: usize = 4;
+/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with two
+/// parameters.
+pub const DIRECTIONS: usize = 6;
 
 /// A value and its derivatives in some directions.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
