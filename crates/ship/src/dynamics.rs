@@ -3,6 +3,8 @@
 //! Response models ([`crate::response::Response`]) and hulls ([`crate::vessel`]) both implement [`Dynamics`], so
 //! simulation and replay are written once.
 
+use crate::number::Real;
+
 /// Channels a record may hold beside heading and rudder, at one instant; `None` where the record has none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Measured {
@@ -33,9 +35,9 @@ pub enum Regressor {
 
 /// What acts on a ship at one instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Input {
+pub struct Input<R = f64> {
     /// Rudder angle that acts (dead time already applied), rad, positive turns to starboard.
-    pub rudder: f64,
+    pub rudder: R,
     /// Yaw disturbance as the rudder angle with the same yaw moment at approach speed, rad.
     pub disturbance: f64,
     /// Measured channels that effects may use as regressors.
@@ -60,30 +62,31 @@ pub struct Motion {
 /// A system with a rudder and a heading: x' = f(t, x, input).
 ///
 /// The first two states are always heading ψ (rad) and yaw rate r (rad/s); what follows belongs to the
-/// implementation. A value of this type is immutable during a run: all memory is in the state vector.
-pub trait Dynamics: Send + Sync {
+/// implementation. A value of this type is immutable during a run: all memory is in the state vector. A system whose
+/// parameters carry derivatives has states that carry them, too.
+pub trait Dynamics<R: Real = f64>: Send + Sync {
     /// Number of states, at least 2.
     fn dimension(&self) -> usize;
 
     /// State of a steady straight approach with the given heading (rad) and yaw rate (rad/s), rudder amidships.
     ///
     /// `state` has length [`dimension`](Self::dimension) and is overwritten.
-    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]);
+    fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]);
 
     /// Writes x' into `rate` (both of length [`dimension`](Self::dimension)).
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]);
+    fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]);
 
     /// Updates memory that is not a differential equation (backlash), once at the end of every step.
     ///
     /// Between two calls the rudder is monotone: drivers end a step at every corner of the rudder signal.
-    fn settle(&self, _t: f64, _state: &mut [f64], _input: &Input) {}
+    fn settle(&self, _t: f64, _state: &mut [R], _input: &Input<R>) {}
 
     /// The motion seen from outside.
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion;
+    fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion;
 
     /// Dead time between the rudder signal and the rudder that acts, s; negative for a late clock in a record.
-    fn dead_time(&self) -> f64 {
-        0.0
+    fn dead_time(&self) -> R {
+        R::from(0.0)
     }
 
     /// Largest step, s, at which a fourth-order integrator keeps its accuracy for this system.

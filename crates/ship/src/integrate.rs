@@ -1,49 +1,62 @@
 //! The classical fourth-order Runge–Kutta step, with its work space allocated once.
 
 use crate::dynamics::{Dynamics, Input};
+use crate::number::Real;
 
 /// Classical Runge–Kutta of order four with a fixed step.
 ///
 /// The right-hand sides of hulls have kinks (flow straightening by side of the rudder), for which a fixed small
 /// step is more predictable than an adaptive one.
 #[derive(Debug, Clone)]
-pub struct RungeKutta4 {
-    stage: [Vec<f64>; 4],
-    probe: Vec<f64>,
+pub struct RungeKutta4<R = f64> {
+    stage: [Vec<R>; 4],
+    probe: Vec<R>,
 }
 
-impl RungeKutta4 {
+impl<R: Real> RungeKutta4<R> {
     /// Work space for a system with `dimension` states.
     pub fn new(dimension: usize) -> Self {
-        Self { stage: std::array::from_fn(|_| vec![0.0; dimension]), probe: vec![0.0; dimension] }
+        let zeros = || vec![R::from(0.0); dimension];
+        Self { stage: std::array::from_fn(|_| zeros()), probe: zeros() }
     }
 
     /// Advances `state` from `t` by `h` seconds; `input` gives what acts at a time within the step.
     ///
     /// Does not call [`Dynamics::settle`]: a driver that only probes a step must not change memory.
-    pub fn step<D, F>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [f64], mut input: F)
+    pub fn step<D, F>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], mut input: F)
     where
-        D: Dynamics + ?Sized,
-        F: FnMut(f64) -> Input,
+        D: Dynamics<R> + ?Sized,
+        F: FnMut(f64) -> Input<R>,
+    {
+        let inputs = [input(t), input(t + 0.5 * h), input(t + h)];
+        self.step_with(dynamics, t, h, state, &inputs);
+    }
+
+    /// The same with what acts at the beginning, in the middle and at the end of the step.
+    pub fn step_with<D>(&mut self, dynamics: &D, t: f64, h: f64, state: &mut [R], inputs: &[Input<R>; 3])
+    where
+        D: Dynamics<R> + ?Sized,
     {
         let [k1, k2, k3, k4] = &mut self.stage;
         let half = 0.5 * h;
-        let (start, middle, end) = (input(t), input(t + half), input(t + h));
-        dynamics.rates(t, state, &start, k1);
-        for ((probe, x), k) in self.probe.iter_mut().zip(state.iter()).zip(k1.iter()) {
-            *probe = x + half * k;
+        let [start, middle, end] = inputs;
+        dynamics.rates(t, state, start, k1);
+        probe(&mut self.probe, state, k1, half);
+        dynamics.rates(t + half, &self.probe, middle, k2);
+        probe(&mut self.probe, state, k2, half);
+        dynamics.rates(t + half, &self.probe, middle, k3);
+        probe(&mut self.probe, state, k3, h);
+        dynamics.rates(t + h, &self.probe, end, k4);
+        for ((((x, &k1), &k2), &k3), &k4) in state.iter_mut().zip(&*k1).zip(&*k2).zip(&*k3).zip(&*k4) {
+            *x = *x + (k1 + (k2 + k3) * 2.0 + k4) * (h / 6.0);
         }
-        dynamics.rates(t + half, &self.probe, &middle, k2);
-        for ((probe, x), k) in self.probe.iter_mut().zip(state.iter()).zip(k2.iter()) {
-            *probe = x + half * k;
-        }
-        dynamics.rates(t + half, &self.probe, &middle, k3);
-        for ((probe, x), k) in self.probe.iter_mut().zip(state.iter()).zip(k3.iter()) {
-            *probe = x + h * k;
-        }
-        dynamics.rates(t + h, &self.probe, &end, k4);
-        for (i, x) in state.iter_mut().enumerate() {
-            *x += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-        }
+    }
+}
+
+/// The state from which the next rates are taken: `h` seconds along the last ones.
+#[inline]
+fn probe<R: Real>(probe: &mut [R], state: &[R], rate: &[R], h: f64) {
+    for ((probe, &x), &k) in probe.iter_mut().zip(state).zip(rate) {
+        *probe = x + k * h;
     }
 }

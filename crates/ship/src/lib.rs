@@ -11,6 +11,7 @@
 //! | a response model: base plus effects | [`response`] |
 //! | what every simulated thing has to offer | [`dynamics`] |
 //! | stepping it through time | [`integrate`] and [`replay`] |
+//! | numbers that carry their derivatives | [`number`] |
 //! | hulls with three degrees of freedom | [`vessel`] |
 //! | linear sway-yaw equations and their indices | [`linear`] |
 //! | parameter sets with their sources | [`ships`] |
@@ -25,6 +26,7 @@ pub mod first_order;
 pub mod integrate;
 pub mod linear;
 pub mod narrow_band;
+pub mod number;
 pub mod replay;
 pub mod response;
 pub mod ships;
@@ -33,6 +35,7 @@ pub mod vessel;
 
 pub use dynamics::{Dynamics, Input, Measured, Motion, Regressor};
 pub use first_order::FirstOrder;
+pub use number::{Real, Tangent};
 pub use response::{Response, ResponseModel};
 pub use ships::{Particulars, Ship};
 pub use signal::Polyline;

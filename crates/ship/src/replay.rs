@@ -3,6 +3,7 @@
 
 use crate::dynamics::{Dynamics, Input, Measured, Motion};
 use crate::integrate::RungeKutta4;
+use crate::number::Real;
 use crate::signal::Polyline;
 
 /// Recorded signals that drive a replay.
@@ -28,20 +29,55 @@ impl<'a> Recorded<'a> {
         Self { rudder, speed: None, sway: None, wind_speed: None, wind_from: None, propeller: None }
     }
 
-    /// What acts at time `t` on a ship whose rudder is late by `dead_time`; `piece` is a hint into the rudder signal.
-    pub fn input(&self, t: f64, dead_time: f64, piece: usize) -> Input {
+    /// What acts at time `t` on a ship whose rudder is late by `dead_time`.
+    pub fn input<R: Real>(&self, t: f64, dead_time: R) -> Input<R> {
+        let corner = self.rudder.times().partition_point(|&c| c + dead_time.value() <= t);
+        let rudder = Ramp::before(self.rudder, corner).at(t, dead_time);
+        Input { rudder, disturbance: 0.0, measured: self.measured(t, corner.saturating_sub(1)) }
+    }
+
+    fn measured(&self, t: f64, piece: usize) -> Measured {
         let at = |signal: Option<&Polyline>| signal.map(|signal| signal.at_from(t, piece));
-        Input {
-            rudder: self.rudder.at_from(t - dead_time, piece),
-            disturbance: 0.0,
-            measured: Measured {
-                speed: at(self.speed),
-                sway: at(self.sway),
-                wind_speed: at(self.wind_speed),
-                wind_from: at(self.wind_from),
-                propeller: at(self.propeller),
-            },
+        Measured {
+            speed: at(self.speed),
+            sway: at(self.sway),
+            wind_speed: at(self.wind_speed),
+            wind_from: at(self.wind_from),
+            propeller: at(self.propeller),
         }
+    }
+
+    fn has_channels(&self) -> bool {
+        [self.speed, self.sway, self.wind_speed, self.wind_from, self.propeller].iter().any(Option::is_some)
+    }
+}
+
+/// One piece of the rudder signal: a straight line.
+#[derive(Debug, Clone, Copy)]
+struct Ramp {
+    from: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl Ramp {
+    /// The piece that ends at the given corner; constant before the first one and after the last.
+    fn before(signal: &Polyline, corner: usize) -> Self {
+        let (time, value) = (signal.times(), signal.values());
+        match corner {
+            0 => Self { from: time[0], value: value[0], slope: 0.0 },
+            _ if corner == time.len() => Self { from: time[corner - 1], value: value[corner - 1], slope: 0.0 },
+            _ => {
+                let slope = (value[corner] - value[corner - 1]) / (time[corner] - time[corner - 1]);
+                Self { from: time[corner - 1], value: value[corner - 1], slope }
+            }
+        }
+    }
+
+    /// The rudder that acts at time `t` when it is late by `dead_time`, rad.
+    #[inline]
+    fn at<R: Real>(&self, t: f64, dead_time: R) -> R {
+        (-dead_time + (t - self.from)) * self.slope + self.value
     }
 }
 
@@ -61,31 +97,77 @@ pub fn replay<D, V>(
     D: Dynamics + ?Sized,
     V: FnMut(usize, &Motion),
 {
+    replay_states(
+        dynamics,
+        recorded,
+        times,
+        |_, _| largest_step,
+        state,
+        |index, state, input| {
+            visit(index, &dynamics.motion(times[index], state, input));
+        },
+    );
+}
+
+/// The same for every kind of number, with the state itself: calls `visit(index, state, input)` at every time. Steps
+/// between two times are no longer than `largest_step` of them (s).
+pub fn replay_states<R, D, S, V>(
+    dynamics: &D,
+    recorded: &Recorded,
+    times: &[f64],
+    largest_step: S,
+    state: &mut [R],
+    mut visit: V,
+) where
+    R: Real,
+    D: Dynamics<R> + ?Sized,
+    S: Fn(f64, f64) -> f64,
+    V: FnMut(usize, &[R], &Input<R>),
+{
     let Some(&start) = times.first() else { return };
     let dead_time = dynamics.dead_time();
+    let late = dead_time.value();
     let corners = recorded.rudder.times();
+    let has_channels = recorded.has_channels();
     let mut solver = RungeKutta4::new(dynamics.dimension());
-    let mut corner = corners.partition_point(|&c| c + dead_time <= start);
+    let mut corner = corners.partition_point(|&c| c + late <= start);
+    let mut ramp = Ramp::before(recorded.rudder, corner);
+    // What acts at the beginning, in the middle and at the end of a step.
+    let mut inputs = [Input::default(); 3];
+    let act = |input: &mut Input<R>, t: f64, ramp: &Ramp, corner: usize| {
+        input.rudder = ramp.at(t, dead_time);
+        if has_channels {
+            input.measured = recorded.measured(t, corner.saturating_sub(1));
+        }
+    };
+    act(&mut inputs[2], start, &ramp, corner);
     let mut t = start;
     for (index, &until) in times.iter().enumerate() {
         while t < until {
-            while corner < corners.len() && corners[corner] + dead_time <= t {
-                corner += 1;
+            if corner < corners.len() && corners[corner] + late <= t {
+                while corner < corners.len() && corners[corner] + late <= t {
+                    corner += 1;
+                }
+                ramp = Ramp::before(recorded.rudder, corner);
+                // The rudder has no jump here, but its derivative by the dead time has.
+                inputs[2].rudder = ramp.at(t, dead_time);
             }
             let end = match corners.get(corner) {
-                Some(&c) if c + dead_time < until => c + dead_time,
+                Some(&c) if c + late < until => c + late,
                 _ => until,
             };
-            let steps = ((end - t) / largest_step).ceil().max(1.0);
+            let steps = ((end - t) / largest_step(t, end)).ceil().max(1.0);
             let h = (end - t) / steps;
-            let piece = corner.saturating_sub(1);
             for k in 0..steps as usize {
                 let from = t + k as f64 * h;
-                solver.step(dynamics, from, h, state, |at| recorded.input(at, dead_time, piece));
-                dynamics.settle(from + h, state, &recorded.input(from + h, dead_time, piece));
+                inputs[0] = inputs[2];
+                act(&mut inputs[1], from + 0.5 * h, &ramp, corner);
+                act(&mut inputs[2], from + h, &ramp, corner);
+                solver.step_with(dynamics, from, h, state, &inputs);
+                dynamics.settle(from + h, state, &inputs[2]);
             }
             t = end;
         }
-        visit(index, &dynamics.motion(until, state, &recorded.input(until, dead_time, corner.saturating_sub(1))));
+        visit(index, state, &inputs[2]);
     }
 }

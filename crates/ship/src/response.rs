@@ -8,11 +8,13 @@
 //! T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a (Liénard form: no derivative of the rudder
 //! is needed, and a Bech polynomial in r keeps its place).
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{Effect, Now, Parameter, Scale, SwayCoupling};
+use crate::effects::{Effect, Now, Parameter, Places, Scale, SwayCoupling};
 use crate::first_order::FirstOrder;
+use crate::number::Real;
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETERS: usize = 3;
@@ -29,6 +31,17 @@ pub const BASE: [Parameter; BASE_PARAMETERS] = [
 struct Place {
     parameters: (usize, usize),
     states: (usize, usize),
+    acts: Places,
+}
+
+impl Place {
+    fn parameters(&self) -> Range<usize> {
+        self.parameters.0..self.parameters.1
+    }
+
+    fn states(&self) -> Range<usize> {
+        self.states.0..self.states.1
+    }
 }
 
 /// Structure of a response model: base plus effects. Parameters travel beside it, base first.
@@ -43,10 +56,10 @@ pub struct ResponseModel {
 }
 
 /// What the effects make of one instant.
-struct Instant {
-    rudder: f64,
-    scale: Scale,
-    acceleration: f64,
+struct Instant<R> {
+    rudder: R,
+    scale: Scale<R>,
+    acceleration: R,
 }
 
 impl ResponseModel {
@@ -59,10 +72,11 @@ impl ResponseModel {
             let place = Place {
                 parameters: (parameters, parameters + effect.parameters().len()),
                 states: (states, states + effect.states()),
+                acts: effect.places(),
             };
             (parameters, states) = (place.parameters.1, place.states.1);
             let neutral: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
-            if effect.sway_coupling(&neutral).is_some() {
+            if f64::acts(effect.as_ref()).sway_coupling(&neutral).is_some() {
                 second_order = Some(index);
             }
             places.push(place);
@@ -94,38 +108,47 @@ impl ResponseModel {
     ///
     /// # Panics
     /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a user.
-    pub fn with(self, parameters: Vec<f64>) -> Response {
+    pub fn with<R: Real>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
-        Response { model: self, parameters }
+        let coupling = self.second_order.and_then(|index| {
+            let place = self.places[index];
+            let effect = R::acts(self.effects[index].as_ref());
+            Some((effect.sway_coupling(&parameters[place.parameters()])?, place.states.0))
+        });
+        Response { model: self, parameters, coupling }
+    }
+}
+
+/// Time constants that steps have to resolve: one at all times, others within a span.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pace {
+    always: f64,
+    spans: Vec<([f64; 2], f64)>,
+}
+
+impl Pace {
+    /// Shortest time constant, s, between two times, s.
+    pub fn shortest(&self, from: f64, to: f64) -> f64 {
+        let meets = |span: &[f64; 2]| span[0] < to && from < span[1];
+        self.spans.iter().filter(|(span, _)| meets(span)).fold(self.always, |least, (_, time)| least.min(*time))
     }
 }
 
 /// A response model with its parameters: a ship that can be simulated or replayed.
+///
+/// With parameters that carry derivatives, its motion carries them, too.
 #[derive(Debug, Clone)]
-pub struct Response {
+pub struct Response<R = f64> {
     model: ResponseModel,
-    parameters: Vec<f64>,
+    parameters: Vec<R>,
+    /// T₂ and T₃ of a second-order response, and the place of its state s.
+    coupling: Option<(SwayCoupling<R>, usize)>,
 }
 
 impl Response {
     /// A purely first-order ship.
     pub fn first_order_ship(base: FirstOrder) -> Self {
         ResponseModel::first_order().with(vec![base.inverse_T, base.K_over_T, base.rudder_bias])
-    }
-
-    /// The structure.
-    pub fn model(&self) -> &ResponseModel {
-        &self.model
-    }
-
-    /// The values, base first.
-    pub fn parameters(&self) -> &[f64] {
-        &self.parameters
-    }
-
-    /// The values, to be changed in place between replays.
-    pub fn parameters_mut(&mut self) -> &mut [f64] {
-        &mut self.parameters
     }
 
     /// The base.
@@ -138,6 +161,23 @@ impl Response {
         self.effects().filter_map(|(effect, p, _)| effect.random_heading(p))
     }
 
+    /// The same ship with parameters that carry derivatives, none as yet.
+    pub fn constant<R: Real>(&self) -> Response<R> {
+        self.model.clone().with(self.parameters.iter().map(|&value| R::from(value)).collect())
+    }
+}
+
+impl<R: Real> Response<R> {
+    /// The structure.
+    pub fn model(&self) -> &ResponseModel {
+        &self.model
+    }
+
+    /// The values, base first.
+    pub fn parameters(&self) -> &[R] {
+        &self.parameters
+    }
+
     /// Measured channels that effects of this response need.
     pub fn needs(&self, channel: Regressor) -> bool {
         self.model.effects.iter().any(|effect| effect.needs() == Some(channel))
@@ -145,22 +185,37 @@ impl Response {
 
     /// Shortest time constant of base and effects, s.
     pub fn shortest_time(&self) -> f64 {
-        let own = self.parameters[0].abs().recip();
-        self.effects().map(|(effect, p, _)| effect.shortest_time(p)).fold(own, f64::min)
+        self.pace().shortest(f64::NEG_INFINITY, f64::INFINITY)
+    }
+
+    /// The time constants that steps have to resolve.
+    pub fn pace(&self) -> Pace {
+        let values: Vec<f64> = self.parameters.iter().map(|p| p.value()).collect();
+        let mut pace = Pace { always: values[0].abs().recip(), spans: Vec::new() };
+        for (effect, place) in self.model.effects.iter().zip(&self.model.places) {
+            let p = &values[place.parameters()];
+            let (time, span) = (effect.shortest_time(p), effect.brisk(p));
+            if span == [f64::NEG_INFINITY, f64::INFINITY] {
+                pace.always = pace.always.min(time);
+            } else {
+                pace.spans.push((span, time));
+            }
+        }
+        pace
     }
 
     /// State of a record that begins with the given heading (rad), yaw rate (rad/s) and input: the memory of effects is
     /// that of a rudder that has stood there.
-    pub fn enter(&self, heading: f64, yaw_rate: f64, input: &Input, state: &mut [f64]) {
-        state.fill(0.0);
+    pub fn enter(&self, heading: R, yaw_rate: R, input: &Input<R>, state: &mut [R]) {
+        state.fill(R::from(0.0));
         (state[0], state[1]) = (heading, yaw_rate);
         let mut now = self.now(0.0, &[heading, yaw_rate], input.rudder, input);
         for (effect, p, place) in self.effects() {
-            let z = &mut state[place.states.0..place.states.1];
-            effect.approach(p, &now, z);
-            now.rudder = effect.rudder(p, z, now.rudder);
+            let z = &mut state[place.states()];
+            R::acts(effect).approach(p, &now, z);
+            now.rudder = R::acts(effect).rudder(p, z, now.rudder);
         }
-        if let Some((coupling, s)) = self.sway_coupling() {
+        if let Some((coupling, s)) = self.coupling {
             // Starts with the yaw acceleration of the first-order response, so that T₂ = T₃ is that response.
             let lead = coupling.second_time - coupling.rudder_time;
             state[s] = yaw_rate + self.parameters[1] * lead * (now.rudder + self.parameters[2]);
@@ -169,23 +224,23 @@ impl Response {
 
     /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the state s
     /// of a second-order response follows so that the yaw acceleration stays what it is.
-    pub fn restart(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+    pub fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);
-        if let Some((coupling, s)) = self.sway_coupling() {
-            state[s] += (1.0 + coupling.second_time * self.parameters[0]) * change;
+        if let Some((coupling, s)) = self.coupling {
+            state[s] = state[s] + (coupling.second_time * self.parameters[0] + 1.0) * change;
         }
     }
 
-    fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[f64], Place)> {
+    fn effects(&self) -> impl Iterator<Item = (&dyn Effect, &[R], Place)> {
         self.model
             .effects
             .iter()
             .zip(&self.model.places)
-            .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters.0..place.parameters.1], place))
+            .map(|(effect, &place)| (effect.as_ref(), &self.parameters[place.parameters()], place))
     }
 
-    fn now<'a>(&self, t: f64, state: &[f64], rudder: f64, input: &'a Input) -> Now<'a> {
+    fn now<'a>(&self, t: f64, state: &[R], rudder: R, input: &'a Input<R>) -> Now<'a, R> {
         Now {
             t,
             heading: state[0],
@@ -193,61 +248,61 @@ impl Response {
             rudder,
             inverse_time: self.parameters[0],
             gain: self.parameters[1],
-            input,
+            measured: &input.measured,
         }
     }
 
-    fn instant(&self, t: f64, state: &[f64], input: &Input) -> Instant {
+    #[inline]
+    fn instant(&self, t: f64, state: &[R], input: &Input<R>) -> Instant<R> {
         let mut rudder = input.rudder;
-        for (effect, p, place) in self.effects() {
-            rudder = effect.rudder(p, &state[place.states.0..place.states.1], rudder);
+        for (effect, p, place) in self.effects().filter(|(.., place)| place.acts.rudder) {
+            rudder = R::acts(effect).rudder(p, &state[place.states()], rudder);
         }
         let now = self.now(t, state, rudder, input);
-        let mut scale = Scale::NONE;
-        let mut acceleration = 0.0;
+        let mut scale = Scale::none();
+        let mut acceleration = R::from(0.0);
         for (effect, p, place) in self.effects() {
-            let z = &state[place.states.0..place.states.1];
-            let own = effect.scale(p, z, &now);
-            scale.damping *= own.damping;
-            scale.gain *= own.gain;
-            acceleration += effect.yaw_acceleration(p, z, &now);
+            let z = &state[place.states()];
+            if place.acts.scale {
+                let own = R::acts(effect).scale(p, z, &now);
+                scale.damping = scale.damping * own.damping;
+                scale.gain = scale.gain * own.gain;
+            }
+            if place.acts.moment {
+                acceleration = acceleration + R::acts(effect).yaw_acceleration(p, z, &now);
+            }
         }
         Instant { rudder, scale, acceleration }
     }
 
-    fn sway_coupling(&self) -> Option<(SwayCoupling, usize)> {
-        let place = self.model.places[self.model.second_order?];
-        let effect = &self.model.effects[self.model.second_order?];
-        let coupling = effect.sway_coupling(&self.parameters[place.parameters.0..place.parameters.1])?;
-        Some((coupling, place.states.0))
-    }
-
     /// f of the module's equation and, for a second-order response, r' as well.
-    fn accelerations(&self, state: &[f64], input: &Input, instant: &Instant) -> (f64, f64) {
+    #[inline]
+    fn accelerations(&self, state: &[R], input: &Input<R>, instant: &Instant<R>) -> (R, R) {
         let a = self.parameters[0] * instant.scale.damping;
         let b = self.parameters[1] * instant.scale.gain;
         let steering = instant.rudder + self.parameters[2] + input.disturbance;
         let f = -a * state[1] + b * steering + instant.acceleration;
-        match self.sway_coupling() {
+        match &self.coupling {
             Some((coupling, s)) => {
                 let (t2, t3) = (coupling.second_time, coupling.rudder_time);
-                (f, (state[s] - (1.0 + t2 * a) * state[1] + b * t3 * (instant.rudder + self.parameters[2])) / t2)
+                let lead = b * t3 * (instant.rudder + self.parameters[2]);
+                (f, (state[*s] - (t2 * a + 1.0) * state[1] + lead) / t2)
             }
             None => (f, f),
         }
     }
 }
 
-impl Dynamics for Response {
+impl<R: Real> Dynamics<R> for Response<R> {
     fn dimension(&self) -> usize {
         self.model.states
     }
 
-    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+    fn approach(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         self.enter(heading, yaw_rate, &Input::default(), state);
     }
 
-    fn rates(&self, t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+    fn rates(&self, t: f64, state: &[R], input: &Input<R>, rate: &mut [R]) {
         if self.model.effects.is_empty() {
             let [a, b, bias] = [self.parameters[0], self.parameters[1], self.parameters[2]];
             rate[0] = state[1];
@@ -262,34 +317,46 @@ impl Dynamics for Response {
             let now = self.now(t, state, instant.rudder, input);
             let mut before = input.rudder;
             for (effect, p, place) in self.effects() {
-                let own = place.states.0..place.states.1;
-                let z = &state[own.clone()];
-                effect.rates(p, z, &now, before, &mut rate[own]);
-                before = effect.rudder(p, z, before);
+                let z = &state[place.states()];
+                if !z.is_empty() {
+                    R::acts(effect).rates(p, z, &now, before, &mut rate[place.states()]);
+                }
+                if place.acts.rudder {
+                    before = R::acts(effect).rudder(p, z, before);
+                }
             }
-            if let Some((_, s)) = self.sway_coupling() {
+            if let Some((_, s)) = self.coupling {
                 rate[s] = f;
             }
         }
     }
 
-    fn settle(&self, _t: f64, state: &mut [f64], input: &Input) {
+    fn settle(&self, _t: f64, state: &mut [R], input: &Input<R>) {
+        if self.model.states == 2 {
+            return;
+        }
         let mut before = input.rudder;
         for (effect, p, place) in self.effects() {
-            let z = &mut state[place.states.0..place.states.1];
-            effect.settle(p, z, before);
-            before = effect.rudder(p, z, before);
+            let z = &mut state[place.states()];
+            R::acts(effect).settle(p, z, before);
+            before = R::acts(effect).rudder(p, z, before);
         }
     }
 
-    fn motion(&self, t: f64, state: &[f64], input: &Input) -> Motion {
+    fn motion(&self, t: f64, state: &[R], input: &Input<R>) -> Motion {
         let instant = self.instant(t, state, input);
         let (_, yaw_acceleration) = self.accelerations(state, input, &instant);
-        Motion { heading: state[0], yaw_rate: state[1], yaw_acceleration, speed: None, sway: None }
+        Motion {
+            heading: state[0].value(),
+            yaw_rate: state[1].value(),
+            yaw_acceleration: yaw_acceleration.value(),
+            speed: None,
+            sway: None,
+        }
     }
 
-    fn dead_time(&self) -> f64 {
-        self.effects().map(|(effect, p, _)| effect.dead_time(p)).sum()
+    fn dead_time(&self) -> R {
+        self.effects().fold(R::from(0.0), |sum, (effect, p, _)| sum + R::acts(effect).dead_time(p))
     }
 
     /// A fiftieth of the shortest time constant, at most 0.1 s and at least 1 ms.
@@ -304,7 +371,8 @@ mod tests {
     use crate::dynamics::Measured;
     use crate::effects;
     use crate::first_order::{State, Transition};
-    use crate::replay::{Recorded, replay};
+    use crate::number::Tangent;
+    use crate::replay::{Recorded, replay, replay_states};
     use crate::signal::Polyline;
     use approx::assert_relative_eq;
 
@@ -405,6 +473,100 @@ mod tests {
             );
             assert_relative_eq!(rate[1], -BASE_VALUES[0] * 0.01 + BASE_VALUES[1] * 0.11, max_relative = 1e-12);
         }
+    }
+
+    #[test]
+    fn an_effect_acts_where_it_says() {
+        let measured = Measured {
+            speed: Some(0.8),
+            sway: Some(0.2),
+            wind_speed: Some(3.0),
+            wind_from: Some(0.8),
+            propeller: Some(1.2),
+        };
+        let now = Now {
+            t: 95.0,
+            heading: 0.3,
+            yaw_rate: 0.01,
+            rudder: 0.2,
+            inverse_time: 0.06,
+            gain: 0.006,
+            measured: &measured,
+        };
+        for effect in effects::all() {
+            let p: Vec<f64> = effect.parameters().iter().map(|p| p.typical).collect();
+            let z = vec![0.15; effect.states()];
+            let acts = f64::acts(effect.as_ref());
+            let found = Places {
+                rudder: acts.rudder(&p, &z, 0.2) != 0.2,
+                scale: acts.scale(&p, &z, &now) != Scale::none(),
+                moment: acts.yaw_acceleration(&p, &z, &now) != 0.0,
+            };
+            assert_eq!(found, effect.places(), "{} ({})", effect.id(), effect.form());
+        }
+    }
+
+    /// One replay with derivatives is the replay itself, and its derivatives are those of small changes.
+    #[test]
+    fn a_replay_carries_its_derivatives() {
+        let signal = rudder(1.0);
+        let times: Vec<f64> = (0..=100).map(f64::from).collect();
+        let end = |model: &ResponseModel, values: &[Tangent]| {
+            let response = model.clone().with(values.to_vec());
+            let recorded = Recorded::rudder(&signal);
+            let mut state = vec![Tangent::default(); response.dimension()];
+            let zero = Tangent::default();
+            response.enter(zero, zero, &recorded.input(0.0, response.dead_time()), &mut state);
+            replay_states(&response, &recorded, &times, |_, _| 0.25, &mut state, |_, _, _| {});
+            state[0]
+        };
+        for effect in effects::all().into_iter().filter(|effect| effect.needs().is_none()) {
+            let mut values = BASE_VALUES.to_vec();
+            values.extend(effect.parameters().iter().map(|p| p.typical));
+            let model = ResponseModel::new(vec![Arc::clone(&effect)]);
+            let constant = |values: &[f64]| values.iter().map(|&x| Tangent::from(x)).collect::<Vec<_>>();
+            for k in 0..values.len() {
+                let name = format!("{} ({}), {k}", effect.id(), effect.form());
+                let mut seeded = constant(&values);
+                seeded[k] = Tangent::variable(values[k], 1);
+                let found = end(&model, &seeded);
+                assert_eq!(found.value, end(&model, &constant(&values)).value, "{name}");
+                let h = 1e-5 * values[k];
+                let moved = |by: f64| {
+                    let mut moved = values.clone();
+                    moved[k] += by;
+                    end(&model, &constant(&moved)).value
+                };
+                let slope = (moved(h) - moved(-h)) / (2.0 * h);
+                assert_relative_eq!(found.by[1], slope, max_relative = 2e-5, epsilon = 1e-7);
+            }
+        }
+    }
+
+    /// Away from the edges of a squall the steps of the base do: the heading is as near to that of fine steps as with small
+    /// steps everywhere.
+    #[test]
+    fn small_steps_are_taken_where_it_is_brisk() {
+        let signal = rudder(1.0);
+        let times: Vec<f64> = (0..=200).map(|k| 0.5 * f64::from(k)).collect();
+        let mut values = BASE_VALUES.to_vec();
+        values.extend([0.05, 47.3, 1.5]);
+        let response = ResponseModel::new(vec![Arc::new(effects::TransientDisturbance)]).with(values);
+        let headings = |step: &dyn Fn(f64, f64) -> f64| {
+            let mut state = vec![0.0; response.dimension()];
+            let mut headings = Vec::new();
+            let recorded = Recorded::rudder(&signal);
+            replay_states(&response, &recorded, &times, step, &mut state, |_, state, _| headings.push(state[0]));
+            headings
+        };
+        let pace = response.pace();
+        let fine = headings(&|_, _| 1e-3);
+        let error = |step: &dyn Fn(f64, f64) -> f64| {
+            headings(step).iter().zip(&fine).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+        };
+        let (there, everywhere) =
+            (error(&|from, to| pace.shortest(from, to) / 4.0), error(&|_, _| response.shortest_time() / 4.0));
+        assert!(there < 1.01 * everywhere + 1e-9, "{there:e} rad, {everywhere:e} rad with small steps everywhere");
     }
 
     /// Steady state and slow roots of a second-order response: r∞ = K (δ + δ_r) and the characteristic polynomial.

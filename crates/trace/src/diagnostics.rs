@@ -95,8 +95,6 @@ pub struct Signature {
     pub side: [f64; 2],
     /// Root mean square of all of it, rad.
     pub all: f64,
-    /// Root mean square over bands of headings that hold equally many rows, rad.
-    pub bands: Vec<([f64; 2], f64)>,
 }
 
 /// Parts of a record among which the fullest is looked for, and bands of headings.
@@ -137,13 +135,13 @@ pub fn signature(
         .unwrap_or(Line { frequency: 0.0, share: 0.0 });
     let mut by_heading = rows.clone();
     by_heading.sort_by(|&one, &other| heading[one].total_cmp(&heading[other]));
-    let bands: Vec<([f64; 2], f64)> = by_heading
+    let largest = by_heading
         .chunks(rows.len().div_ceil(BANDS).max(1))
         .map(|band| ([heading[band[0]], heading[band[band.len() - 1]]], rms(band)))
-        .collect();
-    let largest = bands.iter().copied().max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or(([0.0; 2], 0.0));
+        .max_by(|one, other| one.1.total_cmp(&other.1))
+        .unwrap_or(([0.0; 2], 0.0));
     let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
-    Signature { record: number, span, line, heading: largest, side: [on(-1.0), on(1.0)], all, bands }
+    Signature { record: number, span, line, heading: largest, side: [on(-1.0), on(1.0)], all }
 }
 
 #[cfg(test)]

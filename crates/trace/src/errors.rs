@@ -2,11 +2,12 @@
 //! replays restarted every 20 and 60 s. Only initial states are fitted here, never a parameter.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
-use ship::Response;
 use ship::dynamics::Dynamics;
-use ship::replay::{Recorded, replay};
+use ship::replay::replay_states;
+use ship::{Real, Response, Tangent};
 use trial::{Channel, Columns, Trial, ZigZag};
 
 use crate::fit::dot;
@@ -19,8 +20,15 @@ pub const HORIZONS: [f64; 2] = [20.0, 60.0];
 /// Fewest headings in a window: two are used up by its initial state.
 const FEWEST: usize = 4;
 
-/// Steps of the search for an initial state.
+/// Steps of the search for an initial state, and how often one is shortened.
 const STEPS: usize = 12;
+const HALVINGS: i32 = 10;
+
+/// Initial states whose heading, rad, is this near at either end are one.
+const SAME: f64 = 1e-6;
+
+/// A step that promises to lower the sum of squares by less than this share ends the search.
+const NEGLIGIBLE: f64 = 1e-7;
 
 /// A replay of all rows of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,12 +64,12 @@ pub struct Errors {
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
 pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option<Replayed> {
     let rows = 0..record.time.len();
-    let (_, start) = starts
-        .iter()
-        .filter_map(|&start| {
-            settle(response, record, rows.clone(), start, None).map(|(square, initial, _)| (square, initial))
-        })
-        .min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let mut found: Vec<(f64, [f64; 2])> = Vec::new();
+    for &start in starts {
+        let known: Vec<[f64; 2]> = found.iter().map(|(_, initial)| *initial).collect();
+        found.extend(settle(response, record, rows.clone(), start, None, &known));
+    }
+    let (_, start) = found.into_iter().min_by(|one, other| one.0.total_cmp(&other.0))?;
     let mut state = vec![0.0; response.dimension()];
     enter(response, record, 0, start, None, &mut state);
     let count = record.time.len();
@@ -72,7 +80,7 @@ pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option
         residual: vec![0.0; count],
         initial: start,
     };
-    run(response, &record.recorded(response), &record.time, record.spacing, &mut state, |row, heading, rate| {
+    run(response, record, rows, &mut state, |row, heading, rate| {
         replayed.heading[row] = heading;
         replayed.yaw_rate[row] = rate;
         replayed.residual[row] = record.heading[row] - heading;
@@ -162,12 +170,11 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
         }
         let memory = state.clone();
         let start = [state[0], state[1]];
-        let (found, best, _) = settle(response, record, from..to, start, Some(&memory))?;
+        let (found, best) = settle(response, record, from..to, start, Some(&memory), &[])?;
         square += found;
         rows += seen;
         enter(response, record, from, best, Some(&memory), &mut state);
-        let times = &record.time[from..until];
-        run(response, &record.recorded(response), times, record.spacing, &mut state, |_, _, _| {});
+        run(response, record, from..until, &mut state, |_, _, _| {});
         if to == count {
             break;
         }
@@ -176,90 +183,98 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
     Some((square / rows as f64).sqrt())
 }
 
-fn enter(response: &Response, record: &Record, row: usize, start: [f64; 2], memory: Option<&[f64]>, state: &mut [f64]) {
+/// The state at a row: at rest there but for heading and yaw rate, or with the `memory` that the effects have by then.
+fn enter<R: Real>(
+    response: &Response<R>,
+    record: &Record,
+    row: usize,
+    start: [R; 2],
+    memory: Option<&[f64]>,
+    state: &mut [R],
+) {
     match memory {
         Some(memory) => {
-            state.copy_from_slice(memory);
+            state.iter_mut().zip(memory).for_each(|(x, &memory)| *x = R::from(memory));
             response.restart(start[0], start[1], state);
         }
         None => {
-            let input = record.recorded(response).input(record.time[row], response.dead_time(), row);
+            let input = record.recorded(response).input(record.time[row], response.dead_time());
             response.enter(start[0], start[1], &input, state);
         }
     }
 }
 
-fn run(
-    response: &Response,
-    recorded: &Recorded,
-    times: &[f64],
-    spacing: f64,
-    state: &mut [f64],
-    mut visit: impl FnMut(usize, f64, f64),
+/// Replays some rows of a record and visits heading and yaw rate at each of them.
+fn run<R: Real>(
+    response: &Response<R>,
+    record: &Record,
+    rows: Range<usize>,
+    state: &mut [R],
+    mut visit: impl FnMut(usize, R, R),
 ) {
-    replay(response, recorded, times, step(response, spacing), state, |row, motion| {
-        visit(row, motion.heading, motion.yaw_rate);
+    let step = step(response, record.spacing);
+    let times = &record.time[rows.clone()];
+    replay_states(response, &record.recorded(response), times, step, state, |row, state, _| {
+        visit(rows.start + row, state[0], state[1]);
     });
 }
 
-/// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving):
-/// sum of squares, the initial state, and the number of headings.
+/// Residual of some rows, and how the heading there changes with its first value and with the first yaw rate times the
+/// length of the rows.
+struct Point {
+    initial: [f64; 2],
+    residual: Vec<f64>,
+    by: [Vec<f64>; 2],
+    square: f64,
+}
+
+/// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving), and
+/// the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
 fn settle(
     response: &Response,
     record: &Record,
-    rows: std::ops::Range<usize>,
+    rows: Range<usize>,
     start: [f64; 2],
     memory: Option<&[f64]>,
-) -> Option<(f64, [f64; 2], usize)> {
-    let seats: Vec<usize> = rows.clone().filter(|&row| record.heading[row].is_finite()).collect();
-    let times = &record.time[rows.clone()];
-    let span = (times[times.len() - 1] - times[0]).max(record.spacing);
-    let mut state = vec![0.0; response.dimension()];
-    let mut residual = |initial: [f64; 2]| -> Vec<f64> {
-        enter(response, record, rows.start, initial, memory, &mut state);
-        let mut all = vec![0.0; times.len()];
-        run(response, &record.recorded(response), times, record.spacing, &mut state, |row, heading, _| {
-            all[row] = heading
-        });
-        seats.iter().map(|&row| record.heading[row] - all[row - rows.start]).collect()
-    };
-    let size = [1e-6, 1e-6 / span];
-    let mut initial = start;
-    let mut now = residual(initial);
-    let mut square: f64 = now.iter().map(|e| e * e).sum();
-    for _ in 0..STEPS {
-        let column = |residual: &mut dyn FnMut([f64; 2]) -> Vec<f64>, k: usize| -> Vec<f64> {
-            let mut moved = initial;
-            moved[k] += size[k];
-            residual(moved)
-                .iter()
-                .zip(&now)
-                .map(|(moved, now)| (now - moved) / size[k] * [1.0, 1.0 / span][k])
-                .collect()
-        };
-        let (one, two) = (column(&mut residual, 0), column(&mut residual, 1));
-        let cross = dot(&one, &two);
-        let matrix = Matrix2::new(dot(&one, &one), cross, cross, dot(&two, &two) + 1e-12 * seats.len() as f64);
-        let gradient = Vector2::new(dot(&one, &now), dot(&two, &now));
-        let Some(direction) = matrix.lu().solve(&gradient) else { break };
-        let mut share = 1.0;
-        let mut better = None;
-        for _ in 0..10 {
-            let next = [initial[0] + share * direction[0], initial[1] + share * direction[1] / span];
-            let trial = residual(next);
-            let lower: f64 = trial.iter().map(|e| e * e).sum();
-            if lower < square {
-                better = Some((next, trial, lower));
-                break;
+    known: &[[f64; 2]],
+) -> Option<(f64, [f64; 2])> {
+    let response = response.constant::<Tangent>();
+    let span = (record.time[rows.end - 1] - record.time[rows.start]).max(record.spacing);
+    let mut state = vec![Tangent::default(); response.dimension()];
+    let mut at = |initial: [f64; 2]| {
+        let variables = [Tangent::variable(initial[0], 0), Tangent::variable(initial[1], 1)];
+        enter(&response, record, rows.start, variables, memory, &mut state);
+        let (mut residual, mut by) = (Vec::with_capacity(rows.len()), [(); 2].map(|()| Vec::with_capacity(rows.len())));
+        run(&response, record, rows.clone(), &mut state, |row, heading, _| {
+            if record.heading[row].is_finite() {
+                residual.push(record.heading[row] - heading.value);
+                by[0].push(heading.by[0]);
+                by[1].push(heading.by[1] / span);
             }
-            share *= 0.4;
-        }
-        let Some((next, trial, lower)) = better else { break };
-        let gain = square - lower;
-        (initial, now, square) = (next, trial, lower);
-        if gain < 1e-7 * square {
+        });
+        Point { initial, square: dot(&residual, &residual), residual, by }
+    };
+    let mut now = at(start);
+    for _ in 0..STEPS {
+        let [one, two] = &now.by;
+        let (cross, seats) = (dot(one, two), now.residual.len());
+        let matrix = Matrix2::new(dot(one, one), cross, cross, dot(two, two) + 1e-12 * seats as f64);
+        let gradient = Vector2::new(dot(one, &now.residual), dot(two, &now.residual));
+        let Some(direction) = matrix.lu().solve(&gradient) else { break };
+        if direction.dot(&gradient) < NEGLIGIBLE * now.square {
             break;
         }
+        let ahead = [now.initial[0] + direction[0], now.initial[1] + direction[1] / span];
+        let is_ahead = |known: &[f64; 2]| (known[0] - ahead[0]).abs().max((known[1] - ahead[1]).abs() * span) < SAME;
+        if known.iter().any(is_ahead) {
+            return None;
+        }
+        let shares = (0..HALVINGS).map(|k| 0.4_f64.powi(k));
+        let next = shares
+            .map(|share| at([now.initial[0] + share * direction[0], now.initial[1] + share * direction[1] / span]))
+            .find(|next| next.square < now.square);
+        let Some(next) = next else { break };
+        now = next;
     }
-    square.is_finite().then_some((square, initial, seats.len()))
+    now.square.is_finite().then_some((now.square, now.initial))
 }

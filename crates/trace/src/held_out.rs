@@ -1,6 +1,7 @@
 //! Does a term help where it was not fitted? On other records, or, where there are none, on parts of these that are kept
 //! from the fit.
 
+use rayon::prelude::*;
 use ship::Response;
 use trial::Trial;
 
@@ -31,6 +32,12 @@ impl<'a> HeldOut<'a> {
         let errors = errors::errors(self.trial, &self.record, response, &replayed);
         Some((replayed, errors))
     }
+}
+
+/// Errors of a fitted structure on every held-out record; `None` when a replay is not finite.
+pub fn errors(held_out: &[HeldOut], structure: &Structure, fit: &Fit) -> Option<Vec<Errors>> {
+    let response = portable(structure, &fit.theta);
+    held_out.par_iter().map(|record| Some(record.judge(&response)?.1)).collect()
 }
 
 /// What of a fitted structure holds on other records: without terms that belong to the weather of one record.

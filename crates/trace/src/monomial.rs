@@ -1,7 +1,7 @@
 //! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect carries.
 
-use ship::Regressor;
-use ship::effects::{Effect, Now, Parameter};
+use ship::effects::{Acts, Effect, Now, Parameter, Places};
+use ship::{Real, Regressor};
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,14 +71,20 @@ impl Effect for Monomial {
         &PARAMETERS
     }
 
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+
     fn needs(&self) -> Option<Regressor> {
         (LIBRARY[self.place].of[3] > 0).then_some(Regressor::Speed)
     }
+}
 
-    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
-        let speed = now.input.measured.speed.unwrap_or(0.0);
+impl<R: Real> Acts<R> for Monomial {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+        let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];
-        let product: f64 = (0..4).map(|k| (factors[k] / self.size[k]).powi(LIBRARY[self.place].of[k])).product();
-        now.gain * p[0] * product
+        let power = |k: usize| (factors[k] / self.size[k]).powi(LIBRARY[self.place].of[k]);
+        (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
     }
 }

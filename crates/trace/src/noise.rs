@@ -153,11 +153,21 @@ impl Grain {
             Moment::Walk => (&self.walk, level),
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);
-        let states = own + if colour.waves.is_some() { 2 } else { 0 };
-        let mut observe = [0.0; MOST];
+        match own + if colour.waves.is_some() { 2 } else { 0 } {
+            2 => self.filter::<2>(drift, own, &colour.waves),
+            3 => self.filter::<3>(drift, own, &colour.waves),
+            4 => self.filter::<4>(drift, own, &colour.waves),
+            _ => self.filter::<5>(drift, own, &colour.waves),
+        }
+    }
+
+    /// The filter of N states, of which the first `own` are those of a random moment.
+    fn filter<const N: usize>(&self, drift: Option<(&Drift, f64)>, own: usize, waves: &Option<NarrowBand>) -> Whitener {
+        let rows = self.durations.len();
+        let mut observe = [0.0; N];
         observe[0] = 1.0;
-        let mut covariance: Matrix = [[0.0; MOST]; MOST];
-        if let Some(waves) = &colour.waves {
+        let mut covariance = [[0.0; N]; N];
+        if let Some(waves) = waves {
             observe[own] = 1.0;
             let [p0, p1] = waves.stationary_sd().map(|sd| sd * sd);
             (covariance[own][own], covariance[own + 1][own + 1]) = (p0, p1);
@@ -166,48 +176,39 @@ impl Grain {
         let mut filter = Vec::with_capacity(rows);
         let mut log_variance = 0.0;
         let mut settled = false;
-        let mut last: Option<(usize, Vector, f64)> = None;
+        // Of the last row: place of its transition, gain, log S, weight.
+        let mut last: Option<(usize, [f64; N], f64, f64)> = None;
         for row in 0..rows {
             let h = self.durations[row];
             let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
             let place = steps.iter().rposition(|step| step.1 == key && (step.0 - h).abs() <= 1e-6 * h.max(1e-300));
             let place = place.unwrap_or_else(|| {
-                let (f, q) = joint(drift.map(|(drift, level)| (&drift.steps[key], level, own)), &colour.waves, h);
+                let (f, q) = joint(drift.map(|(drift, level)| (&drift.steps[key], level, own)), waves, h);
                 steps.push((h, key, f, q));
                 steps.len() - 1
             });
             // Even rows lead to a filter that no longer changes.
-            if settled
-                && let Some((before, gain, variance)) = last
-                && before == place
-            {
-                log_variance += variance.ln();
-                filter.push((place, gain, variance.sqrt().recip()));
-                continue;
-            }
-            if row > 0 {
-                covariance = propagate(&steps[place].2, &covariance, &steps[place].3, states);
-            }
-            let mut seen = [0.0; MOST];
-            for i in 0..states {
-                seen[i] = (0..states).map(|j| covariance[i][j] * observe[j]).sum();
-            }
-            let variance = 1.0 + (0..states).map(|i| observe[i] * seen[i]).sum::<f64>();
-            let gain = seen.map(|s| s / variance);
-            for i in 0..states {
-                for j in 0..states {
-                    covariance[i][j] -= gain[i] * seen[j];
+            let (gain, log, weight) = match last {
+                Some((before, gain, log, weight)) if settled && before == place => (gain, log, weight),
+                _ => {
+                    if row > 0 {
+                        covariance = propagate(&steps[place].2, &covariance, &steps[place].3);
+                    }
+                    let (gain, variance) = correct(&mut covariance, &observe);
+                    settled = last.is_some_and(|(before, old, ..)| {
+                        before == place && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
+                    });
+                    (gain, variance.ln(), variance.sqrt().recip())
                 }
-            }
-            settled = last.is_some_and(|(before, old, _)| {
-                before == place && (0..states).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
-            });
-            last = Some((place, gain, variance));
-            log_variance += variance.ln();
-            filter.push((place, gain, variance.sqrt().recip()));
+            };
+            last = Some((place, gain, log, weight));
+            log_variance += log;
+            let mut all = [0.0; MOST];
+            all[..N].copy_from_slice(&gain);
+            filter.push((place, all, weight));
         }
         let steps = steps.into_iter().map(|(_, _, f, _)| f).collect();
-        Whitener { states, steps, rows: filter, count: rows, log_variance }.observing(own, colour.waves.is_some())
+        Whitener { states: N, steps, rows: filter, count: rows, log_variance }.observing(own, waves.is_some())
     }
 }
 
@@ -237,20 +238,37 @@ fn joint(drift: Option<(&(Matrix, Matrix), f64, usize)>, waves: &Option<NarrowBa
     (f, q)
 }
 
-fn propagate(f: &Matrix, p: &Matrix, q: &Matrix, states: usize) -> Matrix {
-    let mut half = [[0.0; MOST]; MOST];
-    let mut result = *q;
-    for i in 0..states {
-        for j in 0..states {
-            half[i][j] = (0..states).map(|k| f[i][k] * p[k][j]).sum();
+/// Covariance a step later: F P Fᵀ + Q.
+fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64; N]; N] {
+    let mut half = [[0.0; N]; N];
+    let mut result = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..N {
+            half[i][j] = (0..N).map(|k| f[i][k] * p[k][j]).sum();
         }
     }
-    for i in 0..states {
-        for j in 0..states {
-            result[i][j] += (0..states).map(|k| half[i][k] * f[j][k]).sum::<f64>();
+    for i in 0..N {
+        for j in 0..N {
+            result[i][j] = q[i][j] + (0..N).map(|k| half[i][k] * f[j][k]).sum::<f64>();
         }
     }
     result
+}
+
+/// Takes a heading into account: the gain, and the variance S that was predicted for the heading.
+fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N]) -> ([f64; N], f64) {
+    let mut seen = [0.0; N];
+    for i in 0..N {
+        seen[i] = (0..N).map(|j| covariance[i][j] * observe[j]).sum();
+    }
+    let variance = 1.0 + (0..N).map(|i| observe[i] * seen[i]).sum::<f64>();
+    let gain = seen.map(|s| s / variance);
+    for i in 0..N {
+        for j in 0..N {
+            covariance[i][j] -= gain[i] * seen[j];
+        }
+    }
+    (gain, variance)
 }
 
 /// A filter that makes columns of one record white; for white noise it leaves them as they are.
@@ -289,30 +307,49 @@ impl Whitener {
         self.count
     }
 
-    /// Makes a column white in place.
-    pub fn apply(&self, column: &mut [f64]) {
+    /// Makes columns white in place.
+    pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         match self.states {
             0 => {}
-            2 => self.run::<2>(column),
-            3 => self.run::<3>(column),
-            4 => self.run::<4>(column),
-            _ => self.run::<5>(column),
+            2 => self.apply_all::<2>(columns),
+            3 => self.apply_all::<3>(columns),
+            4 => self.apply_all::<4>(columns),
+            _ => self.apply_all::<5>(columns),
         }
     }
 
-    fn run<const N: usize>(&self, column: &mut [f64]) {
-        let mut x = [0.0; N];
-        for (value, (step, gain, weight)) in column.iter_mut().zip(&self.rows) {
+    /// Several columns at once: the filter waits for the last row of each, but not for the other columns.
+    fn apply_all<const N: usize>(&self, columns: &mut [&mut Vec<f64>]) {
+        let (fours, rest) = columns.as_chunks_mut::<4>();
+        fours.iter_mut().for_each(|columns| self.run::<N, 4>(columns));
+        let (twos, rest) = rest.as_chunks_mut::<2>();
+        twos.iter_mut().for_each(|columns| self.run::<N, 2>(columns));
+        rest.as_chunks_mut::<1>().0.iter_mut().for_each(|columns| self.run::<N, 1>(columns));
+    }
+
+    fn run<const N: usize, const COLUMNS: usize>(&self, columns: &mut [&mut Vec<f64>; COLUMNS]) {
+        let columns = columns.each_mut().map(|column| column.as_mut_slice());
+        let mut x = [[0.0; COLUMNS]; N];
+        for (row, (step, gain, weight)) in self.rows.iter().enumerate() {
             let f = &self.steps[*step];
-            let mut next = [0.0; N];
-            for (next, row) in next.iter_mut().zip(f) {
-                *next = row.iter().zip(&x).map(|(f, x)| f * x).sum();
+            let mut next = [[0.0; COLUMNS]; N];
+            for (next, f) in next.iter_mut().zip(f) {
+                for (x, f) in x.iter().zip(f) {
+                    for k in 0..COLUMNS {
+                        next[k] += f * x[k];
+                    }
+                }
             }
-            let innovation = *value - next[0];
+            let mut innovation = [0.0; COLUMNS];
+            for k in 0..COLUMNS {
+                innovation[k] = columns[k][row] - next[0][k];
+                columns[k][row] = innovation[k] * weight;
+            }
             for ((x, next), gain) in x.iter_mut().zip(next).zip(gain) {
-                *x = next + gain * innovation;
+                for k in 0..COLUMNS {
+                    x[k] = next[k] + gain * innovation[k];
+                }
             }
-            *value = innovation * weight;
         }
     }
 }
@@ -392,7 +429,7 @@ mod tests {
                 );
                 let y = DVector::from_fn(time.len(), |i, _| (0.7 * i as f64).sin() + 0.1 * i as f64);
                 let mut white: Vec<f64> = y.iter().copied().collect();
-                whitener.apply(&mut white);
+                whitener.apply(&mut [&mut white]);
                 let square: f64 = white.iter().map(|x| x * x).sum();
                 let quadratic = y.dot(&dense.solve(&y));
                 assert!((square / quadratic - 1.0).abs() < 2e-3, "{colour:?}: {square} is not {quadratic}");
@@ -405,7 +442,7 @@ mod tests {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
         let whitener = Grain::new(&record(&time), 0.1, 19.0).whitener(&Colour::WHITE);
         let mut column: Vec<f64> = time.clone();
-        whitener.apply(&mut column);
+        whitener.apply(&mut [&mut column]);
         assert_eq!((column, whitener.log_variance, whitener.rows()), (time, 0.0, 20));
     }
 }

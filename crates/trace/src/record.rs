@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use ship::replay::Recorded;
-use ship::{Polyline, Regressor, Response};
+use ship::{Polyline, Real, Regressor, Response};
 use trial::{Channel, Trial};
 
 /// Rows that are kept at least, however dense they are.
@@ -105,7 +105,7 @@ impl Record {
     }
 
     /// The signals that drive a replay of a response: those it needs.
-    pub fn recorded(&self, response: &Response) -> Recorded<'_> {
+    pub fn recorded<R: Real>(&self, response: &Response<R>) -> Recorded<'_> {
         let needed = |channel| response.needs(channel);
         Recorded {
             rudder: &self.rudder,

@@ -14,8 +14,9 @@ use ship::narrow_band::NarrowBand;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::candidates::Candidate;
-use crate::fit::{Fit, Linear, Problem};
-use crate::noise::{Colour, Moment};
+use crate::fit::{Column, Columns, Fit, Linear, Problem};
+use crate::noise::{Colour, Moment, Whitener};
+use crate::record::Record;
 use crate::structure::{Structure, Term};
 use crate::{held_out, transient, waves};
 
@@ -72,11 +73,17 @@ const OF_TIME: f64 = 2.5;
 /// Gain in BIC for which one term takes the place of another.
 const SWAP: f64 = 2.0;
 
-/// Step of a tangent in units of the scale of a parameter.
-const TANGENT: f64 = 1e-5;
-
-/// A column of every record in which the unknown acts.
-type Column = Vec<Option<Vec<f64>>>;
+/// What is known of a fit and shared by all candidates that are tried on it.
+pub struct Known {
+    /// Filters of its colour.
+    pub whiteners: Vec<Whitener>,
+    /// Whitened sensitivities.
+    pub columns: Columns,
+    /// Whitened residual.
+    pub white: Vec<Vec<f64>>,
+    /// Replayed headings, rad.
+    pub headings: Vec<Vec<f64>>,
+}
 
 /// Search over one problem.
 pub struct Search<'a> {
@@ -162,7 +169,21 @@ impl Search<'_> {
     }
 
     fn linear(&self, structure: &Structure, fit: &Fit) -> Linear {
-        self.problem.linear(structure, &fit.theta, &fit.initial, &self.problem.entries(structure))
+        self.problem.linear(structure, &fit.theta, &fit.initial)
+    }
+
+    fn known(&self, structure: &Structure, fit: &Fit) -> Known {
+        let whiteners = self.problem.whiteners(&fit.colour);
+        let linear = self.linear(structure, fit);
+        let replayed = |(record, residual): (&Record, &Vec<f64>)| {
+            record.observed.iter().zip(residual).map(|(&row, e)| record.heading[row] - e).collect()
+        };
+        Known {
+            columns: linear.whitened(&whiteners),
+            white: linear.whitened_residual(&whiteners),
+            headings: self.problem.records.iter().zip(&fit.residual).map(replayed).collect(),
+            whiteners,
+        }
     }
 
     /// The better of the two random moments, and its deviance after a linear step.
@@ -196,20 +217,13 @@ impl Search<'_> {
         Model { structure, plain, judged }
     }
 
-    /// Fits a model with one more term from every start of a candidate, under the colour of `from`, a fit of the model with
-    /// these sensitivities.
-    fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, linear: &Linear) -> (Structure, Fit) {
+    /// Fits a model with one more term from every start of a candidate, under the colour of `from`, a fit of the model.
+    fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, known: &Known) -> (Structure, Fit) {
         let structure = model.structure.with(candidate.term.clone());
-        let own = model.structure.free_count();
         let best = self
-            .starts(candidate, from, linear)
+            .starts(candidate, from, known)
             .iter()
-            .map(|start| {
-                let theta = [from.theta.as_slice(), start].concat();
-                let mut known = linear.clone();
-                known.insert(own, self.columns(&structure, from, start, candidate).1);
-                self.problem.fit_from(&structure, &theta, &from.initial, &from.colour, Some(known))
-            })
+            .map(|start| self.problem.fit_with(&structure, start, from, known))
             .min_by(|one, other| one.deviance.total_cmp(&other.deviance));
         match best {
             Some(fit) => (structure, fit),
@@ -217,101 +231,46 @@ impl Search<'_> {
         }
     }
 
-    fn starts<'b>(&self, candidate: &'b Candidate, from: &Fit, linear: &Linear) -> Cow<'b, [Vec<f64>]> {
+    fn starts<'b>(&self, candidate: &'b Candidate, from: &Fit, known: &Known) -> Cow<'b, [Vec<f64>]> {
         if candidate.starts.is_empty() {
-            Cow::Owned(transient::starts(self.problem, from, linear, &candidate.term))
+            Cow::Owned(transient::starts(self.problem, from, known, &candidate.term))
         } else {
             Cow::Borrowed(&candidate.starts)
         }
     }
 
     /// Approximate gain in −2 log L of a candidate from the sensitivities at a fit: a score test that needs no refit.
-    fn score(&self, model: &Model, fit: &Fit, linear: &Linear, candidate: &Candidate) -> f64 {
+    fn score(&self, model: &Model, fit: &Fit, known: &Known, candidate: &Candidate) -> f64 {
         let structure = model.structure.with(candidate.term.clone());
-        let whiteners = self.problem.whiteners(&fit.colour);
-        let starts = self.starts(candidate, fit, linear);
-        starts
+        let own = known.columns.unknowns();
+        self.starts(candidate, fit, known)
             .iter()
             .map(|start| {
-                let (being, tangents) = self.columns(&structure, fit, start, candidate);
-                let mut linear = linear.clone();
-                let own = linear.unknowns();
-                for column in being.into_iter().chain(tangents) {
-                    linear.push(column);
+                let theta = [fit.theta.as_slice(), start].concat();
+                let (being, mut new) = self.problem.columns_of_last(&structure, &theta, &fit.initial, &known.headings);
+                if acts(&being) {
+                    new.insert(0, being);
                 }
-                let (without, with) = linear.explained(&whiteners, own);
-                self.problem.deviance(without, 0.0) - self.problem.deviance(with, 0.0)
+                let mut columns = known.columns.clone();
+                columns.insert(own, &new, &known.whiteners);
+                let normal = columns.normal(&known.white);
+                let deviance = |unknowns| self.problem.deviance(normal.projected(unknowns), 0.0);
+                deviance(own) - deviance(columns.unknowns())
             })
             .fold(0.0, f64::max)
-    }
-
-    /// How the heading changes with the parameters of a candidate at its start, and by being there at all.
-    fn columns(
-        &self,
-        structure: &Structure,
-        fit: &Fit,
-        start: &[f64],
-        candidate: &Candidate,
-    ) -> (Option<Column>, Vec<Column>) {
-        let only = candidate.term.only;
-        let replay = |own: &[f64]| -> Vec<Option<Vec<f64>>> {
-            let theta = [fit.theta.as_slice(), own].concat();
-            let headings = self.problem.replay(structure, &theta, &fit.initial);
-            let acts = |record| only.is_none_or(|only| only == record);
-            headings.into_iter().enumerate().map(|(record, h)| acts(record).then_some(h)).collect()
-        };
-        let less = |one: &[Option<Vec<f64>>], other: &[Option<Vec<f64>>]| -> Vec<Option<Vec<f64>>> {
-            one.iter()
-                .zip(other)
-                .map(|(one, other)| {
-                    let (one, other) = (one.as_ref()?, other.as_ref()?);
-                    Some(one.iter().zip(other).map(|(x, y)| x - y).collect())
-                })
-                .collect()
-        };
-        let here = replay(start);
-        let without: Vec<Option<Vec<f64>>> = here
-            .iter()
-            .enumerate()
-            .map(|(record, there)| {
-                there.as_ref()?;
-                let source = &self.problem.records[record];
-                Some(
-                    source
-                        .observed
-                        .iter()
-                        .zip(&fit.residual[record])
-                        .map(|(&row, e)| source.heading[row] - e)
-                        .collect(),
-                )
-            })
-            .collect();
-        let being = less(&here, &without);
-        let acts = being.iter().flatten().flatten().any(|&x| x != 0.0);
-        let tangents = (0..start.len()).filter(|k| !candidate.term.held.contains(k)).map(|k| {
-            let size = TANGENT * candidate.term.scale[k];
-            let size = if start[k] + size > candidate.term.highest[k] { -size } else { size };
-            let mut moved = start.to_vec();
-            moved[k] += size;
-            let mut column = less(&replay(&moved), &here);
-            column.iter_mut().flatten().flatten().for_each(|x| *x /= size);
-            column
-        });
-        let tangents = tangents.collect();
-        (acts.then_some(being), tangents)
     }
 
     /// Tries candidates on one fit of a model, all under the colour of that fit; with `short_list` only those with the
     /// best scores are fitted. The lowest BIC comes first.
     pub fn try_all(&self, model: &Model, fit: &Fit, short_list: bool) -> Vec<Tried> {
-        let linear = self.linear(&model.structure, fit);
+        let known = self.known(&model.structure, fit);
         let mut places: Vec<usize> = (0..self.candidates.len())
             .filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term))
             .collect();
         if short_list {
             let mut scored: Vec<(f64, usize)> = places
                 .par_iter()
-                .map(|&place| (self.score(model, fit, &linear, &self.candidates[place]), place))
+                .map(|&place| (self.score(model, fit, &known, &self.candidates[place]), place))
                 .collect();
             scored.sort_by(|one, other| other.0.total_cmp(&one.0));
             places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
@@ -320,7 +279,7 @@ impl Search<'_> {
             .into_par_iter()
             .map(|place| {
                 let candidate = &self.candidates[place];
-                let (structure, with) = self.with_term(model, candidate, fit, &linear);
+                let (structure, with) = self.with_term(model, candidate, fit, &known);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
                 Tried { place, structure, fit: with, evidence }
             })
@@ -493,6 +452,11 @@ impl Search<'_> {
         }
         self.revise_waves(self.helpful(model))
     }
+}
+
+/// Whether being there at all changes the heading anywhere.
+pub(crate) fn acts(being: &Column) -> bool {
+    being.iter().flatten().flatten().any(|&x| x != 0.0)
 }
 
 /// Whether a term is a moment that depends on time alone.

@@ -7,9 +7,9 @@ use std::sync::Arc;
 
 use ship::dynamics::Dynamics;
 use ship::effects::Effect;
-use ship::replay::replay;
+use ship::replay::replay_states;
 use ship::response::BASE;
-use ship::{Response, ResponseModel};
+use ship::{Real, Response, ResponseModel};
 
 use crate::record::Record;
 
@@ -171,47 +171,40 @@ impl Structure {
     }
 
     /// The response of one record, with these parameters.
-    pub fn response(&self, record: usize, theta: &[f64]) -> Response {
-        let acting = self.terms.iter().filter(|term| term.only.is_none_or(|only| only == record));
-        let model = ResponseModel::new(acting.map(|term| Arc::clone(&term.effect)).collect());
-        let count = model.parameter_count();
-        let mut response = model.with(vec![0.0; count]);
-        self.set(&mut response, record, theta);
-        response
-    }
-
-    /// Puts θ into the response of one record.
-    pub fn set(&self, response: &mut Response, record: usize, theta: &[f64]) {
-        let own = response.parameters_mut();
-        own[..2].copy_from_slice(&theta[..2]);
-        own[2] = theta[2 + if self.own_bias { record } else { 0 }];
-        let (mut to, mut from) = (3, self.base_count());
+    pub fn response<R: Real>(&self, record: usize, theta: &[R]) -> Response<R> {
+        let (mut effects, mut own) = (Vec::with_capacity(self.terms.len()), Vec::with_capacity(theta.len()));
+        own.extend_from_slice(&theta[..2]);
+        own.push(theta[2 + if self.own_bias { record } else { 0 }]);
+        let mut from = self.base_count();
         for term in &self.terms {
-            let count = term.effect.parameters().len();
+            let to = from + term.effect.parameters().len();
             if term.only.is_none_or(|only| only == record) {
-                own[to..to + count].copy_from_slice(&theta[from..from + count]);
-                to += count;
+                effects.push(Arc::clone(&term.effect));
+                own.extend_from_slice(&theta[from..to]);
             }
-            from += count;
+            from = to;
         }
+        ResponseModel::new(effects).with(own)
     }
 }
 
-/// Step of the solver for a response on rows `spacing` seconds apart.
-pub fn step(response: &Response, spacing: f64) -> f64 {
-    (response.shortest_time() / STEPS).max(spacing / MOST_STEPS)
+/// Step of the solver for a response on rows `spacing` seconds apart, between two times.
+pub fn step<R: Real>(response: &Response<R>, spacing: f64) -> impl Fn(f64, f64) -> f64 {
+    let pace = response.pace();
+    move |from, to| (pace.shortest(from, to) / STEPS).max(spacing / MOST_STEPS)
 }
 
-/// The heading of a response along a record, from its first row, at the observed rows.
-pub fn headings(response: &Response, record: &Record, initial: [f64; 2], headings: &mut [f64]) {
+/// Replays a response along a record, from its first row, and visits the heading at every observed row.
+pub fn headings<R: Real>(response: &Response<R>, record: &Record, initial: [R; 2], mut visit: impl FnMut(usize, R)) {
     let recorded = record.recorded(response);
-    let mut state = vec![0.0; response.dimension()];
-    let start = recorded.input(record.time[0], response.dead_time(), 0);
+    let mut state = vec![R::from(0.0); response.dimension()];
+    let start = recorded.input(record.time[0], response.dead_time());
     response.enter(initial[0], initial[1], &start, &mut state);
     let mut seat = 0;
-    replay(response, &recorded, &record.time, step(response, record.spacing), &mut state, |row, motion| {
+    let step = step(response, record.spacing);
+    replay_states(response, &recorded, &record.time, step, &mut state, |row, state, _| {
         if record.observed.get(seat) == Some(&row) {
-            headings[seat] = motion.heading;
+            visit(seat, state[0]);
             seat += 1;
         }
     });

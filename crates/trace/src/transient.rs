@@ -4,7 +4,8 @@
 use nalgebra::{DMatrix, DVector};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Linear, Problem, dot};
+use crate::fit::{Fit, Problem, dot};
+use crate::search::Known;
 use crate::structure::Term;
 
 /// Lengths of the boxes as shares of the record.
@@ -15,17 +16,18 @@ const STARTS: usize = 2;
 
 /// Starts (m, t_c, d) for a transient on top of a fit, the most promising first.
 ///
-/// `linear` are residual and sensitivities at that fit.
-pub fn starts(problem: &Problem, fit: &Fit, linear: &Linear, term: &Term) -> Vec<Vec<f64>> {
+/// `known` are the whitened residual and sensitivities at that fit.
+pub fn starts(problem: &Problem, fit: &Fit, known: &Known, term: &Term) -> Vec<Vec<f64>> {
     let number = term.only.unwrap_or(0);
     let record = &problem.records[number];
-    let whitener = &problem.whiteners(&fit.colour)[number];
-    let Some((columns, residual)) = linear.whitened_block(number, whitener) else { return Vec::new() };
+    let whitener = &known.whiteners[number];
+    let columns: Vec<&[f64]> = known.columns.of_record(number).collect();
+    let residual = &known.white[number];
     let p = columns.len();
-    let gram = DMatrix::from_fn(p, p, |i, j| dot(&columns[i], &columns[j]));
+    let gram = DMatrix::from_fn(p, p, |i, j| dot(columns[i], columns[j]));
     let ridge = DMatrix::from_fn(p, p, |i, j| if i == j { 1e-10 * gram[(i, i)] + f64::MIN_POSITIVE } else { 0.0 });
     let Some(factor) = (gram + ridge).cholesky() else { return Vec::new() };
-    let gradient = DVector::from_fn(p, |i, _| dot(&columns[i], &residual));
+    let gradient = DVector::from_fn(p, |i, _| dot(columns[i], residual));
     let explained = factor.solve(&gradient);
 
     let (a, b) = (fit.theta[0], fit.theta[1]);
@@ -39,10 +41,10 @@ pub fn starts(problem: &Problem, fit: &Fit, linear: &Linear, term: &Term) -> Vec
             for (value, &t) in column.iter_mut().zip(&times) {
                 *value = b * (step_response(a, t - from) - step_response(a, t - from - length));
             }
-            whitener.apply(&mut column);
-            let cross = DVector::from_fn(p, |i, _| dot(&columns[i], &column));
+            whitener.apply(&mut [&mut column]);
+            let cross = DVector::from_fn(p, |i, _| dot(columns[i], &column));
             let own = dot(&column, &column) - cross.dot(&factor.solve(&cross));
-            let with = dot(&column, &residual) - cross.dot(&explained);
+            let with = dot(&column, residual) - cross.dot(&explained);
             if own > 1e-9 * dot(&column, &column) {
                 found.push((with * with / own, [with / own, from + 0.5 * length, length]));
             }

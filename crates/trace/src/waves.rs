@@ -2,7 +2,7 @@
 
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::Problem;
+use crate::fit::{Problem, dot, log_variance, whiten};
 use crate::noise::Colour;
 
 /// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.
@@ -23,14 +23,9 @@ const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option<NarrowBand> {
     // −2 log L and whitened sum of squares of the residual under one colour.
     let judge = |colour: &Colour| {
-        let (mut rss, mut log_variance) = (0.0, 0.0);
-        for (whitener, residual) in problem.whiteners(colour).iter().zip(residual) {
-            let mut residual = residual.clone();
-            whitener.apply(&mut residual);
-            rss += residual.iter().map(|x| x * x).sum::<f64>();
-            log_variance += whitener.log_variance;
-        }
-        (problem.deviance(rss, log_variance), rss)
+        let whiteners = problem.whiteners(colour);
+        let rss = whiten(residual, &whiteners).iter().map(|white| dot(white, white)).sum();
+        (problem.deviance(rss, log_variance(&whiteners)), rss)
     };
     let value = |waves: NarrowBand| judge(&Colour { waves: Some(waves), ..*beside }).0;
     let slowest = FASTER * problem.records.iter().map(fundamental).fold(0.0, f64::max);

@@ -37,7 +37,8 @@ pub use wind_moment::WindMoment;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::dynamics::{Input, Regressor};
+use crate::dynamics::{Measured, Regressor};
+use crate::number::{Real, Tangent};
 
 /// One parameter of an effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,50 +61,74 @@ pub struct Parameter {
 
 /// The instant at which an effect is evaluated.
 #[derive(Debug, Clone, Copy)]
-pub struct Now<'a> {
+pub struct Now<'a, R = f64> {
     /// Time, s, on the clock of the record.
     pub t: f64,
     /// Heading ψ, rad.
-    pub heading: f64,
+    pub heading: R,
     /// Yaw rate r, rad/s.
-    pub yaw_rate: f64,
+    pub yaw_rate: R,
     /// Rudder that acts after every transformation, without δ_r, rad.
-    pub rudder: f64,
+    pub rudder: R,
     /// a = 1/T at approach speed, 1/s.
-    pub inverse_time: f64,
+    pub inverse_time: R,
     /// b = K/T at approach speed, 1/s².
-    pub gain: f64,
-    /// What acts from outside.
-    pub input: &'a Input,
+    pub gain: R,
+    /// Channels that were measured.
+    pub measured: &'a Measured,
 }
 
 /// Factors on a = 1/T and b = K/T.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
+pub struct Scale<R = f64> {
     /// Factor on a.
-    pub damping: f64,
+    pub damping: R,
     /// Factor on b.
-    pub gain: f64,
+    pub gain: R,
 }
 
-impl Scale {
+impl<R: Real> Scale<R> {
     /// Leaves damping and gain as they are.
-    pub const NONE: Self = Self { damping: 1.0, gain: 1.0 };
+    pub fn none() -> Self {
+        Self { damping: R::from(1.0), gain: R::from(1.0) }
+    }
 }
 
 /// Time constants of a second-order response, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SwayCoupling {
+pub struct SwayCoupling<R = f64> {
     /// T₂, s, positive.
-    pub second_time: f64,
+    pub second_time: R,
     /// T₃, s.
-    pub rudder_time: f64,
+    pub rudder_time: R,
 }
 
-/// Something a first-order response lacks.
+/// Where an effect acts beside its own states; the other places need not be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Places {
+    /// It changes the rudder that acts.
+    pub rudder: bool,
+    /// It scales damping and gain.
+    pub scale: bool,
+    /// It adds a yaw acceleration.
+    pub moment: bool,
+}
+
+impl Places {
+    /// In none of these places.
+    pub const NONE: Self = Self { rudder: false, scale: false, moment: false };
+    /// In the rudder.
+    pub const RUDDER: Self = Self { rudder: true, ..Self::NONE };
+    /// In damping and gain.
+    pub const SCALE: Self = Self { scale: true, ..Self::NONE };
+    /// In the yaw acceleration.
+    pub const MOMENT: Self = Self { moment: true, ..Self::NONE };
+}
+
+/// Something a first-order response lacks: what it is. What it does is said by [`Acts`].
 ///
-/// `p` is always the effect's own parameters, `z` its own states.
-pub trait Effect: fmt::Debug + Send + Sync {
+/// `p` is always the effect's own parameters.
+pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     /// Fixed identifier, shared by all forms of the effect.
     fn id(&self) -> &'static str;
 
@@ -121,45 +146,12 @@ pub trait Effect: fmt::Debug + Send + Sync {
         None
     }
 
+    /// Where it acts.
+    fn places(&self) -> Places;
+
     /// Number of own states.
     fn states(&self) -> usize {
         0
-    }
-
-    /// Own states on a straight approach.
-    fn approach(&self, _p: &[f64], _now: &Now, z: &mut [f64]) {
-        z.fill(0.0);
-    }
-
-    /// Dead time of the rudder, s.
-    fn dead_time(&self, _p: &[f64]) -> f64 {
-        0.0
-    }
-
-    /// The rudder that acts, from the one before this effect, rad.
-    fn rudder(&self, _p: &[f64], _z: &[f64], rudder: f64) -> f64 {
-        rudder
-    }
-
-    /// Rates of own states; `before` is the rudder before this effect, rad.
-    fn rates(&self, _p: &[f64], _z: &[f64], _now: &Now, _before: f64, _rate: &mut [f64]) {}
-
-    /// Update of memory that is not a differential equation, once a step.
-    fn settle(&self, _p: &[f64], _z: &mut [f64], _before: f64) {}
-
-    /// Factors on damping and gain.
-    fn scale(&self, _p: &[f64], _z: &[f64], _now: &Now) -> Scale {
-        Scale::NONE
-    }
-
-    /// Addition to the yaw acceleration, rad/s².
-    fn yaw_acceleration(&self, _p: &[f64], _z: &[f64], _now: &Now) -> f64 {
-        0.0
-    }
-
-    /// Second time constants, for the one effect that raises the order of the response.
-    fn sway_coupling(&self, _p: &[f64]) -> Option<SwayCoupling> {
-        None
     }
 
     /// Spectrum of a random heading that is added to the one seen; the deterministic part of the response ignores it.
@@ -170,6 +162,52 @@ pub trait Effect: fmt::Debug + Send + Sync {
     /// Shortest time constant the effect brings in, s: what a step has to resolve.
     fn shortest_time(&self, _p: &[f64]) -> f64 {
         f64::INFINITY
+    }
+
+    /// Span of time, s, in which steps have to resolve that time; outside of it nothing happens so fast.
+    fn brisk(&self, _p: &[f64]) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    }
+}
+
+/// What an effect does, written once for every kind of number.
+///
+/// `p` is always the effect's own parameters, `z` its own states.
+pub trait Acts<R: Real> {
+    /// Own states on a straight approach.
+    fn approach(&self, _p: &[R], _now: &Now<R>, z: &mut [R]) {
+        z.fill(R::from(0.0));
+    }
+
+    /// Dead time of the rudder, s.
+    fn dead_time(&self, _p: &[R]) -> R {
+        R::from(0.0)
+    }
+
+    /// The rudder that acts, from the one before this effect, rad.
+    fn rudder(&self, _p: &[R], _z: &[R], rudder: R) -> R {
+        rudder
+    }
+
+    /// Rates of own states; `before` is the rudder before this effect, rad.
+    fn rates(&self, _p: &[R], _z: &[R], _now: &Now<R>, _before: R, _rate: &mut [R]) {}
+
+    /// Update of memory that is not a differential equation, once a step.
+    fn settle(&self, _p: &[R], _z: &mut [R], _before: R) {}
+
+    /// Factors on damping and gain.
+    fn scale(&self, _p: &[R], _z: &[R], _now: &Now<R>) -> Scale<R> {
+        Scale::none()
+    }
+
+    /// Addition to the yaw acceleration, rad/s².
+    fn yaw_acceleration(&self, _p: &[R], _z: &[R], _now: &Now<R>) -> R {
+        R::from(0.0)
+    }
+
+    /// Second time constants, for the one effect that raises the order of the response.
+    fn sway_coupling(&self, _p: &[R]) -> Option<SwayCoupling<R>> {
+        None
     }
 }
 

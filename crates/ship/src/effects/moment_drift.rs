@@ -1,6 +1,7 @@
 //! A slow trend of the yaw moment over the record.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
+use crate::number::Real;
 
 /// m (t − t₀) as an equivalent rudder angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +30,13 @@ impl Effect for MomentDrift {
         &PARAMETERS
     }
 
-    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+}
+
+impl<R: Real> Acts<R> for MomentDrift {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
         now.gain * p[0] * (now.t - self.reference_time)
     }
 }

@@ -1,6 +1,7 @@
 //! Damping that grows with the yaw rate: the terms of Norrbin and Bech.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
+use crate::number::Real;
 
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when
 /// 1/T passes through zero.
@@ -58,7 +59,13 @@ impl Effect for NonlinearDamping {
         }
     }
 
-    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+}
+
+impl<R: Real> Acts<R> for NonlinearDamping {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
         let r = now.yaw_rate;
         match self {
             Self::Cubic => -p[0] * r * r * r,

@@ -1,6 +1,7 @@
 //! A rudder gain that differs by side.
 
-use super::{Effect, Parameter};
+use super::{Acts, Effect, Parameter, Places};
+use crate::number::Real;
 
 /// K (δ + a |δ| + δ_r): gain 1 + a to starboard, 1 − a to port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +27,13 @@ impl Effect for PortStarboardAsymmetry {
         &PARAMETERS
     }
 
-    fn rudder(&self, p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+    fn places(&self) -> Places {
+        Places::RUDDER
+    }
+}
+
+impl<R: Real> Acts<R> for PortStarboardAsymmetry {
+    fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
         rudder + p[0] * rudder.abs()
     }
 }

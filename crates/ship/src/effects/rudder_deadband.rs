@@ -1,6 +1,7 @@
 //! Play between the recorded and the acting rudder.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
+use crate::number::Real;
 
 /// Backlash or dead band of half-width g.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,31 +38,37 @@ impl Effect for RudderDeadband {
         &PARAMETERS
     }
 
+    fn places(&self) -> Places {
+        Places::RUDDER
+    }
+
     fn states(&self) -> usize {
         match self {
             Self::Backlash => 1,
             Self::DeadBand => 0,
         }
     }
+}
 
-    fn approach(&self, _p: &[f64], now: &Now, z: &mut [f64]) {
+impl<R: Real> Acts<R> for RudderDeadband {
+    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
         z.fill(now.rudder);
     }
 
     /// While the rudder is monotone the play operator is a clamp of where it was, which is exact within a step.
-    fn rudder(&self, p: &[f64], z: &[f64], rudder: f64) -> f64 {
-        let g = p[0].max(0.0);
+    fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
+        let g = p[0].at_least(0.0);
         match self {
-            Self::Backlash => z[0].clamp(rudder - g, rudder + g),
-            Self::DeadBand => rudder.signum() * (rudder.abs() - g).max(0.0),
+            Self::Backlash => z[0].between(rudder - g, rudder + g),
+            Self::DeadBand => (rudder.abs() - g).at_least(0.0) * rudder.value().signum(),
         }
     }
 
-    fn rates(&self, _p: &[f64], _z: &[f64], _now: &Now, _before: f64, rate: &mut [f64]) {
-        rate.fill(0.0);
+    fn rates(&self, _p: &[R], _z: &[R], _now: &Now<R>, _before: R, rate: &mut [R]) {
+        rate.fill(R::from(0.0));
     }
 
-    fn settle(&self, p: &[f64], z: &mut [f64], before: f64) {
+    fn settle(&self, p: &[R], z: &mut [R], before: R) {
         if let Self::Backlash = self {
             z[0] = self.rudder(p, z, before);
         }

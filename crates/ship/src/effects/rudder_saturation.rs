@@ -1,6 +1,7 @@
 //! A rudder that loses lift at large angles.
 
-use super::{Effect, Parameter};
+use super::{Acts, Effect, Parameter, Places};
+use crate::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +28,13 @@ impl Effect for RudderSaturation {
         &PARAMETERS
     }
 
-    fn rudder(&self, p: &[f64], _z: &[f64], rudder: f64) -> f64 {
+    fn places(&self) -> Places {
+        Places::RUDDER
+    }
+}
+
+impl<R: Real> Acts<R> for RudderSaturation {
+    fn rudder(&self, p: &[R], _z: &[R], rudder: R) -> R {
         rudder - p[0] * rudder * rudder * rudder
     }
 }

@@ -1,6 +1,7 @@
 //! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
 
-use super::{Effect, Parameter, SwayCoupling};
+use super::{Acts, Effect, Parameter, Places, SwayCoupling};
+use crate::number::Real;
 
 /// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
 ///
@@ -30,16 +31,22 @@ impl Effect for SecondOrder {
         &PARAMETERS
     }
 
+    fn places(&self) -> Places {
+        Places::NONE
+    }
+
     /// One state, s of [`crate::response`]; the response itself steps it.
     fn states(&self) -> usize {
         1
     }
 
-    fn sway_coupling(&self, p: &[f64]) -> Option<SwayCoupling> {
-        Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
-    }
-
     fn shortest_time(&self, p: &[f64]) -> f64 {
         p[0]
+    }
+}
+
+impl<R: Real> Acts<R> for SecondOrder {
+    fn sway_coupling(&self, p: &[R]) -> Option<SwayCoupling<R>> {
+        Some(SwayCoupling { second_time: p[0], rudder_time: p[1] })
     }
 }

@@ -1,7 +1,8 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
-use super::{Effect, Now, Parameter, Scale};
+use super::{Acts, Effect, Now, Parameter, Places, Scale};
 use crate::dynamics::Regressor;
+use crate::number::Real;
 
 /// K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
 ///
@@ -68,6 +69,10 @@ impl Effect for SpeedLoss {
         }
     }
 
+    fn places(&self) -> Places {
+        Places::SCALE
+    }
+
     fn needs(&self) -> Option<Regressor> {
         match self {
             Self::Modelled => None,
@@ -83,40 +88,45 @@ impl Effect for SpeedLoss {
         }
     }
 
-    fn approach(&self, _p: &[f64], _now: &Now, z: &mut [f64]) {
-        z.fill(1.0);
-    }
-
-    fn rates(&self, p: &[f64], z: &[f64], now: &Now, _before: f64, rate: &mut [f64]) {
-        if let Self::Modelled = self {
-            rate[0] = (1.0 - z[0]) / p[1] - p[0] * now.yaw_rate * now.yaw_rate;
-        }
-    }
-
-    fn scale(&self, p: &[f64], z: &[f64], now: &Now) -> Scale {
-        match self {
-            Self::Modelled => {
-                let q = z[0].max(SLOWEST);
-                Scale { damping: q, gain: q.powf(p[2]) }
-            }
-            Self::Measured { approach_speed } => match now.input.measured.speed {
-                Some(speed) => {
-                    let q = (speed / approach_speed).max(SLOWEST);
-                    Scale { damping: q.powf(p[0]), gain: q.powf(p[1]) }
-                }
-                None => Scale::NONE,
-            },
-            Self::Propeller { approach_rate } => match now.input.measured.propeller {
-                Some(rate) => Scale { damping: 1.0, gain: (rate / approach_rate).max(SLOWEST).powf(p[0]) },
-                None => Scale::NONE,
-            },
-        }
-    }
-
     fn shortest_time(&self, p: &[f64]) -> f64 {
         match self {
             Self::Modelled => p[1],
             Self::Measured { .. } | Self::Propeller { .. } => f64::INFINITY,
+        }
+    }
+}
+
+impl<R: Real> Acts<R> for SpeedLoss {
+    fn approach(&self, _p: &[R], _now: &Now<R>, z: &mut [R]) {
+        z.fill(R::from(1.0));
+    }
+
+    fn rates(&self, p: &[R], z: &[R], now: &Now<R>, _before: R, rate: &mut [R]) {
+        if let Self::Modelled = self {
+            rate[0] = (R::from(1.0) - z[0]) / p[1] - p[0] * now.yaw_rate * now.yaw_rate;
+        }
+    }
+
+    fn scale(&self, p: &[R], z: &[R], now: &Now<R>) -> Scale<R> {
+        match self {
+            Self::Modelled => {
+                let q = z[0].at_least(SLOWEST);
+                Scale { damping: q, gain: q.powf(p[2]) }
+            }
+            Self::Measured { approach_speed } => match now.measured.speed {
+                Some(speed) => {
+                    let q = R::from((speed / approach_speed).max(SLOWEST));
+                    Scale { damping: q.powf(p[0]), gain: q.powf(p[1]) }
+                }
+                None => Scale::none(),
+            },
+            Self::Propeller { approach_rate } => match now.measured.propeller {
+                Some(rate) => {
+                    let q = R::from((rate / approach_rate).max(SLOWEST));
+                    Scale { damping: R::from(1.0), gain: q.powf(p[0]) }
+                }
+                None => Scale::none(),
+            },
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
+use crate::number::Real;
 
 /// Lag between the recorded and the acting rudder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,6 +46,13 @@ impl Effect for SteeringLag {
         }
     }
 
+    fn places(&self) -> Places {
+        match self {
+            Self::DeadTime => Places::NONE,
+            Self::FirstOrder => Places::RUDDER,
+        }
+    }
+
     fn states(&self) -> usize {
         match self {
             Self::DeadTime => 0,
@@ -52,34 +60,36 @@ impl Effect for SteeringLag {
         }
     }
 
-    fn approach(&self, _p: &[f64], now: &Now, z: &mut [f64]) {
-        z.fill(now.rudder);
-    }
-
-    fn dead_time(&self, p: &[f64]) -> f64 {
-        match self {
-            Self::DeadTime => p[0],
-            Self::FirstOrder => 0.0,
-        }
-    }
-
-    fn rudder(&self, p: &[f64], z: &[f64], rudder: f64) -> f64 {
-        match self {
-            Self::FirstOrder if p[0] >= SHORTEST_LAG => z[0],
-            _ => rudder,
-        }
-    }
-
-    fn rates(&self, p: &[f64], z: &[f64], _now: &Now, before: f64, rate: &mut [f64]) {
-        if let Self::FirstOrder = self {
-            rate[0] = (before - z[0]) / p[0].max(SHORTEST_LAG);
-        }
-    }
-
     fn shortest_time(&self, p: &[f64]) -> f64 {
         match self {
             Self::DeadTime => f64::INFINITY,
             Self::FirstOrder => p[0].max(SHORTEST_LAG),
+        }
+    }
+}
+
+impl<R: Real> Acts<R> for SteeringLag {
+    fn approach(&self, _p: &[R], now: &Now<R>, z: &mut [R]) {
+        z.fill(now.rudder);
+    }
+
+    fn dead_time(&self, p: &[R]) -> R {
+        match self {
+            Self::DeadTime => p[0],
+            Self::FirstOrder => R::from(0.0),
+        }
+    }
+
+    fn rudder(&self, p: &[R], z: &[R], rudder: R) -> R {
+        match self {
+            Self::FirstOrder if p[0].value() >= SHORTEST_LAG => z[0],
+            _ => rudder,
+        }
+    }
+
+    fn rates(&self, p: &[R], z: &[R], _now: &Now<R>, before: R, rate: &mut [R]) {
+        if let Self::FirstOrder = self {
+            rate[0] = (before - z[0]) / p[0].at_least(SHORTEST_LAG);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Sway velocity as a regressor, where the record has it.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::dynamics::Regressor;
+use crate::number::Real;
 
 /// c v with the measured sway velocity v, as an equivalent rudder angle; zero where the record has none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,11 +35,17 @@ impl Effect for SwayCouplingMeasured {
         &PARAMETERS
     }
 
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+
     fn needs(&self) -> Option<Regressor> {
         Some(Regressor::Sway)
     }
+}
 
-    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
-        now.input.measured.sway.map_or(0.0, |sway| now.gain * p[0] * sway)
+impl<R: Real> Acts<R> for SwayCouplingMeasured {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+        now.measured.sway.map_or(R::from(0.0), |sway| now.gain * p[0] * sway)
     }
 }

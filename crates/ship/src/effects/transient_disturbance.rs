@@ -1,6 +1,7 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
+use crate::number::Real;
 
 /// m over a span of time with smooth edges, as an equivalent rudder angle:
 /// m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
@@ -33,12 +34,24 @@ impl Effect for TransientDisturbance {
         &PARAMETERS
     }
 
-    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
-        let (from_centre, half, width) = (now.t - p[1], 0.5 * p[2], EDGE * p[2]);
-        now.gain * 0.5 * p[0] * (((from_centre + half) / width).tanh() - ((from_centre - half) / width).tanh())
+    fn places(&self) -> Places {
+        Places::MOMENT
     }
 
     fn shortest_time(&self, p: &[f64]) -> f64 {
         EDGE * p[2]
+    }
+
+    /// Fifteen widths beyond the edges: tanh is there one to 10⁻¹³.
+    fn brisk(&self, p: &[f64]) -> [f64; 2] {
+        let reach = (0.5 + 15.0 * EDGE) * p[2];
+        [p[1] - reach, p[1] + reach]
+    }
+}
+
+impl<R: Real> Acts<R> for TransientDisturbance {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+        let (from_centre, half, width) = (R::from(now.t) - p[1], p[2] * 0.5, p[2] * EDGE);
+        now.gain * 0.5 * p[0] * (((from_centre + half) / width).tanh() - ((from_centre - half) / width).tanh())
     }
 }

@@ -1,7 +1,8 @@
 //! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
 
-use super::{Effect, Parameter};
+use super::{Acts, Effect, Parameter, Places};
 use crate::narrow_band::NarrowBand;
+use crate::number::Real;
 
 /// ξ'' + 2ζω₀ ξ' + ω₀² ξ = w added to the heading. The deterministic response knows nothing of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +31,13 @@ impl Effect for WaveYaw {
         &PARAMETERS
     }
 
+    fn places(&self) -> Places {
+        Places::NONE
+    }
+
     fn random_heading(&self, p: &[f64]) -> Option<NarrowBand> {
         (p[0] > 0.0).then(|| NarrowBand { sd: p[0], frequency: p[1], damping: p[2] })
     }
 }
+
+impl<R: Real> Acts<R> for WaveYaw {}

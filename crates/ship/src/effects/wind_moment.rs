@@ -1,7 +1,8 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
-use super::{Effect, Now, Parameter};
+use super::{Acts, Effect, Now, Parameter, Places};
 use crate::dynamics::Regressor;
+use crate::number::Real;
 
 /// Wind as the rudder angle with the same yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,19 +53,25 @@ impl Effect for WindMoment {
         }
     }
 
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+
     fn needs(&self) -> Option<Regressor> {
         (*self == Self::Measured).then_some(Regressor::Wind)
     }
+}
 
-    fn yaw_acceleration(&self, p: &[f64], _z: &[f64], now: &Now) -> f64 {
+impl<R: Real> Acts<R> for WindMoment {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
         match self {
             Self::Steady => {
-                let (sin, cos) = (2.0 * now.heading).sin_cos();
+                let (sin, cos) = (now.heading * 2.0).sin_cos();
                 now.gain * (p[0] * cos + p[1] * sin)
             }
-            Self::Measured => match (now.input.measured.wind_speed, now.input.measured.wind_from) {
+            Self::Measured => match (now.measured.wind_speed, now.measured.wind_from) {
                 (Some(speed), Some(from)) => now.gain * p[0] * speed * speed * from.sin(),
-                _ => 0.0,
+                _ => R::from(0.0),
             },
         }
     }

@@ -1,13 +1,9 @@
 //! What records that were not fitted say of a term: it is dropped when it predicts them worse, and believed when it predicts
 //! them much better.
 
-use rayon::prelude::*;
-
-use crate::errors::Errors;
-use crate::fit::Fit;
 use crate::held_out::{self, Comparison, HeldOut};
 use crate::search::{Evidence, Model, Search};
-use crate::structure::{Structure, Term};
+use crate::structure::Term;
 
 /// Drops terms that make the error worse where they were not fitted.
 pub(super) fn believed_elsewhere(
@@ -45,13 +41,10 @@ pub(super) fn believed_elsewhere(
 }
 
 fn worse_on_others(held_out: &[HeldOut], less: &Model, more: &Model) -> Option<String> {
-    let all = |model: &Model| -> Option<Vec<Errors>> {
-        let response = held_out::portable(&model.structure, &model.plain.theta);
-        held_out.iter().map(|record| Some(record.judge(&response)?.1)).collect()
-    };
+    let errors = |model: &Model| held_out::errors(held_out, &model.structure, &model.plain);
     // A model whose replay is not finite is worse than any other.
-    let Some(after) = all(more) else { return Some(String::from("its replay of a held-out record is not finite")) };
-    let comparison = Comparison::of(&all(less)?, &after)?;
+    let Some(after) = errors(more) else { return Some(String::from("its replay of a held-out record is not finite")) };
+    let comparison = Comparison::of(&errors(less)?, &after)?;
     comparison.is_worse().then(|| {
         format!(
             "on the held-out records it multiplies the error of the full replay by {:.2} and that of full and restarted \
@@ -72,22 +65,19 @@ pub(super) struct Predicted {
 /// not.
 pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
     let mut predicted = Vec::new();
-    let errors = |structure: &Structure, fit: &Fit| -> Option<Vec<Errors>> {
-        let response = held_out::portable(structure, &fit.theta);
-        held_out.par_iter().map(|record| Some(record.judge(&response)?.1)).collect()
-    };
     if held_out.is_empty() || model.judged.colour.moment.is_none() {
         return predicted;
     }
     while model.structure.terms.len() < search.thresholds.most_terms {
-        let Some(before) = errors(&model.structure, &model.plain) else { break };
+        let Some(before) = held_out::errors(held_out, &model.structure, &model.plain) else { break };
         let tried = search.try_all(model, &model.plain, true);
         let next = tried.into_iter().take(LOOKED_AT).find_map(|tried| {
             let term = search.candidates[tried.place].term.clone();
             if held_out::is_of_one_record(term.effect.id()) || !search.believes(&term, &tried.evidence) {
                 return None;
             }
-            let comparison = Comparison::of(&before, &errors(&tried.structure, &tried.fit)?)?;
+            let after = held_out::errors(held_out, &tried.structure, &tried.fit)?;
+            let comparison = Comparison::of(&before, &after)?;
             comparison.is_much_better().then_some((tried, term, comparison))
         });
         let Some((tried, term, comparison)) = next else { break };

@@ -16,15 +16,16 @@ const COLOURED: f64 = 0.2;
 pub(super) fn parameter_covariance(problem: &Problem, model: &Model, lag1: f64) -> Option<DMatrix<f64>> {
     let fit = &model.plain;
     let whiteners = problem.whiteners(&fit.colour);
-    let linear = problem.linear(&model.structure, &fit.theta, &fit.initial, &problem.entries(&model.structure));
-    let inverse = linear.covariance(&whiteners)?;
+    let linear = problem.linear(&model.structure, &fit.theta, &fit.initial);
+    let columns = linear.whitened(&whiteners);
+    let inverse = columns.covariance()?;
     let observations = problem.observations() as f64;
-    let freedom = observations - linear.unknowns() as f64;
+    let freedom = observations - columns.unknowns() as f64;
     let coloured = model.judged.colour.moment.is_some() || (fit.colour.is_white() && lag1.abs() > COLOURED);
     if !coloured {
         return Some(inverse * (fit.rss / freedom));
     }
-    let middle = identify::robust::newey_west(&linear.scores(&whiteners));
+    let middle = identify::robust::newey_west(&columns.scores(&linear.whitened_residual(&whiteners)));
     Some(&inverse * middle * &inverse * (observations / freedom))
 }
 

@@ -55,7 +55,7 @@ impl Analysis {
     }
 
     fn ground<'a>(&self, problem: &'a Problem, structure: &'a Structure, fit: &'a Fit) -> Ground<'a> {
-        Ground { problem, structure, fit, variance: self.problem.variance(&self.model.plain) }
+        Ground::new(problem, structure, fit, self.problem.variance(&self.model.plain))
     }
 
     fn prospect(&self, name: &str, trial: &Trial, now: Option<f64>) -> Prospect {

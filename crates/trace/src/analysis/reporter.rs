@@ -196,7 +196,7 @@ impl Reporter<'_> {
             self.search.try_all(self.model, fit, false)
         };
         let variance = self.search.problem.variance(fit);
-        let ground = Ground { problem: self.search.problem, structure, fit, variance };
+        let ground = Ground::new(self.search.problem, structure, fit, variance);
         let log_n = (self.search.problem.observations() as f64).ln();
         let mut list: Vec<Considered> = self
             .search

@@ -4,13 +4,14 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::noise::Whitener;
 
+/// A column of every record; `None` where its unknown does not act.
+pub type Column = Vec<Option<Vec<f64>>>;
+
 /// Residual and sensitivities at one point, record by record.
 #[derive(Debug, Clone)]
 pub struct Linear {
     pub(super) blocks: Vec<Block>,
     pub(super) unknowns: usize,
-    /// Replays that were needed.
-    pub(super) replays: usize,
 }
 
 #[derive(Debug, Clone)]
@@ -20,30 +21,50 @@ pub(super) struct Block {
     pub columns: Vec<(usize, Vec<f64>)>,
 }
 
-/// Whitened columns of every record.
-pub(super) struct Columns {
+/// Whitened columns of every record, with the products of all pairs.
+#[derive(Debug, Clone)]
+pub struct Columns {
     blocks: Vec<Vec<(usize, Vec<f64>)>>,
-    pub matrix: DMatrix<f64>,
+    pub(super) matrix: DMatrix<f64>,
 }
 
 impl Columns {
-    /// Changes the columns as little as possible so that they tell what a step has done to the residual.
-    pub(super) fn learn(
-        &mut self,
-        step: &DVector<f64>,
-        before: &[Vec<f64>],
-        after: &[Vec<f64>],
-        whiteners: &[Whitener],
-    ) {
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.matrix.nrows()
+    }
+
+    /// Whitened columns of one record.
+    pub fn of_record(&self, record: usize) -> impl Iterator<Item = &[f64]> {
+        self.blocks[record].iter().map(|(_, column)| column.as_slice())
+    }
+
+    /// Makes room for unknowns at a place and fills it with columns, which are whitened first.
+    pub fn insert(&mut self, at: usize, new: &[Column], whiteners: &[Whitener]) {
+        let count = new.len();
+        self.matrix = std::mem::take(&mut self.matrix).insert_rows(at, count, 0.0).insert_columns(at, count, 0.0);
+        for (record, (columns, whitener)) in self.blocks.iter_mut().zip(whiteners).enumerate() {
+            let known = columns.len();
+            for (place, _) in columns.iter_mut() {
+                *place += if *place >= at { count } else { 0 };
+            }
+            let acting = new.iter().enumerate().filter_map(|(k, column)| Some((at + k, column[record].clone()?)));
+            columns.extend(acting);
+            whiten_columns(&mut columns[known..], whitener);
+            gram(columns, known, &mut self.matrix);
+        }
+    }
+
+    /// Changes the columns as little as possible so that they tell what a step has done to the whitened residual.
+    pub(super) fn learn(&mut self, step: &DVector<f64>, before: &[Vec<f64>], after: &[Vec<f64>]) {
         let weight: Vec<f64> = (0..step.len()).map(|k| step[k] * self.matrix[(k, k)]).collect();
         let length: f64 = weight.iter().zip(step.iter()).map(|(w, s)| w * s).sum();
         if length.is_nan() || length <= 0.0 {
             return;
         }
         self.matrix.fill(0.0);
-        for (((columns, before), after), whitener) in self.blocks.iter_mut().zip(before).zip(after).zip(whiteners) {
+        for ((columns, before), after) in self.blocks.iter_mut().zip(before).zip(after) {
             let mut missed: Vec<f64> = before.iter().zip(after).map(|(before, after)| before - after).collect();
-            whitener.apply(&mut missed);
             for (at, column) in columns.iter() {
                 missed.iter_mut().zip(column).for_each(|(missed, c)| *missed -= step[*at] * c);
             }
@@ -51,66 +72,72 @@ impl Columns {
                 let share = weight[*at] / length;
                 column.iter_mut().zip(&missed).for_each(|(c, missed)| *c += share * missed);
             }
-            gram(columns, &mut self.matrix);
+            gram(columns, 0, &mut self.matrix);
         }
     }
 
-    /// Normal equations with a residual, which is not whitened yet.
-    pub(super) fn normal(&self, residual: &[Vec<f64>], whiteners: &[Whitener]) -> Normal {
-        let mut gradient = DVector::zeros(self.matrix.nrows());
-        let (mut rss, mut log_variance) = (0.0, 0.0);
-        for ((columns, residual), whitener) in self.blocks.iter().zip(residual).zip(whiteners) {
-            let mut residual = residual.clone();
-            whitener.apply(&mut residual);
+    /// Normal equations with a whitened residual.
+    pub(crate) fn normal(&self, white: &[Vec<f64>]) -> Normal {
+        let mut gradient = DVector::zeros(self.unknowns());
+        let mut rss = 0.0;
+        for (columns, white) in self.blocks.iter().zip(white) {
             for (at, column) in columns {
-                gradient[*at] += dot(column, &residual);
+                gradient[*at] += dot(column, white);
             }
-            rss += dot(&residual, &residual);
-            log_variance += whitener.log_variance;
+            rss += dot(white, white);
         }
-        Normal { matrix: self.matrix.clone(), gradient, rss, log_variance }
+        Normal { matrix: self.matrix.clone(), gradient, rss }
+    }
+
+    /// Covariance of the unknowns for unit variance of the whitened residual; `None` when they cannot be told apart.
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        let scale = scales(&self.matrix);
+        let n = self.unknowns();
+        let scaled = DMatrix::from_fn(n, n, |i, j| self.matrix[(i, j)] * scale[i] * scale[j]);
+        let inverse = scaled.cholesky()?.inverse();
+        Some(DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+    }
+
+    /// Whitened residual times whitened columns, one column an unknown, for every record: the scores of the likelihood.
+    pub fn scores(&self, white: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
+        let of_record = |(columns, white): (&Vec<(usize, Vec<f64>)>, &Vec<f64>)| {
+            let mut scores = vec![vec![0.0; white.len()]; self.unknowns()];
+            for (at, column) in columns {
+                scores[*at].iter_mut().zip(column.iter().zip(white)).for_each(|(score, (c, e))| *score = c * e);
+            }
+            scores
+        };
+        self.blocks.iter().zip(white).map(of_record).collect()
     }
 }
 
 /// Normal equations of whitened columns.
-pub(super) struct Normal {
+pub(crate) struct Normal {
     pub matrix: DMatrix<f64>,
     pub gradient: DVector<f64>,
-    rss: f64,
-    log_variance: f64,
+    pub rss: f64,
+}
+
+impl Normal {
+    /// RSS after the best linear step in the first `unknowns`.
+    pub fn projected(&self, unknowns: usize) -> f64 {
+        let matrix = self.matrix.view((0, 0), (unknowns, unknowns)).into_owned();
+        let gradient = self.gradient.rows(0, unknowns).into_owned();
+        let gain = solve(&matrix, &gradient, 0.0).map_or(0.0, |step| step.dot(&gradient));
+        (self.rss - gain).max(0.0)
+    }
 }
 
 impl Linear {
-    /// Number of unknowns.
-    pub fn unknowns(&self) -> usize {
-        self.unknowns
+    /// The residual of every record.
+    pub fn into_residual(self) -> Vec<Vec<f64>> {
+        self.blocks.into_iter().map(|block| block.residual).collect()
     }
 
-    /// Adds columns that belong to one more unknown, one per record.
-    pub fn push(&mut self, columns: Vec<Option<Vec<f64>>>) {
-        let place = self.unknowns;
-        self.unknowns += 1;
-        for (block, column) in self.blocks.iter_mut().zip(columns) {
-            if let Some(column) = column {
-                block.columns.push((place, column));
-            }
-        }
-    }
-
-    /// Makes room for unknowns at a place and fills it with columns, one per record each.
-    pub fn insert(&mut self, at: usize, new: Vec<Vec<Option<Vec<f64>>>>) {
-        let count = new.len();
-        for block in &mut self.blocks {
-            for (place, _) in &mut block.columns {
-                *place += if *place >= at { count } else { 0 };
-            }
-        }
-        for (k, columns) in new.into_iter().enumerate() {
-            for (block, column) in self.blocks.iter_mut().zip(columns) {
-                block.columns.extend(column.map(|column| (at + k, column)));
-            }
-        }
-        self.unknowns += count;
+    /// The residual of every record, whitened.
+    pub fn whitened_residual(&self, whiteners: &[Whitener]) -> Vec<Vec<f64>> {
+        let residual: Vec<Vec<f64>> = self.blocks.iter().map(|block| block.residual.clone()).collect();
+        whiten(&residual, whiteners)
     }
 
     /// Leaves out the columns of some unknowns, which stay in place.
@@ -121,100 +148,39 @@ impl Linear {
         self
     }
 
-    /// Replaces the residual of every record.
-    pub fn with_residual(mut self, residual: Vec<Vec<f64>>) -> Self {
-        for (block, residual) in self.blocks.iter_mut().zip(residual) {
-            block.residual = residual;
-        }
-        self
-    }
-
-    /// Whitened columns and residual of one record.
-    pub fn whitened_block(&self, record: usize, whitener: &Whitener) -> Option<(Vec<Vec<f64>>, Vec<f64>)> {
-        let block = self.blocks.get(record)?;
-        let white = |column: &[f64]| {
-            let mut column = column.to_vec();
-            whitener.apply(&mut column);
-            column
+    /// The columns, whitened.
+    pub fn whitened(&self, whiteners: &[Whitener]) -> Columns {
+        let mut matrix = DMatrix::zeros(self.unknowns, self.unknowns);
+        let whitened = |(block, whitener): (&Block, &Whitener)| {
+            let mut columns = block.columns.clone();
+            whiten_columns(&mut columns, whitener);
+            gram(&columns, 0, &mut matrix);
+            columns
         };
-        Some((block.columns.iter().map(|(_, column)| white(column)).collect(), white(&block.residual)))
+        Columns { blocks: self.blocks.iter().zip(whiteners).map(whitened).collect(), matrix }
     }
 
-    pub(super) fn whitened(&self, whiteners: &[Whitener]) -> Columns {
-        let n = self.unknowns;
-        let mut matrix = DMatrix::zeros(n, n);
-        let blocks: Vec<Vec<(usize, Vec<f64>)>> = self
-            .blocks
-            .iter()
-            .zip(whiteners)
-            .map(|(block, whitener)| {
-                let white = |(at, column): &(usize, Vec<f64>)| {
-                    let mut column = column.clone();
-                    whitener.apply(&mut column);
-                    (*at, column)
-                };
-                let columns: Vec<(usize, Vec<f64>)> = block.columns.iter().map(white).collect();
-                gram(&columns, &mut matrix);
-                columns
-            })
-            .collect();
-        Columns { blocks, matrix }
-    }
-
-    pub(super) fn normal(&self, whiteners: &[Whitener]) -> Normal {
-        let residual: Vec<Vec<f64>> = self.blocks.iter().map(|block| block.residual.clone()).collect();
-        self.whitened(whiteners).normal(&residual, whiteners)
-    }
-
-    /// RSS after the best linear step under these whiteners, and Σ log S.
-    pub fn projected(&self, whiteners: &[Whitener]) -> (f64, f64) {
-        let normal = self.normal(whiteners);
-        let gain = solve(&normal.matrix, &normal.gradient, 0.0).map_or(0.0, |step| step.dot(&normal.gradient));
-        ((normal.rss - gain).max(0.0), normal.log_variance)
-    }
-
-    /// RSS left by every leading set of unknowns: with none, and with the first `from`, `from + 1`, … all of them.
-    pub fn explained(&self, whiteners: &[Whitener], from: usize) -> (f64, f64) {
-        let normal = self.normal(whiteners);
-        let part = |n: usize| {
-            let matrix = normal.matrix.view((0, 0), (n, n)).into_owned();
-            let gradient = normal.gradient.rows(0, n).into_owned();
-            let gain = solve(&matrix, &gradient, 0.0).map_or(0.0, |step| step.dot(&gradient));
-            (normal.rss - gain).max(0.0)
-        };
-        (part(from), part(self.unknowns))
-    }
-
-    /// Covariance of the unknowns for unit variance of the whitened residual; `None` when they cannot be told apart.
-    pub fn covariance(&self, whiteners: &[Whitener]) -> Option<DMatrix<f64>> {
-        let normal = self.normal(whiteners);
-        let scale = scales(&normal.matrix);
-        let n = self.unknowns;
-        let scaled = DMatrix::from_fn(n, n, |i, j| normal.matrix[(i, j)] * scale[i] * scale[j]);
-        let inverse = scaled.cholesky()?.inverse();
-        Some(DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
-    }
-
-    /// Whitened residual times whitened columns, one column an unknown, for every record: the scores of the likelihood.
-    pub fn scores(&self, whiteners: &[Whitener]) -> Vec<Vec<Vec<f64>>> {
-        let of_block = |(block, whitener): (&Block, &Whitener)| {
-            let mut residual = block.residual.clone();
-            whitener.apply(&mut residual);
-            let mut scores = vec![vec![0.0; residual.len()]; self.unknowns];
-            for (at, column) in &block.columns {
-                scores[*at].copy_from_slice(column);
-                whitener.apply(&mut scores[*at]);
-                scores[*at].iter_mut().zip(&residual).for_each(|(score, e)| *score *= e);
-            }
-            scores
-        };
-        self.blocks.iter().zip(whiteners).map(of_block).collect()
+    /// RSS after the best linear step under these whiteners.
+    pub fn projected(&self, whiteners: &[Whitener]) -> f64 {
+        self.whitened(whiteners).normal(&self.whitened_residual(whiteners)).projected(self.unknowns)
     }
 }
 
-/// Adds the products of all pairs of columns.
-fn gram(columns: &[(usize, Vec<f64>)], matrix: &mut DMatrix<f64>) {
-    for (k, (i, one)) in columns.iter().enumerate() {
+/// Whitened copies of a column of every record.
+pub(crate) fn whiten(columns: &[Vec<f64>], whiteners: &[Whitener]) -> Vec<Vec<f64>> {
+    let mut white = columns.to_vec();
+    white.iter_mut().zip(whiteners).for_each(|(column, whitener)| whitener.apply(&mut [column]));
+    white
+}
+
+fn whiten_columns(columns: &mut [(usize, Vec<f64>)], whitener: &Whitener) {
+    let mut all: Vec<&mut Vec<f64>> = columns.iter_mut().map(|(_, column)| column).collect();
+    whitener.apply(&mut all);
+}
+
+/// Adds the products of all pairs of columns of which the second is not among the first `known`.
+fn gram(columns: &[(usize, Vec<f64>)], known: usize, matrix: &mut DMatrix<f64>) {
+    for (k, (i, one)) in columns.iter().enumerate().skip(known) {
         for (j, other) in &columns[..=k] {
             let product = dot(one, other);
             matrix[(*i, *j)] += product;
@@ -225,8 +191,21 @@ fn gram(columns: &[(usize, Vec<f64>)], matrix: &mut DMatrix<f64>) {
     }
 }
 
+/// Sums that are added up side by side in [`dot`].
+const SUMS: usize = 8;
+
+/// Σ xᵢyᵢ, in a fixed order that leaves a processor with vectors free to use them.
 pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(x, y)| x * y).sum()
+    let (one, one_rest) = one.as_chunks::<SUMS>();
+    let (other, other_rest) = other.as_chunks::<SUMS>();
+    let mut sums = [0.0; SUMS];
+    for (one, other) in one.iter().zip(other) {
+        for k in 0..SUMS {
+            sums[k] += one[k] * other[k];
+        }
+    }
+    let rest: f64 = one_rest.iter().zip(other_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// One over the length of every column; 0 for a column of zeros.

@@ -3,19 +3,22 @@
 
 mod linear;
 
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
 use nalgebra::DVector;
 
 use crate::noise::{Colour, Grain, Moment, Whitener};
 use crate::record::Record;
-use crate::structure::{Entry, Structure, headings};
+use crate::search::Known;
+use crate::structure::{Entry, Structure, Term, headings};
+use ship::Tangent;
 use ship::narrow_band::NarrowBand;
+use ship::number::DIRECTIONS;
 
-pub use linear::Linear;
-pub(crate) use linear::dot;
 use linear::{Block, Normal, solve};
-
-/// Relative step of a finite difference: half the digits of a replay.
-const DIFFERENCE: f64 = 1e-6;
+pub use linear::{Column, Columns, Linear};
+pub(crate) use linear::{dot, whiten};
 
 /// A step that lowers RSS by less than this many mean squares ends the search: far below what any test could see.
 const NEGLIGIBLE: f64 = 0.02;
@@ -64,7 +67,12 @@ pub struct Problem {
     inverse_time_scale: f64,
     gain_scale: f64,
     floor: f64,
+    /// Fits that were asked for before: a search comes back to the same models, and a report to those of the search.
+    finished: Arc<Mutex<HashMap<Question, Fit>>>,
 }
+
+/// What decides a fit: names of the terms, and every number that goes into it, by its bits.
+type Question = (Vec<(&'static str, &'static str, Option<usize>)>, Vec<u64>);
 
 /// A fitted structure.
 #[derive(Debug, Clone)]
@@ -85,8 +93,32 @@ pub struct Fit {
     pub freedom: usize,
     /// −2 log L + freedom · log n (Schwarz 1978).
     pub bic: f64,
-    /// Replays used.
-    pub replays: usize,
+}
+
+/// Where a search stands.
+struct Point {
+    theta: Vec<f64>,
+    initial: Vec<[f64; 2]>,
+    /// Measured less replayed headings, rad.
+    residual: Vec<Vec<f64>>,
+    /// The same, whitened.
+    white: Vec<Vec<f64>>,
+    rss: f64,
+}
+
+impl Point {
+    fn new(theta: Vec<f64>, initial: Vec<[f64; 2]>, residual: Vec<Vec<f64>>, whiteners: &[Whitener]) -> Self {
+        let white = whiten(&residual, whiteners);
+        let rss = white.iter().map(|white| dot(white, white)).sum();
+        Self { theta, initial, residual, white, rss }
+    }
+
+    /// The unknowns that lead from here to another point.
+    fn step_to(&self, other: &Self, fitted: &[usize]) -> DVector<f64> {
+        let parameters = fitted.iter().map(|&k| other.theta[k] - self.theta[k]);
+        let states = self.initial.iter().zip(&other.initial).flat_map(|(from, to)| [to[0] - from[0], to[1] - from[1]]);
+        DVector::from_vec(parameters.chain(states).collect())
+    }
 }
 
 impl Problem {
@@ -97,14 +129,15 @@ impl Problem {
         let inverse_time_scale = inverse_time.abs().max(1.0 / longest);
         let time = inverse_time_scale.recip().min(0.1 * longest);
         let floor = records.iter().map(|record| blur(record, gain * time)).fold(FINEST, f64::max).powi(2);
-        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain, floor }
+        let finished = Arc::default();
+        Self { records, grains, inverse_time, inverse_time_scale, gain_scale: gain, floor, finished }
     }
 
     /// The same ship on other records.
     pub fn on(&self, records: Vec<Record>) -> Self {
         let damping = self.inverse_time;
         let grains = records.iter().map(|record| Grain::new(record, damping, self.longest())).collect();
-        Self { records, grains, ..*self }
+        Self { records, grains, finished: Arc::default(), ..*self }
     }
 
     /// Length of the longest record, s.
@@ -139,195 +172,230 @@ impl Problem {
         self.grains.iter().map(|grain| grain.whitener(colour)).collect()
     }
 
-    /// Replayed headings of one record.
-    fn replayed(&self, structure: &Structure, theta: &[f64], initial: [f64; 2], record: usize) -> Vec<f64> {
-        let response = structure.response(record, theta);
-        let mut out = vec![0.0; self.records[record].observed.len()];
-        headings(&response, &self.records[record], initial, &mut out);
-        out
-    }
-
     /// Replayed headings of every record, rad.
     pub fn replay(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
-        (0..self.records.len()).map(|record| self.replayed(structure, theta, initial[record], record)).collect()
+        let replayed = |(record, source): (usize, &Record)| {
+            let mut out = vec![0.0; source.observed.len()];
+            let response = structure.response(record, theta);
+            headings(&response, source, initial[record], |seat, heading| out[seat] = heading);
+            out
+        };
+        self.records.iter().enumerate().map(replayed).collect()
     }
 
     /// Measured less replayed headings of every record, rad.
     pub fn residual(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
         let mut headings = self.replay(structure, theta, initial);
-        for (record, headings) in self.records.iter().zip(&mut headings) {
-            for (value, &row) in headings.iter_mut().zip(&record.observed) {
-                *value = record.heading[row] - *value;
-            }
-        }
+        self.records.iter().zip(&mut headings).for_each(|(record, headings)| subtract_from(record, headings));
         headings
+    }
+
+    /// Replayed headings of one record, rad, and their derivatives by some of its `variables`: places in θ, and after it the
+    /// initial heading and yaw rate.
+    fn tangents(
+        &self,
+        structure: &Structure,
+        record: usize,
+        theta: &[f64],
+        initial: [f64; 2],
+        variables: &[usize],
+    ) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let source = &self.records[record];
+        let rows = source.observed.len();
+        let (mut replayed, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
+        let constant: Vec<Tangent> = theta.iter().chain(&initial).map(|&value| Tangent::from(value)).collect();
+        for (variables, columns) in variables.chunks(DIRECTIONS).zip(columns.chunks_mut(DIRECTIONS)) {
+            let mut point = constant.clone();
+            for (direction, &variable) in variables.iter().enumerate() {
+                point[variable] = Tangent::variable(point[variable].value, direction);
+            }
+            let (theta, initial) = point.split_at(theta.len());
+            let response = structure.response(record, theta);
+            headings(&response, source, [initial[0], initial[1]], |seat, heading| {
+                replayed[seat] = heading.value;
+                columns.iter_mut().zip(heading.by).for_each(|(column, by)| column[seat] = by);
+            });
+        }
+        (replayed, columns)
     }
 
     /// Residual and sensitivities at a point. Unknowns are the fitted entries of θ in order, then heading and yaw rate at
     /// the beginning of every record.
-    pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], entries: &[Entry]) -> Linear {
-        let residual = self.residual(structure, theta, initial);
-        self.linear_at(structure, theta, initial, entries, residual)
+    pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
+        let entries = self.entries(structure);
+        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
+        let blocks = (0..self.records.len()).map(|record| {
+            let acts = |k: &usize| entries[*k].only.is_none_or(|only| only == record);
+            let acting = fitted.iter().copied().enumerate().filter(|(_, k)| acts(k));
+            let (mut places, mut variables): (Vec<usize>, Vec<usize>) = acting.unzip();
+            let of_state = fitted.len() + 2 * record;
+            places.push(of_state + 1);
+            variables.push(theta.len() + 1);
+            if structure.sees_heading() {
+                places.push(of_state);
+                variables.push(theta.len());
+            }
+            let (mut replayed, columns) = self.tangents(structure, record, theta, initial[record], &variables);
+            subtract_from(&self.records[record], &mut replayed);
+            let mut columns: Vec<(usize, Vec<f64>)> = places.into_iter().zip(columns).collect();
+            if !structure.sees_heading() {
+                // The whole heading turns with where it begins.
+                columns.push((of_state, vec![1.0; replayed.len()]));
+            }
+            Block { residual: replayed, columns }
+        });
+        Linear { blocks: blocks.collect(), unknowns: fitted.len() + 2 * self.records.len() }
     }
 
-    fn linear_at(
+    /// How the heading changes by the last term of a structure being there at all, against the `without` it, and with its
+    /// fitted parameters.
+    pub fn columns_of_last(
         &self,
         structure: &Structure,
         theta: &[f64],
         initial: &[[f64; 2]],
-        entries: &[Entry],
-        residual: Vec<Vec<f64>>,
-    ) -> Linear {
-        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
-        let mut replays = 0;
-        let blocks = residual
-            .into_iter()
-            .enumerate()
-            .map(|(record, residual)| {
-                let source = &self.records[record];
-                let now: Vec<f64> =
-                    source.observed.iter().zip(&residual).map(|(&row, e)| source.heading[row] - e).collect();
-                let mut response = structure.response(record, theta);
-                let mut moved = theta.to_vec();
-                let mut columns = Vec::with_capacity(fitted.len() + 2);
-                let mut difference = |response: &ship::Response, start: [f64; 2], step: f64| {
-                    let mut column = vec![0.0; now.len()];
-                    headings(response, source, start, &mut column);
-                    replays += 1;
-                    for (value, now) in column.iter_mut().zip(&now) {
-                        *value = (*value - now) / step;
-                    }
-                    column
-                };
-                for (place, &k) in fitted.iter().enumerate() {
-                    if entries[k].only.is_some_and(|only| only != record) {
-                        continue;
-                    }
-                    let size = DIFFERENCE * theta[k].abs().max(entries[k].scale);
-                    let step = if theta[k] + size > entries[k].highest { -size } else { size };
-                    moved[k] = theta[k] + step;
-                    structure.set(&mut response, record, &moved);
-                    columns.push((place, difference(&response, initial[record], step)));
-                    moved[k] = theta[k];
-                }
-                structure.set(&mut response, record, theta);
-                let [heading, rate] = initial[record];
-                let place = fitted.len() + 2 * record;
-                if structure.sees_heading() {
-                    columns.push((place, difference(&response, [heading + DIFFERENCE, rate], DIFFERENCE)));
-                } else {
-                    columns.push((place, vec![1.0; now.len()]));
-                }
-                let size = DIFFERENCE * source.duration().recip();
-                columns.push((place + 1, difference(&response, [heading, rate + size], size)));
-                Block { residual, columns }
-            })
-            .collect();
-        Linear { blocks, unknowns: fitted.len() + 2 * self.records.len(), replays }
+        without: &[Vec<f64>],
+    ) -> (Column, Vec<Column>) {
+        let Some((term, range)) = structure.terms.last().zip(structure.terms.len().checked_sub(1)) else {
+            return (Column::new(), Vec::new());
+        };
+        let variables: Vec<usize> =
+            structure.range(range).enumerate().filter(|(k, _)| !term.held.contains(k)).map(|(_, at)| at).collect();
+        let mut being = Column::new();
+        let mut tangents = vec![Column::new(); variables.len()];
+        for record in 0..self.records.len() {
+            if term.only.is_some_and(|only| only != record) {
+                being.push(None);
+                tangents.iter_mut().for_each(|column| column.push(None));
+                continue;
+            }
+            let (mut with, columns) = self.tangents(structure, record, theta, initial[record], &variables);
+            with.iter_mut().zip(&without[record]).for_each(|(with, without)| *with -= without);
+            being.push(Some(with));
+            tangents.iter_mut().zip(columns).for_each(|(all, column)| all.push(Some(column)));
+        }
+        (being, tangents)
     }
 
     /// Fits a structure from a start, under one colour of noise.
     pub fn fit(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], colour: &Colour) -> Fit {
-        self.fit_from(structure, theta, initial, colour, None)
+        self.once(question(structure, theta, initial, colour, None), || {
+            let theta = self.inside(structure, theta);
+            let whiteners = self.whiteners(colour);
+            let linear = self.linear(structure, &theta, initial);
+            let columns = linear.whitened(&whiteners);
+            let start = Point::new(theta, initial.to_vec(), linear.into_residual(), &whiteners);
+            self.search(structure, start, (columns, true), &whiteners, colour)
+        })
     }
 
-    /// Fits a structure of which sensitivities near the start are known.
+    /// Fits a fitted model with one more term from a start of it; the sensitivities of the model are known.
+    pub fn fit_with(&self, structure: &Structure, start: &[f64], from: &Fit, known: &Known) -> Fit {
+        self.once(question(structure, &from.theta, &from.initial, &from.colour, Some(start)), || {
+            let theta = [from.theta.as_slice(), start].concat();
+            let (_, tangents) = self.columns_of_last(structure, &theta, &from.initial, &known.headings);
+            let mut columns = known.columns.clone();
+            let own = tangents.len();
+            columns.insert(structure.free_count() - own, &tangents, &known.whiteners);
+            let theta = self.inside(structure, &theta);
+            let residual = self.residual(structure, &theta, &from.initial);
+            let start = Point::new(theta, from.initial.clone(), residual, &known.whiteners);
+            self.search(structure, start, (columns, false), &known.whiteners, &from.colour)
+        })
+    }
+
+    /// The answer to a question, looked up where it was asked before.
+    fn once(&self, question: Question, fit: impl FnOnce() -> Fit) -> Fit {
+        let finished = || self.finished.lock().expect("no fit panics while it holds the lock");
+        if let Some(known) = finished().get(&question) {
+            return known.clone();
+        }
+        let fit = fit();
+        finished().insert(question, fit.clone());
+        fit
+    }
+
+    fn inside(&self, structure: &Structure, theta: &[f64]) -> Vec<f64> {
+        let entries = self.entries(structure);
+        theta.iter().zip(&entries).map(|(x, entry)| x.clamp(entry.lowest, entry.highest)).collect()
+    }
+
+    /// Searches for the minimum from a point with whitened sensitivities, which are fresh or those of a point near by.
     ///
     /// Sensitivities are computed anew only when a step did not do what they promised: most terms change the response so
     /// little that one set serves the whole search.
-    pub fn fit_from(
+    fn search(
         &self,
         structure: &Structure,
-        theta: &[f64],
-        initial: &[[f64; 2]],
+        mut now: Point,
+        known: (Columns, bool),
+        whiteners: &[Whitener],
         colour: &Colour,
-        known: Option<Linear>,
     ) -> Fit {
-        let whiteners = self.whiteners(colour);
         let entries = self.entries(structure);
-        let mut theta: Vec<f64> =
-            theta.iter().zip(&entries).map(|(x, entry)| x.clamp(entry.lowest, entry.highest)).collect();
-        let mut initial = initial.to_vec();
-        let mut residual = self.residual(structure, &theta, &initial);
-        let mut rss = whitened(&residual, &whiteners);
-        let mut replays = 1;
         let mut damping = SMALLEST_DAMPING;
         let negligible = |rss: f64| NEGLIGIBLE * rss / self.observations() as f64;
         let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
         // Whitened columns; `None` when they have to be computed anew.
-        let mut sensitivities = known.map(|linear| (linear.whitened(&whiteners), false));
+        let mut sensitivities = Some(known);
         for _ in 0..MOST_STEPS {
-            if !rss.is_finite() {
+            if !now.rss.is_finite() {
                 break;
             }
-            let (columns, fresh) = sensitivities.take().unwrap_or_else(|| {
-                let linear = self.linear_at(structure, &theta, &initial, &entries, residual.clone());
-                replays += linear.replays;
-                (linear.whitened(&whiteners), true)
-            });
-            let normal = columns.normal(&residual, &whiteners);
+            let (mut columns, fresh) = sensitivities
+                .take()
+                .unwrap_or_else(|| (self.linear(structure, &now.theta, &now.initial).whitened(whiteners), true));
+            let normal = columns.normal(&now.white);
             let mut improved = None;
             for _ in 0..if fresh { MOST_DAMPINGS } else { 1 } {
-                let Some((step, promised)) = self.step(&normal, damping, &theta, &entries, &fitted) else {
+                let Some((step, promised)) = self.step(&normal, damping, &now.theta, &entries, &fitted) else {
                     damping = 10.0 * damping.max(1e-7);
                     continue;
                 };
-                if promised < negligible(rss) && fresh {
+                if promised < negligible(now.rss) && fresh {
                     break;
                 }
-                let mut next = theta.clone();
+                let mut theta = now.theta.clone();
                 for (place, &k) in fitted.iter().enumerate() {
-                    next[k] = (theta[k] + step[place]).clamp(entries[k].lowest, entries[k].highest);
+                    theta[k] = (theta[k] + step[place]).clamp(entries[k].lowest, entries[k].highest);
                 }
-                let mut start = initial.clone();
-                for (record, start) in start.iter_mut().enumerate() {
-                    start[0] += step[fitted.len() + 2 * record];
-                    start[1] += step[fitted.len() + 2 * record + 1];
+                let mut initial = now.initial.clone();
+                for (record, initial) in initial.iter_mut().enumerate() {
+                    initial[0] += step[fitted.len() + 2 * record];
+                    initial[1] += step[fitted.len() + 2 * record + 1];
                 }
-                let trial = self.residual(structure, &next, &start);
-                replays += 1;
-                let lower = whitened(&trial, &whiteners);
-                if lower < rss {
-                    improved = Some((next, start, trial, lower, promised));
+                let residual = self.residual(structure, &theta, &initial);
+                let next = Point::new(theta, initial, residual, whiteners);
+                if next.rss < now.rss {
+                    improved = Some((next, promised));
                     damping = if damping <= 1e-6 { SMALLEST_DAMPING } else { 0.1 * damping };
                     break;
                 }
                 damping = (damping * 8.0).max(1e-4);
             }
-            let Some((next, start, trial, lower, promised)) = improved else {
+            let Some((next, promised)) = improved else {
                 if fresh {
                     break;
                 } else {
                     continue;
                 };
             };
-            let gain = rss - lower;
+            let gain = now.rss - next.rss;
             let surprise = (gain - promised).abs() / promised;
+            let before = std::mem::replace(&mut now, next);
             if damping <= 1e-6 && surprise < LESSON {
-                if surprise < SURPRISE && promised < negligible(rss) {
-                    (theta, initial, residual, rss) = (next, start, trial, lower);
+                if surprise < SURPRISE && promised < negligible(before.rss) {
                     break;
                 }
-                let mut columns = columns;
                 if surprise >= SURPRISE {
-                    let mut step = DVector::zeros(columns.matrix.nrows());
-                    for (place, &k) in fitted.iter().enumerate() {
-                        step[place] = next[k] - theta[k];
-                    }
-                    for (record, (to, from)) in start.iter().zip(&initial).enumerate() {
-                        step[fitted.len() + 2 * record] = to[0] - from[0];
-                        step[fitted.len() + 2 * record + 1] = to[1] - from[1];
-                    }
-                    columns.learn(&step, &residual, &trial, &whiteners);
+                    columns.learn(&before.step_to(&now, &fitted), &before.white, &now.white);
                 }
                 sensitivities = Some((columns, false));
-            } else if gain < negligible(rss) && fresh {
-                (theta, initial, residual, rss) = (next, start, trial, lower);
+            } else if gain < negligible(before.rss) && fresh {
                 break;
             }
-            (theta, initial, residual, rss) = (next, start, trial, lower);
         }
-        self.judged(structure, theta, initial, residual, rss, &whiteners, colour, replays)
+        self.finished(structure, now, whiteners, colour)
     }
 
     /// A damped step and how much it lowers RSS if the heading is linear; parameters that would leave their range go to its
@@ -375,34 +443,14 @@ impl Problem {
         None
     }
 
-    #[expect(clippy::too_many_arguments, reason = "the parts of one finished fit")]
-    fn judged(
-        &self,
-        structure: &Structure,
-        theta: Vec<f64>,
-        initial: Vec<[f64; 2]>,
-        residual: Vec<Vec<f64>>,
-        rss: f64,
-        whiteners: &[Whitener],
-        colour: &Colour,
-        replays: usize,
-    ) -> Fit {
+    fn finished(&self, structure: &Structure, point: Point, whiteners: &[Whitener], colour: &Colour) -> Fit {
         let n = self.observations() as f64;
-        let log_variance: f64 = whiteners.iter().map(|whitener| whitener.log_variance).sum();
         let fitted = self.entries(structure).iter().filter(|entry| entry.fitted).count();
         let freedom = fitted + 2 * self.records.len() + colour.freedom() + 1;
-        let deviance = self.deviance(rss, log_variance);
-        Fit {
-            theta,
-            initial,
-            colour: *colour,
-            residual,
-            rss,
-            deviance,
-            freedom,
-            bic: deviance + freedom as f64 * n.ln(),
-            replays,
-        }
+        let deviance = self.deviance(point.rss, log_variance(whiteners));
+        let Point { theta, initial, residual, rss, .. } = point;
+        let bic = deviance + freedom as f64 * n.ln();
+        Fit { theta, initial, colour: *colour, residual, rss, deviance, freedom, bic }
     }
 
     /// The random moment of the given kind that explains best what a fit leaves, if it is worth its parameter.
@@ -411,8 +459,8 @@ impl Problem {
     pub fn best_moment(&self, linear: &Linear, kind: Moment, waves: Option<NarrowBand>) -> (Colour, f64) {
         let value = |level: f64| {
             let colour = Colour { moment: Some((kind, level.exp())), waves };
-            let (rss, log_variance) = linear.projected(&self.whiteners(&colour));
-            self.deviance(rss, log_variance)
+            let whiteners = self.whiteners(&colour);
+            self.deviance(linear.projected(&whiteners), log_variance(&whiteners))
         };
         let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
         let (level, deviance) = minimum(lo, hi, 12, value);
@@ -420,17 +468,35 @@ impl Problem {
     }
 }
 
-/// Sum of squares of whitened residuals.
-fn whitened(residual: &[Vec<f64>], whiteners: &[Whitener]) -> f64 {
-    residual
-        .iter()
-        .zip(whiteners)
-        .map(|(residual, whitener)| {
-            let mut residual = residual.clone();
-            whitener.apply(&mut residual);
-            dot(&residual, &residual)
-        })
-        .sum()
+/// What decides a fit; `start` are the parameters of a last term whose fit begins with known sensitivities.
+fn question(
+    structure: &Structure,
+    theta: &[f64],
+    initial: &[[f64; 2]],
+    colour: &Colour,
+    start: Option<&[f64]>,
+) -> Question {
+    let names = structure.terms.iter().map(Term::name).collect();
+    let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
+    let moment = colour.moment.map_or([0.0; 3], |(kind, level)| [1.0, f64::from(kind == Moment::Walk), level]);
+    let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
+    let shape = [f64::from(structure.own_bias), f64::from(start.is_some())];
+    let own = start.unwrap_or_default();
+    let numbers =
+        shape.iter().chain(&moment).chain(&waves).chain(bounds).chain(initial.as_flattened()).chain(theta).chain(own);
+    (names, numbers.map(|x| x.to_bits()).collect())
+}
+
+/// Puts measured less replayed headings in the place of the replayed ones.
+fn subtract_from(record: &Record, headings: &mut [f64]) {
+    for (value, &row) in headings.iter_mut().zip(&record.observed) {
+        *value = record.heading[row] - *value;
+    }
+}
+
+/// Σ log S of all records.
+pub(crate) fn log_variance(whiteners: &[Whitener]) -> f64 {
+    whiteners.iter().map(|whitener| whitener.log_variance).sum()
 }
 
 /// Smallest value on a range: a grid, then golden sections about its lowest point.

@@ -1,0 +1,295 @@
+//! The numbers that equations are written in: plain values, and values that carry their derivatives, so that one replay
+//! gives a heading and how it changes with several parameters, exactly (forward differentiation; Wengert 1964).
+//!
+//! Equations of effects and responses are written once, for any [`Real`]; a value alone takes the same path through them
+//! as a value with derivatives.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::effects::{Acts, Effect};
+
+/// A number that an equation can be written in. Comparisons are those of the values.
+pub trait Real:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// The value alone.
+    fn value(self) -> f64;
+
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+
+    /// A power of a positive number.
+    fn powf(self, exponent: Self) -> Self;
+
+    /// A whole power.
+    fn powi(self, exponent: i32) -> Self;
+
+    /// What an effect does, in this kind of number.
+    fn acts(effect: &dyn Effect) -> &dyn Acts<Self>;
+
+    /// Magnitude.
+    fn abs(self) -> Self {
+        if self.value() < 0.0 { -self } else { self }
+    }
+
+    /// The larger of the number and a constant; at the constant, the number.
+    fn at_least(self, least: f64) -> Self {
+        if self.value() >= least { self } else { Self::from(least) }
+    }
+
+    /// The number between two others, of which the first is not the larger one.
+    fn between(self, least: Self, most: Self) -> Self {
+        if self.value() < least.value() {
+            least
+        } else if self.value() > most.value() {
+            most
+        } else {
+            self
+        }
+    }
+}
+
+impl Real for f64 {
+    #[inline]
+    fn value(self) -> f64 {
+        self
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+
+    #[inline]
+    fn tanh(self) -> Self {
+        f64::tanh(self)
+    }
+
+    #[inline]
+    fn powf(self, exponent: Self) -> Self {
+        f64::powf(self, exponent)
+    }
+
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        f64::powi(self, exponent)
+    }
+
+    #[inline]
+    fn acts(effect: &dyn Effect) -> &dyn Acts<Self> {
+        effect
+    }
+
+    #[inline]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+}
+
+/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with two
+/// parameters.
+pub const DIRECTIONS: usize = 6;
+
+/// A value and its derivatives in some directions.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tangent {
+    /// The value.
+    pub value: f64,
+    /// Its derivatives.
+    pub by: [f64; DIRECTIONS],
+}
+
+impl Tangent {
+    /// A variable: its derivative in its own direction is one.
+    pub fn variable(value: f64, direction: usize) -> Self {
+        let mut by = [0.0; DIRECTIONS];
+        by[direction] = 1.0;
+        Self { value, by }
+    }
+
+    /// A function of this number from its value and its derivative there.
+    #[inline]
+    fn chained(self, value: f64, slope: f64) -> Self {
+        Self { value, by: self.by.map(|d| slope * d) }
+    }
+
+    /// Derivatives of both numbers, put together.
+    #[inline]
+    fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
+        Self { value, by: std::array::from_fn(|k| by(self.by[k], other.by[k])) }
+    }
+}
+
+impl From<f64> for Tangent {
+    #[inline]
+    fn from(value: f64) -> Self {
+        Self { value, by: [0.0; DIRECTIONS] }
+    }
+}
+
+impl Neg for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        self.chained(-self.value, -1.0)
+    }
+}
+
+impl Add for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        self.joined(other, self.value + other.value, |x, y| x + y)
+    }
+}
+
+impl Sub for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self.joined(other, self.value - other.value, |x, y| x - y)
+    }
+}
+
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the product")]
+impl Mul for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        self.joined(other, self.value * other.value, |x, y| other.value * x + self.value * y)
+    }
+}
+
+#[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the quotient")]
+impl Div for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let (quotient, inverse) = (self.value / other.value, other.value.recip());
+        self.joined(other, quotient, |x, y| (x - quotient * y) * inverse)
+    }
+}
+
+impl Add<f64> for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: f64) -> Self {
+        Self { value: self.value + other, ..self }
+    }
+}
+
+impl Sub<f64> for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: f64) -> Self {
+        Self { value: self.value - other, ..self }
+    }
+}
+
+impl Mul<f64> for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: f64) -> Self {
+        self.chained(self.value * other, other)
+    }
+}
+
+impl Div<f64> for Tangent {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, other: f64) -> Self {
+        self.chained(self.value / other, other.recip())
+    }
+}
+
+impl Real for Tangent {
+    #[inline]
+    fn value(self) -> f64 {
+        self.value
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chained(sin, cos), self.chained(cos, -sin))
+    }
+
+    fn tanh(self) -> Self {
+        let tanh = self.value.tanh();
+        self.chained(tanh, 1.0 - tanh * tanh)
+    }
+
+    fn powf(self, exponent: Self) -> Self {
+        let power = self.value.powf(exponent.value);
+        let by_base = exponent.value * power / self.value;
+        // A logarithm costs as much as the power: an exponent that is no variable needs none.
+        let by_exponent = if exponent.by == [0.0; DIRECTIONS] { 0.0 } else { power * self.value.ln() };
+        self.joined(exponent, power, |x, y| by_base * x + by_exponent * y)
+    }
+
+    fn powi(self, exponent: i32) -> Self {
+        if exponent == 0 {
+            return Self::from(1.0);
+        }
+        self.chained(self.value.powi(exponent), f64::from(exponent) * self.value.powi(exponent - 1))
+    }
+
+    #[inline]
+    fn acts(effect: &dyn Effect) -> &dyn Acts<Self> {
+        effect
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// Every function of the trait in one expression, of two variables.
+    fn expression<R: Real>(x: R, y: R) -> R {
+        let (sin, cos) = (x * y).sin_cos();
+        let power = (x * x + 0.5).powf(y / 3.0) + (y - x).powi(3) * 2.0;
+        power / (cos + 2.0) - (sin - y).tanh() + (-x).abs() * x.at_least(0.4).between(R::from(0.1), y + 5.0)
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_value() {
+        let h = 1e-6;
+        for (x, y) in [(0.7, 1.3), (-0.4, 0.2), (2.0, -0.6)] {
+            let found = expression(Tangent::variable(x, 0), Tangent::variable(y, 3));
+            assert_eq!(found.value, expression(x, y));
+            let by_x = (expression(x + h, y) - expression(x - h, y)) / (2.0 * h);
+            let by_y = (expression(x, y + h) - expression(x, y - h)) / (2.0 * h);
+            assert_relative_eq!(found.by[0], by_x, max_relative = 1e-7, epsilon = 1e-9);
+            assert_relative_eq!(found.by[3], by_y, max_relative = 1e-7, epsilon = 1e-9);
+            assert_eq!(found.by[1..3], [0.0; 2]);
+        }
+    }
+}
