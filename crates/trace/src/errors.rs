@@ -4,13 +4,13 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use lanes::column::dot;
 use nalgebra::{Matrix2, Vector2};
 use ship::dynamics::Dynamics;
 use ship::replay::replay_states;
 use ship::{Real, Response, Tangent};
 use trial::{Channel, Columns, Trial, ZigZag};
 
-use crate::fit::dot;
 use crate::record::Record;
 use crate::structure::step;
 

@@ -1,10 +1,11 @@
 //! Where in a record a moment may have been present for a while: boxes of several lengths are tried at every place, with
 //! the response of the base to a box in closed form, and the best places are handed on as starts of a fit.
 
+use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Problem, dot};
+use crate::fit::{Fit, Problem};
 use crate::search::Known;
 use crate::structure::Term;
 

@@ -1,8 +1,9 @@
 //! Whether the heading carries a narrow band of waves: the likelihood of the residual over frequency, width and strength.
 
+use lanes::column::dot;
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::{Problem, dot, log_variance, whiten};
+use crate::fit::{Problem, log_variance, whiten};
 use crate::noise::Colour;
 
 /// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.

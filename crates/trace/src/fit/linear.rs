@@ -1,5 +1,6 @@
 //! Residual and sensitivities at one point as linear equations: whitened, extended by columns, solved.
 
+use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};
 
 use crate::noise::Whitener;
@@ -189,23 +190,6 @@ fn gram(columns: &[(usize, Vec<f64>)], known: usize, matrix: &mut DMatrix<f64>) 
             }
         }
     }
-}
-
-/// Sums that are added up side by side in [`dot`].
-const SUMS: usize = 8;
-
-/// Σ xᵢyᵢ, in a fixed order that leaves a processor with vectors free to use them.
-pub(crate) fn dot(one: &[f64], other: &[f64]) -> f64 {
-    let (one, one_rest) = one.as_chunks::<SUMS>();
-    let (other, other_rest) = other.as_chunks::<SUMS>();
-    let mut sums = [0.0; SUMS];
-    for (one, other) in one.iter().zip(other) {
-        for k in 0..SUMS {
-            sums[k] += one[k] * other[k];
-        }
-    }
-    let rest: f64 = one_rest.iter().zip(other_rest).map(|(x, y)| x * y).sum();
-    sums.iter().sum::<f64>() + rest
 }
 
 /// One over the length of every column; 0 for a column of zeros.

@@ -6,19 +6,20 @@ mod linear;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
+use lanes::column::dot;
 use nalgebra::DVector;
+use ship::Tangent;
+use ship::narrow_band::NarrowBand;
+use ship::number::DIRECTIONS;
 
 use crate::noise::{Colour, Grain, Moment, Whitener};
 use crate::record::Record;
 use crate::search::Known;
 use crate::structure::{Entry, Structure, Term, headings};
-use ship::Tangent;
-use ship::narrow_band::NarrowBand;
-use ship::number::DIRECTIONS;
 
+pub(crate) use linear::whiten;
 use linear::{Block, Normal, solve};
 pub use linear::{Column, Columns, Linear};
-pub(crate) use linear::{dot, whiten};
 
 /// A step that lowers RSS by less than this many mean squares ends the search: far below what any test could see.
 const NEGLIGIBLE: f64 = 0.02;
