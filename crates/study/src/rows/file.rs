@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
 
 use parquet::basic::Compression;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -162,13 +163,21 @@ impl<'a> Reader<'a> {
 
     /// Hands every row to `take`, in order.
     pub fn for_each(mut self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
-        loop {
-            let rows = self.next_rows()?;
-            if rows.is_empty() {
-                return Ok(());
-            }
-            rows.into_iter().try_for_each(&mut take)?;
-        }
+        // Rows are decoded while those before them are taken.
+        std::thread::scope(|scope| {
+            let (send, receive) = sync_channel(1);
+            let decoder = scope.spawn(move || {
+                loop {
+                    let rows = self.next_rows()?;
+                    if rows.is_empty() || send.send(rows).is_err() {
+                        return Ok(());
+                    }
+                }
+            });
+            let taken = receive.into_iter().flatten().try_for_each(&mut take);
+            let decoded = decoder.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            taken.and(decoded)
+        })
     }
 }
 
