@@ -57,7 +57,8 @@ fn identification(measured: &Measurements) -> DotPlot {
         }],
         rows_are_methods: true,
         note: Some(format!(
-            "Record of 1201 samples, one core; median and its 95 % interval of up to {samples} samples. Hollow: another library, or 200 triples; \
+            "Record of 1201 samples, one core; median and its 95 % interval of up to {samples} samples. Hollow: \
+             another library, or 200 triples; \
              upright line: its SRIVC on the heading."
         )),
     }
