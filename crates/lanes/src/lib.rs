@@ -5,7 +5,7 @@
 //! written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide registers takes the
 //! same steps with narrow ones. [`on_every_set`] is for the tests that prove it.
 //!
-//! Nothing here knows of ships; [`column`] has the sums that methods of identification need.
+//! Nothing here knows of ships; [`mod@column`] has the sums that methods of identification need.
 
 pub mod column;
 
