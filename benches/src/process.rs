@@ -1,8 +1,33 @@
 //! The same program again in a process of its own, so that its peak memory can be read and nothing in it is warm.
 
 use std::ffi::OsStr;
-use std::process::Command;
+use std::path::Path;
+use std::process::{Command, ExitCode};
 use std::time::Instant;
+
+use study::cli::{Common, Format, Style};
+
+/// What goes wrong is told to the user and ends the program.
+pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Ends a program with what it came to; what went wrong is told on standard error.
+pub fn end(done: Outcome<()>) -> ExitCode {
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Figures as `study` draws them unless asked otherwise.
+pub const STYLE: Style = Style { paper: None, dpi: 600.0 };
+
+/// The options `--out OUT --quiet`.
+pub fn quiet(out: &str) -> Common {
+    Common { out: Some(Path::new(out).to_owned()), threads: None, seed: None, quiet: true, format: Format::Text }
+}
 
 /// What a process took.
 #[derive(Debug, Clone, Copy)]
@@ -17,7 +42,7 @@ pub struct Cost {
 const MEMORY: &str = "peak memory, MB: ";
 
 /// Runs this program with other arguments, which have to make it end with [`tell`]. Fails with what it said on standard error.
-pub fn again<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Result<Cost, Box<dyn std::error::Error>> {
+pub fn again<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Outcome<Cost> {
     let program = std::env::current_exe()?;
     let start = Instant::now();
     let output = Command::new(program).args(arguments).output()?;

@@ -7,7 +7,7 @@ mod tracing;
 
 pub use identification::{RIVAL, identification};
 pub use simulation::simulation;
-pub use studies::{scenarios, scenarios_folder, studies, throughput};
+pub use studies::{CHECK_S, SHARE, scenarios, scenarios_folder, studies, throughput};
 pub use tracing::tracing;
 
 use crate::work::Group;

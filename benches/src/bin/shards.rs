@@ -8,12 +8,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use kempf_benches::process::{self, Cost};
+use kempf_benches::process::{self, Cost, Outcome, STYLE, quiet};
 use kempf_benches::works;
 use rayon::prelude::*;
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
-use study::cli::{Common, Format, Style};
 use study::collect::in_memory;
 use study::engine::Timing;
 use study::failure::Failure;
@@ -24,8 +23,6 @@ use study::scenario::Scenario;
 use study::store::{self, Design};
 use study::timings::Timings;
 use study::{merge, publish};
-
-type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// What is measured when nothing is asked for: the same trials in more and more shards, then more trials.
 const SIZES: [(u64, u64); 5] = [(10, 10_000), (100, 1000), (1000, 100), (10_000, 10), (10_000, 100)];
@@ -52,13 +49,7 @@ fn main() -> ExitCode {
             }
         },
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    process::end(done)
 }
 
 fn sizes(arguments: &[String]) -> Option<Vec<(u64, u64)>> {
@@ -205,17 +196,11 @@ fn varied(row: &Row, replicate: u64) -> Row {
     }
 }
 
-const STYLE: Style = Style { paper: None, dpi: 600.0 };
-
-fn common(out: &str) -> Common {
-    Common { out: Some(PathBuf::from(out)), threads: None, seed: None, quiet: true, format: Format::Text }
-}
-
 /// `study merge DIR... --out OUT --quiet`.
 fn joined(arguments: &[String]) -> Outcome<()> {
     let (out, folders) = arguments.split_first().ok_or("this is not a command")?;
     let folders: Vec<PathBuf> = folders.iter().map(PathBuf::from).collect();
-    text_of(merge::merge(&folders, &STYLE, &common(out)))?;
+    text_of(merge::merge(&folders, &STYLE, &quiet(out)))?;
     process::tell();
     Ok(())
 }
@@ -223,7 +208,7 @@ fn joined(arguments: &[String]) -> Outcome<()> {
 /// `study report OUT --quiet`.
 fn published(arguments: &[String]) -> Outcome<()> {
     let [out] = arguments else { return Err("this is not a command".into()) };
-    text_of(publish::report(Path::new(out), &STYLE, &common(out)))?;
+    text_of(publish::report(Path::new(out), &STYLE, &quiet(out)))?;
     process::tell();
     Ok(())
 }

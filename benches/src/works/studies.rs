@@ -16,6 +16,12 @@ use crate::work::{Group, Reach, Work};
 /// Trials of one go.
 const TRIALS: u64 = 256;
 
+/// Share of the cores that a study has to use.
+pub const SHARE: f64 = 0.92;
+
+/// Time that checking every scenario may take, s.
+pub const CHECK_S: f64 = 0.02;
+
 /// Figures that are drawn side by side.
 const FIGURES: usize = 8;
 
@@ -62,10 +68,10 @@ pub fn studies() -> Group {
     );
     let one = group.alone(Work::new("256 trials, one core", trials()).of_units(TRIALS as usize).slow(), None);
     let all = Work::new("256 trials, all cores", trials()).of_units(TRIALS as usize).slow().on_all_cores();
-    group.beside(all, &one, Some(Reach::Scaling(0.92)));
+    group.beside(all, &one, Some(Reach::Scaling(SHARE)));
     let files = scenarios();
     let resolve = move || files.iter().filter(|file| Scenario::read(file, None).is_ok()).count();
-    group.alone(Work::new("resolve every scenario", resolve), Some(Reach::Time(0.02)));
+    group.alone(Work::new("resolve every scenario", resolve), Some(Reach::Time(CHECK_S)));
     let figure = Arc::new(drawing());
     let drawn = Arc::clone(&figure);
     let one = group.alone(

@@ -131,8 +131,9 @@ impl Tap {
     }
 
     fn new(start: f64, recording: &Recording, shaking: Option<Shaking>) -> Self {
-        let left = recording.rows().unwrap_or(usize::MAX);
-        let samples = Vec::with_capacity(recording.rows().unwrap_or(0).min(RESERVED));
+        let rows = recording.rows();
+        let left = rows.unwrap_or(usize::MAX);
+        let samples = Vec::with_capacity(rows.unwrap_or(0).min(RESERVED));
         let mut tap = Self { start, period: recording.period, left, shaking, next: start, samples, jitter: Vec::new() };
         tap.aim();
         tap

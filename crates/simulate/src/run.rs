@@ -6,12 +6,9 @@ use crate::display::{Display, Reading};
 use crate::error::SimulateError;
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Cue, Helm};
-use crate::propagate::{Crossing, Limits, Propagator, Sample};
+use crate::propagate::{Crossing, Limits, Propagator, Sample, has_diverged};
 use crate::recording::Tap;
 use crate::simulation::Execute;
-
-/// Heading, rad, beyond which a run has diverged: a hundred turns.
-const TOO_FAR: f64 = 100.0 * std::f64::consts::TAU;
 
 /// Time, s, by which the end of a manoeuvre is generous, so that a row at k·period is not lost to rounding.
 const END_TOLERANCE: f64 = 1e-9;
@@ -148,7 +145,7 @@ impl<'a, P: Propagator> Run<'a, P> {
             Cue::Deviation { side, angle } => (self.deadline(), Some(Crossing { base: self.base, side, angle })),
             Cue::Nothing => (f64::INFINITY, None),
         };
-        let limits = Limits { before: time.min(self.helm.end()), watch, base: self.base, furthest: TOO_FAR };
+        let limits = Limits { before: time.min(self.helm.end()), watch, base: self.base };
         self.propagator.coast(&self.path, &limits, rows);
     }
 
@@ -185,8 +182,7 @@ impl<'a, P: Propagator> Run<'a, P> {
             let (t, target) = (ship.time(), ship.stride(path, to));
             let h = target - t;
             let end = ship.probe(path, h);
-            let sane = end.yaw_rate.is_finite() && (end.heading - self.base).abs() < TOO_FAR;
-            if !sane {
+            if has_diverged(end, self.base) {
                 return Err(SimulateError::Diverged { time: target, heading: end.heading, yaw_rate: end.yaw_rate });
             }
             let Some(watch) = watch else {

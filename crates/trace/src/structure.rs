@@ -39,6 +39,9 @@ pub struct Term {
     pub sees_heading: bool,
 }
 
+/// Identifier, form and record of a term.
+pub type TermName = (&'static str, &'static str, Option<usize>);
+
 impl Term {
     /// Number of fitted parameters.
     pub fn freedom(&self) -> usize {
@@ -51,7 +54,7 @@ impl Term {
     }
 
     /// Identifier, form and record.
-    pub fn name(&self) -> (&'static str, &'static str, Option<usize>) {
+    pub fn name(&self) -> TermName {
         (self.effect.id(), self.effect.form(), self.only)
     }
 }

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use kempf_benches::process::{self, Cost};
-use study::cli::{Common, Format, RunRequest, Style};
-
-use crate::Outcome;
+use kempf_benches::process::{self, Cost, Outcome, STYLE, quiet};
+use study::cli::{Common, RunRequest};
 
 /// First argument of a child.
 pub const CHILD: &str = "--as-study";
@@ -33,15 +31,8 @@ pub fn answer(arguments: &[&str]) -> Outcome<()> {
         ["run", scenario, out, threads] => {
             let threads: u16 = threads.parse()?;
             rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;
-            let common = Common {
-                out: Some(PathBuf::from(out)),
-                threads: Some(threads),
-                seed: None,
-                quiet: true,
-                format: Format::Text,
-            };
-            let style = Style { paper: None, dpi: 600.0 };
-            study::run::run(Path::new(scenario), &RunRequest { shard: None, restart: false, style }, &common)
+            let common = Common { threads: Some(threads), ..quiet(out) };
+            study::run::run(Path::new(scenario), &RunRequest { shard: None, restart: false, style: STYLE }, &common)
                 .map_err(text)?;
         }
         ["check", scenarios @ ..] => {

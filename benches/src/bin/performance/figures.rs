@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use kempf_benches::measure::Measured;
+use kempf_benches::process::Outcome;
 use kempf_benches::works;
 use report::figures::{
     Dot, DotColumn, DotPlot, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Reference95, Scale, dots, error_curves,
 };
 use report::{Origin, Theme};
 
+use crate::Measurements;
 use crate::growth::Growth;
 use crate::trials::Trials;
-use crate::{Measurements, Outcome};
 
 /// A journal column, mm, and a resolution for print.
 const WIDTH_MM: f64 = 85.0;

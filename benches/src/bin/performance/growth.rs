@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use identify::registry;
 use kempf_benches::measure::{Effort, Measured, in_turn};
+use kempf_benches::process::Outcome;
 use kempf_benches::records::{K, KEY, PERIOD, T, first_order_zig_zag};
 use kempf_benches::work::Work;
 use kempf_benches::{rivals, works};
@@ -12,7 +13,7 @@ use ship::FirstOrder;
 use study::collect::in_memory;
 use study::scenario::Scenario;
 
-use crate::{Outcome, say};
+use crate::say;
 
 /// A time beyond this, s, is not waited for.
 const LIMIT: f64 = 60.0;

@@ -1,6 +1,6 @@
 //! `performance [--quick] DIR` measures what simulation, identification, tracing and studies cost on this machine, beside
 //! rivals and beside what is to be reached, and how it grows with samples and trials; it writes a report, tables and figures
-//! into DIR. On a machine that does nothing else it takes some twenty minutes; `--quick` does the same with small sizes
+//! into DIR. On a machine that does nothing else it takes some ten minutes; `--quick` does the same with small sizes
 //! in seconds, to see that it works.
 
 mod child;
@@ -14,12 +14,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use kempf_benches::measure::{Effort, in_turn};
+use kempf_benches::process::{self, Outcome};
 use kempf_benches::verdict::Line;
 use kempf_benches::work::{Group, Work};
 use kempf_benches::works;
-
-/// What goes wrong is told to the user and ends the program.
-pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// A group and its measured rows.
 pub struct Measurements {
@@ -40,13 +38,7 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("{error}");
-            ExitCode::FAILURE
-        }
-    }
+    process::end(done)
 }
 
 fn run(folder: &std::path::Path, quick: bool) -> Outcome<()> {

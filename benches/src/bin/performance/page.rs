@@ -4,19 +4,20 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use kempf_benches::measure::Measured;
+use kempf_benches::process::Outcome;
 use kempf_benches::verdict::{self, Line, Verdict, measured_time, plus_minus, table, time};
+use kempf_benches::work::{Cores, Reach};
+use kempf_benches::works::{CHECK_S, SHARE};
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
 
+use crate::Measurements;
 use crate::growth::Growth;
 use crate::machine::Machine;
 use crate::trials::{Study, Trials};
-use crate::{Measurements, Outcome};
 
-/// What is to be reached by whole studies.
-const SHARE: f64 = 0.92;
+/// Peak memory that a study may take.
 const MEMORY_MB: f64 = 150.0;
-const CHECK_S: f64 = 0.02;
 /// Peak memory counts as flat when it grows by less than this between the studies of [`FLAT_FROM`] trials and more.
 const FLAT: f64 = 1.1;
 const FLAT_FROM: u64 = 10_000;
@@ -164,7 +165,7 @@ fn heading(group: &str) -> String {
 fn goals(measured: &[Measurements], trials: &Trials) -> Vec<Goal> {
     // A few hundred trials in memory say less about threads than whole studies do.
     let lines = measured.iter().flat_map(|one| &one.lines);
-    let lines = lines.filter(|line| !matches!(line.row.reach, Some(kempf_benches::work::Reach::Scaling(_))));
+    let lines = lines.filter(|line| !matches!(line.row.reach, Some(Reach::Scaling(_))));
     let mut goals: Vec<Goal> = lines.filter_map(goal).collect();
     if let Some(all) = trials.scaling.last().filter(|all| all.threads > 1) {
         for (what, share) in [("trials", &all.share), ("whole command", &all.whole_share)] {
@@ -210,7 +211,7 @@ fn exactly(value: f64, limit: f64) -> Verdict {
 
 fn goal(line: &Line) -> Option<Goal> {
     let found = match (line.row.reach?, &line.ratio, &line.row.beside) {
-        (kempf_benches::work::Reach::Time(_), ..) => match line.time.least {
+        (Reach::Time(_), ..) => match line.time.least {
             Some(least) => format!("{}, least {}", measured_time(&line.time), time(least)),
             None => measured_time(&line.time),
         },
@@ -341,8 +342,8 @@ fn rows(measured: &[Measurements]) -> Table {
             measured.map_or(MISSING.to_owned(), |measured| number(value(measured)))
         };
         let threads = match work.cores {
-            kempf_benches::work::Cores::One => 1.0,
-            kempf_benches::work::Cores::All => verdict::cores(),
+            Cores::One => 1.0,
+            Cores::All => verdict::cores(),
         };
         table.push([
             group.to_owned(),

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use kempf_benches::measure::Measured;
+use kempf_benches::process::Outcome;
 use kempf_benches::works;
 use study::manifest::Manifest;
 use tempfile::TempDir;
 
 use crate::growth::{self, Growth};
-use crate::{Outcome, child, say};
+use crate::{child, say};
 
 /// Trials of the study that threads are compared on.
 const SCALING_TRIALS: u64 = 100_000;

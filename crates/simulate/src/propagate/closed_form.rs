@@ -3,7 +3,7 @@
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
-use super::{Limits, Propagator, Sample, acting};
+use super::{Limits, Propagator, Sample, acting, has_diverged};
 use crate::gear::{RudderPath, Segment, Shape};
 use crate::recording::Tap;
 use crate::weather::{GRID, Weather};
@@ -142,8 +142,7 @@ impl Propagator for ClosedForm {
                 let turns = watch.side * from.yaw_rate > 0.0 && watch.side * to.yaw_rate < 0.0;
                 turns || watch.excess(from.heading) >= 0.0 || watch.excess(to.heading) >= 0.0
             });
-            let sane = to.yaw_rate.is_finite() && (to.heading - limits.base).abs() < limits.furthest;
-            if crossed || !sane {
+            if crossed || has_diverged(to, limits.base) {
                 return;
             }
             (self.state, self.time) = (to, next);

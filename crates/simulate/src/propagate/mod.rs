@@ -65,10 +65,17 @@ pub(crate) struct Limits {
     pub before: f64,
     /// Heading whose crossing ends it.
     pub watch: Option<Crossing>,
-    /// Heading, rad, about which it ends when the ship is further away than `furthest`, rad.
+    /// Base course, rad, from which a diverging ship goes away.
     pub base: f64,
-    /// See `base`.
-    pub furthest: f64,
+}
+
+/// Heading, rad, beyond which a run has diverged: a hundred turns.
+const TOO_FAR: f64 = 100.0 * std::f64::consts::TAU;
+
+/// Whether a ship with this base course (rad) has left what can be a manoeuvre.
+pub(crate) fn has_diverged(state: State, base: f64) -> bool {
+    let sane = state.yaw_rate.is_finite() && (state.heading - base).abs() < TOO_FAR;
+    !sane
 }
 
 /// The segment that acts at time `t` behind a dead time, found by moving `cursor` forward.

@@ -12,7 +12,7 @@ use trial::{Trial, ZigZag};
 
 use crate::failure::Failure;
 use crate::json::MethodEntry;
-use crate::publish::drawings::write_figure;
+use crate::publish::drawings::{first_failure, write_figure};
 use crate::showcase::{thinned, zigzag_figure};
 
 /// The method whose fit is drawn on its own where it has one.
@@ -40,12 +40,12 @@ pub fn draw(
         let data = figures::ZigzagTrial { title: Some(first.name.to_owned()), ..zigzag_figure(first.trial, zigzag) };
         write_figure(&figures::zigzag_trial(&data, &theme), folder, "trial")?;
     }
-    records.par_iter().enumerate().try_for_each(|(number, record)| {
+    first_failure(records.par_iter().enumerate().map(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
         let replays = replays(record, answers);
         write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
         write_figure(&best_fit(record, &replays, &theme), folder, &format!("fit{suffix}"))
-    })
+    }))
 }
 
 fn title(record: &Drawn) -> Option<String> {

@@ -15,7 +15,7 @@ use ship::number::DIRECTIONS;
 use crate::noise::{Colour, Grain, Moment, Whitener};
 use crate::record::Record;
 use crate::search::Known;
-use crate::structure::{Entry, Structure, Term, headings};
+use crate::structure::{Entry, Structure, TermName, headings};
 
 pub(crate) use linear::whiten;
 use linear::{Block, Normal, solve};
@@ -72,8 +72,8 @@ pub struct Problem {
     finished: Arc<Mutex<HashMap<Question, Fit>>>,
 }
 
-/// What decides a fit: names of the terms, and every number that goes into it, by its bits.
-type Question = (Vec<(&'static str, &'static str, Option<usize>)>, Vec<u64>);
+/// What decides a fit: names of the terms and what of them is held, and every number that goes into it, by its bits.
+type Question = (Vec<(TermName, &'static [usize])>, Vec<u64>);
 
 /// A fitted structure.
 #[derive(Debug, Clone)]
@@ -477,7 +477,7 @@ fn question(
     colour: &Colour,
     start: Option<&[f64]>,
 ) -> Question {
-    let names = structure.terms.iter().map(Term::name).collect();
+    let names = structure.terms.iter().map(|term| (term.name(), term.held)).collect();
     let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
     let moment = colour.moment.map_or([0.0; 3], |(kind, level)| [1.0, f64::from(kind == Moment::Walk), level]);
     let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
