@@ -10,6 +10,7 @@ use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::{Mmg, Parameters, Propeller, Rudder};
 use simulate::{StreamKey, Truth, Vessel};
+use study::folder::ResultFolder;
 use study::plan::Task;
 use study::rows::{Layout, Row, Writer};
 use study::scenario::Scenario;
@@ -158,15 +159,15 @@ values = [10.0, 20.0]
 }
 
 fn bytes(folder: &Path, name: &str, (design, rows): (Design, Vec<Row>)) -> Vec<u8> {
-    let path = folder.join(name);
     let layout = Layout::of(&design);
-    Writer::create(&path, &layout)
-        .and_then(|mut writer| {
-            writer.push(rows)?;
-            writer.finish()
-        })
-        .unwrap_or_else(|failure| panic!("{}", failure.message));
-    std::fs::read(&path).expect("the file was written")
+    let held = ResultFolder::hold(folder);
+    held.and_then(|held| {
+        let mut writer = Writer::create(&held, name, &layout)?;
+        writer.push(rows)?;
+        writer.finish()?.0.put()
+    })
+    .unwrap_or_else(|failure| panic!("{}", failure.message));
+    std::fs::read(folder.join(name)).expect("the file was written")
 }
 
 #[test]

@@ -16,6 +16,7 @@ use report::{Column, Table};
 use study::collect::in_memory;
 use study::engine::Timing;
 use study::failure::Failure;
+use study::folder::ResultFolder;
 use study::manifest::Manifest;
 use study::plan::{Plan, Shard};
 use study::rows::{Layout, Row, Writer};
@@ -141,26 +142,35 @@ fn write(scenario: &Scenario, shards: u64, folder: &Path) -> Outcome<Vec<PathBuf
     let one = |number: u64| {
         let shard = Shard { number, of: shards };
         let path = folder.join(format!("{number:0digits$}-of-{shards}"));
-        let made = made_up(scenario, shard, &design, &rows, &path);
-        made.and_then(|()| Manifest { shard, ..manifest.clone() }.write(&path.join(store::MANIFEST))).map(|()| path)
+        made_up(scenario, &Manifest { shard, ..manifest.clone() }, &design, &rows, &path).map(|()| path)
     };
     text_of((1..=shards).into_par_iter().map(one).collect())
 }
 
-/// A finished shard without its manifest.
-fn made_up(scenario: &Scenario, shard: Shard, design: &Design, rows: &[Row], folder: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(folder)
-        .map_err(|error| Failure::work(format!("failed to make {}: {error}", folder.display())))?;
-    let layout = Layout::of(design);
-    let mut writer = Writer::create(&folder.join(store::ROWS), &layout)?;
+/// A finished shard.
+fn made_up(
+    scenario: &Scenario,
+    manifest: &Manifest,
+    design: &Design,
+    rows: &[Row],
+    folder: &Path,
+) -> Result<(), Failure> {
+    let folder = ResultFolder::hold(folder)?;
+    let mut design = design.clone();
+    design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
+    let layout = Layout::of(&design);
+    let mut writer = Writer::create(&folder, store::ROWS, &layout)?;
     let mut timings = Timings::new(design.methods.len());
-    let mut plan = Plan::new(scenario, shard);
+    let mut plan = Plan::new(scenario, manifest.shard);
     loop {
         let tasks = plan.next(BATCH);
         if tasks.is_empty() {
             break;
         }
         for task in tasks {
+            let trials = &mut design.cells[task.cell].trials;
+            let start = if trials.is_empty() { task.replicate } else { trials.start };
+            *trials = start..task.replicate + 1;
             let row =
                 |row: &Row| Row { cell: task.cell as u64, replicate: task.replicate, ..varied(row, task.replicate) };
             writer.push(rows.iter().map(row))?;
@@ -169,10 +179,9 @@ fn made_up(scenario: &Scenario, shard: Shard, design: &Design, rows: &[Row], fol
             timings.add(&Timing { cell: task.cell as u64, simulation: time, methods });
         }
     }
-    writer.finish()?;
-    store::write_design(folder, design)?;
-    store::write_showcases(folder, &[])?;
-    timings.write(&folder.join(store::TIMINGS), design)
+    let (file, sha256) = writer.finish()?;
+    file.put()?;
+    store::finish(&folder, manifest, sha256, &design, &[], &timings)
 }
 
 /// The same row with other last digits, so that columns cannot be packed better than those of real trials.

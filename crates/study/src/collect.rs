@@ -2,25 +2,27 @@
 //! stored as it comes, and in the end everything is where [`crate::store`] expects it.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
-use std::sync::mpsc::sync_channel;
+use std::sync::mpsc::{RecvTimeoutError, channel, sync_channel};
+use std::thread::Scope;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
+use crate::disk;
 use crate::engine::{self, Bench, Outcome};
 use crate::failure::{Failure, OnPath};
-use crate::interrupt::Listener;
+use crate::folder::ResultFolder;
+use crate::interrupt::{self, Listener};
 use crate::manifest::Manifest;
 use crate::plan::{Plan, Shard, Task};
 use crate::progress;
-use crate::rows::{Layout, Reader, Row};
-use crate::scenario::Scenario;
+use crate::rows::{Layout, Row};
+use crate::scenario::{Scenario, Words};
 use crate::screen;
 use crate::showcase;
-use crate::store::{self, CellFacts, Design};
+use crate::store::{self, CellFacts, Design, Stored};
 use crate::unfinished::{self, Unfinished};
 
 /// Time a batch of trials should take: long beside the wait for its last trial, short beside a second.
@@ -36,58 +38,69 @@ const SPOT_CHECKS: usize = 32;
 ///
 /// Fails when the folder holds another study, when its rows are not what this program computes, and when it is interrupted;
 /// what was stored stays.
-pub fn collect(scenario: &Scenario, shard: Shard, folder: &Path, restart: bool, quiet: bool) -> Result<(), Failure> {
+pub fn collect(
+    scenario: &Scenario,
+    shard: Shard,
+    folder: &ResultFolder,
+    restart: bool,
+    quiet: bool,
+) -> Result<(), Failure> {
     let manifest = Manifest::new(scenario, shard);
     if restart {
         discard(folder)?;
     }
+    if let Some(stored) = store::manifest_of_rows(folder.path())? {
+        is_same(&stored, &manifest, folder.path())?;
+        return look_again(scenario, manifest, folder);
+    }
     let design = design(scenario);
     let layout = Layout::of(&design);
-    if let Some(stored) = store::manifest_of_rows(folder)? {
-        is_same(&stored, &manifest, folder)?;
-        let mut spots = SpotCheck::new(scenario, folder);
-        Reader::open(&folder.join(store::ROWS), &layout)?.for_each(|row| spots.see(row))?;
-        spots.finish()?;
-        // Words may have changed; numbers may not.
-        let known = store::read_design(folder)?;
-        store::write_design(folder, &Design { cells: known.cells, ..design })?;
-        return Manifest { machine: stored.machine, git_revision: stored.git_revision, ..manifest }
-            .write(&folder.join(store::MANIFEST));
-    }
-    if let Some(stored) = Unfinished::manifest_in(folder)? {
-        is_same(&stored, &manifest, folder)?;
-    } else if folder.join(store::ROWS).exists() {
+    let rows = folder.path().join(store::ROWS);
+    if let Some(stored) = unfinished::manifest_in(folder.path())? {
+        is_same(&stored, &manifest, folder.path())?;
+    } else if disk::is_there(&rows).on("look for", &rows)? {
         return Err(Failure::input(format!(
             "{} holds rows of an unknown study, without {}; give another folder with --out, or --restart to discard them",
-            folder.display(),
+            folder.path().display(),
             store::MANIFEST
         )));
     }
     let mut plan = Plan::new(scenario, shard);
     let mut unfinished = Unfinished::open(folder, manifest, &design, &layout)?;
-    let mut spots = SpotCheck::new(scenario, folder);
+    let mut spots = SpotCheck::new(scenario, folder.path());
     unfinished.resume(&mut plan, |row| spots.see(row))?;
     spots.finish()?;
     let resumed = plan.most() - plan.left();
     if resumed > 0 && !quiet {
-        screen::warn(&format!("going on after {resumed} of {} trials in {}", plan.most(), folder.display()));
+        screen::warn(&format!("going on after {resumed} of {} trials in {}", plan.most(), folder.path().display()));
     }
-    run_all(scenario, &mut plan, &mut unfinished, quiet).map_err(|failure| match failure {
-        Stopped::Failed(failure) => failure,
-        Stopped::Interrupted { done } => Failure::work(format!(
-            "stopped after {done} of {} trials; their rows are kept in {}, and the same command goes on from there",
-            plan.most(),
-            folder.join(unfinished::NAME).display()
-        )),
-    })?;
-    finish(scenario, &plan, unfinished, &design, folder)
+    run_all(scenario, &mut plan, &mut unfinished, folder.path(), quiet)?;
+    finish(scenario, &plan, unfinished, folder)
+}
+
+/// A finished study that is run again: its rows are looked at, and its words may have changed.
+fn look_again(scenario: &Scenario, manifest: Manifest, folder: &ResultFolder) -> Result<(), Failure> {
+    let study = Stored::held(folder)?;
+    let mut spots = SpotCheck::new(scenario, folder.path());
+    study.rows(|row| spots.see(row))?;
+    spots.finish()?;
+    let stored = study.manifest;
+    // What a kill in the last moment left.
+    unfinished::discard(folder)?;
+    let told = Manifest {
+        machine: stored.machine.clone(),
+        git_revision: stored.git_revision.clone(),
+        sha256: stored.sha256.clone(),
+        ..manifest
+    };
+    if told == stored { Ok(()) } else { told.write(folder) }
 }
 
 /// Everything of a study in a folder, thrown away on request.
-fn discard(folder: &Path) -> Result<(), Failure> {
+fn discard(folder: &ResultFolder) -> Result<(), Failure> {
     unfinished::discard(folder)?;
-    let rows = folder.join(store::ROWS);
-    if rows.exists() { fs::remove_file(&rows).on("remove", &rows) } else { Ok(()) }
+    let rows = folder.path().join(store::ROWS);
+    disk::remove_if_there(&rows).on("remove", &rows)
 }
 
 /// The design without what takes trials to know.
@@ -95,19 +108,16 @@ fn design(scenario: &Scenario) -> Design {
     let bare = |cell: &crate::scenario::Cell| CellFacts {
         labels: cell.labels.clone(),
         values: cell.values.clone(),
+        trials: 0..0,
         missing: cell.missing(),
         bound_percent2: None,
     };
     Design {
-        question: scenario.question.clone(),
-        analysis: scenario.analysis.clone(),
-        finding: scenario.finding.clone(),
-        figure: scenario.figure.clone(),
-        detail: scenario.detail.clone(),
         axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
         methods: scenario.method_names(),
         draws: scenario.draws.clone(),
         cells: scenario.cells.iter().map(bare).collect(),
+        words: Words::of(&scenario.text),
     }
 }
 
@@ -125,55 +135,101 @@ pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), F
     )))
 }
 
-enum Stopped {
-    Failed(Failure),
-    Interrupted { done: u64 },
+/// How a run of trials ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// All were run, or nobody takes more.
+    Done,
+    /// It was asked to stop, and no trial is under way.
+    Interrupted,
+    /// It was asked to stop, and a trial under way does not end.
+    Stuck,
 }
 
 /// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
-fn run_all(scenario: &Scenario, plan: &mut Plan, unfinished: &mut Unfinished, quiet: bool) -> Result<(), Stopped> {
+fn run_all(
+    scenario: &Scenario,
+    plan: &mut Plan,
+    unfinished: &mut Unfinished,
+    folder: &Path,
+    quiet: bool,
+) -> Result<(), Failure> {
     let listener = Listener::new();
     let bar = progress::bar(plan.most(), plan.most() - plan.left(), quiet);
-    let interrupted = std::thread::scope(|scope| {
+    std::thread::scope(|scope| {
         // One batch may wait while one is written and one runs: memory stays what it is.
         let (send, receive) = sync_channel::<Vec<Outcome>>(1);
         let writer = scope.spawn(move || unfinished.store(receive));
         let take = |outcomes| send.send(outcomes).is_ok();
-        let interrupted = run_batches(scenario, plan, || listener.is_asked(), take, &bar);
+        let end = run_batches(scope, scenario, plan, || listener.is_asked(), take, &bar);
         drop(send);
         let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        written.map(|()| interrupted)
-    });
-    bar.finish();
-    match interrupted {
-        Err(failure) => Err(Stopped::Failed(failure)),
-        Ok(true) => Err(Stopped::Interrupted { done: plan.most() - plan.left() }),
-        Ok(false) => Ok(()),
-    }
+        bar.finish();
+        let stopped = || {
+            Failure::work(format!(
+                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there",
+                plan.most() - plan.left(),
+                plan.most(),
+                folder.join(unfinished::NAME).display()
+            ))
+        };
+        match end {
+            End::Done => written,
+            End::Interrupted => written.and_then(|()| Err(stopped())),
+            End::Stuck => interrupt::give_up(&written.err().unwrap_or_else(stopped)),
+        }
+    })
 }
 
-/// Runs batch after batch until the plan is done, `is_asked` to stop, or `take` wants no more. Returns whether it was asked.
-fn run_batches(
-    scenario: &Scenario,
+/// Time after which a trial that is under way when the study is asked to stop is not waited for any more.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// Time between two looks whether the study is asked to stop.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Runs batch after batch until the plan is done, `is_asked` to stop, or `take` wants no more.
+fn run_batches<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    scenario: &'scope Scenario,
     plan: &mut Plan,
-    is_asked: impl Fn() -> bool + Sync,
+    is_asked: impl Fn() -> bool + Sync + Send + Copy + 'scope,
     mut take: impl FnMut(Vec<Outcome>) -> bool,
     bar: &ProgressBar,
-) -> bool {
-    let mut size = 4 * rayon::current_num_threads();
+) -> End {
+    let least = (4 * rayon::current_num_threads()).min(MOST_BATCH);
+    let mut size = least;
     loop {
         let tasks = plan.next(size as u64);
-        let (Some(first), Some(last)) = (tasks.first().copied(), tasks.last().copied()) else { return false };
-        let bench = Bench::new(scenario, first.cell..=last.cell);
+        let (Some(first), Some(last)) = (tasks.first().copied(), tasks.last().copied()) else { return End::Done };
         let start = Instant::now();
-        let outcomes: Vec<Option<Outcome>> = tasks
-            .par_iter()
-            .map(|&task| {
-                let outcome = (!is_asked()).then(|| bench.run(task));
-                bar.inc(1);
-                outcome
-            })
-            .collect();
+        let (send, receive) = channel();
+        let work = tasks.clone();
+        scope.spawn(move || {
+            let bench = Bench::new(scenario, first.cell..=last.cell);
+            work.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
+                if !is_asked() {
+                    // Nobody listens any more when the study was asked to stop and did not want to wait.
+                    let _ = send.send((index, bench.run(task)));
+                }
+            });
+        });
+        let mut outcomes: Vec<Option<Outcome>> = tasks.iter().map(|_| None).collect();
+        let mut asked: Option<Instant> = None;
+        let is_stuck = loop {
+            match receive.recv_timeout(LOOK) {
+                Ok((index, outcome)) => {
+                    outcomes[index] = Some(outcome);
+                    bar.inc(1);
+                }
+                Err(RecvTimeoutError::Disconnected) => break false,
+                Err(RecvTimeoutError::Timeout) if is_asked() => {
+                    if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
+                        break true;
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        };
         // Rows are kept in order, so an interruption keeps them up to the first that is missing.
         let outcomes: Vec<Outcome> = outcomes.into_iter().map_while(|outcome| outcome).collect();
         let interrupted = outcomes.len() < tasks.len();
@@ -181,11 +237,14 @@ fn run_batches(
         if interrupted {
             plan.go_back_to(tasks[outcomes.len()]);
         }
-        if !take(outcomes) || interrupted {
-            return interrupted;
+        match (take(outcomes), interrupted) {
+            (_, true) if is_stuck => return End::Stuck,
+            (_, true) => return End::Interrupted,
+            (false, false) => return End::Done,
+            (true, false) => {}
         }
         let wanted = size as f64 * BATCH_TIME.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
-        size = (wanted as usize).clamp(4 * rayon::current_num_threads(), MOST_BATCH);
+        size = (wanted as usize).clamp(least, MOST_BATCH);
     }
 }
 
@@ -193,40 +252,41 @@ fn run_batches(
 pub fn in_memory(scenario: &Scenario) -> (Design, Vec<Row>) {
     let mut plan = Plan::new(scenario, Shard::WHOLE);
     let mut rows = Vec::new();
-    let take = |outcomes: Vec<Outcome>| {
-        rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
-        true
-    };
-    run_batches(scenario, &mut plan, || false, take, &ProgressBar::hidden());
-    let cells = (0..scenario.cells.len()).into_par_iter().map(|cell| engine::facts(scenario, cell)).collect();
-    (Design { cells, ..design(scenario) }, rows)
+    let mut design = design(scenario);
+    std::thread::scope(|scope| {
+        let take = |outcomes: Vec<Outcome>| {
+            rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
+            true
+        };
+        run_batches(scope, scenario, &mut plan, || false, take, &ProgressBar::hidden());
+    });
+    let facts: Vec<CellFacts> =
+        (0..scenario.cells.len()).into_par_iter().map(|cell| engine::facts(scenario, cell)).collect();
+    design.cells = facts;
+    for row in &rows {
+        design.cells[row.cell as usize].trials.end = row.replicate + 1;
+    }
+    (design, rows)
 }
 
 /// Makes the result folder whole: rows, facts of the cells, showcases, times, and the manifest last.
-fn finish(
-    scenario: &Scenario,
-    plan: &Plan,
-    unfinished: Unfinished,
-    design: &Design,
-    folder: &Path,
-) -> Result<(), Failure> {
-    unfinished.join(&folder.join(store::ROWS))?;
+fn finish(scenario: &Scenario, plan: &Plan, unfinished: Unfinished, folder: &ResultFolder) -> Result<(), Failure> {
+    let rows_sha256 = unfinished.join(folder)?;
     let own = |cell: usize| plan.holds(Task { cell, replicate: 0 });
-    let facts = |cell: usize| match own(cell) {
-        true => engine::facts(scenario, cell),
-        false => design.cells[cell].clone(),
+    let design = unfinished.design();
+    let facts = |cell: usize| {
+        let known = design.cells[cell].clone();
+        if own(cell) { CellFacts { trials: known.trials, ..engine::facts(scenario, cell) } } else { known }
     };
     let cells = (0..scenario.cells.len()).into_par_iter().map(facts).collect();
-    store::write_design(folder, &Design { cells, ..design.clone() })?;
     let shown = if scenario.showcase { scenario.cells.len() } else { 0 };
     let showcases: Vec<_> = (0..shown)
         .into_par_iter()
         .filter(|&cell| own(cell))
         .filter_map(|cell| showcase::of_cell(scenario, cell))
         .collect();
-    store::write_showcases(folder, &showcases)?;
-    unfinished.timings().write(&folder.join(store::TIMINGS), design)?;
-    unfinished.manifest().write(&folder.join(store::MANIFEST))?;
+    let design = Design { cells, ..design.clone() };
+    store::finish(folder, unfinished.manifest(), rows_sha256, &design, &showcases, unfinished.timings())?;
     unfinished.remove()
 }
 

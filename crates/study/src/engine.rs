@@ -332,6 +332,7 @@ pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
     CellFacts {
         labels: about.labels.clone(),
         values: about.values.clone(),
+        trials: 0..0,
         missing: about.missing(),
         bound_percent2: bound
             .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),

@@ -76,18 +76,3 @@ impl<T, E: fmt::Display> OnPath<T> for Result<T, E> {
         self.map_err(|error| Failure::work(format!("failed to {tried} {}: {error}", path.display())))
     }
 }
-
-/// Makes a folder for results and makes sure that files can be written there, before any work is done.
-///
-/// Fails when the folder cannot be made or written, and says so.
-pub fn result_folder(folder: &Path) -> Result<(), Failure> {
-    let refuse = |tried: &str, error: std::io::Error| {
-        Failure::work(format!(
-            "failed to {tried} the folder {}: {error}; give another one with --out",
-            folder.display()
-        ))
-    };
-    std::fs::create_dir_all(folder).map_err(|error| refuse("make", error))?;
-    let probe = folder.join(format!(".writable-{}.tmp", std::process::id()));
-    std::fs::write(&probe, []).and_then(|()| std::fs::remove_file(&probe)).map_err(|error| refuse("write to", error))
-}

@@ -2,7 +2,6 @@
 
 mod figures;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use identify::replay::replay;
@@ -14,11 +13,15 @@ use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
 use crate::cli::{Common, FitRequest, Format};
-use crate::failure::{Failure, OnPath, result_folder};
+use crate::failure::{Failure, OnPath};
+use crate::folder::ResultFolder;
 use crate::json::{self, CriterionEntry, FitFile, MethodEntry, TrialEntry, Validation, ZigZagEntry};
 use crate::records::{file_of, names, read, warn_of_repetition};
 use crate::{present, progress, screen};
 use figures::Drawn;
+
+/// What other programs read.
+const FIT: &str = "fit.json";
 
 /// Identifies the records, prints the table, writes figures and `fit.json`.
 ///
@@ -53,17 +56,16 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
 
     let zigzag = ZigZag::of(&trials[0]);
     let default = || PathBuf::from(format!("{}-fit", trials[0].name()));
-    let folder = common.out.clone().unwrap_or_else(default);
-    result_folder(&folder)?;
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?;
     let file = FitFile {
         schema: "fit/1".into(),
         trials: trials.iter().map(trial_entry).collect(),
         methods: entries,
         zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, &trials[0])),
     };
-    let path = folder.join("fit.json");
+    let path = folder.path().join(FIT);
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
-    fs::write(&path, text + "\n").on("write", &path)?;
+    folder.keep(FIT, text + "\n")?;
     let names = names(trials.iter().chain(&others).map(Trial::name));
     let records: Vec<Drawn> = trials
         .iter()

@@ -4,12 +4,21 @@
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::failure::Failure;
+use crate::screen;
+
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
 static INSTALLED: Once = Once::new();
 
 /// Exit code of a program that was interrupted: the work was not done.
 const INTERRUPTED: i32 = 1;
+
+/// Ends the program while work goes on that cannot be stopped, with the message of a failure.
+pub fn give_up(failure: &Failure) -> ! {
+    screen::warn(&failure.to_string());
+    std::process::exit(i32::from(failure.blame.exit_code()))
+}
 
 /// While this lives, an interruption is a request.
 pub struct Listener(());

@@ -7,7 +7,7 @@
 //! | scenario files | [`scenario`] |
 //! | one trial | [`engine`] |
 //! | many of them, in order | [`plan`], [`stopping`], [`collect`], [`unfinished`], [`merge`] |
-//! | what is stored | [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`] |
+//! | what is stored | [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`]; how, [`folder`] |
 //! | what is said about it | [`summary`], [`statistics`], [`present`], [`publish`], [`overview`] |
 //! | measured records | [`fit`], [`mod@trace`] |
 //! | commands and exit codes | [`cli`], [`failure`], [`screen`] |
@@ -15,9 +15,13 @@
 pub mod check;
 pub mod cli;
 pub mod collect;
+mod disk;
 pub mod engine;
 pub mod failure;
+#[cfg(test)]
+mod faults;
 pub mod fit;
+pub mod folder;
 mod interrupt;
 pub mod json;
 pub mod list;

@@ -1,13 +1,16 @@
 //! `manifest.toml`: what is needed to run a study again, beside what it ran on.
 
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
+use crate::disk;
 use crate::failure::{Failure, OnPath};
+use crate::folder::ResultFolder;
 use crate::plan::Shard;
-use crate::scenario::{Scenario, identity};
+use crate::scenario::{Scenario, Words, identity};
+use crate::store::MANIFEST;
 
 /// The manifest of a study or a shard of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,12 +28,15 @@ pub struct Manifest {
     pub design_sha256: String,
     /// Version of the program.
     pub version: String,
-    /// Git revision of the program's source, where git can tell.
+    /// Git revision of the program's source, where it was built in a repository.
     pub git_revision: Option<String>,
     /// What it ran on. Nothing in the rows depends on this.
     pub machine: Machine,
     /// Versions of the crates that decide the numbers.
     pub crates: Vec<String>,
+    /// SHA-256 of the files a finished study is read from, by their names; of one in progress none.
+    #[serde(default)]
+    pub sha256: BTreeMap<String, String>,
     /// The scenario file as it was read.
     pub scenario: String,
 }
@@ -53,6 +59,9 @@ const LOCK: &str = include_str!("../../../Cargo.lock");
 /// Crates whose version is part of a result's identity.
 const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
 
+/// Largest manifest, bytes: a scenario and little beside it.
+const LARGEST: u64 = 1 << 22;
+
 /// First line of the file.
 const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n";
 
@@ -66,20 +75,22 @@ impl Manifest {
             scenario_sha256: scenario.sha256.clone(),
             design_sha256: scenario.design_sha256.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            git_revision: git_revision(),
+            git_revision: option_env!("STUDY_GIT_REVISION").map(str::to_owned),
             machine: Machine {
                 target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
                 threads: rayon::current_num_threads(),
                 wall_time_s: 0.0,
             },
             crates: NUMERIC.iter().flat_map(|name| locked(name)).collect(),
+            sha256: BTreeMap::new(),
             scenario: scenario.text.clone(),
         }
     }
 
     /// The manifest of the whole study, from that of a shard and the wall time of all of them together, s.
     pub fn of_whole(self, wall_time_s: f64) -> Self {
-        Self { shard: Shard::WHOLE, machine: Machine { wall_time_s, ..self.machine }, ..self }
+        let machine = Machine { wall_time_s, ..self.machine };
+        Self { shard: Shard::WHOLE, machine, sha256: BTreeMap::new(), ..self }
     }
 
     /// What makes the rows of another manifest other rows, in words; empty when they are the same.
@@ -120,11 +131,24 @@ impl Manifest {
         differences
     }
 
-    /// Writes the manifest.
-    pub fn write(&self, path: &Path) -> Result<(), Failure> {
+    /// Trials of every cell of the study; `None` where a stopping rule decides.
+    pub fn replicates(&self) -> Option<u64> {
+        let scenario: toml::Table = self.scenario.parse().ok()?;
+        let replicates = scenario.get("replicates").map_or(Some(1), |value| u64::try_from(value.as_integer()?).ok());
+        replicates.filter(|_| !scenario.contains_key("stop"))
+    }
+
+    /// What the scenario says about itself.
+    pub fn words(&self) -> Words {
+        Words::of(&self.scenario)
+    }
+
+    /// Writes the manifest of a folder.
+    pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
         let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
-        let text = toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", path)?;
-        std::fs::write(path, REPEAT.to_owned() + &text).on("write", path)
+        let text =
+            toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
+        folder.keep(MANIFEST, REPEAT.to_owned() + &text).map(drop)
     }
 
     /// The manifest in a text that is one.
@@ -132,13 +156,13 @@ impl Manifest {
         toml::from_str(text).ok()
     }
 
-    /// Reads the manifest of a finished study.
-    pub fn read(path: &Path) -> Result<Self, Failure> {
-        let refuse = |problem: String| {
-            Failure::input(format!("{}: {problem}; expected the folder of a finished study", path.display()))
-        };
-        let text = std::fs::read_to_string(path).map_err(|error| refuse(error.to_string()))?;
-        toml::from_str(&text).map_err(|error: toml::de::Error| refuse(error.message().to_owned()))
+    /// Reads a manifest; `None` when there is none.
+    pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
+        let refuse =
+            |problem: &str| Failure::input(format!("{}: {problem}; expected the manifest of a study", path.display()));
+        let Some(bytes) = disk::read(path, LARGEST).on("read", path)? else { return Ok(None) };
+        let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text"))?;
+        toml::from_str(&text).map(Some).map_err(|error| refuse(error.message()))
     }
 }
 
@@ -152,16 +176,6 @@ fn locked(name: &str) -> Vec<String> {
         .filter_map(|pair| pair[1].strip_prefix("version = "))
         .map(|version| format!("{name} {}", version.trim_matches('"')))
         .collect()
-}
-
-/// Revision of the folder the program was built in; `None` where there is no git or no repository any more.
-fn git_revision() -> Option<String> {
-    let output = Command::new("git")
-        .args(["-C", env!("CARGO_MANIFEST_DIR"), "rev-parse", "HEAD"])
-        .output()
-        .ok()
-        .filter(|output| output.status.success())?;
-    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
 #[cfg(test)]

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::{Common, Style};
 use crate::collect::is_same;
-use crate::failure::{Failure, result_folder};
+use crate::failure::Failure;
+use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
-use crate::plan::{Shard, Task};
+use crate::plan::Shard;
 use crate::publish;
-use crate::rows::{Layout, Reader, Writer};
-use crate::store::{self, Design};
+use crate::rows::{Layout, Writer};
+use crate::store::{self, Design, Stored};
 use crate::timings::Timings;
 use crate::unfinished;
 
@@ -27,61 +28,81 @@ struct Shards<'a> {
 
 /// Joins shards and publishes the whole.
 pub fn merge(folders: &[PathBuf], style: &Style, common: &Common) -> Result<(), Failure> {
+    let theme = style.theme()?;
     let Some(out) = &common.out else {
         return Err(Failure::input("no folder for the joined study is given; add --out DIR"));
     };
-    let Shards { folders, manifest } = shards(folders)?;
-    result_folder(out)?;
-    if let Some(stored) = store::manifest_of_rows(out)? {
-        is_same(&stored, &manifest, out)?;
-    }
-    if unfinished::is_in(out) {
-        return Err(Failure::input(format!(
-            "{}: a study in it is not finished; give another folder with --out",
-            out.display()
-        )));
-    }
-    let design = design(&folders)?;
-    let layout = Layout::of(&design);
-    let mut writer = Writer::create(&out.join(store::ROWS), &layout)?;
-    let mut last: Option<(Task, usize)> = None;
-    let mut timings = Timings::new(design.methods.len());
-    let mut showcases = Vec::new();
-    for folder in folders {
-        Reader::open(&folder.join(store::ROWS), &layout)?.for_each(|row| {
-            let place = (Task { cell: row.cell as usize, replicate: row.replicate }, row.method);
-            if last.is_some_and(|last| place <= last) {
-                return Err(Failure::input(format!(
-                    "{}: its rows do not come after those of the shard before it; run this shard again",
-                    folder.display()
-                )));
-            }
-            last = Some(place);
-            writer.push([row])
-        })?;
-        timings.join(&Timings::read(&folder.join(store::TIMINGS), &design)?);
-        showcases.extend(store::read_showcases(folder)?);
-    }
-    writer.finish()?;
-    store::write_design(out, &design)?;
-    store::write_showcases(out, &showcases)?;
-    timings.write(&out.join(store::TIMINGS), &design)?;
-    manifest.write(&out.join(store::MANIFEST))?;
-    publish::report(out, style, common)
+    let shards = shards(folders)?;
+    let out = ResultFolder::hold(out)?;
+    join(shards, &out)?;
+    publish::publish(&Stored::held(&out)?, &out, &theme, common)
 }
 
-/// The design with all that the shards know of its cells. One shard after the other: thousands of designs of thousands of
-/// cells do not fit into memory.
-fn design(folders: &[&Path]) -> Result<Design, Failure> {
-    let (first, others) = folders.split_first().expect("a study has at least one shard");
-    let mut design = store::read_design(first)?;
-    for folder in others {
-        let other = store::read_design(folder)?;
-        for (cell, theirs) in design.cells.iter_mut().zip(&other.cells) {
-            cell.bound_percent2 = cell.bound_percent2.or(theirs.bound_percent2);
-        }
+/// Joins shards to a finished study.
+fn join(Shards { folders, manifest }: Shards, out: &ResultFolder) -> Result<(), Failure> {
+    if let Some(stored) = store::manifest_of_rows(out.path())? {
+        is_same(&stored, &manifest, out.path())?;
     }
-    Ok(design)
+    if unfinished::is_in(out.path())? {
+        return Err(Failure::input(format!(
+            "{}: a study in it is not finished; give another folder with --out",
+            out.path().display()
+        )));
+    }
+    let mut design = Stored::read(folders[0])?.design;
+    design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
+    let layout = Layout::of(&design);
+    let mut writer = Writer::create(out, store::ROWS, &layout)?;
+    let mut timings = Timings::new(design.methods.len());
+    let mut showcases = Vec::new();
+    // One shard after the other: thousands of designs of thousands of cells do not fit into memory.
+    for folder in folders {
+        let stored = Stored::read(folder)?;
+        append(&mut design, &stored.design)
+            .map_err(|problem| Failure::input(format!("{}: {problem}; run this shard again", folder.display())))?;
+        stored.rows(|row| writer.push([row]))?;
+        timings.join(&stored.timings);
+        showcases.extend(stored.showcases);
+    }
+    if let Some(replicates) = manifest.replicates()
+        && let Some(cell) = design.cells.iter().position(|cell| cell.trials != (0..replicates))
+    {
+        let found = &design.cells[cell].trials;
+        return Err(Failure::input(format!(
+            "{}: of cell {cell} the shards hold trials {} to {}, expected 0 to {replicates}; run the shards again",
+            out.path().display(),
+            found.start,
+            found.end
+        )));
+    }
+    let (rows, sha256) = writer.finish()?;
+    rows.put()?;
+    store::finish(out, &manifest, sha256, &design, &showcases, &timings)
+}
+
+/// Adds what the next shard knows of the cells. Fails when its trials are not the next ones.
+fn append(design: &mut Design, next: &Design) -> Result<(), String> {
+    let cells = || design.cells.iter().zip(&next.cells);
+    let is_same = (&design.axes, &design.methods, &design.draws) == (&next.axes, &next.methods, &next.draws)
+        && design.cells.len() == next.cells.len()
+        && cells().all(|(own, theirs)| (&own.labels, &own.values) == (&theirs.labels, &theirs.values));
+    if !is_same {
+        return Err("its design is not that of the other shards".to_owned());
+    }
+    for (index, (cell, theirs)) in design.cells.iter_mut().zip(&next.cells).enumerate() {
+        cell.bound_percent2 = cell.bound_percent2.or(theirs.bound_percent2);
+        if theirs.trials.is_empty() {
+            continue;
+        }
+        if theirs.trials.start != cell.trials.end {
+            return Err(format!(
+                "its trials of cell {index} begin with {}, and those of the shards before it end with {}",
+                theirs.trials.start, cell.trials.end
+            ));
+        }
+        cell.trials.end = theirs.trials.end;
+    }
+    Ok(())
 }
 
 /// The shards in their order, or what is wrong with them.
@@ -91,7 +112,7 @@ fn shards(folders: &[PathBuf]) -> Result<Shards<'_>, Failure> {
     let mut found: BTreeMap<u64, (&Path, f64)> = BTreeMap::new();
     for folder in folders {
         let Some(manifest) = store::manifest_of_rows(folder)? else {
-            let problem = match unfinished::is_in(folder) {
+            let problem = match unfinished::is_in(folder)? {
                 true => "this shard is not finished; run it again with the same --shard and --out",
                 false => "there is no finished shard in it; give folders written with --shard",
             };

@@ -2,19 +2,24 @@
 //! and the figure that stands for it. Made from the manifests, so it needs no rows.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use toml::Table;
-
 use crate::cli::Common;
+use crate::disk;
 use crate::failure::{Failure, OnPath};
+use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::screen;
 use crate::store;
 
 /// Name of the page.
 const PAGE: &str = "README.md";
+
+/// How the page begins; one that begins otherwise belongs to somebody else.
+const MARK: &str = "<!-- Made by `study overview`, which writes it anew. -->\n";
+
+/// Largest page that is looked at, bytes.
+const LARGEST: u64 = 1 << 26;
 
 /// One published study.
 struct Study {
@@ -27,18 +32,24 @@ struct Study {
 /// Writes `README.md` beside the folders of the studies, or to `--out`.
 pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
     let studies = studies(folder)?;
-    let path = common.out.as_deref().unwrap_or(folder).join(PAGE);
-    fs::write(&path, page(&studies)).on("write", &path)?;
+    let target = ResultFolder::hold(common.out.as_deref().unwrap_or(folder))?;
+    let path = target.path().join(PAGE);
+    if disk::read(&path, LARGEST).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
+        return Err(Failure::input(format!(
+            "{}: this page was not made by `study overview`; move it away, or give another folder with --out",
+            path.display()
+        )));
+    }
+    target.write(PAGE, page(&studies))?;
     if common.quiet { Ok(()) } else { screen::say(&format!("{} studies: {}", studies.len(), path.display())) }
 }
 
 /// The studies of a folder in the order of their names.
 fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
-    let entries = fs::read_dir(folder).map_err(|error| {
+    let names = disk::names(folder).map_err(|error| {
         Failure::input(format!("{}: {error}; give the folder that holds the folders of studies", folder.display()))
     })?;
-    let mut folders: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    folders.sort();
+    let folders: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
     let studies: Vec<Study> = folders
         .iter()
         .filter(|folder| folder.join(store::MANIFEST).is_file())
@@ -52,17 +63,14 @@ fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
 }
 
 fn study(folder: &Path) -> Result<Study, Failure> {
-    let manifest = Manifest::read(&folder.join(store::MANIFEST))?;
-    let scenario: Table = manifest.scenario.parse().map_err(|error: toml::de::Error| {
-        let path = folder.join(store::MANIFEST);
-        Failure::input(format!("{}: its scenario is not TOML ({}); run it again", path.display(), error.message()))
-    })?;
-    let text = |key: &str| scenario.get(key).and_then(|value| value.as_str()).unwrap_or_default().trim().to_owned();
-    let named = scenario.get("output").and_then(|output| output.get("figure")).and_then(|value| value.as_str());
-    let figure = named.map(|stem| figure(folder, stem)).transpose()?;
+    let path = folder.join(store::MANIFEST);
+    let missing = || Failure::input(format!("{}: there is no such file any more", path.display()));
+    let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
+    let words = manifest.words();
+    let figure = words.figure.map(|stem| figure(folder, &stem)).transpose()?;
     // A link needs the name of the folder, which --out may have made another than that of the scenario.
     let name = folder.file_name().map_or_else(|| manifest.name.clone(), |name| name.to_string_lossy().into_owned());
-    Ok(Study { name, question: text("question"), finding: text("finding"), figure })
+    Ok(Study { name, question: words.question.trim().to_owned(), finding: words.finding.trim().to_owned(), figure })
 }
 
 /// File of the figure that a scenario names.
@@ -71,12 +79,8 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
     if folder.join(&file).is_file() {
         return Ok(file);
     }
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut known: Vec<String> = entries
-        .filter(|path| path.extension().is_some_and(|extension| extension == "png"))
-        .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
-        .collect();
-    known.sort();
+    let names = disk::names(folder).on("list", folder)?;
+    let known: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
     Err(Failure::input(format!(
         "{}: the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {}",
         folder.display(),
@@ -85,11 +89,10 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
 }
 
 fn page(studies: &[Study]) -> String {
-    let mut page = String::from(
-        "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
+    let mut page = String::from(MARK)
+        + "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
          whole report,\nevery figure with its 95 % interval as CSV, Markdown and LaTeX, and a manifest from which \
-         `study NAME/manifest.toml --out DIR`\nruns it again.\n",
-    );
+         `study NAME/manifest.toml --out DIR`\nruns it again.\n";
     for Study { name, question, finding, figure } in studies {
         write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");
         if !finding.is_empty() {

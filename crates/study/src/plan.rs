@@ -15,7 +15,8 @@ use crate::scenario::Scenario;
 use crate::stopping::Verdict;
 
 /// One trial of a design.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Task {
     /// Index of the cell.
     pub cell: usize,
@@ -77,6 +78,7 @@ impl fmt::Display for Shard {
 }
 
 /// The trials of a study or a shard of it, handed out in order.
+#[derive(Clone)]
 pub struct Plan<'a> {
     scenario: &'a Scenario,
     /// First trial of the part.
@@ -146,11 +148,6 @@ impl<'a> Plan<'a> {
         if let Some(verdict) = &mut self.verdict {
             verdict.see(row);
         }
-    }
-
-    /// Goes on after a stored trial; the rows of its cell have to have been shown to [`Plan::saw`].
-    pub fn resume_after(&mut self, task: Task) {
-        self.next = self.after(task);
     }
 
     fn after(&self, task: Task) -> Task {
@@ -271,7 +268,7 @@ mod tests {
                 Some(replicate) => Task { replicate, ..plan.end },
                 None => Task { cell: plan.end.cell - 1, replicate: scenario.replicates + plan.end.replicate - 2 },
             };
-            plan.resume_after(before_last);
+            plan.go_back_to(plan.after(before_last));
             assert_eq!((plan.left(), plan.next(100).len(), plan.left()), (1, 1, 0));
             assert!(plan.next(1).is_empty());
         }

@@ -5,29 +5,41 @@ pub mod drawings;
 mod traces;
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::{BufWriter, Write as _};
+use std::io::Write as _;
 use std::path::Path;
 
 use rayon::prelude::*;
-use report::{Table, number};
+use report::{Table, Theme, number};
 
 use crate::cli::{Common, Format, Style};
-use crate::failure::{Failure, OnPath, result_folder};
+use crate::failure::{Failure, OnPath};
+use crate::folder::ResultFolder;
 use crate::present;
 use crate::screen;
-use crate::store::{Design, Stored};
+use crate::store::{self, Design, Stored};
 use crate::summary::{Summary, Tally};
 use drawings::{Drawing, write_all};
 
-/// Makes the tables, the figures and `report.md`, and prints the tables.
-///
-/// They go where the rows are, or to `--out`.
+/// Makes tables, figures and `report.md` of a finished study where its rows are, or in `--out`.
 pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure> {
     let theme = style.theme()?;
-    let stored = Stored::read(rows)?;
-    let folder = common.out.as_deref().unwrap_or(rows);
-    result_folder(folder)?;
+    let is_same =
+        |out: &Path| out.canonicalize().ok().zip(rows.canonicalize().ok()).is_some_and(|(out, rows)| out == rows);
+    match common.out.as_deref().filter(|out| !is_same(out)) {
+        Some(out) => {
+            let stored = Stored::read(rows)?;
+            publish(&stored, &ResultFolder::hold(out)?, &theme, common)
+        }
+        None => {
+            store::is_finished(rows)?;
+            let folder = ResultFolder::hold(rows)?;
+            publish(&Stored::held(&folder)?, &folder, &theme, common)
+        }
+    }
+}
+
+/// Makes the tables, the figures and `report.md` in a folder, and prints the tables.
+pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
     let design = &stored.design;
     let mut tally = Tally::new(design);
     stored.rows(|row| {
@@ -35,43 +47,42 @@ pub fn report(rows: &Path, style: &Style, common: &Common) -> Result<(), Failure
         Ok(())
     })?;
     let summary = tally.finish();
-    let table = folder.join("summary.csv");
-    write_csv(&table, &summary.methods, |lines| present::summary(lines, design))?;
+    write_csv(folder, SUMMARY, &summary.methods, |lines| present::summary(lines, design))?;
     if design.methods.len() > 1 {
         let reference = &design.methods[summary.reference];
-        write_csv(&folder.join("pairs.csv"), &summary.pairs, |lines| present::pairs(lines, reference, design))?;
+        write_csv(folder, "pairs.csv", &summary.pairs, |lines| present::pairs(lines, reference, design))?;
     }
     if !summary.tracing.is_empty() {
-        write_csv(&folder.join("tracing.csv"), &summary.tracing, |lines| {
+        write_csv(folder, "tracing.csv", &summary.tracing, |lines| {
             present::tracing::table(lines, &summary, design, true)
         })?;
     }
-    let write = |name: &str, text: String| {
-        let path = folder.join(name);
-        fs::write(&path, text).on("write", &path)
-    };
     let brief = is_readable(design).then(|| present::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {
-        write("summary.md", brief.to_markdown())?;
-        write("summary.tex", brief.to_latex())?;
+        folder.write("summary.md", brief.to_markdown())?;
+        folder.write("summary.tex", brief.to_latex())?;
     }
-    let drawings = drawings::of(&stored, &summary);
-    write_all(&drawings, &theme, folder)?;
-    write("report.md", page(&stored, &summary, brief.as_ref(), &drawings))?;
+    let drawings = drawings::of(stored, &summary);
+    write_all(&drawings, theme, folder)?;
+    folder.write(REPORT, page(stored, &summary, brief.as_ref(), &drawings))?;
 
     match common.format {
         _ if common.quiet => Ok(()),
         Format::Text => {
-            screen::say(&format!("{}\nreport: {}", on_screen(&stored, &summary), folder.join("report.md").display()))
+            let page = folder.path().join(REPORT);
+            screen::say(&format!("{}\nreport: {}", on_screen(stored, &summary), page.display()))
         }
         // Another program reads the table: nothing else may stand beside it.
-        Format::Csv => screen::say(fs::read_to_string(&table).on("read", &table)?.trim_end()),
+        Format::Csv => screen::say(present::summary(&summary.methods, design).to_csv().trim_end()),
         format => {
             let brief = brief.unwrap_or_else(|| present::summary_in_brief(&summary, design));
             screen::say(present::render(&brief, format).trim_end())
         }
     }
 }
+
+const SUMMARY: &str = "summary.csv";
+const REPORT: &str = "report.md";
 
 /// Cells that are listed one by one for a person to read; more are in `summary.csv`.
 const LISTED_CELLS: usize = 500;
@@ -87,15 +98,21 @@ const PIECE: usize = 250;
 const PIECES: usize = 16;
 
 /// Writes a long table as CSV, some pieces at a time.
-fn write_csv<T: Sync>(path: &Path, lines: &[T], table: impl Fn(&[T]) -> Table + Sync) -> Result<(), Failure> {
-    let mut file = BufWriter::new(File::create(path).on("create", path)?);
+fn write_csv<T: Sync>(
+    folder: &ResultFolder,
+    name: &str,
+    lines: &[T],
+    table: impl Fn(&[T]) -> Table + Sync,
+) -> Result<(), Failure> {
+    let mut file = folder.create(name)?;
+    let path = folder.path().join(name);
     let head = table(&[]).to_csv();
-    file.write_all(head.as_bytes()).on("write", path)?;
+    file.write_all(head.as_bytes()).on("write", &path)?;
     for pieces in lines.chunks(PIECE * PIECES) {
         let texts: Vec<String> = pieces.par_chunks(PIECE).map(|piece| table(piece).to_csv()).collect();
-        texts.iter().try_for_each(|text| file.write_all(&text.as_bytes()[head.len()..])).on("write", path)?;
+        texts.iter().try_for_each(|text| file.write_all(&text.as_bytes()[head.len()..])).on("write", &path)?;
     }
-    file.flush().on("write", path)
+    file.put()
 }
 
 /// Cells whose lines go on the screen; more are in the files.
@@ -104,7 +121,7 @@ const SHOWN_CELLS: usize = 12;
 /// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
 fn on_screen(stored: &Stored, summary: &Summary) -> String {
     let Stored { manifest, design, showcases, .. } = stored;
-    let mut text = format!("{}: {}\n\n", manifest.name, design.question.trim());
+    let mut text = format!("{}: {}\n\n", manifest.name, design.words.question.trim());
     for showcase in showcases {
         let title = if showcase.title.is_empty() { "first trial" } else { &showcase.title };
         text += &format!("{title}\n{}\n", present::showcase(showcase).to_text());
@@ -134,8 +151,8 @@ fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings: &[D
     let mut page = String::new();
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
     let figure = |drawing: &Drawing| format!("![{0}]({1}.png)\n\n*{0}*\n", drawing.caption, drawing.stem);
-    line(&format!("# {}\n\n**{}**\n", manifest.name, design.question.trim()));
-    for prose in [&design.finding, &design.analysis] {
+    line(&format!("# {}\n\n**{}**\n", manifest.name, design.words.question.trim()));
+    for prose in [&design.words.finding, &design.words.analysis] {
         if !prose.trim().is_empty() {
             line(&format!("{}\n", prose.trim()));
         }

@@ -4,28 +4,30 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::{Common, RunRequest};
 use crate::collect::collect;
-use crate::failure::{Failure, result_folder};
+use crate::failure::Failure;
+use crate::folder::ResultFolder;
 use crate::plan::Shard;
 use crate::publish;
 use crate::scenario::Scenario;
 use crate::screen;
+use crate::store::Stored;
 
 /// Runs a scenario, or a shard of it, and publishes it as `study report` would.
 pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
-    let folder = common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard));
-    result_folder(&folder)?;
+    let theme = request.style.theme()?;
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard)))?;
     collect(&scenario, shard, &folder, request.restart, common.quiet)?;
     if shard == Shard::WHOLE {
-        return publish::report(&folder, &request.style, common);
+        return publish::publish(&Stored::held(&folder)?, &folder, &theme, common);
     }
     match common.quiet {
         true => Ok(()),
         false => screen::say(&format!(
             "shard {shard} of {} is in {}; `study merge` joins all {}",
             scenario.name,
-            folder.display(),
+            folder.path().display(),
             shard.of
         )),
     }

@@ -4,6 +4,7 @@ use crate::rows::Row;
 use crate::scenario::{Index, StopFigure, StopRule};
 
 /// What a rule has seen of one cell.
+#[derive(Clone)]
 pub struct Verdict {
     rule: StopRule,
     cell: u64,

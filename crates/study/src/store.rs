@@ -1,14 +1,18 @@
-//! The files of a result folder that everything else is made from: rows, design, showcases, times and manifest.
+//! The files of a result folder that everything else is made from: rows, design, showcases, times and manifest. The manifest
+//! is written last and carries the SHA-256 of the others, and who reads them looks first whether they are still the same.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::collections::HashSet;
+use std::ops::Range;
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::disk;
 use crate::failure::{Failure, OnPath};
+use crate::folder::{Reading, ResultFolder, sha256_of};
 use crate::manifest::Manifest;
-use crate::rows::{Layout, Reader, Row};
-use crate::scenario::MethodName;
+use crate::rows::{Layout, Reader, Row, Sequence};
+use crate::scenario::{MethodName, Words};
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 use crate::unfinished;
@@ -22,19 +26,13 @@ pub const MANIFEST: &str = "manifest.toml";
 const DESIGN: &str = "cells.json";
 const SHOWCASES: &str = "showcase.json";
 
+/// Largest size of a stored text, bytes.
+const LARGEST_TEXT: u64 = 1 << 29;
+
 /// What tables and figures need of a scenario.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Design {
-    /// The question.
-    pub question: String,
-    /// What was seen.
-    pub analysis: String,
-    /// The answer in one sentence.
-    pub finding: String,
-    /// Stem of the figure that stands for the study.
-    pub figure: Option<String>,
-    /// Cells whose errors are shown one by one.
-    pub detail: Vec<usize>,
     /// Names of the axes.
     pub axes: Vec<String>,
     /// The methods.
@@ -43,26 +41,73 @@ pub struct Design {
     pub draws: Vec<String>,
     /// The cells, in their order.
     pub cells: Vec<CellFacts>,
+    /// What is said about the study. It may change when the rows do not, so it is kept in the manifest alone.
+    #[serde(skip)]
+    pub words: Words,
 }
 
 /// What is known of a cell without its rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct CellFacts {
     /// Labels of its points, one an axis.
     pub labels: Vec<String>,
     /// Values of its points, where an axis is a number.
     pub values: Vec<Option<f64>>,
+    /// Replicates whose rows are stored: all of them, or those of a shard.
+    pub trials: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
-    #[serde(default)]
     pub missing: Vec<String>,
     /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a bound
     /// of its own, and where there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
 }
 
+impl Design {
+    /// The design in the text of a `cells.json`.
+    ///
+    /// Fails when it is not one, or contradicts itself, and says where.
+    pub fn of_text(text: &[u8]) -> Result<Self, String> {
+        let design: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        design.check().map(|()| design)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let mut labels = HashSet::new();
+        if let Some(twice) = self.methods.iter().find(|method| !labels.insert(&method.label)) {
+            return Err(format!("two methods are called {:?}", twice.label));
+        }
+        if self.methods.is_empty() || self.cells.is_empty() {
+            return Err("there is no method or no cell".to_owned());
+        }
+        for (index, cell) in self.cells.iter().enumerate() {
+            let counts = [cell.labels.len(), cell.values.len()];
+            if counts != [self.axes.len(); 2] {
+                let [labels, values] = counts;
+                let axes = self.axes.len();
+                return Err(format!("cell {index} has {labels} labels and {values} values for {axes} axes"));
+            }
+            if cell.trials.start > cell.trials.end {
+                return Err(format!("the trials of cell {index} end before they begin"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Indices of the cells whose errors are shown one by one.
+    pub fn detail(&self) -> Vec<usize> {
+        if self.cells.len() == 1 {
+            // A study of one cell is about that cell.
+            return vec![0];
+        }
+        let place = |title: &String| self.cells.iter().position(|cell| cell.labels.join(", ") == *title);
+        self.words.detail.iter().filter_map(place).collect()
+    }
+}
+
 /// A finished study: everything but its rows, which are read a few at a time.
-pub struct Stored {
-    folder: PathBuf,
+pub struct Stored<'a> {
+    folder: &'a Path,
     /// What ran, and on what.
     pub manifest: Manifest,
     /// The design.
@@ -71,70 +116,124 @@ pub struct Stored {
     pub showcases: Vec<Showcase>,
     /// How long the methods took.
     pub timings: Timings,
+    _reading: Option<Reading>,
 }
 
-impl Stored {
-    /// Reads a finished study. Fails as wrong input when the folder holds none.
-    pub fn read(folder: &Path) -> Result<Self, Failure> {
-        let Some(manifest) = manifest_of_rows(folder)? else {
-            let problem = match unfinished::is_in(folder) {
-                true => "the study in it is not finished; run it again to go on",
-                false => "there are no rows in it; expected the folder of a finished study",
-            };
-            return Err(Failure::input(format!("{}: {problem}", folder.display())));
-        };
-        let design = read_design(folder)?;
-        Ok(Self {
-            folder: folder.to_owned(),
-            manifest,
-            showcases: read_json(&folder.join(SHOWCASES))?,
-            timings: Timings::read(&folder.join(TIMINGS), &design)?,
-            design,
-        })
+impl<'a> Stored<'a> {
+    /// Reads a finished study and keeps others from writing there. Fails as wrong input when the folder holds none.
+    pub fn read(folder: &'a Path) -> Result<Self, Failure> {
+        // A folder that is not there is not worth a lock.
+        expected_in(folder)?;
+        let reading = Reading::begin(folder)?;
+        let stored = Self::of(folder, expected_in(folder)?)?;
+        Ok(Self { _reading: Some(reading), ..stored })
     }
 
-    /// Hands every row to `take`, in order.
-    pub fn rows(&self, take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
-        Reader::open(&self.folder.join(ROWS), &Layout::of(&self.design))?.for_each(take)
+    /// Reads a finished study in a folder that is held.
+    pub fn held(folder: &'a ResultFolder) -> Result<Self, Failure> {
+        Self::of(folder.path(), expected_in(folder.path())?)
+    }
+
+    fn of(folder: &'a Path, manifest: Manifest) -> Result<Self, Failure> {
+        for name in [ROWS, DESIGN, SHOWCASES, TIMINGS] {
+            is_unchanged(folder, name, &manifest)?;
+        }
+        let path = folder.join(DESIGN);
+        let design = Design::of_text(&text(&path)?).map_err(|problem| refused(&path, &problem))?;
+        let path = folder.join(SHOWCASES);
+        let showcases =
+            serde_json::from_slice(&text(&path)?).map_err(|problem| refused(&path, &problem.to_string()))?;
+        let path = folder.join(TIMINGS);
+        let timings = Timings::of_text(&text(&path)?, &design).map_err(|problem| refused(&path, &problem))?;
+        let design = Design { words: manifest.words(), ..design };
+        Ok(Self { folder, manifest, design, showcases, timings, _reading: None })
+    }
+
+    /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.
+    pub fn rows(&self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+        let path = self.folder.join(ROWS);
+        let refuse = |problem: String| refused(&path, &problem);
+        let mut sequence = Sequence::new(&self.design);
+        Reader::open(&path, &Layout::of(&self.design))?.for_each(|row| {
+            sequence.see(&row).map_err(refuse)?;
+            take(row)
+        })?;
+        sequence.finish().map_err(refuse)
+    }
+}
+
+/// A file that is not what a study wrote, and what to do.
+fn refused(path: &Path, problem: &str) -> Failure {
+    Failure::input(format!(
+        "{}: {problem}; expected what a finished study wrote; put the file back, or run the study again with --restart",
+        path.display()
+    ))
+}
+
+fn text(path: &Path) -> Result<Vec<u8>, Failure> {
+    disk::read(path, LARGEST_TEXT).on("read", path)?.ok_or_else(|| refused(path, "it is missing"))
+}
+
+/// Compares a file with what the manifest says of it.
+fn is_unchanged(folder: &Path, name: &str, manifest: &Manifest) -> Result<(), Failure> {
+    let path = folder.join(name);
+    let Some(written) = manifest.sha256.get(name) else {
+        return Err(Failure::input(format!(
+            "{}: it has no SHA-256 of {name}, as an earlier version of this program wrote it; run the study again with \
+             --restart",
+            folder.join(MANIFEST).display()
+        )));
+    };
+    if !disk::is_there(&path).on("look for", &path)? {
+        return Err(refused(&path, "it is missing"));
+    }
+    match sha256_of(&path).on("read", &path)? == *written {
+        true => Ok(()),
+        false => Err(refused(&path, "it was changed: its SHA-256 is not the one in the manifest")),
     }
 }
 
 /// The manifest of the finished rows in a folder; `None` when there are none. A folder that holds what was published
 /// without its rows is not a finished study.
 pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
-    let whole = folder.join(ROWS).exists() && folder.join(MANIFEST).exists() && !unfinished::is_in(folder);
-    if whole { Manifest::read(&folder.join(MANIFEST)).map(Some) } else { Ok(None) }
+    let is_there = |name: &str| disk::is_there(&folder.join(name)).on("look for", &folder.join(name));
+    if unfinished::is_in(folder)? || !is_there(ROWS)? { Ok(None) } else { Manifest::read(&folder.join(MANIFEST)) }
 }
 
-/// Writes the design.
-pub fn write_design(folder: &Path, design: &Design) -> Result<(), Failure> {
-    write_json(&folder.join(DESIGN), design)
+/// Fails unless a folder holds a finished study.
+pub fn is_finished(folder: &Path) -> Result<(), Failure> {
+    expected_in(folder).map(drop)
 }
 
-/// Reads the design.
-pub fn read_design(folder: &Path) -> Result<Design, Failure> {
-    read_json(&folder.join(DESIGN))
+/// The same where there have to be rows.
+fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
+    manifest_of_rows(folder)?.ok_or_else(|| {
+        let problem = match unfinished::is_in(folder) {
+            Ok(true) => "the study in it is not finished; run it again to go on",
+            _ => "there are no rows in it; expected the folder of a finished study",
+        };
+        Failure::input(format!("{}: {problem}", folder.display()))
+    })
 }
 
-/// Writes the showcases.
-pub fn write_showcases(folder: &Path, showcases: &[Showcase]) -> Result<(), Failure> {
-    write_json(&folder.join(SHOWCASES), showcases)
-}
-
-/// Reads the showcases.
-pub fn read_showcases(folder: &Path) -> Result<Vec<Showcase>, Failure> {
-    read_json(&folder.join(SHOWCASES))
-}
-
-fn write_json<T: Serialize + ?Sized>(path: &Path, value: &T) -> Result<(), Failure> {
-    let text = serde_json::to_string(value).on("describe", path)?;
-    fs::write(path, text + "\n").on("write", path)
-}
-
-fn read_json<T: for<'de> Deserialize<'de>>(path: &Path) -> Result<T, Failure> {
-    let refuse = |problem: String| {
-        Failure::input(format!("{}: {problem}; expected the folder of a finished study", path.display()))
+/// Makes a folder that holds rows with this SHA-256 a finished study: design, showcases, times, and the manifest last.
+pub fn finish(
+    folder: &ResultFolder,
+    manifest: &Manifest,
+    rows_sha256: String,
+    design: &Design,
+    showcases: &[Showcase],
+    timings: &Timings,
+) -> Result<(), Failure> {
+    let json = |name: &str, text: serde_json::Result<String>| {
+        let text = text.on("describe", &folder.path().join(name))?;
+        Ok((name.to_owned(), folder.keep(name, text + "\n")?))
     };
-    let text = fs::read_to_string(path).map_err(|error| refuse(error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))
+    let sha256 = [
+        (ROWS.to_owned(), rows_sha256),
+        json(DESIGN, serde_json::to_string(design))?,
+        json(SHOWCASES, serde_json::to_string(showcases))?,
+        (TIMINGS.to_owned(), folder.keep(TIMINGS, timings.to_text(design)?)?),
+    ];
+    Manifest { sha256: sha256.into(), ..manifest.clone() }.write(folder)
 }

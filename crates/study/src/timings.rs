@@ -1,11 +1,9 @@
 //! How long simulation and identification took: the one result that depends on the machine, kept apart from the rows.
 
-use std::path::Path;
-
 use serde::{Deserialize, Serialize};
 
 use crate::engine::Timing;
-use crate::failure::{Failure, OnPath};
+use crate::failure::Failure;
 use crate::store::Design;
 
 /// Name of the simulation among the methods.
@@ -13,7 +11,8 @@ const SIMULATION: &str = "(simulation)";
 
 /// Times of one method in one cell: `timings.csv` has one line each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Line {
+#[serde(deny_unknown_fields)]
+pub struct Line {
     cell: u64,
     method: String,
     trials: u64,
@@ -112,33 +111,25 @@ impl Timings {
         (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
     }
 
-    /// Writes `timings.csv`.
-    pub fn write(&self, path: &Path, design: &Design) -> Result<(), Failure> {
-        let mut file = csv::Writer::from_path(path).on("create", path)?;
+    /// One line for every cell and method that was timed.
+    pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = Line> + 'a {
         let names = || std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()));
-        for (cell, moments) in &self.cells {
-            for (method, moments) in names().zip(moments).filter(|(_, moments)| moments.count > 0.0) {
-                let line = Line {
-                    cell: *cell,
-                    method: method.to_owned(),
-                    trials: moments.count as u64,
-                    mean_us: to_the_nanosecond(moments.mean),
-                    sd_us: to_the_nanosecond(moments.sd()),
-                    shortest_us: to_the_nanosecond(moments.shortest),
-                };
-                file.serialize(line).on("write", path)?;
-            }
-        }
-        file.flush().on("write", path)
+        self.cells.iter().flat_map(move |(cell, moments)| {
+            names().zip(moments).filter(|(_, moments)| moments.count > 0.0).map(|(method, moments)| Line {
+                cell: *cell,
+                method: method.to_owned(),
+                trials: moments.count as u64,
+                mean_us: to_the_nanosecond(moments.mean),
+                sd_us: to_the_nanosecond(moments.sd()),
+                shortest_us: to_the_nanosecond(moments.shortest),
+            })
+        })
     }
 
-    /// Reads `timings.csv`; methods the design does not have are left out.
-    pub fn read(path: &Path, design: &Design) -> Result<Self, Failure> {
-        let refuse =
-            |error: csv::Error| Failure::input(format!("{}: {error}; expected times of a study", path.display()));
+    /// Times from their lines; methods the design does not have are left out.
+    pub fn of_lines(lines: impl IntoIterator<Item = Line>, design: &Design) -> Self {
         let mut timings = Self::new(design.methods.len());
-        for line in csv::Reader::from_path(path).map_err(refuse)?.deserialize() {
-            let line: Line = line.map_err(refuse)?;
+        for line in lines {
             let place = match line.method.as_str() {
                 SIMULATION => Some(0),
                 label => design.methods.iter().position(|method| method.label == label).map(|place| place + 1),
@@ -152,7 +143,21 @@ impl Timings {
                 };
             }
         }
-        Ok(timings)
+        timings
+    }
+
+    /// The text of `timings.csv`.
+    pub fn to_text(&self, design: &Design) -> Result<Vec<u8>, Failure> {
+        let refuse = |error: &dyn std::fmt::Display| Failure::work(format!("failed to describe times: {error}"));
+        let mut file = csv::Writer::from_writer(Vec::new());
+        self.lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
+        file.into_inner().map_err(|error| refuse(&error))
+    }
+
+    /// Reads the text of a `timings.csv`; methods the design does not have are left out. Fails when it is none.
+    pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
+        let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<Line>, _>>();
+        Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
     }
 }
 

@@ -146,6 +146,7 @@ fn run(folder: &TempDir, trials: u64, threads: usize) -> Outcome<Study> {
     let out = folder.path().join("study");
     let cost = child::study(&scenario, &out, threads)?;
     let manifest = Manifest::read(&out.join(study::store::MANIFEST)).map_err(|failure| failure.to_string())?;
+    let manifest = manifest.ok_or("the study left no manifest")?;
     let bytes = std::fs::metadata(out.join(study::store::ROWS))?.len();
     std::fs::remove_dir_all(&out)?;
     Ok(Study { trials, threads, work: manifest.machine.wall_time_s, whole: cost.wall, memory: cost.memory, bytes })

@@ -1,8 +1,6 @@
 //! Figures of `study fit`: the first record with its characteristic points, and every record with the replays of all methods
 //! and with the best fit. A long record is drawn thinned.
 
-use std::path::Path;
-
 use identify::Estimate;
 use identify::replay::replay;
 use rayon::prelude::*;
@@ -11,6 +9,7 @@ use report::{Figure, Origin, Theme};
 use trial::{Trial, ZigZag};
 
 use crate::failure::Failure;
+use crate::folder::ResultFolder;
 use crate::json::MethodEntry;
 use crate::publish::drawings::{first_failure, write_figure};
 use crate::showcase::{thinned, zigzag_figure};
@@ -33,7 +32,7 @@ pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
     zigzag: Option<&ZigZag>,
-    folder: &Path,
+    folder: &ResultFolder,
 ) -> Result<(), Failure> {
     let theme = Theme::screen();
     if let (Some(zigzag), Some(first)) = (zigzag, records.first()) {

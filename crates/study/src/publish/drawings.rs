@@ -1,7 +1,6 @@
 //! The figures of a finished study: which there are, what they say, and their files.
 
 use std::collections::HashSet;
-use std::path::Path;
 
 use rayon::prelude::*;
 use report::figures;
@@ -10,6 +9,7 @@ use report::{Figure, Theme};
 use super::charts::{self, Quantity};
 use super::traces;
 use crate::failure::{Failure, OnPath};
+use crate::folder::ResultFolder;
 use crate::showcase::Showcase;
 use crate::store::Stored;
 use crate::summary::Summary;
@@ -210,7 +210,7 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
 }
 
 /// Draws and writes all of them, in parallel. Fails with the first in their order that cannot be written.
-pub fn write_all(drawings: &[Drawing], theme: &Theme, folder: &Path) -> Result<(), Failure> {
+pub fn write_all(drawings: &[Drawing], theme: &Theme, folder: &ResultFolder) -> Result<(), Failure> {
     first_failure(drawings.par_iter().map(|drawing| write_figure(&(drawing.draw)(theme), folder, &drawing.stem)))
 }
 
@@ -220,8 +220,9 @@ pub fn first_failure(work: impl IndexedParallelIterator<Item = Result<(), Failur
 }
 
 /// Writes SVG and PNG of a figure.
-pub fn write_figure(figure: &Figure, folder: &Path, stem: &str) -> Result<(), Failure> {
-    figure.write(folder, stem).map(drop).on("write the figure", &folder.join(stem))
+pub fn write_figure(figure: &Figure, folder: &ResultFolder, stem: &str) -> Result<(), Failure> {
+    folder.write(&format!("{stem}.svg"), figure.svg())?;
+    folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
 }
 
 /// A title as part of a file name: lower case, words joined by hyphens.

@@ -368,8 +368,19 @@ impl Layout {
                 (Source::Draw(index), Values::Numbers(values)) => {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
-                // Axes follow from the cell.
-                _ => {}
+                // Axes follow from the cell; other ones belong to another design.
+                (Source::Axis(Axis { points: Points::Numbers(points), name }), Values::Numbers(values)) => {
+                    let is_own = |(row, value): (&Row, &Option<f64>)| {
+                        points.get(row.cell as usize).map(|point| point.to_bits()) == value.map(f64::to_bits)
+                    };
+                    all(rows.iter().zip(&values), is_own, name)?;
+                }
+                (Source::Axis(Axis { points: Points::Labels(points), name }), Values::Texts(values)) => {
+                    let is_own =
+                        |(row, value): (&Row, &Option<String>)| points.get(row.cell as usize) == value.as_ref();
+                    all(rows.iter().zip(&values), is_own, name)?;
+                }
+                _ => return Err("a column of it has values of another kind".to_owned()),
             }
         }
         if !self.draws.is_empty() {
@@ -378,5 +389,13 @@ impl Layout {
             }
         }
         Ok(rows)
+    }
+}
+
+/// Fails where a row has another point of an axis than its cell.
+fn all<T>(mut rows: impl Iterator<Item = T>, is_own: impl Fn(T) -> bool, axis: &str) -> Result<(), String> {
+    match rows.all(is_own) {
+        true => Ok(()),
+        false => Err(format!("a row has another point of the axis {axis:?} than its cell")),
     }
 }

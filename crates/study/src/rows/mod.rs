@@ -1,11 +1,13 @@
 //! Rows of a study: one per trial and method, a failed fit included. `columns` says how a row looks to other programs,
-//! [`file`] stores rows as Parquet and reads them back a few at a time.
+//! [`file`] stores rows as Parquet and reads them back a few at a time, [`Sequence`] says whether all are there.
 //!
 //! Nothing that depends on the clock or the machine is in a row, so a file has the same bytes for the same scenario and
 //! seed whatever the number of threads, interruptions and shards.
 
 mod columns;
+mod decoding;
 mod file;
+mod sequence;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +15,7 @@ use std::sync::Arc;
 
 pub use columns::{COLUMNS, Column, Layout, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
+pub use sequence::Sequence;
 
 /// Best standard deviations an unbiased method can have on a trial (Cramér–Rao), for its own noise and true K and T.
 #[derive(Debug, Clone, Copy, PartialEq)]

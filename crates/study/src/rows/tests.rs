@@ -1,27 +1,25 @@
 use std::path::Path;
 
 use super::*;
-use crate::scenario::MethodName;
+use crate::folder::ResultFolder;
+use crate::scenario::{MethodName, Words};
 use crate::store::{CellFacts, Design};
 
 fn design() -> Design {
     let cell = |noise: f64, trial: &str| CellFacts {
         labels: vec![noise.to_string(), trial.to_owned()],
         values: vec![Some(noise), None],
+        trials: 0..1,
         missing: Vec::new(),
         bound_percent2: None,
     };
     let method = |label: &str| MethodName { label: label.into(), id: label.into() };
     Design {
-        question: String::new(),
-        analysis: String::new(),
-        finding: String::new(),
-        figure: None,
-        detail: Vec::new(),
         axes: vec!["noise [°]".into(), "trial".into()],
         methods: vec![method("output-error"), method("srivc")],
         draws: vec!["ship.first-order.K-per-s".into()],
         cells: vec![cell(0.1, "10/10"), cell(0.5, "10/10")],
+        words: Words::default(),
     }
 }
 
@@ -59,9 +57,11 @@ fn failed(replicate: u64) -> Row {
 }
 
 fn write(path: &Path, layout: &Layout, pieces: impl IntoIterator<Item = Vec<Row>>) {
-    let mut writer = Writer::create(path, layout).expect("created");
+    let (folder, name) = (path.parent().expect("in a folder"), path.file_name().and_then(|name| name.to_str()));
+    let folder = ResultFolder::hold(folder).expect("held");
+    let mut writer = Writer::create(&folder, name.expect("a name"), layout).expect("created");
     pieces.into_iter().for_each(|rows| writer.push(rows).expect("written"));
-    writer.finish().expect("finished");
+    writer.finish().and_then(|(file, _)| file.put()).expect("finished");
 }
 
 fn read(path: &Path, layout: &Layout) -> Vec<Row> {
@@ -84,7 +84,7 @@ fn rows_come_back_as_they_went() {
     let rows = vec![good(7), failed(7)];
     write(&path, &layout, [rows.clone()]);
     assert_eq!(read(&path, &layout), rows);
-    assert!(!path.with_extension("tmp").exists());
+    assert!(!folder.path().join("rows.parquet.tmp").exists());
 }
 
 #[test]

@@ -16,6 +16,7 @@ mod specification;
 mod stop;
 pub mod sweep;
 mod wire;
+mod words;
 
 use std::borrow::Cow;
 use std::fs;
@@ -41,6 +42,7 @@ pub use resolve::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
 use sweep::Axis;
 use wire::ScenarioWire;
+pub use words::Words;
 
 /// A method as a scenario names it.
 pub struct Method {

@@ -53,7 +53,7 @@ impl Tally {
             labelled.or_else(|| design.methods.iter().position(|method| method.id == REFERENCE)).unwrap_or(0);
         Self {
             reference,
-            detailed: design.detail.clone(),
+            detailed: design.detail(),
             cell: 0,
             present: vec![Running::default(); methods],
             pairs: vec![Default::default(); methods],

@@ -1,25 +1,22 @@
 use super::*;
 use crate::rows::Bound;
-use crate::scenario::MethodName;
+use crate::scenario::{MethodName, Words};
 use crate::store::CellFacts;
 
 fn design(methods: &[&str], cells: usize) -> Design {
     let cell = |index: usize| CellFacts {
         labels: vec![index.to_string()],
         values: vec![None],
+        trials: 0..0,
         missing: Vec::new(),
         bound_percent2: None,
     };
     Design {
-        question: String::new(),
-        analysis: String::new(),
-        finding: String::new(),
-        figure: None,
-        detail: vec![0],
         axes: vec!["case".into()],
         methods: methods.iter().map(|&label| MethodName { label: label.into(), id: label.into() }).collect(),
         draws: Vec::new(),
         cells: (0..cells).map(cell).collect(),
+        words: Words { detail: vec!["0".into()], ..Words::default() },
     }
 }
 

@@ -1,8 +1,6 @@
 //! Figures of an analysis: every record with the model before and after, the residuals from several sides, and the
 //! candidates with the threshold.
 
-use std::path::Path;
-
 use ::trace::analysis::{Judged, Outcome};
 use ::trace::diagnostics::{autocorrelation, spectrum};
 use ::trace::errors::Replayed;
@@ -14,6 +12,7 @@ use trial::Trial;
 
 use super::{Told, page};
 use crate::failure::Failure;
+use crate::folder::ResultFolder;
 use crate::publish::drawings::{first_failure, slug, write_figure};
 use crate::showcase::thinned;
 
@@ -27,7 +26,7 @@ const MOST_LINES: usize = 400;
 type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
 
 /// Draws everything into `folder` and returns stems and captions.
-pub fn draw(told: &Told, theme: &Theme, folder: &Path) -> Result<Vec<(String, String)>, Failure> {
+pub fn draw(told: &Told, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
     let analysis = told.analysis;
     let trials: Vec<&Trial> = told.trials.iter().chain(told.others).collect();
     let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();

@@ -6,18 +6,21 @@ mod file;
 mod page;
 mod planned;
 
-use std::fs;
 use std::path::PathBuf;
 
 use ::trace::{Analysis, Settings};
 use trial::{Channel, Trial};
 
 use crate::cli::{Common, Format, TraceRequest, Withheld};
-use crate::failure::{Failure, OnPath, result_folder};
+use crate::failure::{Failure, OnPath};
+use crate::folder::ResultFolder;
 use crate::records::{names, read, warn_of_repetition};
 use crate::{present, progress, screen};
 
 pub use file::TraceFile;
+
+/// What other programs read.
+const TRACE: &str = "trace.json";
 
 /// Everything that is said about one analysis.
 pub struct Told<'a> {
@@ -58,7 +61,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
         Failure::input(format!("{first}: {error}; the record cannot be traced because no base model fits it"))
     })?;
     let folder = common.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-trace", trials[0].name())));
-    result_folder(&folder)?;
+    let folder = ResultFolder::hold(&folder)?;
     let planned = planned::trials(&analysis, &trials);
     let told = Told {
         names: names(trials.iter().chain(&others).map(Trial::name)),
@@ -67,18 +70,15 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
         others: &others,
         analysis: &analysis,
     };
-    let write = |name: &str, text: String| {
-        let path = folder.join(name);
-        fs::write(&path, text).on("write", &path)
-    };
-    let json = serde_json::to_string_pretty(&TraceFile::of(&told)).on("describe", &folder.join("trace.json"))?;
-    write("trace.json", json + "\n")?;
+    let path = folder.path().join(TRACE);
+    let json = serde_json::to_string_pretty(&TraceFile::of(&told)).on("describe", &path)?;
+    folder.keep(TRACE, json + "\n")?;
     let drawn = figures::draw(&told, &theme, &folder)?;
-    write("report.md", page::page(&told, &drawn))?;
+    folder.write("report.md", page::page(&told, &drawn))?;
     if !common.quiet {
         let table = present::render(&page::errors(&told), common.format);
         let words = page::words(&told);
-        let notes = format!("results: {}", folder.join("trace.json").display());
+        let notes = format!("results: {}", path.display());
         if common.format == Format::Text {
             screen::say(&format!("{words}\n\n{table}\n{notes}"))?;
         } else {

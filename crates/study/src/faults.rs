@@ -1,0 +1,164 @@
+//! Every file operation of a study, a merge, a report and a rerun fails once: afterwards the same commands end with the same
+//! bytes, or say what is missing.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use crate::cli::{Common, Format, Style};
+use crate::collect::collect;
+use crate::disk::faults;
+use crate::failure::Failure;
+use crate::folder::ResultFolder;
+use crate::merge::merge;
+use crate::plan::Shard;
+use crate::publish;
+use crate::scenario::Scenario;
+use crate::store;
+
+const TEXT: &str = r#"
+question = "Is anything lost?"
+seed = 5
+replicates = 3
+ship.yukun = {}
+manoeuvre.zig-zag = { rudder-deg = 10.0, heading-deg = 10.0 }
+recording = { sampling-s = 4.0, duration-s = 120.0 }
+[[identifier]]
+method.integral-least-squares = {}
+[[sweep]]
+key = "sensor.heading-noise-deg"
+values = [0.1, 0.5]
+"#;
+
+fn scenario(more: &str) -> Scenario {
+    Scenario::parse(Path::new("s.toml"), "s", format!("{more}{TEXT}"), None)
+        .unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+fn quiet(out: Option<&Path>) -> Common {
+    Common { out: out.map(Path::to_owned), threads: None, seed: None, quiet: true, format: Format::Text }
+}
+
+/// Figures that take no time.
+const STYLE: Style = Style { paper: Some(60.0), dpi: 72.0 };
+
+/// Runs a scenario into a folder.
+fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
+    collect(scenario, shard, &ResultFolder::hold(folder)?, false, true)
+}
+
+/// All files of a folder with their bytes; but times differ from run to run.
+fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| entry.expect("an entry"))
+        .map(|entry| (entry.file_name().to_string_lossy().into_owned(), entry.path()))
+        .filter(|(name, _)| !["timings.csv", "manifest.toml"].contains(&name.as_str()))
+        .map(|(name, path)| (name, fs::read(path).expect("only files are left")))
+        .collect();
+    files.sort();
+    files
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a folder");
+    for entry in fs::read_dir(from).expect("a folder").flatten() {
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &to.join(entry.file_name())),
+            false => drop(fs::copy(entry.path(), to.join(entry.file_name())).expect("copied")),
+        }
+    }
+}
+
+/// Lets every operation of `work` fail once, alone and with all that follow, each time in a folder that begins as `before`.
+/// Done once more it has to end with the bytes of the work without a fault.
+fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> + Sync) -> u64 {
+    let desk = tempfile::tempdir().expect("a temporary folder");
+    let place = |name: &str| -> PathBuf {
+        let folder = desk.path().join(name).join("out");
+        match before {
+            Some(before) => copy(before, &folder),
+            None => fs::create_dir_all(&folder).expect("a folder"),
+        }
+        folder
+    };
+    let whole = place("whole");
+    let counted = faults::arm(whole.parent().expect("a folder"), 0..0);
+    work(&whole).unwrap_or_else(|failure| panic!("without a fault: {failure}"));
+    let operations = counted.seen();
+    drop(counted);
+    let expected = content(&whole);
+    (0..operations).into_par_iter().for_each(|number| {
+        for (name, failing) in [("once", number..number + 1), ("gone", number..u64::MAX)] {
+            let folder = place(&format!("{name}-{number}"));
+            let armed = faults::arm(folder.parent().expect("a folder"), failing);
+            let outcome = work(&folder);
+            drop(armed);
+            if let Err(failure) = &outcome {
+                assert!(failure.message.contains("fault "), "{name} {number}: {failure}");
+            }
+            if let Err(failure) = work(&folder) {
+                panic!("{name} {number}, which ended with {outcome:?}: {failure}");
+            }
+            assert!(content(&folder) == expected, "{name} {number}, which ended with {outcome:?}");
+            fs::remove_dir_all(folder).expect("it was there");
+        }
+    });
+    operations
+}
+
+#[test]
+fn no_fault_of_the_disk_loses_anything_of_a_study() {
+    let desk = tempfile::tempdir().expect("a temporary folder");
+    let (study, told) = (scenario(""), scenario("finding = \"No.\"\n"));
+    assert!(fail_each(None, |folder| run(&study, Shard::WHOLE, folder)) > 50);
+    // A rerun that has new words to say.
+    let whole = desk.path().join("whole");
+    run(&study, Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(fail_each(Some(&whole), |folder| run(&told, Shard::WHOLE, folder)) > 20);
+}
+
+#[test]
+fn no_fault_of_the_disk_loses_anything_of_a_report() {
+    let desk = tempfile::tempdir().expect("a temporary folder");
+    let whole = desk.path().join("whole");
+    run(&scenario(""), Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
+    assert!(fail_each(Some(&whole), |folder| publish::report(folder, &STYLE, &quiet(None))) > 50);
+}
+
+#[test]
+fn no_fault_of_the_disk_loses_anything_of_a_merge() {
+    let desk = tempfile::tempdir().expect("a temporary folder");
+    let study = scenario("");
+    let shards: Vec<PathBuf> = (1..=2).map(|number: u64| desk.path().join(number.to_string())).collect();
+    for (number, folder) in (1..).zip(&shards) {
+        run(&study, Shard { number, of: 2 }, folder).unwrap_or_else(|failure| panic!("{failure}"));
+    }
+    assert!(fail_each(None, |folder| merge(&shards, &STYLE, &quiet(Some(folder)))) > 50);
+}
+
+/// Every operation of going on after a kill fails once; no part is lost by it.
+#[test]
+fn no_fault_of_the_disk_loses_a_part() {
+    let desk = tempfile::tempdir().expect("a temporary folder");
+    let study = scenario("");
+    // Killed before the parts were joined.
+    let cut = desk.path().join("cut");
+    let armed = faults::arm(&cut.join(store::ROWS), 0..u64::MAX);
+    let joined = faults::arm(&cut.join("rows.parquet.tmp"), 0..u64::MAX);
+    run(&study, Shard::WHOLE, &cut).expect_err("the disk is gone");
+    drop((armed, joined));
+    let parts = |folder: &Path| {
+        let names = fs::read_dir(folder.join("unfinished")).into_iter().flatten().flatten();
+        names.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet")).count()
+    };
+    assert_eq!(parts(&cut), 1);
+    let go_on = |folder: &Path| {
+        let outcome = run(&study, Shard::WHOLE, folder);
+        let is_whole = folder.join(store::MANIFEST).exists();
+        assert!(is_whole || parts(folder) == 1, "a part is gone: {outcome:?}");
+        outcome
+    };
+    assert!(fail_each(Some(&cut), go_on) > 50);
+}
