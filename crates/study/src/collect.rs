@@ -161,7 +161,7 @@ fn run_all(
         let (send, receive) = sync_channel::<Vec<Outcome>>(1);
         let writer = scope.spawn(move || unfinished.store(receive));
         let take = |outcomes| send.send(outcomes).is_ok();
-        let end = run_batches(scope, scenario, plan, || listener.is_asked(), take, &bar);
+        let end = run_batches(plan, |tasks| watched(scope, scenario, tasks, &listener, &bar), take);
         drop(send);
         let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         bar.finish();
@@ -187,86 +187,99 @@ const PATIENCE: Duration = Duration::from_millis(200);
 /// Time between two looks whether the study is asked to stop.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Runs batch after batch until the plan is done, `is_asked` to stop, or `take` wants no more.
-fn run_batches<'scope>(
-    scope: &'scope Scope<'scope, '_>,
-    scenario: &'scope Scenario,
+/// Runs batch after batch by `run` until the plan is done, a batch is not whole, or `take` wants no more.
+fn run_batches(
     plan: &mut Plan,
-    is_asked: impl Fn() -> bool + Sync + Send + Copy + 'scope,
+    mut run: impl FnMut(Vec<Task>) -> (Vec<Outcome>, End),
     mut take: impl FnMut(Vec<Outcome>) -> bool,
-    bar: &ProgressBar,
 ) -> End {
     let least = (4 * rayon::current_num_threads()).min(MOST_BATCH);
     let mut size = least;
     loop {
         let tasks = plan.next(size as u64);
-        let (Some(first), Some(last)) = (tasks.first().copied(), tasks.last().copied()) else { return End::Done };
-        let start = Instant::now();
-        let (send, receive) = channel();
-        let work = tasks.clone();
-        scope.spawn(move || {
-            let bench = Bench::new(scenario, first.cell..=last.cell);
-            work.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
-                if !is_asked() {
-                    // Nobody listens any more when the study was asked to stop and did not want to wait.
-                    let _ = send.send((index, bench.run(task)));
-                }
-            });
-        });
-        let mut outcomes: Vec<Option<Outcome>> = tasks.iter().map(|_| None).collect();
-        let mut asked: Option<Instant> = None;
-        let is_stuck = loop {
-            match receive.recv_timeout(LOOK) {
-                Ok((index, outcome)) => {
-                    outcomes[index] = Some(outcome);
-                    bar.inc(1);
-                }
-                Err(RecvTimeoutError::Disconnected) => break false,
-                Err(RecvTimeoutError::Timeout) if is_asked() => {
-                    if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
-                        break true;
-                    }
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-        };
-        // Rows are kept in order, so an interruption keeps them up to the first that is missing.
-        let outcomes: Vec<Outcome> = outcomes.into_iter().map_while(|outcome| outcome).collect();
-        let interrupted = outcomes.len() < tasks.len();
-        outcomes.iter().flat_map(|outcome| &outcome.rows).for_each(|row| plan.saw(row));
-        if interrupted {
-            plan.go_back_to(tasks[outcomes.len()]);
+        if tasks.is_empty() {
+            return End::Done;
         }
-        match (take(outcomes), interrupted) {
-            (_, true) if is_stuck => return End::Stuck,
-            (_, true) => return End::Interrupted,
-            (false, false) => return End::Done,
-            (true, false) => {}
+        let start = Instant::now();
+        let (outcomes, end) = run(tasks.clone());
+        outcomes.iter().flat_map(|outcome| &outcome.rows).for_each(|row| plan.saw(row));
+        if let Some(&next) = tasks.get(outcomes.len()) {
+            plan.go_back_to(next);
+        }
+        if !take(outcomes) || end != End::Done {
+            return end;
         }
         let wanted = size as f64 * BATCH_TIME.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
         size = (wanted as usize).clamp(least, MOST_BATCH);
     }
 }
 
+/// A bench for tasks, which come in order.
+fn bench<'a>(scenario: &'a Scenario, tasks: &[Task]) -> Bench<'a> {
+    Bench::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
+}
+
+/// Runs a batch on a thread of its own, so that an interruption need not wait for a trial that does not end. Returns the
+/// outcomes up to the first that is missing.
+fn watched<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    scenario: &'scope Scenario,
+    tasks: Vec<Task>,
+    listener: &'scope Listener,
+    bar: &ProgressBar,
+) -> (Vec<Outcome>, End) {
+    let mut outcomes: Vec<Option<Outcome>> = tasks.iter().map(|_| None).collect();
+    let (send, receive) = channel();
+    scope.spawn(move || {
+        let bench = bench(scenario, &tasks);
+        tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
+            if !listener.is_asked() {
+                // Nobody receives any more when the wait for a trial was given up.
+                let _ = send.send((index, bench.run(task)));
+            }
+        });
+    });
+    let mut asked: Option<Instant> = None;
+    let is_stuck = loop {
+        match receive.recv_timeout(LOOK) {
+            Ok((index, outcome)) => {
+                outcomes[index] = Some(outcome);
+                bar.inc(1);
+            }
+            Err(RecvTimeoutError::Disconnected) => break false,
+            Err(RecvTimeoutError::Timeout) if listener.is_asked() => {
+                if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
+                    break true;
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+    };
+    let is_whole = outcomes.iter().all(Option::is_some);
+    let end = match (is_stuck, is_whole) {
+        (true, _) => End::Stuck,
+        (false, false) => End::Interrupted,
+        (false, true) => End::Done,
+    };
+    (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
+}
+
 /// All rows of a small study, in their order, without a folder; and its design.
 pub fn in_memory(scenario: &Scenario) -> (Design, Vec<Row>) {
-    let mut plan = Plan::new(scenario, Shard::WHOLE);
     let mut rows = Vec::new();
-    let mut design = design(scenario);
-    std::thread::scope(|scope| {
-        let take = |outcomes: Vec<Outcome>| {
-            rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
-            true
-        };
-        run_batches(scope, scenario, &mut plan, || false, take, &ProgressBar::hidden());
-    });
-    let facts: Vec<CellFacts> =
+    let run = |tasks: Vec<Task>| {
+        let bench = bench(scenario, &tasks);
+        (tasks.par_iter().map(|&task| bench.run(task)).collect(), End::Done)
+    };
+    let take = |outcomes: Vec<Outcome>| {
+        rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
+        true
+    };
+    run_batches(&mut Plan::new(scenario, Shard::WHOLE), run, take);
+    let mut cells: Vec<CellFacts> =
         (0..scenario.cells.len()).into_par_iter().map(|cell| engine::facts(scenario, cell)).collect();
-    design.cells = facts;
-    for row in &rows {
-        design.cells[row.cell as usize].trials.end = row.replicate + 1;
-    }
-    (design, rows)
+    rows.iter().for_each(|row: &Row| cells[row.cell as usize].trials.end = row.replicate + 1);
+    (Design { cells, ..design(scenario) }, rows)
 }
 
 /// Makes the result folder whole: rows, facts of the cells, showcases, times, and the manifest last.

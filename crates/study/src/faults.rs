@@ -2,9 +2,8 @@
 //! bytes, or say what is missing.
 
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-use rayon::prelude::*;
 
 use crate::cli::{Common, Format, Style};
 use crate::collect::collect;
@@ -71,6 +70,9 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
+/// Threads that try faults.
+const THREADS: u64 = 4;
+
 /// Lets every operation of `work` fail once, alone and with all that follow, each time in a folder that begins as `before`.
 /// Done once more it has to end with the bytes of the work without a fault.
 fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> + Sync) -> u64 {
@@ -89,20 +91,30 @@ fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> 
     let operations = counted.seen();
     drop(counted);
     let expected = content(&whole);
-    (0..operations).into_par_iter().for_each(|number| {
-        for (name, failing) in [("once", number..number + 1), ("gone", number..u64::MAX)] {
-            let folder = place(&format!("{name}-{number}"));
-            let armed = faults::arm(folder.parent().expect("a folder"), failing);
-            let outcome = work(&folder);
-            drop(armed);
-            if let Err(failure) = &outcome {
-                assert!(failure.message.contains("fault "), "{name} {number}: {failure}");
-            }
-            if let Err(failure) = work(&folder) {
-                panic!("{name} {number}, which ended with {outcome:?}: {failure}");
-            }
-            assert!(content(&folder) == expected, "{name} {number}, which ended with {outcome:?}");
-            fs::remove_dir_all(folder).expect("it was there");
+    let fail = |number: u64, name: &str, failing: Range<u64>| {
+        let folder = place(&format!("{name}-{number}"));
+        let armed = faults::arm(folder.parent().expect("a folder"), failing);
+        let outcome = work(&folder);
+        drop(armed);
+        if let Err(failure) = &outcome {
+            assert!(failure.message.contains("fault "), "{name} {number}: {failure}");
+        }
+        if let Err(failure) = work(&folder) {
+            panic!("{name} {number}, which ended with {outcome:?}: {failure}");
+        }
+        assert!(content(&folder) == expected, "{name} {number}, which ended with {outcome:?}");
+        fs::remove_dir_all(folder).expect("it was there");
+    };
+    // Not on the threads that run trials: these would wait for themselves.
+    std::thread::scope(|scope| {
+        for first in 0..THREADS {
+            let fail = &fail;
+            scope.spawn(move || {
+                for number in (first..operations).step_by(THREADS as usize) {
+                    fail(number, "once", number..number + 1);
+                    fail(number, "gone", number..u64::MAX);
+                }
+            });
         }
     });
     operations
@@ -145,10 +157,9 @@ fn no_fault_of_the_disk_loses_a_part() {
     let study = scenario("");
     // Killed before the parts were joined.
     let cut = desk.path().join("cut");
-    let armed = faults::arm(&cut.join(store::ROWS), 0..u64::MAX);
-    let joined = faults::arm(&cut.join("rows.parquet.tmp"), 0..u64::MAX);
+    let armed = faults::arm(&cut.join("rows.parquet.tmp"), 0..u64::MAX);
     run(&study, Shard::WHOLE, &cut).expect_err("the disk is gone");
-    drop((armed, joined));
+    drop(armed);
     let parts = |folder: &Path| {
         let names = fs::read_dir(folder.join("unfinished")).into_iter().flatten().flatten();
         names.filter(|entry| entry.path().extension().is_some_and(|extension| extension == "parquet")).count()
