@@ -18,8 +18,7 @@ pub mod sweep;
 mod wire;
 
 use std::borrow::Cow;
-use std::fs;
-use std::io::ErrorKind;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
@@ -29,8 +28,10 @@ use sha2::{Digest, Sha256};
 use simulate::{Purpose, StreamKey};
 use toml::{Table, Value};
 use trial::Trial;
+use trial::file::{self, FileError, Kind};
+use trial::reader::RECORD;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, OnPath};
 use crate::manifest::Manifest;
 use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
@@ -330,7 +331,7 @@ impl Scenario {
             figure: wire.output.figure,
             detail,
             stop,
-            design_sha256: sha256_of(&identity::design_of(&document), &folder),
+            design_sha256: sha256_of(&identity::design_of(&document), &folder)?,
             sha256: hex(&Sha256::digest(text.as_bytes())),
             text,
         })
@@ -417,21 +418,30 @@ fn detail(titles: &[String], cells: &[Cell]) -> Result<Vec<usize>, Problem> {
 }
 
 /// SHA-256 of a design and of the records it replays.
-fn sha256_of(design: &Table, folder: &Path) -> String {
+///
+/// Fails when such a record is there and cannot be read to its end.
+fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     let mut tables = vec![design];
     while let Some(table) = tables.pop() {
         for (key, value) in table {
             match value {
                 Value::Table(inner) => tables.push(inner),
-                // A file that is not there has been refused, or belongs to a point that is never resolved with it.
-                Value::String(file) if key == "file" => digest.update(fs::read(folder.join(file)).unwrap_or_default()),
+                Value::String(name) if key == "file" => {
+                    let path = folder.join(name);
+                    match file::open(&path, RECORD) {
+                        Ok(mut record) => drop(io::copy(&mut record, &mut digest).on("read", &path)?),
+                        // It has been refused, or belongs to a point that is never resolved with it.
+                        Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
+                        Err(error) => return Err(error).on("read", &path),
+                    }
+                }
                 Value::Array(items) => tables.extend(items.iter().filter_map(Value::as_table)),
                 _ => {}
             }
         }
     }
-    hex(&digest.finalize())
+    Ok(hex(&digest.finalize()))
 }
 
 /// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved like
@@ -494,29 +504,16 @@ fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
     Failure::at(path, text, span, "this is not valid TOML", &message, advice)
 }
 
-/// Largest scenario file accepted, bytes.
-const LARGEST_FILE: u64 = 1 << 20;
+/// A scenario, alone or in a manifest; the longest published one has a hundredth of this.
+const SCENARIO: Kind = Kind { name: "a scenario", largest: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {
-    let refuse = |problem: String, advice: &str| Failure::input(format!("{}: {problem}; {advice}", path.display()));
-    let advice = "give the path of a scenario (a TOML file)";
-    let about = fs::metadata(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => refuse("there is no such file".into(), advice),
-        _ => refuse(format!("cannot be read: {error}"), advice),
-    })?;
-    if about.is_dir() {
-        return Err(refuse("this is a folder".into(), advice));
-    }
-    if about.len() > LARGEST_FILE {
-        let problem = format!("this file has {} bytes, a scenario has at most {LARGEST_FILE}", about.len());
-        return Err(refuse(problem, "if it is a record, identify it with `study fit`"));
-    }
-    let bytes = fs::read(path).map_err(|error| refuse(format!("cannot be read: {error}"), "check its rights"))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
-        let byte = error.as_bytes()[valid];
-        refuse(format!("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text"), advice)
+    file::read_text(path, SCENARIO).map_err(|error| {
+        let advice = match error {
+            FileError::TooLarge { .. } => "a record is identified with `study fit`",
+            _ => "expected the path of a scenario (a TOML file)",
+        };
+        Failure::input(format!("{}: {error}; {advice}", path.display()))
     })
 }
 

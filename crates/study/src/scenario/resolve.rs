@@ -347,11 +347,17 @@ fn manoeuvre(wire: &ManoeuvreWire, place: &str, folder: &Path) -> Result<Manoeuv
         }),
         ManoeuvreWire::Replay(replay) => {
             let path = folder.join(&replay.file);
-            let reading = trial::reader::read(&path).map_err(|error| {
+            let refuse = |found: String| {
                 let key = place().child("replay").child("file");
-                let advice = "give a record that `study fit` can read, relative to this file";
-                Problem::value(key, format!("the record to replay: {error}"), "expected a record with a rudder", advice)
-            })?;
+                let advice = "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
+                Problem::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
+            };
+            // It is read for every cell, and what has gone through a pipe is gone.
+            if path.exists() && !path.is_file() {
+                return Err(refuse(format!("{}: this is a folder, a pipe or a device and no file", path.display())));
+            }
+            // Who runs a scenario need not have named the files in it: what they hold is not shown.
+            let reading = trial::reader::read(&path).map_err(|error| refuse(error.without_content()))?;
             Manoeuvre::Replay(reading.trial.rudder_signal().clone())
         }
     })
