@@ -33,10 +33,11 @@ use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
 use crate::manifest::Manifest;
+use crate::name::{self, LONGEST_NAME};
 use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
 use part::Part;
-use problem::{KeyPath, Problem, suggestion};
+use problem::{KeyPath, Problem, of_text, suggestion};
 use reader::Gaps;
 pub use resolve::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
@@ -263,14 +264,19 @@ pub struct Scenario {
 impl Scenario {
     /// Reads and resolves a file; of a manifest the scenario in it, with the seed it was run with.
     ///
-    /// Fails with a message that names the file, the line and the key, what was found and what was expected.
+    /// Fails with a message that names the file, the line and the key, what was found and what was expected. The name of
+    /// the study, which its folder is called by, has to be one ([`name::file`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
         if let Some(manifest) = Manifest::of_text(&text) {
+            name::file(&manifest.name).map_err(|unfit| {
+                let Problem { key, mark, found, expected, advice } =
+                    of_text(KeyPath::dotted("name"), &manifest.name, unfit);
+                Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
+            })?;
             return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
         }
-        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        Self::parse(path, &name, text, seed)
+        Self::parse(path, &name::of_file(path)?, text, seed)
     }
 
     /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
@@ -290,6 +296,12 @@ impl Scenario {
         }
         let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
         let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        for (key, text) in [("question", &wire.question), ("analysis", &wire.analysis), ("finding", &wire.finding)] {
+            name::prose(text).map_err(|unfit| fail(of_text(KeyPath::dotted(key), text, unfit)))?;
+        }
+        if let Some(stem) = &wire.output.figure {
+            name::file(stem).map_err(|unfit| fail(of_text(KeyPath::dotted("output.figure"), stem, unfit)))?;
+        }
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
         resolve::specification(&wire, &folder).map_err(&fail)?;
         let methods = resolve::methods(&wire.identifier).map_err(&fail)?;
@@ -301,6 +313,7 @@ impl Scenario {
             .map(|(index, axis)| axis.resolve(index))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
+        check_titles(&axes).map_err(&fail)?;
         let combinations = sweep::product(&axes).map_err(&fail)?;
         check_size(wire.replicates, combinations.len()).map_err(&fail)?;
         check_draws(&wire.draw, &axes).map_err(&fail)?;
@@ -374,6 +387,21 @@ fn check_size(replicates: u64, cells: usize) -> Result<(), Problem> {
         ));
     }
     Ok(())
+}
+
+/// Files are named after cells, so their labels are not too long together.
+fn check_titles(axes: &[Axis]) -> Result<(), Problem> {
+    let longest = |axis: &Axis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
+    let found = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
+    if found <= LONGEST_NAME {
+        return Ok(());
+    }
+    Err(Problem::name(
+        KeyPath::dotted("sweep"),
+        format!("the labels of a cell have up to {found} characters together"),
+        format!("expected at most {LONGEST_NAME}"),
+        "shorten the longest labels, or sweep along fewer axes",
+    ))
 }
 
 /// Draws and sweeps change different keys, and no key twice.

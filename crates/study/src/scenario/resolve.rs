@@ -20,9 +20,10 @@ use simulate::{
     Approach, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, Side, Simulation, SteeringGear, Vessel,
 };
 
-use super::problem::{KeyPath, Problem, suggestion};
+use super::problem::{KeyPath, Problem, of_text, suggestion};
 use super::wire::*;
 use super::{Means, Method, TRACE, effect, reader, specification};
+use crate::name;
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
@@ -500,16 +501,7 @@ pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
             Means::Trace(_) => TRACE,
         };
         let label = entry.label.clone().unwrap_or_else(|| id.to_owned());
-        if label.trim().is_empty() || label.chars().any(char::is_control) {
-            let key = key.child("label");
-            let found = format!("`{key}` is {label:?}");
-            return Err(Problem::value(
-                key,
-                found,
-                "expected a name on one line",
-                "name the method, or leave the label out",
-            ));
-        }
+        name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
             return Err(Problem::name(
                 key.child("label"),
