@@ -132,7 +132,7 @@ fn only_files_and_pipes_are_read_and_only_so_far() {
     let desk = Desk::new();
     desk.file("good.csv", zig_zag_csv());
     desk.file("long.toml", "# a long note\n".repeat(100_000));
-    let device = "/dev/zero: this is neither a file nor a pipe";
+    let device = "this is neither a file nor a pipe";
     desk.run(&["/dev/zero"]).is_refused(2, &[device]);
     desk.run(&["check", "/dev/zero"]).is_refused(2, &[device]);
     desk.run(&["fit", "/dev/zero"]).is_refused(2, &[device]);
