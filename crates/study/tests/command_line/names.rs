@@ -119,3 +119,19 @@ fn a_page_that_cannot_be_printed_is_refused_before_the_trials() {
     }
     assert!(!desk.path("results").exists());
 }
+
+/// Letters that a file name of a figure does not show must not make one figure of two.
+#[test]
+fn records_in_any_script_have_figures_of_their_own() {
+    let desk = Desk::new();
+    for name in ["a.csv", "船.csv", "鄱.csv"] {
+        desk.file(name, zig_zag_csv());
+    }
+    desk.run(&["trace", "a.csv", "--validate", "船.csv", "--validate", "鄱.csv", "--quiet"]).is_done();
+    let files = std::fs::read_dir(desk.path("a-trace")).expect("readable").flatten();
+    let records = files.filter(|file| {
+        let name = file.file_name().to_string_lossy().into_owned();
+        name.starts_with("record") && name.ends_with(".svg")
+    });
+    assert_eq!(records.count(), 3);
+}
