@@ -11,6 +11,7 @@
 //! | SVG and PNG files | [`figure`] |
 //! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
 //! | values with uncertainty, intervals, missing values | [`number`] |
+//! | text of others on its way into a page or a file | [`markdown`], [`printable`] |
 //!
 //! ```
 //! use report::{Curve, Theme};
@@ -31,8 +32,10 @@ pub mod curve;
 pub mod error;
 pub mod figure;
 pub mod figures;
+pub mod markdown;
 pub mod number;
 pub mod palette;
+pub mod printable;
 pub mod table;
 pub mod theme;
 

@@ -9,6 +9,7 @@ use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, Int
 use crate::clip;
 use crate::fonts::FAMILY_WITH_FALLBACK;
 use crate::palette::PAPER;
+use crate::printable::is_printable;
 use crate::scene::{self, Anchor, Scene, Shape, Stroke, Text};
 
 /// Canvas units to one point on the page: 2.4 to a dot at 600 dpi, so rounding to whole units is never seen.
@@ -84,8 +85,8 @@ fn draw_text(backend: &mut SVGBackend<'_>, at: (i32, i32), text: &Text) {
     };
     let RGBColor(r, g, b) = text.colour;
     let style = font.color(&RGBColor(r, g, b)).into_text_style(&(0, 0)).pos(Pos::new(anchor, VPos::Bottom));
-    // Control characters are not allowed in XML, not even escaped.
-    let clean: String = text.text.chars().filter(|c| !c.is_control()).collect();
+    // XML allows neither control characters nor some others, not even escaped.
+    let clean: String = text.text.chars().filter(|&c| scene::is_markup(c) || is_printable(c)).collect();
     backend.draw_text(&clean, &style, at).expect(INFALLIBLE);
 }
 
@@ -141,7 +142,7 @@ mod tests {
     fn sample() -> String {
         let mut scene = Scene::default();
         scene.line(Layer::Data, [(10.0, 10.0), (90.0, 10.0)], Stroke::solid(INK, 0.5).dashed(DASHED));
-        scene.text(Layer::Note, (10.0, 20.0), Text::new(format!("a < b & {}\u{7}", symbol("ψ")), 8.0));
+        scene.text(Layer::Note, (10.0, 20.0), Text::new(format!("a < b & {}\u{7}\u{fffe}", symbol("ψ")), 8.0));
         render(&scene, 100.0, 30.0)
     }
 
@@ -175,7 +176,7 @@ mod tests {
     fn text_is_escaped_and_italic_is_markup() {
         let svg = sample();
         assert!(svg.contains("a &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"));
-        assert!(!svg.contains("dy=") && !svg.contains('\u{7}') && !svg.contains('\u{e000}'));
+        assert!(!svg.contains("dy=") && !svg.contains(['\u{7}', '\u{fffe}']) && !svg.contains('\u{e000}'));
         assert!(svg.contains("font-size=\"160\""));
     }
 }

@@ -8,8 +8,10 @@ const POINTS_PER_MM: f64 = 72.0 / 25.4;
 const COLUMN_MM: f64 = 85.0;
 /// Width of a full page of text, mm.
 const PAGE_MM: f64 = 180.0;
-const WIDTH_MM: [f64; 2] = [60.0, 400.0];
-const DPI: [f64; 2] = [72.0, 1200.0];
+/// Least and largest width of a printed figure, mm.
+pub const WIDTH_MM: [f64; 2] = [60.0, 400.0];
+/// Least and largest resolution of a printed figure, dots per inch.
+pub const DPI: [f64; 2] = [72.0, 1200.0];
 
 /// Sizes of a figure, in points on the finished page.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -18,10 +18,12 @@ pub fn run(scenarios: &[PathBuf]) -> Result<(), Failure> {
                 counted(scenario.labels().count() as u64, "method"),
                 counted(scenario.replicates, "trial"),
             ))?,
-            Err(failure) => wrong.push(failure.message),
+            Err(failure) => wrong.push(failure),
         }
     }
-    if wrong.is_empty() { Ok(()) } else { Err(Failure { blame: Blame::Input, message: wrong.join("\n\n") }) }
+    let Some(first) = wrong.first() else { return Ok(()) };
+    let others: String = wrong[1..].iter().map(|failure| format!("\n\n{failure}")).collect();
+    Err(Failure { blame: Blame::Input, message: first.message.clone() + &others })
 }
 
 fn counted(count: u64, word: &str) -> String {

@@ -6,8 +6,9 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use report::Theme;
+use report::theme::{DPI, WIDTH_MM};
 
-use crate::failure::Failure;
+use crate::failure::{Blame, Failure};
 use crate::plan::Shard;
 use crate::{check, fit, list, merge, overview, publish, run, screen, trace};
 
@@ -44,11 +45,19 @@ pub struct RunRequest {
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Style {
     /// Draw figures for print, MM millimetres wide [default: for a screen]
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
     pub paper: Option<f64>,
     /// Resolution of figures for print
-    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper")]
+    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
     pub dpi: f64,
+}
+
+/// Reads a number from `least` to `most`.
+fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+        number.ok_or_else(|| format!("expected a number from {least} to {most}"))
+    }
 }
 
 impl Style {
@@ -230,7 +239,15 @@ pub enum Listed {
 
 /// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(usage) if usage.use_stderr() => {
+            // By the same way as all other messages: an argument may hold anything.
+            screen::warn(usage.render().to_string().trim_end());
+            return ExitCode::from(Blame::Input.exit_code());
+        }
+        Err(help) => help.exit(),
+    };
     match answer(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

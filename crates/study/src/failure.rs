@@ -1,17 +1,21 @@
 //! How the command line fails: one message and an exit code, never a backtrace.
 
+use std::error::Error;
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
+/// What stands before the message of a failure.
+const ERROR: &str = "error: ";
+
 /// A failure as the user sees it.
 #[derive(Debug)]
 pub struct Failure {
     /// Whether the input or the work is at fault.
     pub blame: Blame,
-    /// The whole message.
+    /// The whole message, without the word "error" before it.
     pub message: String,
 }
 
@@ -37,12 +41,12 @@ impl Blame {
 impl Failure {
     /// The input is wrong.
     pub fn input(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Input, message: format!("error: {message}") }
+        Self { blame: Blame::Input, message: message.to_string() }
     }
 
     /// The work could not be done.
     pub fn work(message: impl fmt::Display) -> Self {
-        Self { blame: Blame::Work, message: format!("error: {message}") }
+        Self { blame: Blame::Work, message: message.to_string() }
     }
 
     /// The input is wrong at a place of a text file: the line is shown, the place underlined with what was `expected`
@@ -53,17 +57,18 @@ impl Failure {
         let place = AnnotationKind::Primary.span(span).label(expected);
         let snippet = Snippet::source(text).path(&name).annotation(place);
         let group = Level::ERROR.primary_title(found).element(snippet).element(Level::HELP.message(advice));
-        Self { blame: Blame::Input, message: Renderer::plain().render(&[group]) }
+        let shown = Renderer::plain().render(&[group]);
+        Self { blame: Blame::Input, message: shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned() }
     }
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
+        write!(f, "{ERROR}{}", self.message)
     }
 }
 
-impl std::error::Error for Failure {}
+impl Error for Failure {}
 
 /// Reading and writing files of the study's own: the path belongs in the message.
 pub trait OnPath<T> {
@@ -71,8 +76,54 @@ pub trait OnPath<T> {
     fn on(self, tried: &str, path: &Path) -> Result<T, Failure>;
 }
 
-impl<T, E: fmt::Display> OnPath<T> for Result<T, E> {
+impl<T, E: Error> OnPath<T> for Result<T, E> {
     fn on(self, tried: &str, path: &Path) -> Result<T, Failure> {
-        self.map_err(|error| Failure::work(format!("failed to {tried} {}: {error}", path.display())))
+        self.map_err(|error| Failure::work(format!("failed to {tried} {}: {}", path.display(), with_causes(&error))))
+    }
+}
+
+/// An error with its causes, each told once: some errors tell their cause themselves.
+fn with_causes(error: &dyn Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let own = error.to_string();
+        if !text.contains(&own) {
+            text += &format!(": {own}");
+        }
+        cause = error.source();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use report::ReportError;
+
+    use super::*;
+
+    #[test]
+    fn the_word_error_is_told_once_and_only_in_front() {
+        let failures = [
+            Failure::input("no such thing"),
+            Failure::work("no such thing"),
+            Failure::at(Path::new("a.toml"), "seed = -1\n", 7..9, "no such thing", "expected more", "change it"),
+        ];
+        for failure in failures {
+            assert!(failure.to_string().starts_with("error: no such thing"), "{failure}");
+            assert!(failure.message.starts_with("no such thing"), "{}", failure.message);
+        }
+    }
+
+    #[test]
+    fn the_cause_of_an_error_is_told_once() {
+        let full = || std::io::Error::other("no space is left");
+        let write = ReportError::Write { path: PathBuf::from("a.svg"), source: full() };
+        let told = Err::<(), _>(write).on("write the figure", Path::new("a")).expect_err("it failed").message;
+        assert_eq!(told, "failed to write the figure a: failed to write a.svg: no space is left");
+        let told = Err::<(), _>(full()).on("write", Path::new("b")).expect_err("it failed").message;
+        assert_eq!(told, "failed to write b: no space is left");
     }
 }

@@ -5,6 +5,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | scenario files | [`scenario`] |
+//! | what may be a name or a label | [`name`] |
 //! | one trial | [`engine`] |
 //! | many of them, in order | [`plan`], [`stopping`], [`collect`], [`unfinished`], [`merge`] |
 //! | what is stored | [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`]; how, [`folder`] |
@@ -27,6 +28,7 @@ pub mod json;
 pub mod list;
 pub mod manifest;
 pub mod merge;
+pub mod name;
 pub mod overview;
 pub mod plan;
 pub mod present;

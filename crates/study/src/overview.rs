@@ -4,11 +4,14 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use report::markdown;
+
 use crate::cli::Common;
 use crate::disk;
 use crate::failure::{Failure, OnPath};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
+use crate::name;
 use crate::screen;
 use crate::store;
 
@@ -40,7 +43,7 @@ pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
             path.display()
         )));
     }
-    target.write(PAGE, page(&studies))?;
+    target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&studies)))?;
     if common.quiet { Ok(()) } else { screen::say(&format!("{} studies: {}", studies.len(), path.display())) }
 }
 
@@ -67,7 +70,11 @@ fn study(folder: &Path) -> Result<Study, Failure> {
     let missing = || Failure::input(format!("{}: there is no such file any more", path.display()));
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
     let words = manifest.words();
-    let figure = words.figure.map(|stem| figure(folder, &stem)).transpose()?;
+    let unfit = |stem: &str, unfit| Failure::input(format!("{}: `output.figure` is {}; {unfit}", path.display(), name::shown(stem)));
+    let figure = match &words.figure {
+        Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
+        None => None,
+    };
     // A link needs the name of the folder, which --out may have made another than that of the scenario.
     let name = folder.file_name().map_or_else(|| manifest.name.clone(), |name| name.to_string_lossy().into_owned());
     Ok(Study { name, question: words.question.trim().to_owned(), finding: words.finding.trim().to_owned(), figure })
@@ -89,10 +96,11 @@ fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
 }
 
 fn page(studies: &[Study]) -> String {
-    let mut page = String::from(MARK)
-        + "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
+    let mut page = String::from(
+        "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
          whole report,\nevery figure with its 95 % interval as CSV, Markdown and LaTeX, and a manifest from which \
-         `study NAME/manifest.toml --out DIR`\nruns it again.\n";
+         `study NAME/manifest.toml --out DIR`\nruns it again.\n",
+    );
     for Study { name, question, finding, figure } in studies {
         write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");
         if !finding.is_empty() {

@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 use rayon::prelude::*;
-use report::{Table, Theme, number};
+use report::{Table, Theme, markdown, number};
 
 use crate::cli::{Common, Format, Style};
 use crate::failure::{Failure, OnPath};
@@ -64,7 +64,8 @@ pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &C
     }
     let drawings = drawings::of(stored, &summary);
     write_all(&drawings, theme, folder)?;
-    folder.write(REPORT, page(stored, &summary, brief.as_ref(), &drawings))?;
+    // Whatever a scenario or a label holds: no HTML.
+    folder.write(REPORT, markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
 
     match common.format {
         _ if common.quiet => Ok(()),

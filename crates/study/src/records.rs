@@ -5,6 +5,7 @@ use std::path::Path;
 use trial::{Origin, Reading, Trial};
 
 use crate::failure::Failure;
+use crate::name;
 
 /// Reads a record; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder that
 /// holds one for it.
@@ -22,6 +23,8 @@ pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> 
         let stem = path.file_stem()?.to_string_lossy().into_owned();
         Some(folder.join(format!("{stem}.trial.toml"))).filter(|own| own.is_file())
     });
+    // Folders and figures are named after the record.
+    name::of_file(path)?;
     let reading = match (columns, &own) {
         (_, Some(own)) => trial::read_with(path, Some(own)),
         (Some(columns), None) if !columns.is_dir() => trial::read_with(path, Some(columns)),
@@ -53,9 +56,10 @@ pub fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec
 }
 
 /// A name for every record: its own, with a number where several have the same.
-pub fn names<'a>(trials: impl Iterator<Item = &'a str>) -> Vec<String> {
+pub fn names(own: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in trials {
+    for name in own {
+        let name = name.as_ref();
         let numbered = (2..).map(|number| format!("{name}-{number}"));
         let unique = std::iter::once(name.to_owned()).chain(numbered).find(|candidate| !names.contains(candidate));
         names.push(unique.expect("one of the endless numbers is free"));

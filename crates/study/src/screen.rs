@@ -1,7 +1,11 @@
 //! Writing to the terminal: results on standard output, warnings and errors on standard error. A reader that has gone away
-//! (`study list ships | head -1`) ends the writing and not the work.
+//! (`study list ships | head -1`) ends the writing and not the work. What could act on the terminal is shown and not sent: a
+//! path, a file or a stored label may hold it.
 
+use std::borrow::Cow;
 use std::io::{ErrorKind, Write};
+
+use report::printable::escaped;
 
 use crate::failure::Failure;
 
@@ -10,7 +14,7 @@ use crate::failure::Failure;
 /// Fails when they cannot be written, except to a pipe that nobody reads any more.
 pub fn say(lines: &str) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
-    match writeln!(output, "{lines}").and_then(|()| output.flush()) {
+    match writeln!(output, "{}", shown(lines)).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::work(format!("failed to write to standard output: {error}")))
         }
@@ -20,5 +24,10 @@ pub fn say(lines: &str) -> Result<(), Failure> {
 
 /// Writes a line to standard error. Where that is not possible, nobody is there to be told.
 pub fn warn(line: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{line}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", shown(line));
+}
+
+/// The lines without anything but text in them.
+fn shown(lines: &str) -> String {
+    lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
 }

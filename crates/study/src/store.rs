@@ -11,6 +11,7 @@ use crate::disk;
 use crate::failure::{Failure, OnPath};
 use crate::folder::{Reading, ResultFolder, sha256_of};
 use crate::manifest::Manifest;
+use crate::name;
 use crate::rows::{Layout, Reader, Row, Sequence};
 use crate::scenario::{MethodName, Words};
 use crate::showcase::Showcase;
@@ -73,6 +74,10 @@ impl Design {
     }
 
     fn check(&self) -> Result<(), String> {
+        let cells = self.cells.iter().flat_map(|cell| &cell.labels);
+        for text in self.axes.iter().chain(self.methods.iter().map(|method| &method.label)).chain(cells) {
+            name::label(text).map_err(|unfit| format!("a label is {}; {unfit}", name::shown(text)))?;
+        }
         let mut labels = HashSet::new();
         if let Some(twice) = self.methods.iter().find(|method| !labels.insert(&method.label)) {
             return Err(format!("two methods are called {:?}", twice.label));

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`] |
+//! | which files are opened, and how much of them is read | [`file`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
@@ -11,6 +12,7 @@
 //! | IMO criteria | [`imo`] |
 
 pub mod channel;
+pub mod file;
 pub mod imo;
 pub mod plausibility;
 pub mod reader;
@@ -20,6 +22,7 @@ pub mod writer;
 pub mod zigzag;
 
 pub use channel::Channel;
+pub use file::FileError;
 pub use reader::{ReadError, Reading, read, read_with};
 pub use record::{Columns, Noise, Origin, Trial, TrialError};
 pub use sidecar::{Sidecar, SidecarError};

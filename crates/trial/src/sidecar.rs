@@ -47,8 +47,12 @@ use thiserror::Error;
 use toml::Spanned;
 
 use crate::channel::{Channel, Unit, column, time_column};
+use crate::file::{FileError, Kind, read_text};
 use crate::reader::{Encoding, Separator};
 use crate::record::Noise;
+
+/// A sidecar; the longest in use has a hundred lines.
+pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
 
 /// What is wrong with a sidecar, and where.
 #[derive(Debug, Error)]
@@ -66,8 +70,8 @@ pub struct SidecarError {
 #[derive(Debug, Error)]
 pub enum SidecarProblem {
     /// The file cannot be read.
-    #[error("the sidecar cannot be read: {0}; check its name and rights")]
-    Io(std::io::Error),
+    #[error("the sidecar cannot be used: {0}")]
+    File(FileError),
     /// Not TOML, or a key or value that is not known.
     #[error("{message}")]
     Syntax {
@@ -284,12 +288,12 @@ impl Sidecar {
 
     /// Reads and checks a sidecar.
     ///
-    /// Fails when the file cannot be read, and as [`parse`](Self::parse) does.
+    /// Fails when the file cannot be read or is larger than [`SIDECAR`], and as [`parse`](Self::parse) does.
     pub fn load(file: &Path) -> Result<Self, SidecarError> {
-        let text = std::fs::read_to_string(file).map_err(|error| SidecarError {
+        let text = read_text(file, SIDECAR).map_err(|error| SidecarError {
             file: file.to_path_buf(),
             line: None,
-            problem: SidecarProblem::Io(error),
+            problem: SidecarProblem::File(error),
         })?;
         Self::parse(&text, file)
     }
@@ -481,6 +485,6 @@ mod tests {
         assert_eq!(Sidecar::beside(Path::new("a/run.1.csv")), Path::new("a/run.1.trial.toml"));
         assert_eq!(Sidecar::beside(Path::new("run")), Path::new("run.trial.toml"));
         let error = Sidecar::load(Path::new("no/such.trial.toml")).expect_err("it is not there");
-        assert!(matches!(error.problem, SidecarProblem::Io(_)), "{error}");
+        assert!(matches!(error.problem, SidecarProblem::File(FileError::NotFound)), "{error}");
     }
 }

@@ -197,7 +197,7 @@ fn goals(measured: &[Measurements], trials: &Trials) -> Vec<Goal> {
         });
     }
     goals.push(Goal {
-        what: format!("`study check` on {} scenarios, with the start of the program", trials.scenarios),
+        what: format!("study check on {} scenarios, with the start of the program", trials.scenarios),
         found: measured_time(&trials.check),
         limit: format!("< {}", time(CHECK_S)),
         verdict: Verdict::at_most(&trials.check, CHECK_S),

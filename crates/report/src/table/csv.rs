@@ -1,6 +1,7 @@
 //! A table as CSV, after RFC 4180.
 
 use super::Table;
+use crate::printable::escaped;
 
 pub(super) fn render(table: &Table) -> String {
     let mut out = String::new();
@@ -21,7 +22,7 @@ fn readable(cell: &str) -> String {
     let Some((mantissa, exponent)) = plain.split_once("×10") else { return quote(&plain) };
     let digits: Option<String> = exponent.chars().map(from_superscript).collect();
     match digits.filter(|digits| !digits.is_empty()) {
-        Some(digits) => format!("{mantissa}e{digits}"),
+        Some(digits) => quote(&format!("{mantissa}e{digits}")),
         None => quote(&plain),
     }
 }
@@ -38,7 +39,19 @@ fn from_superscript(c: char) -> Option<char> {
 }
 
 fn quote(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+    let text = escaped(text);
+    // Spreadsheets run such a text as a formula, and some formulas run programs.
+    let guard = if text.starts_with(['=', '+', '-', '@']) && !is_number(&text) { "'" } else { "" };
+    if text.contains([',', '"']) {
+        format!("\"{guard}{}\"", text.replace('"', "\"\""))
+    } else {
+        format!("{guard}{text}")
+    }
+}
+
+/// Whether a text is a number, alone or with its uncertainty.
+fn is_number(text: &str) -> bool {
+    text.split(' ').all(|word| word == "±" || word.parse::<f64>().is_ok())
 }
 
 #[cfg(test)]
@@ -53,5 +66,14 @@ mod tests {
             assert_eq!(text.parse(), Ok(value), "{text}");
         }
         assert_eq!(readable("5×10 m, −3"), "\"5×10 m, -3\"");
+        assert_eq!(readable("−12.5 ± 0.1"), "-12.5 ± 0.1");
+    }
+
+    #[test]
+    fn no_cell_is_a_formula() {
+        for text in ["=1+1", "+A1", "-1+cmd|'/C calc'!A0", "@SUM(A1)", "−A1", "=A1×10²"] {
+            assert!(readable(text).starts_with('\''), "{text}");
+        }
+        assert_eq!(readable("\t=1+1"), "\\t=1+1");
     }
 }

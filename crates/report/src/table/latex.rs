@@ -2,6 +2,7 @@
 //! superscripts) become mathematics, so the result compiles without a Unicode engine.
 
 use super::{Alignment, Table};
+use crate::printable::escaped;
 
 pub(super) fn render(table: &Table) -> String {
     let mut out = String::from("\\begin{table}\n  \\centering\n");
@@ -14,7 +15,10 @@ pub(super) fn render(table: &Table) -> String {
     out.push_str(&format!("    {} \\\\\n    \\midrule\n", heads.join(" & ")));
     for row in &table.rows {
         let cells: Vec<String> = table.cells(row).map(|c| c.map_or_else(|| "--".into(), escape)).collect();
-        out.push_str(&format!("    {} \\\\\n", cells.join(" & ")));
+        let cells = cells.join(" & ");
+        // A bracket or a star behind the end of the row before would belong to that.
+        let guard = if cells.starts_with(['[', '*', '(']) { "{}" } else { "" };
+        out.push_str(&format!("    {guard}{cells} \\\\\n"));
     }
     out.push_str("    \\bottomrule\n  \\end{tabular}\n\\end{table}\n");
     out
@@ -42,6 +46,7 @@ const GREEK: [(char, &str); 18] = [
 ];
 
 fn escape(text: &str) -> String {
+    let text = escaped(text);
     let mut out = String::with_capacity(text.len() + 8);
     let mut chars = text.chars().peekable();
     while let Some(c) = chars.next() {
@@ -71,7 +76,6 @@ fn escape(text: &str) -> String {
             '×' => out.push_str("$\\times$"),
             '°' => out.push_str("$^\\circ$"),
             '–' => out.push_str("--"),
-            '\n' | '\r' => out.push(' '),
             _ => match GREEK.iter().find(|(letter, _)| *letter == c) {
                 Some((_, name)) => out.push_str(&format!("$\\{name}$")),
                 None => out.push(c),

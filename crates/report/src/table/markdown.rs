@@ -1,6 +1,7 @@
 //! A table in Markdown (the GitHub flavour).
 
 use super::{Alignment, Table, width};
+use crate::markdown::text as escape;
 
 pub(super) fn render(table: &Table) -> String {
     // Escaping comes before padding, so that the columns of the source line up too.
@@ -29,8 +30,4 @@ pub(super) fn render(table: &Table) -> String {
         }
     }
     out
-}
-
-fn escape(text: &str) -> String {
-    text.replace('\\', "\\\\").replace('|', "\\|").replace(['\n', '\r'], " ").replace('*', "\\*").replace('_', "\\_")
 }

@@ -1,5 +1,6 @@
 //! Tables of results: one table, four renderings (terminal, Markdown, CSV, LaTeX). Cells are text that is already
-//! rounded; [`crate::number`] does that. A cell that is missing is shown as "–" and is empty in CSV.
+//! rounded; [`crate::number`] does that. A cell that is missing is shown as "–" and is empty in CSV. Text stands for itself
+//! in each of them: nothing in a cell or a heading is markup, a formula or a command.
 
 mod csv;
 mod latex;
@@ -7,7 +8,11 @@ mod markdown;
 mod text;
 mod width;
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
+
+use crate::printable::escaped;
 
 /// Which side the cells of a column are pushed to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -100,7 +105,8 @@ impl Table {
     }
 
     /// As CSV (RFC 4180, but with plain line breaks): headings with units in the first line, missing cells empty, and
-    /// ASCII minus signs, so that numbers can be read back. The title is not part of it.
+    /// ASCII minus signs, so that numbers can be read back. A text that a spreadsheet would take for a formula stands behind
+    /// an apostrophe. The title is not part of it.
     pub fn to_csv(&self) -> String {
         csv::render(self)
     }
@@ -120,12 +126,13 @@ impl Table {
     fn padded(&self) -> Vec<Vec<String>> {
         let mut lines = vec![Vec::new(); self.rows.len() + 1];
         for (i, column) in self.columns.iter().enumerate() {
-            let cells: Vec<&str> = self
+            let cells: Vec<Cow<str>> = self
                 .rows
                 .iter()
-                .map(|row| row.get(i).and_then(Option::as_deref).unwrap_or(crate::number::MISSING))
+                .map(|row| escaped(row.get(i).and_then(Option::as_deref).unwrap_or(crate::number::MISSING)))
                 .collect();
-            for (line, cell) in lines.iter_mut().zip(width::align(&column.head(), &cells, column.alignment)) {
+            let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
+            for (line, cell) in lines.iter_mut().zip(width::align(&escaped(&column.head()), &cells, column.alignment)) {
                 line.push(cell);
             }
         }
@@ -211,6 +218,22 @@ least_squares,-0.25,,12
         table.push(["r₁₂"]);
         assert!(table.to_latex().contains("$\\sigma$$^{2}$ 10$^{-3}$ \\textbackslash{} x\\_1"));
         assert!(table.to_latex().contains("r$_{12}$"));
+    }
+
+    #[test]
+    fn text_from_outside_is_only_text() {
+        let mut table = Table::new([Column::left("=A1"), Column::left("<b>\u{1b}[31m")]).titled("\u{7}");
+        table.push(["=HYPERLINK(\"http://a\")", "\u{1b}]0;x\n"]);
+        table.push(["[2.5, 3]", "<script>|`&lt;"]);
+        for text in [table.to_text(), table.to_markdown(), table.to_csv(), table.to_latex()] {
+            assert!(!text.contains(['\u{1b}', '\u{7}']), "{text:?}");
+        }
+        assert!(table.to_markdown().contains("\\<script>\\|\\`\\&lt;"), "{}", table.to_markdown());
+        let csv =
+            "'=A1,<b>\\u{1b}[31m\n\"'=HYPERLINK(\"\"http://a\"\")\",\\u{1b}]0;x\\n\n\"[2.5, 3]\",<script>|`&lt;\n";
+        assert_eq!(table.to_csv(), csv);
+        // After a line break in LaTeX a bracket would be its length.
+        assert!(table.to_latex().contains("    {}[2.5, 3] & "), "{}", table.to_latex());
     }
 
     #[test]

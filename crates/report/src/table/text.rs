@@ -1,11 +1,12 @@
 //! A table for the terminal.
 
 use super::{Table, width};
+use crate::printable::escaped;
 
 pub(super) fn render(table: &Table) -> String {
     let mut out = String::new();
     if let Some(title) = &table.title {
-        out.push_str(title);
+        out.push_str(&escaped(title));
         out.push_str("\n\n");
     }
     for (i, line) in table.padded().iter().enumerate() {

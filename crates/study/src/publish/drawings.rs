@@ -253,7 +253,7 @@ mod tests {
             }
             _ => Ok(()),
         });
-        assert_eq!(first_failure(work).map_err(|failure| failure.message), Err("error: figure 7".to_owned()));
+        assert_eq!(first_failure(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
     }
 
     #[test]

@@ -19,8 +19,7 @@ mod wire;
 mod words;
 
 use std::borrow::Cow;
-use std::fs;
-use std::io::ErrorKind;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
@@ -30,13 +29,16 @@ use sha2::{Digest, Sha256};
 use simulate::{Purpose, StreamKey};
 use toml::{Table, Value};
 use trial::Trial;
+use trial::file::{self, FileError, Kind};
+use trial::reader::RECORD;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, OnPath};
 use crate::manifest::Manifest;
+use crate::name::{self, LONGEST_NAME};
 use draw::{Draw, DrawWire};
 pub use effect::keys as effect_keys;
 use part::Part;
-use problem::{KeyPath, Problem, suggestion};
+use problem::{KeyPath, Problem, of_text, suggestion};
 use reader::Gaps;
 pub use resolve::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
@@ -264,14 +266,19 @@ pub struct Scenario {
 impl Scenario {
     /// Reads and resolves a file; of a manifest the scenario in it, with the seed it was run with.
     ///
-    /// Fails with a message that names the file, the line and the key, what was found and what was expected.
+    /// Fails with a message that names the file, the line and the key, what was found and what was expected. The name of
+    /// the study, which its folder is called by, has to be one ([`name::file`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
         if let Some(manifest) = Manifest::of_text(&text) {
+            name::file(&manifest.name).map_err(|unfit| {
+                let Problem { key, mark, found, expected, advice } =
+                    of_text(KeyPath::dotted("name"), &manifest.name, unfit);
+                Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
+            })?;
             return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
         }
-        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-        Self::parse(path, &name, text, seed)
+        Self::parse(path, &name::of_file(path)?, text, seed)
     }
 
     /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
@@ -291,6 +298,12 @@ impl Scenario {
         }
         let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
         let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        for (key, text) in [("question", &wire.question), ("analysis", &wire.analysis), ("finding", &wire.finding)] {
+            name::prose(text).map_err(|unfit| fail(of_text(KeyPath::dotted(key), text, unfit)))?;
+        }
+        if let Some(stem) = &wire.output.figure {
+            name::file(stem).map_err(|unfit| fail(of_text(KeyPath::dotted("output.figure"), stem, unfit)))?;
+        }
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
         resolve::specification(&wire, &folder).map_err(&fail)?;
         let methods = resolve::methods(&wire.identifier).map_err(&fail)?;
@@ -302,6 +315,7 @@ impl Scenario {
             .map(|(index, axis)| axis.resolve(index))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
+        check_titles(&axes).map_err(&fail)?;
         let combinations = sweep::product(&axes).map_err(&fail)?;
         check_size(wire.replicates, combinations.len()).map_err(&fail)?;
         check_draws(&wire.draw, &axes).map_err(&fail)?;
@@ -332,7 +346,7 @@ impl Scenario {
             figure: wire.output.figure,
             detail,
             stop,
-            design_sha256: sha256_of(&identity::design_of(&document), &folder),
+            design_sha256: sha256_of(&identity::design_of(&document), &folder)?,
             sha256: hex(&Sha256::digest(text.as_bytes())),
             text,
         })
@@ -377,6 +391,21 @@ fn check_size(replicates: u64, cells: usize) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Files are named after cells, so their labels are not too long together.
+fn check_titles(axes: &[Axis]) -> Result<(), Problem> {
+    let longest = |axis: &Axis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
+    let found = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
+    if found <= LONGEST_NAME {
+        return Ok(());
+    }
+    Err(Problem::name(
+        KeyPath::dotted("sweep"),
+        format!("the labels of a cell have up to {found} characters together"),
+        format!("expected at most {LONGEST_NAME}"),
+        "shorten the longest labels, or sweep along fewer axes",
+    ))
+}
+
 /// Draws and sweeps change different keys, and no key twice.
 fn check_draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
     for (index, draw) in draws.iter().enumerate() {
@@ -419,21 +448,30 @@ fn detail(titles: &[String], cells: &[Cell]) -> Result<Vec<usize>, Problem> {
 }
 
 /// SHA-256 of a design and of the records it replays.
-fn sha256_of(design: &Table, folder: &Path) -> String {
+///
+/// Fails when such a record is there and cannot be read to its end.
+fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
     let mut digest = Sha256::new_with_prefix(design.to_string());
     let mut tables = vec![design];
     while let Some(table) = tables.pop() {
         for (key, value) in table {
             match value {
                 Value::Table(inner) => tables.push(inner),
-                // A file that is not there has been refused, or belongs to a point that is never resolved with it.
-                Value::String(file) if key == "file" => digest.update(fs::read(folder.join(file)).unwrap_or_default()),
+                Value::String(name) if key == "file" => {
+                    let path = folder.join(name);
+                    match file::open(&path, RECORD) {
+                        Ok(mut record) => drop(io::copy(&mut record, &mut digest).on("read", &path)?),
+                        // It has been refused, or belongs to a point that is never resolved with it.
+                        Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
+                        Err(error) => return Err(error).on("read", &path),
+                    }
+                }
                 Value::Array(items) => tables.extend(items.iter().filter_map(Value::as_table)),
                 _ => {}
             }
         }
     }
-    hex(&digest.finalize())
+    Ok(hex(&digest.finalize()))
 }
 
 /// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved like
@@ -496,29 +534,16 @@ fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
     Failure::at(path, text, span, "this is not valid TOML", &message, advice)
 }
 
-/// Largest scenario file accepted, bytes.
-const LARGEST_FILE: u64 = 1 << 20;
+/// A scenario, alone or in a manifest; the longest published one has a hundredth of this.
+const SCENARIO: Kind = Kind { name: "a scenario", largest: 1 << 20 };
 
 fn read_text(path: &Path) -> Result<String, Failure> {
-    let refuse = |problem: String, advice: &str| Failure::input(format!("{}: {problem}; {advice}", path.display()));
-    let advice = "give the path of a scenario (a TOML file)";
-    let about = fs::metadata(path).map_err(|error| match error.kind() {
-        ErrorKind::NotFound => refuse("there is no such file".into(), advice),
-        _ => refuse(format!("cannot be read: {error}"), advice),
-    })?;
-    if about.is_dir() {
-        return Err(refuse("this is a folder".into(), advice));
-    }
-    if about.len() > LARGEST_FILE {
-        let problem = format!("this file has {} bytes, a scenario has at most {LARGEST_FILE}", about.len());
-        return Err(refuse(problem, "if it is a record, identify it with `study fit`"));
-    }
-    let bytes = fs::read(path).map_err(|error| refuse(format!("cannot be read: {error}"), "check its rights"))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
-        let byte = error.as_bytes()[valid];
-        refuse(format!("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text"), advice)
+    file::read_text(path, SCENARIO).map_err(|error| {
+        let advice = match error {
+            FileError::TooLarge { .. } => "a record is identified with `study fit`",
+            _ => "expected the path of a scenario (a TOML file)",
+        };
+        Failure::input(format!("{}: {error}; {advice}", path.display()))
     })
 }
 

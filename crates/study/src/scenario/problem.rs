@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use crate::name::{Unfit, shown};
+
 /// Path of a key from the root of a scenario; entries of a list are counted from 0, as a sweep addresses them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct KeyPath(Vec<String>);
@@ -84,6 +86,12 @@ impl Problem {
     ) -> Self {
         Self { mark: Mark::Name, ..Self::value(key, found, expected, advice) }
     }
+}
+
+/// The problem of a text that cannot be used.
+pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> Problem {
+    let found = format!("`{key}` is {}", shown(text));
+    Problem::value(key, found, unfit.to_string(), "change the text")
 }
 
 /// The names in backquotes, joined by commas.

@@ -9,6 +9,7 @@ use serde::{Deserialize, forward_to_deserialize_any};
 use toml::{Table, Value};
 
 use super::problem::{KeyPath, Mark, Problem, listed, suggestion};
+use crate::name::shown;
 
 /// Reads a whole document.
 ///
@@ -299,10 +300,8 @@ impl<'de, 'a> Reader<'de, 'a> {
 
 /// A value in a message.
 fn described(value: &Value) -> String {
-    const SHOWN: usize = 40;
     match value {
-        Value::String(text) if text.chars().nth(SHOWN).is_none() => format!("the text {text:?}"),
-        Value::String(text) => format!("the text {:?}…", text.chars().take(SHOWN).collect::<String>()),
+        Value::String(text) => format!("the text {}", shown(text)),
         Value::Table(_) => "a table".to_owned(),
         Value::Array(items) => format!("a list of {}", items.len()),
         Value::Datetime(date) => format!("the date {date}"),

@@ -20,9 +20,10 @@ use simulate::{
     Approach, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, Side, Simulation, SteeringGear, Vessel,
 };
 
-use super::problem::{KeyPath, Problem, suggestion};
+use super::problem::{KeyPath, Problem, of_text, suggestion};
 use super::wire::*;
 use super::{Means, Method, TRACE, effect, reader, specification};
+use crate::name;
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
@@ -347,11 +348,17 @@ fn manoeuvre(wire: &ManoeuvreWire, place: &str, folder: &Path) -> Result<Manoeuv
         }),
         ManoeuvreWire::Replay(replay) => {
             let path = folder.join(&replay.file);
-            let reading = trial::reader::read(&path).map_err(|error| {
+            let refuse = |found: String| {
                 let key = place().child("replay").child("file");
-                let advice = "give a record that `study fit` can read, relative to this file";
-                Problem::value(key, format!("the record to replay: {error}"), "expected a record with a rudder", advice)
-            })?;
+                let advice = "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
+                Problem::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
+            };
+            // It is read for every cell, and what has gone through a pipe is gone.
+            if path.exists() && !path.is_file() {
+                return Err(refuse(format!("{}: this is a folder, a pipe or a device and no file", path.display())));
+            }
+            // Who runs a scenario need not have named the files in it: what they hold is not shown.
+            let reading = trial::reader::read(&path).map_err(|error| refuse(error.without_content()))?;
             Manoeuvre::Replay(reading.trial.rudder_signal().clone())
         }
     })
@@ -494,16 +501,7 @@ pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
             Means::Trace(_) => TRACE,
         };
         let label = entry.label.clone().unwrap_or_else(|| id.to_owned());
-        if label.trim().is_empty() || label.chars().any(char::is_control) {
-            let key = key.child("label");
-            let found = format!("`{key}` is {label:?}");
-            return Err(Problem::value(
-                key,
-                found,
-                "expected a name on one line",
-                "name the method, or leave the label out",
-            ));
-        }
+        name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
             return Err(Problem::name(
                 key.child("label"),

@@ -7,7 +7,8 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::part::Part;
-use super::problem::{KeyPath, Mark, Problem};
+use super::problem::{KeyPath, Mark, Problem, of_text};
+use crate::name;
 
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;
@@ -158,7 +159,20 @@ impl AxisWire {
             }
         }
         distinguish(&mut points);
+        for (i, point) in points.iter().enumerate() {
+            name::label(&point.label).map_err(|unfit| {
+                let (key, advice) = match &self.points {
+                    Some(_) => (place.child("points").child(i).child("label"), "change the label"),
+                    None => (place.child("values").child(i), "give the value a shorter name: a `label` under `points`"),
+                };
+                Problem { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
+            })?;
+        }
         let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| "point".to_owned());
+        name::label(&name).map_err(|unfit| {
+            let key = if self.name.is_some() { "name" } else { "key" };
+            Problem { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), &name, unfit) }
+        })?;
         let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         labels.sort_unstable();
         if let Some(twice) = labels.windows(2).find(|pair| pair[0] == pair[1]) {

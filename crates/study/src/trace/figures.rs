@@ -14,6 +14,7 @@ use super::{Told, page};
 use crate::failure::Failure;
 use crate::folder::ResultFolder;
 use crate::publish::drawings::{first_failure, slug, write_figure};
+use crate::records::names;
 use crate::showcase::thinned;
 
 /// Lags of the autocorrelation.
@@ -31,10 +32,12 @@ pub fn draw(told: &Told, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(St
     let trials: Vec<&Trial> = told.trials.iter().chain(told.others).collect();
     let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
     let mut drawings: Vec<Drawing> = Vec::new();
+    // Two names may make one slug.
+    let slugs = names(told.names.iter().map(|name| slug(name)));
     for (number, (&trial, &judged)) in trials.iter().zip(&judged).enumerate() {
         let name = &told.names[number];
         let held_out = number >= told.trials.len();
-        let suffix = if number == 0 { String::new() } else { format!("-{}", slug(name)) };
+        let suffix = if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
         let title = page::title(judged, name, held_out);
         let caption = format!("{title}: heading, residual and rudder.");
         let record_title = title.clone();

@@ -3,6 +3,7 @@
 
 mod desk;
 mod monte_carlo;
+mod names;
 mod records;
 mod scenarios;
 mod traces;

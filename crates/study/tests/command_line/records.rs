@@ -1,7 +1,7 @@
 //! Records, good and bad: `study fit`.
 
 use std::fmt::Write as _;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write as _};
 use std::process::{Command, Stdio};
 
 use crate::desk::{Desk, measured, of_repository, with_column, zig_zag_csv, zig_zag_csv_of};
@@ -116,13 +116,65 @@ fn a_path_that_is_no_record_is_refused() {
     desk.file("other.trial.toml", "[ship]\nlength-m = 100\nspeed-kn = 10\n");
     let refused = |arguments: &[&str], parts: &[&str]| desk.run(&[&["fit"], arguments].concat()).is_refused(2, parts);
     refused(&["missing.csv"], &["missing.csv: there is no such file"]);
-    refused(&["folder"], &["folder: this is a directory"]);
+    refused(&["folder"], &["folder: this is a folder"]);
     refused(&["scenario.toml"], &["scenario.toml: this is a TOML file and no record", "study scenario.toml"]);
     refused(&["other.trial.toml"], &["other.trial.toml", "name the table"]);
     refused(&["good.csv", "--method", "magic"], &["--method magic", "output-error"]);
     refused(&["good.csv", "--validate", "missing.csv"], &["missing.csv: there is no such file"]);
     refused(&["good.csv", "missing.csv"], &["missing.csv: there is no such file"]);
-    refused(&["good.csv", "--columns", "missing.toml"], &["missing.toml", "No such file"]);
+    refused(&["good.csv", "--columns", "missing.toml"], &["missing.toml", "no such file"]);
+}
+
+/// What has no end is neither read to its end nor waited for.
+#[cfg(target_os = "linux")]
+#[test]
+fn only_files_and_pipes_are_read_and_only_so_far() {
+    let desk = Desk::new();
+    desk.file("good.csv", zig_zag_csv());
+    desk.file("long.toml", "# a long note\n".repeat(100_000));
+    let device = "this is neither a file nor a pipe";
+    desk.run(&["/dev/zero"]).is_refused(2, &[device]);
+    desk.run(&["check", "/dev/zero"]).is_refused(2, &[device]);
+    desk.run(&["fit", "/dev/zero"]).is_refused(2, &[device]);
+    desk.run(&["fit", "good.csv", "--columns", "/dev/zero"]).is_refused(2, &[device]);
+    desk.run(&["check", "long.toml"]).is_refused(2, &["1400000 bytes", "at most 1048576", "study fit"]);
+    let columns = ["fit", "good.csv", "--columns", "long.toml"];
+    desk.run(&columns).is_refused(2, &["long.toml", "1400000 bytes", "a sidecar has at most 1048576"]);
+
+    let piped = |arguments: &[&str], text: &[u8]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_study"));
+        command.args(arguments).current_dir(desk.path("")).stdin(Stdio::piped());
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts");
+        // The program may stop before it has read everything.
+        let _ = child.stdin.take().expect("piped").write_all(text);
+        let output = child.wait_with_output().expect("it ends");
+        (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
+    };
+    let (code, errors) = piped(&["fit", "/dev/stdin", "--method", "srivc", "--out", "piped"], zig_zag_csv().as_bytes());
+    assert_eq!(code, Some(0), "{errors}");
+    let (code, errors) = piped(&["check", "/dev/stdin"], &b"# a long note\n".repeat(100_000));
+    assert!(code == Some(2) && errors.contains("more bytes, a scenario has at most 1048576"), "{errors}");
+}
+
+/// A scenario may come from a stranger, and may name any file of the reader.
+#[test]
+fn the_message_about_a_replayed_record_does_not_show_it() {
+    let desk = Desk::new();
+    let scenario = std::fs::read_to_string(of_repository("scenarios/yukun.toml")).expect("it is there");
+    let (before, rest) = scenario.split_once("[manoeuvre.zig-zag]").expect("it steers a zig-zag");
+    let (_, after) = rest.split_once("\n[").expect("another table follows");
+    desk.file("case.toml", format!("{before}[manoeuvre.replay]\nfile = \"other\"\n[{after}"));
+    for content in ["secret:1:2\n", "1,2,secret\n", "t_s,heading_deg,rudder_deg\n0,0,secret\n", "t_s,secret\n0,1\n"] {
+        desk.file("other", content);
+        let run = desk.run(&["check", "case.toml"]);
+        run.is_refused(2, &["other: this file is no record", "study fit"]);
+        assert!(!run.err.contains("secret"), "{}", run.err);
+    }
+    desk.file("other", zig_zag_csv());
+    desk.file("other.trial.toml", "secret = 1\n");
+    let run = desk.run(&["check", "case.toml"]);
+    run.is_refused(2, &["other.trial.toml: this sidecar"]);
+    assert!(!run.err.contains("secret"), "{}", run.err);
 }
 
 #[test]

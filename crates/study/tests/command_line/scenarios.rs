@@ -316,7 +316,7 @@ fn the_record_of_a_replay_is_read_with_the_scenario() {
         )
     };
     refused(&replay("nope.csv"), 8, &["nope.csv", "no such file"]);
-    refused(&replay("."), 8, &["directory"]);
+    refused(&replay("."), 8, &["folder"]);
     let desk = Desk::new();
     desk.file("studies/case.toml", replay("../record.csv"));
     desk.file("record.csv", zig_zag_csv());

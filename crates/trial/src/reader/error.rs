@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::channel::Channel;
+use crate::file::FileError;
 use crate::plausibility::Implausible;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
@@ -29,23 +30,28 @@ impl ReadError {
     pub(crate) fn table(file: &Path, problem: Problem) -> Self {
         ReadError::Table { file: file.to_path_buf(), problem }
     }
+
+    /// The message without anything that stands in the file: for a file that was not named by who reads the message.
+    pub fn without_content(&self) -> String {
+        match self {
+            Self::Table { problem: Problem::File(_), .. } => self.to_string(),
+            Self::Table { file, .. } => format!("{}: this file is no record that can be used", file.display()),
+            Self::Sidecar(SidecarError { file, .. }) => {
+                format!("{}: this sidecar cannot be used", file.display())
+            }
+        }
+    }
 }
 
 /// What is wrong with a table. Lines count from 1 as editors do.
 #[derive(Debug, Error)]
 pub enum Problem {
-    /// There is no such file.
-    #[error("there is no such file; check its name and folder")]
-    NotFound,
-    /// A directory was named.
-    #[error("this is a directory; name one trial file in it")]
-    Directory,
+    /// There is no such file, or none that can be used.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A sidecar was named in place of its table.
     #[error("this file describes a table and is none; name the table that lies beside it")]
     IsSidecar,
-    /// The system refused to give the bytes.
-    #[error("cannot be read: {0}; check the rights of the file and the disk")]
-    Io(std::io::Error),
     /// Nothing in it.
     #[error("the file is empty; expected a header line such as `t_s,heading_deg,rudder_deg` and rows of numbers")]
     Empty,

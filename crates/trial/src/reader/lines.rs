@@ -6,6 +6,7 @@ use serde::Deserialize;
 use sha2::{Digest, Sha256};
 
 use super::error::Problem;
+use crate::file::FileError;
 
 /// Longest line that is taken for one of a table, bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
@@ -75,7 +76,7 @@ impl<R: Read> Lines<R> {
     pub fn skip(&mut self) -> Result<bool, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
-        let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::Io)?;
+        let length = limited.read_until(b'\n', &mut self.bytes).map_err(FileError::from)?;
         if length == 0 {
             return Ok(false);
         }

@@ -13,7 +13,6 @@ mod lines;
 mod rows;
 mod split;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -23,6 +22,7 @@ pub use lines::{Encoding, LONGEST_LINE};
 pub use split::Separator;
 
 use crate::channel::Channel;
+use crate::file::{self, Kind};
 use crate::plausibility;
 use crate::record::{Columns, Origin, Trial, TrialError};
 use crate::sidecar::{Quantity, Sidecar};
@@ -36,6 +36,9 @@ pub const MAX_ROWS: usize = 2_000_000;
 
 /// Most numbers a record may have; bounds the memory of tables with very many columns (8 bytes each).
 pub const MAX_CELLS: usize = 50_000_000;
+
+/// A record; 20 characters for each of the most numbers.
+pub const RECORD: Kind = Kind { name: "a record", largest: 20 * MAX_CELLS as u64 };
 
 /// A record that was read, and what the reader had to decide or found remarkable.
 #[derive(Debug, Clone)]
@@ -57,23 +60,18 @@ pub fn read(path: &Path) -> Result<Reading, ReadError> {
 
 /// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` reads it by its header alone.
 ///
-/// Fails with [`ReadError`] when the file is not there or no table, when a needed column is absent, a cell is no number,
-/// time does not increase, fewer than [`Trial::FEWEST_ROWS`] or more than [`MAX_ROWS`] rows are usable, the sidecar is at
-/// fault, or the record contradicts itself ([`plausibility`]).
+/// Fails with [`ReadError`] when the file is not there, larger than [`RECORD`] or no table, when a needed column is absent,
+/// a cell is no number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or more than [`MAX_ROWS`] rows are usable,
+/// the sidecar is at fault, or the record contradicts itself ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<Reading, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
         return Err(fault(Problem::IsSidecar));
     }
     let sidecar = sidecar.map(Sidecar::load).transpose()?;
-    let metadata = std::fs::metadata(path).map_err(|error| {
-        fault(if error.kind() == std::io::ErrorKind::NotFound { Problem::NotFound } else { Problem::Io(error) })
-    })?;
-    if metadata.is_dir() {
-        return Err(fault(Problem::Directory));
-    }
-    let file = File::open(path).map_err(|error| fault(Problem::Io(error)))?;
-    read_bytes(path, file, Some(metadata.len()), sidecar.as_ref())
+    let file = file::open(path, RECORD).map_err(|error| fault(error.into()))?;
+    let size = file.size();
+    read_bytes(path, file, size, sidecar.as_ref())
 }
 
 /// Reads a trial from `input`; `path` names it, and `size` (bytes), where known, serves to estimate the rows of a file that

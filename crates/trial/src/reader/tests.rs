@@ -305,7 +305,7 @@ fn paths_that_lead_to_no_table_are_named() {
     let folder = tempfile::tempdir().expect("a folder for the test");
     let message = |path: &Path| read(path).expect_err("there is no table").to_string();
     assert!(message(&folder.path().join("none.csv")).contains("none.csv: there is no such file"));
-    assert!(message(folder.path()).contains("this is a directory"));
+    assert!(message(folder.path()).contains("this is a folder"));
     let path = folder.path().join("run.csv");
     let sidecar = Sidecar::beside(&path);
     std::fs::write(&path, simple()).expect("the folder is writable");

@@ -1,0 +1,42 @@
+//! Characters that can be shown. All others (control characters, marks that turn the direction of writing, characters without
+//! a meaning) are written as escapes, so that no text from outside can act on a terminal or spoil a file.
+
+use std::borrow::Cow;
+
+/// Whether a character is seen, sets an accent or is a blank. Line breaks and tabs are not.
+pub fn is_printable(c: char) -> bool {
+    match c {
+        ' '..='~' => true,
+        '\u{2028}' | '\u{2029}' => false,
+        _ if c.is_whitespace() => !c.is_control(),
+        // What Rust escapes in debug output cannot be seen; after a letter it leaves accents as they are.
+        _ => c.escape_debug().len() == 1 || ['a', c].iter().collect::<String>().escape_debug().count() == 2,
+    }
+}
+
+/// The text with escapes such as `\u{1b}` for what cannot be shown.
+pub fn escaped(text: &str) -> Cow<'_, str> {
+    if text.chars().all(is_printable) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if is_printable(c) { shown.push(c) } else { shown.extend(c.escape_default()) }
+    }
+    Cow::Owned(shown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letters_of_all_scripts_are_shown_and_nothing_acts() {
+        for text in ["K̂ ± 0.1 °, δ_r ψ̇ T₂ 10⁻³", "船 10°\u{3000}\u{a0}", "'\"\\", "\u{1f6a2}"] {
+            assert_eq!(escaped(text), text);
+        }
+        assert_eq!(escaped("\u{1b}[31mred\u{7}\n\t\0"), "\\u{1b}[31mred\\u{7}\\n\\t\\u{0}");
+        assert_eq!(escaped("a\u{202e}b\u{2066}\u{feff}\u{200b}"), "a\\u{202e}b\\u{2066}\\u{feff}\\u{200b}");
+        assert_eq!(escaped("\u{fffe}\u{e000}\u{85}\u{2028}"), "\\u{fffe}\\u{e000}\\u{85}\\u{2028}");
+    }
+}

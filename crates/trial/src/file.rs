@@ -1,0 +1,162 @@
+//! Text files that a user names: scenarios, sidecars and records all come in through here. Only files and pipes are opened,
+//! and nothing is read further than its kind may be long, so that no name can fill the memory.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+use thiserror::Error;
+
+/// A kind of text file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Kind {
+    /// What it is called in messages, with its article.
+    pub name: &'static str,
+    /// Largest size, bytes.
+    pub largest: u64,
+}
+
+/// Why a file cannot be used, without its name.
+#[derive(Debug, Error)]
+pub enum FileError {
+    /// There is no such file.
+    #[error("there is no such file; check its name and folder")]
+    NotFound,
+    /// A folder was named.
+    #[error("this is a folder; name one file in it")]
+    Folder,
+    /// Something else was named that is no file.
+    #[error("this is neither a file nor a pipe (a device or a socket); name a file")]
+    NoFile,
+    /// There is more of it than its kind may have.
+    #[error(
+        "this file has {} bytes, {} has at most {}; name another one, or use a part of it",
+        size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.largest
+    )]
+    TooLarge {
+        /// What it should be.
+        kind: Kind,
+        /// Its size in bytes; unknown for a pipe.
+        size: Option<u64>,
+    },
+    /// Bytes that are not text.
+    #[error("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text; save the file as UTF-8")]
+    NotUtf8 {
+        /// Line with the byte, from 1.
+        line: usize,
+        /// The byte.
+        byte: u8,
+    },
+    /// The system refused to give the bytes.
+    #[error("cannot be read: {0}; check the rights of the file and the disk")]
+    Io(io::Error),
+}
+
+impl From<io::Error> for FileError {
+    fn from(error: io::Error) -> Self {
+        // A limit reached in the middle of reading comes back in the clothes of an input error.
+        match error.downcast::<Self>() {
+            Ok(own) => own,
+            Err(error) if error.kind() == ErrorKind::NotFound => Self::NotFound,
+            Err(error) => Self::Io(error),
+        }
+    }
+}
+
+/// An open file that ends with an error where it is longer than its kind may be.
+#[derive(Debug)]
+pub struct Limited {
+    file: File,
+    kind: Kind,
+    size: Option<u64>,
+    left: u64,
+}
+
+impl Limited {
+    /// Size in bytes; `None` for a pipe.
+    pub fn size(&self) -> Option<u64> {
+        self.size
+    }
+}
+
+impl Read for Limited {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        let Some(left) = self.left.checked_sub(count as u64) else {
+            let Self { kind, .. } = *self;
+            return Err(io::Error::new(ErrorKind::FileTooLarge, FileError::TooLarge { kind, size: None }));
+        };
+        self.left = left;
+        Ok(count)
+    }
+}
+
+/// Opens a file or a pipe.
+///
+/// Fails when there is none, and when it is known to be too large; a file that turns out to be so fails in reading, with
+/// an error that becomes a [`FileError`] again.
+pub fn open(path: &Path, kind: Kind) -> Result<Limited, FileError> {
+    let about = fs::metadata(path)?;
+    let size = match about.file_type() {
+        kind if kind.is_dir() => return Err(FileError::Folder),
+        kind if kind.is_file() => Some(about.len()),
+        kind if is_pipe(kind) => None,
+        _ => return Err(FileError::NoFile),
+    };
+    if size.is_some_and(|size| size > kind.largest) {
+        return Err(FileError::TooLarge { kind, size });
+    }
+    Ok(Limited { file: File::open(path)?, kind, size, left: kind.largest })
+}
+
+#[cfg(unix)]
+fn is_pipe(kind: fs::FileType) -> bool {
+    std::os::unix::fs::FileTypeExt::is_fifo(&kind)
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: fs::FileType) -> bool {
+    false
+}
+
+/// The text of a file or a pipe. Fails as [`open`] does, and when it is not UTF-8.
+pub fn read_text(path: &Path, kind: Kind) -> Result<String, FileError> {
+    let mut bytes = Vec::new();
+    open(path, kind)?.read_to_end(&mut bytes)?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
+        FileError::NotUtf8 { line, byte: error.as_bytes()[valid] }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SMALL: Kind = Kind { name: "a note", largest: 8 };
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("note");
+        fs::write(&path, "12345678").expect("written");
+        assert_eq!(read_text(&path, SMALL).expect("just as long as it may be"), "12345678");
+        fs::write(&path, "123456789").expect("written");
+        let error = read_text(&path, SMALL).expect_err("one byte too long").to_string();
+        assert!(error.starts_with("this file has 9 bytes, a note has at most 8"), "{error}");
+        fs::write(&path, [b'a', b'\n', 0xff]).expect("written");
+        assert!(matches!(read_text(&path, SMALL), Err(FileError::NotUtf8 { line: 2, byte: 0xff })));
+        assert!(matches!(read_text(folder.path(), SMALL), Err(FileError::Folder)));
+        assert!(matches!(read_text(&folder.path().join("none"), SMALL), Err(FileError::NotFound)));
+    }
+
+    /// Files of the system under /proc claim to have no bytes; a disk that grows while it is read does the same.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_hides_its_size_is_stopped_while_it_is_read() {
+        let error = read_text(Path::new("/proc/self/status"), SMALL).expect_err("it is longer");
+        assert!(matches!(error, FileError::TooLarge { size: None, .. }), "{error}");
+        assert!(matches!(open(Path::new("/dev/zero"), SMALL), Err(FileError::NoFile)));
+    }
+}
