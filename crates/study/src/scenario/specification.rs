@@ -1,5 +1,6 @@
 //! A value the simulator refuses, in the words and units of a scenario: its own key, degrees, and what to do.
 
+use ship::Shown;
 use ship::angle::DEGREE;
 use simulate::{Expected, SpecificationError};
 
@@ -101,6 +102,7 @@ pub fn problem(error: &SpecificationError, manoeuvre: &ManoeuvreWire, sampling_s
             format!("expected a number from {} to {}", shown(low / unit), shown(high / unit))
         }
         Expected::AtMost(limit) => format!("expected at most {}", shown(limit / unit)),
+        Expected::Steps { .. } => format!("expected {}", error.expected),
         Expected::Duration => "expected a duration, because nothing else ends the run".to_owned(),
     };
     Problem::value(KeyPath::dotted(key), found, expected, advice(key, error.expected, sampling_s))
@@ -118,6 +120,10 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
         (_, Expected::AtMost(_)) if key.ends_with("rudder-deg") => {
             "give less rudder, or set `steering-gear.maximum-deg` if the rudder of this ship goes further".to_owned()
         }
+        (_, Expected::Steps { .. }) => {
+            "make the run shorter; a heading that is awaited counts with an hour, which `duration-s` in place of `executes` avoids"
+                .to_owned()
+        }
         ("recording.sampling-s", _) => "give the time between two rows of the record, in seconds".to_owned(),
         ("recording.after-execute", _) => {
             "count the executes from 1, or leave the key out to record from the start".to_owned()
@@ -129,6 +135,6 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
 }
 
 /// A number as it was written: conversion to radians and back must not show.
-fn shown(value: f64) -> f64 {
-    if value.abs() < 1e6 { (value * 1e9).round() / 1e9 } else { value }
+fn shown(value: f64) -> Shown {
+    Shown::rounded(value, 14)
 }

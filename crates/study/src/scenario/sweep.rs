@@ -4,6 +4,7 @@
 //! checked as strictly as one that is written down.
 
 use serde::Deserialize;
+use ship::Shown;
 use toml::{Table, Value};
 
 use super::part::Part;
@@ -212,7 +213,7 @@ impl RangeWire {
     }
 
     fn problem(&self, place: &KeyPath, expected: &str) -> Problem {
-        let found = format!("a range of {} points from {} to {}", self.points, self.from, self.to);
+        let found = format!("a range of {} points from {} to {}", self.points, Shown(self.from), Shown(self.to));
         Problem::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
     }
 }
@@ -239,14 +240,18 @@ fn distinguish(points: &mut [Point]) {
     if labels.len() < before {
         for point in points {
             if let Some(value) = point.value {
-                point.label = value.to_string();
+                point.label = Shown(value).to_string();
             }
         }
     }
 }
 
-/// A number with at most four significant digits and no trailing zeros.
+/// A number with four significant digits, more where they stand before the point, and no trailing zeros.
 fn trim(number: f64) -> String {
+    let rounded = Shown::rounded(number, 4);
+    if !rounded.is_plain() {
+        return rounded.to_string();
+    }
     let digits = if number == 0.0 { 0 } else { (3 - number.abs().log10().floor() as i32).clamp(0, 12) as usize };
     let text = format!("{number:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
