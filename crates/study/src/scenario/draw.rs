@@ -8,6 +8,7 @@ use ship::Shown;
 use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
+use super::limits;
 use super::part::Part;
 use super::problem::{KeyPath, Mark, Problem};
 
@@ -85,6 +86,7 @@ impl DrawWire {
     pub fn resolve(&self, index: usize) -> Result<Draw, Problem> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
+        limits::depth(&key, &place.child("key"))?;
         let is_of_trial = |first: &String| Part::of(first) == Part::Trial && first != "validation";
         if !key.parts().first().is_some_and(is_of_trial) {
             return Err(Problem::value(

@@ -11,6 +11,7 @@ use ship::effects::{
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, Shown};
 
+use super::limits;
 use super::problem::{KeyPath, Problem};
 use super::wire::*;
 
@@ -44,6 +45,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
     if wire.is_empty() {
         return Ok(ship);
     }
+    limits::entries("effect", wire.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
     let Model::Response(response) = &ship.model else {
         return Err(Problem::name(
@@ -70,7 +72,8 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
         for (description, setting) in effect.parameters().iter().zip(&settings) {
             if !description.holds(setting.value) {
                 let key = key.child(setting.key);
-                let mut ends = [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
+                let mut ends =
+                    [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
                 ends.sort_by(|one, other| one.0.total_cmp(&other.0));
                 return Err(Problem::value(

@@ -23,7 +23,7 @@ use simulate::{
 
 use super::problem::{KeyPath, Problem, suggestion};
 use super::wire::*;
-use super::{Means, Method, TRACE, effect, reader, specification};
+use super::{Means, Method, TRACE, effect, limits, reader, specification, sweep};
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
@@ -243,7 +243,7 @@ fn not_a_ship(key: &KeyPath, table: &toml::Table, error: &ShipError) -> Problem 
         _ => "rudder-bias-deg",
     };
     let key = key.child(own);
-    let value = table.get(own).map_or_else(String::new, toml::Value::to_string);
+    let value = table.get(own).map_or_else(String::new, sweep::written);
     Problem::value(key.clone(), format!("`{key}` is {value}"), expected, "change the number")
 }
 
@@ -492,6 +492,7 @@ fn disturbances(wire: &DisturbanceWire) -> Disturbances {
 
 /// The methods, all with names of their own.
 pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
+    limits::entries("identifier", wire.len(), limits::MOST_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
@@ -572,6 +573,12 @@ fn tracing(wire: &TraceWire, key: &KeyPath) -> Result<::trace::Settings, Problem
     }
     if !(wire.false_discovery > 0.0 && wire.false_discovery <= 1.0) {
         return Err(refuse("false-discovery", wire.false_discovery, "a probability above 0 and up to 1"));
+    }
+    if wire.most_effects > limits::MOST_EFFECTS {
+        let key = key.child("most-effects");
+        let found = format!("`{key}` is {}", wire.most_effects);
+        let expected = format!("expected at most {}", limits::MOST_EFFECTS);
+        return Err(Problem::value(key, found, expected, "change the value, or leave the key out"));
     }
     Ok(::trace::Settings {
         thresholds: Thresholds {

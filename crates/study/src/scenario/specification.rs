@@ -2,6 +2,7 @@
 
 use ship::Shown;
 use ship::angle::DEGREE;
+use simulate::cost::LONGEST_TIME;
 use simulate::{Expected, SpecificationError};
 
 use super::problem::{KeyPath, Problem};
@@ -84,7 +85,8 @@ pub fn problem(error: &SpecificationError, manoeuvre: &ManoeuvreWire, sampling_s
     };
     let known = KEYS.iter().find(|(specification, ..)| *specification == name);
     let Some(&(_, key, angle)) = known else {
-        return Problem::value(KeyPath::dotted("manoeuvre"), error.to_string(), "not accepted", "change the value");
+        let place = if error.key.starts_with("vessel.") { "effect" } else { "manoeuvre" };
+        return Problem::name(KeyPath::dotted(place), error.to_string(), "not accepted", "change the value");
     };
     let unit = if angle { DEGREE } else { 1.0 };
     let found = match error.expected {
@@ -113,6 +115,7 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
         ("recording.duration-s", Expected::Duration) => {
             "add `duration-s = …` (seconds), or let `executes` end the zig-zag".to_owned()
         }
+        (_, Expected::AtMost(limit)) if limit == LONGEST_TIME => "give a time in seconds".to_owned(),
         (_, Expected::AtMost(limit)) if key.ends_with("duration-s") => format!(
             "record less, or more rarely: with `sampling-s` = {sampling_s} that limit is {:.0} rows",
             limit / sampling_s
