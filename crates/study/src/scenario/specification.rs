@@ -83,10 +83,17 @@ pub fn problem(error: &SpecificationError, manoeuvre: &ManoeuvreWire, sampling_s
         Some(part) => format!("{own}.{part}"),
         None => error.key.to_owned(),
     };
+    if name == "vessel.dead_time" {
+        return Problem::name(
+            KeyPath::dotted("effect"),
+            format!("the dead times of all effects add up to {} s", Shown(error.value)),
+            format!("expected {}", error.expected),
+            "give dead times of 0 s or more: a rudder does not act before it moves",
+        );
+    }
     let known = KEYS.iter().find(|(specification, ..)| *specification == name);
     let Some(&(_, key, angle)) = known else {
-        let place = if error.key.starts_with("vessel.") { "effect" } else { "manoeuvre" };
-        return Problem::name(KeyPath::dotted(place), error.to_string(), "not accepted", "change the value");
+        return Problem::value(KeyPath::dotted("manoeuvre"), error.to_string(), "not accepted", "change the value");
     };
     let unit = if angle { DEGREE } else { 1.0 };
     let found = match error.expected {
@@ -123,10 +130,10 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
         (_, Expected::AtMost(_)) if key.ends_with("rudder-deg") => {
             "give less rudder, or set `steering-gear.maximum-deg` if the rudder of this ship goes further".to_owned()
         }
-        (_, Expected::Steps { .. }) => {
-            "make the run shorter; a heading that is awaited counts with an hour, which `duration-s` in place of `executes` avoids"
-                .to_owned()
+        ("manoeuvre.zig-zag.executes" | "recording.after-execute", Expected::Steps { .. }) => {
+            "wait for fewer executes, each of which counts with the longest wait for it; or end the zig-zag by `duration-s`".to_owned()
         }
+        (_, Expected::Steps { .. }) => "make the run shorter".to_owned(),
         ("recording.sampling-s", _) => "give the time between two rows of the record, in seconds".to_owned(),
         ("recording.after-execute", _) => {
             "count the executes from 1, or leave the key out to record from the start".to_owned()

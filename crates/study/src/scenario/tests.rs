@@ -510,8 +510,7 @@ fn no_number_of_a_trace_is_taken_for_another() {
 fn a_drawn_trial_without_end_is_a_failed_row() {
     let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
     let draw = "[[draw]]\nkey = \"approach.lead-in-s\"\n[draw.log-normal]\nmedian = 10.0\nsigma = 20.0\n";
-    let scenario = parse(&format!("replicates = 40\n{head}{draw}").replacen("\n\n", "\n", 1));
-    let scenario = scenario.unwrap_or_else(|message| panic!("{message}"));
+    let scenario = parse(&format!("{head}{draw}")).unwrap_or_else(|message| panic!("{message}"));
     let bench = Bench::new(&scenario, 0..=0);
     let failures: Vec<Option<String>> = (0..40)
         .map(|replicate| {
