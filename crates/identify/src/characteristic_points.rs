@@ -14,8 +14,8 @@ mod points;
 
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
-use ship::FirstOrder;
 use ship::angle::from_deg;
+use ship::{FirstOrder, Shown};
 use trial::Trial;
 
 use crate::Identifier;
@@ -79,7 +79,7 @@ impl Settings {
     ///
     /// Fails when the half width is not positive, an angle is not finite or the condition limit is not above 1.
     pub fn build(self) -> Result<CharacteristicPoints, SettingsError> {
-        let refused = |key, found: f64, expected| Err(SettingsError { key, found: found.to_string(), expected });
+        let refused = |key, found: f64, expected| Err(SettingsError::new(key, Shown(found), expected));
         if let Some(half_width) = self.half_width_s
             && !(half_width > 0.0 && half_width.is_finite())
         {

@@ -12,6 +12,7 @@
 //! generalised cross-validation (Golub, Heath and Wahba 1979) or AICc (Hurvich and Tsai 1989).
 
 use serde::{Deserialize, Serialize};
+use ship::Shown;
 use ship::angle::to_deg;
 use std::f64::consts::TAU;
 use trial::Trial;
@@ -120,15 +121,15 @@ impl Settings {
                 return Err(SettingsError::new("harmonics.fixed", harmonics, "1 to 64"));
             }
             Order::Gcv { reach } | Order::Aicc { reach } if !(1.5..=50.0).contains(&reach) => {
-                return Err(SettingsError::new("harmonics.reach", reach, "1.5 to 50"));
+                return Err(SettingsError::new("harmonics.reach", Shown(reach), "1.5 to 50"));
             }
             _ => {}
         }
         if !(self.skip_s >= 0.0 && self.skip_s.is_finite()) {
-            return Err(SettingsError::new("skip-s", self.skip_s, "0 s or more"));
+            return Err(SettingsError::new("skip-s", Shown(self.skip_s), "0 s or more"));
         }
         if !(self.trim_share >= 0.0 && self.trim_share < 0.5) {
-            return Err(SettingsError::new("trim-share", self.trim_share, "0 to below 0.5"));
+            return Err(SettingsError::new("trim-share", Shown(self.trim_share), "0 to below 0.5"));
         }
         check_condition_limit(self.condition_limit)?;
         self.fundamental.check()?;

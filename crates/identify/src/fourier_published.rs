@@ -21,7 +21,7 @@ use trial::Trial;
 use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
-use crate::fourier::triples::{self, Answer, Drawn, Instant, Selection};
+use crate::fourier::triples::{self, Answer, Drawn, Instant, MOST_TRIPLES, Selection};
 use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS, StartPoint};
 use crate::samples::Samples;
 use crate::settings::SettingsError;
@@ -45,7 +45,7 @@ pub struct Settings {
     pub harmonics: usize,
     /// How w is chosen.
     pub fundamental: Fundamental,
-    /// Triples n; some 200 with the median make the answer independent of the seed.
+    /// Triples n, at most [`MOST_TRIPLES`]; some 200 with the median make the answer independent of the seed.
     pub triples: usize,
     /// Which triples are used.
     pub selection: Selection,
@@ -75,8 +75,8 @@ impl Settings {
         if self.harmonics == 0 || self.harmonics > MOST_HARMONICS {
             return Err(SettingsError::new("harmonics", self.harmonics, "1 to 64"));
         }
-        if self.triples == 0 {
-            return Err(SettingsError::new("triples", self.triples, "at least 1"));
+        if !(1..=MOST_TRIPLES).contains(&self.triples) {
+            return Err(SettingsError::new("triples", self.triples, "1 to 10000"));
         }
         self.fundamental.check()?;
         self.selection.check()?;

@@ -9,16 +9,16 @@
 
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
-use ship::FirstOrder;
 use ship::angle::to_deg;
 use ship::first_order::State;
+use ship::{FirstOrder, Shown};
 use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::profile::{Profile, Step, invert};
 use crate::scan::{self, Fit};
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, check_iterations};
 use crate::track::{Coefficients, Track};
 use crate::{Identifier, robust};
 
@@ -43,16 +43,14 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<OutputError, SettingsError> {
-        if self.grid_per_decade == 0 {
-            return Err(SettingsError::new("grid-per-decade", self.grid_per_decade, "at least 1"));
+        if !(1..=FINEST_GRID).contains(&self.grid_per_decade) {
+            return Err(SettingsError::new("grid-per-decade", self.grid_per_decade, "1 to 1000"));
         }
-        if self.iterations == 0 {
-            return Err(SettingsError::new("iterations", self.iterations, "at least 1"));
-        }
+        check_iterations("iterations", self.iterations)?;
         if let Some(smallest) = self.smallest_time_constant_s
-            && !(smallest.is_finite() && smallest > 0.0)
+            && !TIME_CONSTANTS.contains(&smallest)
         {
-            return Err(SettingsError::new("smallest-time-constant-s", smallest, "a positive number of seconds"));
+            return Err(SettingsError::new("smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s"));
         }
         Ok(OutputError { settings: self })
     }
@@ -63,6 +61,12 @@ impl Settings {
 pub struct OutputError {
     settings: Settings,
 }
+
+/// Most points of the scan per decade: no valley is narrower than a tenth of that.
+const FINEST_GRID: usize = 1000;
+
+/// Time constants, s, that the scan can be told to end at.
+const TIME_CONSTANTS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Smallest |1/T| of the scan, in units of one over the length of the record: below it the response cannot be told
 /// from a neutrally stable one.

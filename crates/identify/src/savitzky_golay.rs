@@ -18,11 +18,14 @@ pub const COEFFICIENTS: usize = HIGHEST_ORDER + 1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct SavitzkyGolay {
-    /// Rows in the window, odd.
+    /// Rows in the window, odd, at most 10,001.
     pub window_samples: usize,
     /// Order of the polynomial, 2 to 5, less than the rows in the window.
     pub order: usize,
 }
+
+/// Most rows in a window: every row of a record costs that many.
+const WIDEST_WINDOW: usize = 10_001;
 
 impl Default for SavitzkyGolay {
     fn default() -> Self {
@@ -34,7 +37,8 @@ impl SavitzkyGolay {
     /// Three rows and a parabola: central differences.
     pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
 
-    /// Fails when the window is even, the order is outside 2..=5 or the window does not hold order + 1 rows.
+    /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or holds so many that
+    /// nothing of a manoeuvre is left.
     pub fn check(&self) -> Result<(), SettingsError> {
         if !(2..=HIGHEST_ORDER).contains(&self.order) {
             return Err(SettingsError { key: "order", found: self.order.to_string(), expected: "2, 3, 4 or 5" });
@@ -42,6 +46,13 @@ impl SavitzkyGolay {
         if self.window_samples.is_multiple_of(2) || self.window_samples <= self.order {
             let found = self.window_samples.to_string();
             return Err(SettingsError { key: "window-samples", found, expected: "an odd number above the order" });
+        }
+        if self.window_samples > WIDEST_WINDOW {
+            return Err(SettingsError {
+                key: "window-samples",
+                found: self.window_samples.to_string(),
+                expected: "at most 10001",
+            });
         }
         Ok(())
     }

@@ -15,6 +15,7 @@
 //! | hulls with three degrees of freedom | [`vessel`] |
 //! | linear sway-yaw equations and their indices | [`linear`] |
 //! | parameter sets with their sources | [`ships`] |
+//! | numbers in messages | [`shown`] |
 //!
 //! Inside, everything is in SI units and radians. Positive rudder gives positive (starboard) yaw rate, heading
 //! grows clockwise seen from above, `v` is positive to starboard.
@@ -30,6 +31,7 @@ pub mod number;
 pub mod replay;
 pub mod response;
 pub mod ships;
+pub mod shown;
 pub mod signal;
 pub mod vessel;
 
@@ -38,4 +40,5 @@ pub use first_order::FirstOrder;
 pub use number::{Real, Tangent};
 pub use response::{Response, ResponseModel};
 pub use ships::{Particulars, Ship};
+pub use shown::Shown;
 pub use signal::Polyline;

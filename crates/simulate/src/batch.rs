@@ -11,6 +11,7 @@
 
 use lanes::Kernel;
 
+use crate::cost::{MOST_ROWS, MOST_STEPS};
 use crate::error::{self, SimulateError, SpecificationError};
 
 /// Ships side by side.
@@ -87,7 +88,9 @@ impl Batch {
         error::positive("batch.heading", self.heading)?;
         error::positive("batch.rate", self.rate)?;
         error::positive("batch.step", self.step)?;
-        error::positive("batch.steps_per_row", self.steps_per_row as f64)
+        error::positive("batch.steps_per_row", self.steps_per_row as f64)?;
+        error::at_most("batch.steps", self.steps as f64, MOST_STEPS as f64)?;
+        error::at_most("batch.rows", (self.steps / self.steps_per_row) as f64, MOST_ROWS as f64)
     }
 
     /// Takes all ships through the zig-zag.

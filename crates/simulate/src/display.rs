@@ -41,6 +41,8 @@ impl Display {
 
     /// Passes over the readings before `t` (s): nobody looked.
     pub fn skip_to(&mut self, t: f64) {
+        // All but the last at once: after a long lead-in they are millions.
+        self.next = self.next.max(((t / self.period) as u64).saturating_sub(1));
         while self.next_time() < t {
             self.next += 1;
         }

@@ -60,9 +60,10 @@ pub struct Disturbances {
 }
 
 impl Disturbances {
-    /// Whether a moment acts that depends on time alone.
-    pub(crate) fn has_moment_of_time(&self) -> bool {
-        self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0
+    /// Whether anything changes with time alone: a moment, or the factor on that of the wind.
+    pub(crate) fn change(&self) -> bool {
+        let gusting = self.wind.is_some_and(|wind| wind.gusting.is_some());
+        self.gusts.is_some() || self.squall.is_some() || self.drift != 0.0 || self.random_walk != 0.0 || gusting
     }
 
     /// Checks every value; fails with the first one that makes no sense.
@@ -75,17 +76,17 @@ impl Disturbances {
             }
             if let Some(gusting) = &wind.gusting {
                 error::not_negative("disturbances.wind.gusting.sd", gusting.sd)?;
-                error::positive("disturbances.wind.gusting.correlation_time", gusting.correlation_time)?;
+                error::positive_time("disturbances.wind.gusting.correlation_time", gusting.correlation_time)?;
             }
         }
         if let Some(gusts) = &self.gusts {
             error::not_negative("disturbances.gusts.sd", gusts.sd)?;
-            error::positive("disturbances.gusts.correlation_time", gusts.correlation_time)?;
+            error::positive_time("disturbances.gusts.correlation_time", gusts.correlation_time)?;
         }
         error::finite("disturbances.drift", self.drift)?;
         if let Some(squall) = &self.squall {
-            error::not_negative("disturbances.squall.start", squall.start)?;
-            error::positive("disturbances.squall.duration", squall.duration)?;
+            error::time("disturbances.squall.start", squall.start)?;
+            error::positive_time("disturbances.squall.duration", squall.duration)?;
             error::between("disturbances.squall.edge", squall.edge, 0.0, 0.5 * squall.duration)?;
             error::finite("disturbances.squall.moment", squall.moment)?;
         }

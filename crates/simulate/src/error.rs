@@ -3,8 +3,11 @@
 
 use std::fmt;
 
+use ship::Shown;
 use thiserror::Error;
 use trial::TrialError;
+
+use crate::cost::LONGEST_TIME;
 
 /// What a value of a specification has to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +26,13 @@ pub enum Expected {
     AtMost(f64),
     /// A duration, because nothing else ends the run.
     Duration,
+    /// A run of no more steps.
+    Steps {
+        /// Steps it may take.
+        estimate: f64,
+        /// Most steps.
+        most: f64,
+    },
 }
 
 impl fmt::Display for Expected {
@@ -32,16 +42,19 @@ impl fmt::Display for Expected {
             Self::Positive => write!(f, "a finite number above 0"),
             Self::NotNegative => write!(f, "a finite number, 0 or above"),
             Self::PositiveOrInfinite => write!(f, "a number above 0 (infinite is allowed)"),
-            Self::Between(low, high) => write!(f, "a number from {low} to {high}"),
-            Self::AtMost(limit) => write!(f, "at most {limit}"),
+            Self::Between(low, high) => write!(f, "a number from {} to {}", Shown(*low), Shown(*high)),
+            Self::AtMost(limit) => write!(f, "at most {}", Shown(*limit)),
             Self::Duration => write!(f, "a duration, because nothing else ends the run"),
+            Self::Steps { estimate, most } => {
+                write!(f, "a run of at most {most:.0e} steps, and this one may take {estimate:.1e}")
+            }
         }
     }
 }
 
 /// A value of a specification that makes no sense.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{key} is {value}, expected {expected}")]
+#[error("{key} is {}, expected {expected}", Shown(*.value))]
 pub struct SpecificationError {
     /// Name of the value, with the part it belongs to ("gear.rate").
     pub key: &'static str,
@@ -58,7 +71,7 @@ pub enum SimulateError {
     #[error(transparent)]
     Specification(#[from] SpecificationError),
     /// The state is not finite, or the ship has turned more than a hundred times.
-    #[error("the motion diverged at {time:.1} s: heading {heading} rad, yaw rate {yaw_rate} rad/s")]
+    #[error("the motion diverged at {time:.1} s: heading {} rad, yaw rate {} rad/s", Shown(*.heading), Shown(*.yaw_rate))]
     Diverged {
         /// Time, s.
         time: f64,
@@ -68,7 +81,7 @@ pub enum SimulateError {
         yaw_rate: f64,
     },
     /// The ship never reached the heading at which something was to happen.
-    #[error("after execute {execute} the heading never deviated by {angle} rad within {waited} s")]
+    #[error("after execute {execute} the heading never deviated by {} rad within {} s", Shown(*.angle), Shown(*.waited))]
     NeverReached {
         /// Executes made so far.
         execute: usize,
@@ -84,6 +97,16 @@ pub enum SimulateError {
         execute: usize,
         /// Executes made.
         made: usize,
+    },
+    /// The run was given up, because it took more than any manoeuvre does.
+    #[error("the run was given up at {time:.1} s: it took more than {most} {what}")]
+    TooLong {
+        /// Time reached, s.
+        time: f64,
+        /// What there were too many of: steps, executes or rows.
+        what: &'static str,
+        /// Most of them.
+        most: usize,
     },
     /// The rows do not make a record.
     #[error(transparent)]
@@ -105,6 +128,11 @@ pub(crate) fn positive(key: &'static str, value: f64) -> Checked {
     check(value.is_finite() && value > 0.0, key, value, Expected::Positive)
 }
 
+/// A count of at least one.
+pub(crate) fn count(key: &'static str, value: usize, most: usize) -> Checked {
+    between(key, value as f64, 1.0, most as f64)
+}
+
 pub(crate) fn not_negative(key: &'static str, value: f64) -> Checked {
     check(value.is_finite() && value >= 0.0, key, value, Expected::NotNegative)
 }
@@ -119,4 +147,16 @@ pub(crate) fn between(key: &'static str, value: f64, low: f64, high: f64) -> Che
 
 pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Checked {
     check(value <= limit, key, value, Expected::AtMost(limit))
+}
+
+/// A length of time, s: not negative, and no longer than [`LONGEST_TIME`](crate::cost::LONGEST_TIME).
+pub(crate) fn time(key: &'static str, value: f64) -> Checked {
+    not_negative(key, value)?;
+    at_most(key, value, LONGEST_TIME)
+}
+
+/// A length of time, s, above zero.
+pub(crate) fn positive_time(key: &'static str, value: f64) -> Checked {
+    positive(key, value)?;
+    at_most(key, value, LONGEST_TIME)
 }

@@ -85,8 +85,8 @@ impl SteeringGear {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         error::positive_or_infinite("gear.rate", self.rate)?;
-        error::not_negative("gear.lag", self.lag)?;
-        error::not_negative("gear.dead_time", self.dead_time)?;
+        error::time("gear.lag", self.lag)?;
+        error::time("gear.dead_time", self.dead_time)?;
         error::not_negative("gear.dead_band", self.dead_band)?;
         error::positive_or_infinite("gear.maximum", self.maximum)
     }

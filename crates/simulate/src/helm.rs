@@ -2,7 +2,7 @@
 //! one manoeuvre in one run. It decides; it neither moves the rudder ([`crate::gear`]) nor the ship.
 
 use crate::error::{self, Checked};
-use crate::manoeuvre::{Manoeuvre, TurnEnd, ZigZag, ZigZagEnd};
+use crate::manoeuvre::{Manoeuvre, TurnEnd, ZigZag, ZigZagEnd, length};
 
 /// What the helmsman looks at.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -27,9 +27,9 @@ pub struct Helmsman {
     pub reaction_time: f64,
 }
 
-/// Times between two readings, s, that make sense.
-const SHORTEST_PERIOD: f64 = 1e-3;
-const LONGEST_PERIOD: f64 = 1e3;
+/// Times between two readings of an instrument, s, that make sense: none is read more often, and a manoeuvre is over in less.
+pub(crate) const SHORTEST_PERIOD: f64 = 1e-3;
+pub(crate) const LONGEST_PERIOD: f64 = 1e3;
 
 impl Helmsman {
     /// Checks every value; fails with the first one that makes no sense.
@@ -37,7 +37,7 @@ impl Helmsman {
         if let Watches::Display { period } = self.watches {
             error::between("helmsman.period", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         }
-        error::not_negative("helmsman.reaction_time", self.reaction_time)
+        error::time("helmsman.reaction_time", self.reaction_time)
     }
 }
 
@@ -84,7 +84,7 @@ impl<'a> Helm<'a> {
                 TurnEnd::HeadingChange(_) => f64::INFINITY,
             },
             Manoeuvre::PullOut(pull_out) => pull_out.hold + pull_out.duration,
-            Manoeuvre::Replay(signal) => signal.times()[signal.times().len() - 1] - signal.times()[0],
+            Manoeuvre::Replay(signal) => length(signal),
         };
         Self {
             manoeuvre,

@@ -16,6 +16,7 @@
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
 //! | thousands of nonlinear ships at once | [`batch`] |
+//! | what a run may cost | [`cost`] |
 //! | what can go wrong | [`error`] |
 //!
 //! ```
@@ -46,6 +47,7 @@ mod wave_path;
 mod weather;
 
 pub mod batch;
+pub mod cost;
 pub mod disturbance;
 pub mod error;
 pub mod gear;

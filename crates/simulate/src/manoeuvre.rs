@@ -5,6 +5,7 @@
 
 use ship::Polyline;
 
+use crate::cost::MOST_EXECUTES;
 use crate::error::{self, Checked};
 
 /// A side of the ship.
@@ -99,6 +100,12 @@ pub enum Manoeuvre {
     Replay(Polyline),
 }
 
+/// Time from the first to the last point of a recorded rudder, s.
+pub(crate) fn length(signal: &Polyline) -> f64 {
+    let times = signal.times();
+    times[times.len() - 1] - times[0]
+}
+
 impl Manoeuvre {
     /// A zig-zag with starboard first.
     pub fn zig_zag(rudder: f64, heading: f64, end: ZigZagEnd) -> Self {
@@ -122,27 +129,24 @@ impl Manoeuvre {
                 error::positive("zig_zag.rudder", zig_zag.rudder)?;
                 error::positive("zig_zag.heading", zig_zag.heading)?;
                 match zig_zag.end {
-                    ZigZagEnd::Executes(count) => error::positive("zig_zag.executes", count as f64),
-                    ZigZagEnd::Duration(duration) => error::positive("zig_zag.duration", duration),
+                    ZigZagEnd::Executes(count) => error::count("zig_zag.executes", count, MOST_EXECUTES),
+                    ZigZagEnd::Duration(duration) => error::positive_time("zig_zag.duration", duration),
                     ZigZagEnd::Record => Ok(()),
                 }
             }
             Self::TurningCircle(turn) => {
                 error::positive("turning_circle.rudder", turn.rudder)?;
                 match turn.end {
-                    TurnEnd::Duration(duration) => error::positive("turning_circle.duration", duration),
+                    TurnEnd::Duration(duration) => error::positive_time("turning_circle.duration", duration),
                     TurnEnd::HeadingChange(angle) => error::positive("turning_circle.heading_change", angle),
                 }
             }
             Self::PullOut(pull_out) => {
                 error::positive("pull_out.rudder", pull_out.rudder)?;
-                error::positive("pull_out.hold", pull_out.hold)?;
-                error::positive("pull_out.duration", pull_out.duration)
+                error::positive_time("pull_out.hold", pull_out.hold)?;
+                error::positive_time("pull_out.duration", pull_out.duration)
             }
-            Self::Replay(signal) => {
-                let times = signal.times();
-                error::positive("replay.duration", times[times.len() - 1] - times[0])
-            }
+            Self::Replay(signal) => error::positive_time("replay.duration", length(signal)),
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use rand::rngs::ChaCha8Rng;
 
+use crate::cost::{MOST_EXECUTES, MOST_ROWS};
 use crate::error::{self, Checked};
+use crate::helm::{LONGEST_PERIOD, SHORTEST_PERIOD};
 use crate::propagate::Sample;
 use crate::sensor::Clock;
 use crate::stream::{Purpose, StreamKey, normal};
@@ -55,13 +57,10 @@ impl Default for Recording {
     }
 }
 
-/// Rows beyond which a period or duration is taken for a mistake: more than a gigabyte.
-const MOST_ROWS: f64 = 1e7;
-
 impl Recording {
     /// Longest record that is taken for meant, s.
     pub(crate) fn longest(&self) -> f64 {
-        MOST_ROWS * self.period
+        MOST_ROWS as f64 * self.period
     }
 
     /// Number of rows, where the duration says it.
@@ -73,12 +72,13 @@ impl Recording {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         error::positive("recording.period", self.period)?;
+        error::between("recording.period", self.period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         if let Some(duration) = self.duration {
             error::positive("recording.duration", duration)?;
         }
         if let Start::Execute { number, offset } = self.start {
-            error::positive("recording.start.execute", number as f64)?;
-            error::not_negative("recording.start.offset", offset)?;
+            error::count("recording.start.execute", number, MOST_EXECUTES)?;
+            error::time("recording.start.offset", offset)?;
         }
         if let RudderColumn::Orders { assumed_rate } = self.rudder {
             error::positive_or_infinite("recording.rudder.assumed_rate", assumed_rate)?;
@@ -132,7 +132,8 @@ impl Tap {
 
     fn new(start: f64, recording: &Recording, shaking: Option<Shaking>) -> Self {
         let rows = recording.rows();
-        let left = rows.unwrap_or(usize::MAX);
+        // One more than there may be, so that a record without end is noticed.
+        let left = rows.unwrap_or(MOST_ROWS + 1);
         let samples = Vec::with_capacity(rows.unwrap_or(0).min(RESERVED));
         let mut tap = Self { start, period: recording.period, left, shaking, next: start, samples, jitter: Vec::new() };
         tap.aim();

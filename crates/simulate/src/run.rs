@@ -2,6 +2,7 @@
 //! reading of the display) and never rounds one to a step. What is recorded is asked for from outside, so a run can be
 //! taken to an execute first and recorded from there.
 
+use crate::cost::{MOST_EXECUTES, MOST_STEPS};
 use crate::display::{Display, Reading};
 use crate::error::SimulateError;
 use crate::gear::{RudderPath, SteeringGear};
@@ -35,6 +36,8 @@ pub(crate) struct Run<'a, P> {
     base: f64,
     executes: Vec<Execute>,
     longest_wait: f64,
+    /// Steps so far.
+    steps: usize,
 }
 
 /// What is left of a run: the way of the rudder, the executes, and what the helmsman read.
@@ -56,7 +59,8 @@ impl<'a, P: Propagator> Run<'a, P> {
         longest_wait: f64,
     ) -> Self {
         let base = propagator.state().heading;
-        Self { propagator, path, gear, helm, display, base, executes: Vec::with_capacity(16), longest_wait }
+        let executes = Vec::with_capacity(16);
+        Self { propagator, path, gear, helm, display, base, executes, longest_wait, steps: 0 }
     }
 
     /// Time, s.
@@ -78,7 +82,8 @@ impl<'a, P: Propagator> Run<'a, P> {
 
     /// Goes on to `until` (s), to the next execute or to the end of the manoeuvre, whichever is first.
     ///
-    /// At the time of an execute the order has been given.
+    /// At the time of an execute the order has been given. Fails when the motion diverges, a heading is never reached, or the
+    /// run takes more than any manoeuvre does.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulateError> {
         loop {
             let end = self.helm.end() + END_TOLERANCE;
@@ -119,6 +124,9 @@ impl<'a, P: Propagator> Run<'a, P> {
             if noticed {
                 if let Some(order) = self.helm.act(t) {
                     self.execute(t, order);
+                    if self.executes.len() > MOST_EXECUTES {
+                        return Err(SimulateError::TooLong { time: t, what: "executes", most: MOST_EXECUTES });
+                    }
                     return Ok(Progress::Executed);
                 }
             } else if t >= until {
@@ -174,7 +182,15 @@ impl<'a, P: Propagator> Run<'a, P> {
     /// Moves the ship to `to`, or to the crossing if it is earlier: whether it is.
     fn travel(&mut self, to: f64, watch: Option<Crossing>) -> Result<bool, SimulateError> {
         let (ship, path) = (&mut self.propagator, &self.path);
-        while ship.time() < to {
+        loop {
+            // A travel of no length counts, too: nothing goes on for ever without moving.
+            self.steps += 1;
+            if self.steps > MOST_STEPS {
+                return Err(SimulateError::TooLong { time: ship.time(), what: "steps", most: MOST_STEPS });
+            }
+            if ship.time() >= to {
+                return Ok(false);
+            }
             let from = ship.state();
             if watch.is_some_and(|watch| watch.excess(from.heading) >= 0.0) {
                 return Ok(true);
@@ -205,6 +221,5 @@ impl<'a, P: Propagator> Run<'a, P> {
             }
             ship.commit(path, target);
         }
-        Ok(false)
     }
 }

@@ -8,6 +8,7 @@
 
 use trial::Noise;
 
+use crate::cost::LONGEST_TIME;
 use crate::error::{self, Checked};
 
 /// The gyrocompass.
@@ -125,8 +126,8 @@ impl Sensors {
         }
         error::not_negative("sensors.rudder.noise", self.rudder.noise)?;
         error::not_negative("sensors.rudder.quantum", self.rudder.quantum)?;
-        error::not_negative("sensors.clock.jitter", self.clock.jitter)?;
-        error::finite("sensors.clock.heading_delay", self.clock.heading_delay)?;
+        error::time("sensors.clock.jitter", self.clock.jitter)?;
+        error::between("sensors.clock.heading_delay", self.clock.heading_delay, -LONGEST_TIME, LONGEST_TIME)?;
         error::between("sensors.drop_out.probability", self.drop_out.probability, 0.0, 1.0)?;
         if let Some(bursts) = &self.drop_out.bursts {
             error::between("sensors.drop_out.bursts.probability", bursts.probability, 0.0, 1.0)?;

@@ -7,6 +7,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::{Origin, Trial};
 
+use crate::cost::MOST_ROWS;
 use crate::display::Display;
 use crate::disturbance::Disturbances;
 use crate::error::{self, Expected, SimulateError, SpecificationError};
@@ -179,8 +180,8 @@ impl Simulation {
         error::finite("approach.heading", self.approach.heading)?;
         error::finite("approach.yaw_rate", self.approach.yaw_rate)?;
         error::finite("approach.rudder", self.approach.rudder)?;
-        error::not_negative("approach.lead_in", self.approach.lead_in)?;
-        error::positive("longest_wait", self.longest_wait)?;
+        error::time("approach.lead_in", self.approach.lead_in)?;
+        error::positive_time("longest_wait", self.longest_wait)?;
         if let Solver::RungeKutta(step) = self.solver {
             error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
         }
@@ -189,22 +190,24 @@ impl Simulation {
             error::at_most("manoeuvre.rudder", self.manoeuvre.largest_rudder(), self.gear.maximum)?;
         }
         // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
-        error::not_negative("vessel.dead_time", self.vessel.dynamics().dead_time())?;
+        error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
         let end = Helm::new(&self.manoeuvre, &self.helmsman, self.approach.lead_in).end();
         match (&self.manoeuvre, self.recording.duration) {
-            (_, None) if end.is_finite() => error::at_most("manoeuvre.duration", end, self.recording.longest()),
-            (_, Some(duration)) => error::at_most("recording.duration", duration, self.recording.longest()),
+            (_, None) if end.is_finite() => error::at_most("manoeuvre.duration", end, self.recording.longest())?,
+            (_, Some(duration)) => error::at_most("recording.duration", duration, self.recording.longest())?,
             (Manoeuvre::ZigZag(zig_zag), None) if zig_zag.end == ZigZagEnd::Record => {
-                Err(SpecificationError { key: "recording.duration", value: f64::NAN, expected: Expected::Duration })
+                let key = "recording.duration";
+                return Err(SpecificationError { key, value: f64::NAN, expected: Expected::Duration });
             }
-            _ => Ok(()),
+            _ => {}
         }
+        self.check_cost()
     }
 
     /// Makes the one trial that belongs to `key`.
     ///
-    /// Fails when the specification makes no sense, the motion diverges, a heading is never reached, the record would
-    /// start at an execute that is never made, or its rows are too few for a [`Trial`].
+    /// Fails when the specification makes no sense or costs too much, the motion diverges, a heading is never reached, the
+    /// record would start at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
         self.validate()?;
         self.record(&self.sail(key)?, key)
@@ -239,7 +242,7 @@ impl Simulation {
     }
 
     /// The ship, if its whole run has a closed form.
-    fn closed_form(&self) -> Option<FirstOrder> {
+    pub(crate) fn closed_form(&self) -> Option<FirstOrder> {
         let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay(_));
         let moment_is_linear = self.disturbances.wind.is_none_or(|wind| wind.moment == 0.0);
         let exact = rudder_is_linear && moment_is_linear && self.sensors.heading.lag == 0.0;
@@ -295,6 +298,9 @@ impl Simulation {
                     }
                 }
             }
+        }
+        if rows.samples.len() > MOST_ROWS {
+            return Err(SimulateError::TooLong { time: run.time(), what: "rows", most: MOST_ROWS });
         }
         Ok(self.look_back(rows, instruments, &run.finish()))
     }

@@ -11,6 +11,11 @@ use crate::vessel::Vessel;
 /// ω₀ times the width of a cell: at 0.2 the cubic is within 10⁻⁵ σ of the smooth part of the path.
 const PHASE_PER_CELL: f64 = 0.2;
 
+/// Width of a cell, s.
+pub(crate) fn cell_width(waves: &NarrowBand) -> f64 {
+    PHASE_PER_CELL / waves.frequency
+}
+
 #[derive(Debug)]
 struct WavePath {
     rng: ChaCha8Rng,
@@ -22,7 +27,7 @@ struct WavePath {
 
 impl WavePath {
     fn new(waves: &NarrowBand, mut rng: ChaCha8Rng) -> Self {
-        let width = PHASE_PER_CELL / waves.frequency;
+        let width = cell_width(waves);
         let step = waves.step(width);
         let start = waves.stationary_sd().map(|sd| sd * normal(&mut rng));
         let end = step.advance(start, [normal(&mut rng), normal(&mut rng)]);

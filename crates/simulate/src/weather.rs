@@ -78,7 +78,6 @@ impl Weather {
     /// The weather at the beginning of a run.
     pub fn new(disturbances: &Disturbances, key: &StreamKey) -> Self {
         let gusting = disturbances.wind.and_then(|wind| wind.gusting);
-        let changes = disturbances.has_moment_of_time() || gusting.is_some();
         let mut weather = Self {
             cell: Cell { start: 0.0, end: f64::INFINITY, moment: [0.0; 2], gust: [1.0; 2] },
             index: 0,
@@ -93,7 +92,7 @@ impl Weather {
             gusts: disturbances.gusts.map(|process| Chain::new(&process, key.rng(Purpose::Gust))),
             gusting: gusting.map(|process| Chain::new(&process, key.rng(Purpose::WindGust))),
         };
-        if changes {
+        if disturbances.change() {
             weather.cell.end = GRID;
             let (moment, gust) = (weather.moment(0.0), weather.gust());
             weather.step();

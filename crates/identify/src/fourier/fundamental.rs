@@ -5,6 +5,7 @@
 
 use realfft::RealFftPlanner;
 use serde::{Deserialize, Serialize};
+use ship::Shown;
 use std::f64::consts::{PI, TAU};
 
 use super::basis::Basis;
@@ -23,6 +24,11 @@ pub enum StartPoint {
     RecordLength,
     /// π/T_rec: half a period a record.
     TwiceRecordLength,
+}
+
+impl StartPoint {
+    /// How many there are.
+    const COUNT: usize = 3;
 }
 
 /// How the fundamental is chosen.
@@ -61,6 +67,9 @@ pub struct Choice {
     pub evaluations: usize,
 }
 
+/// Fundamentals that can be given, rad/s: one period in two months, and faster than any instrument reads.
+const FREQUENCIES: std::ops::RangeInclusive<f64> = 1e-6..=1e3;
+
 /// Lowest fundamental of a scan, periods a record: below it 17 columns are one polynomial to rounding.
 const FEWEST_PERIODS: f64 = 0.35;
 
@@ -77,22 +86,23 @@ const DESCENT_STEP: f64 = 0.15;
 impl Fundamental {
     /// Refuses settings that cannot mean anything.
     pub fn check(&self) -> Result<(), SettingsError> {
-        let refuse = |key, found: String, expected| Err(SettingsError::new(key, found, expected));
+        let refuse = |key, found: f64, expected| Err(SettingsError::new(key, Shown(found), expected));
         match self {
-            Self::Starts(starts) if starts.is_empty() => {
-                refuse("fundamental.starts", "[]".into(), "at least one start")
+            Self::Starts(starts) if !(1..=StartPoint::COUNT).contains(&starts.len()) => {
+                let found = format!("a list of {} starts", starts.len());
+                Err(SettingsError::new("fundamental.starts", found, "1 to 3 starts"))
             }
             Self::BestConditioned { r_squared_loss: loss } if !(*loss >= 0.0 && *loss < 1.0) => {
-                refuse("fundamental.best-conditioned", loss.to_string(), "a loss of R² from 0 to below 1")
+                refuse("fundamental.best-conditioned", *loss, "a loss of R² from 0 to below 1")
             }
             Self::RecordAndPeriods(x) if !(*x >= 0.0 && *x <= 2.0) => {
-                refuse("fundamental.record-and-periods", x.to_string(), "0 to 2 periods")
+                refuse("fundamental.record-and-periods", *x, "0 to 2 periods")
             }
             Self::RecordLengths(x) if !(*x >= 0.01 && *x <= 1.0 / FEWEST_PERIODS) => {
-                refuse("fundamental.record-lengths", x.to_string(), "a period of 0.01 to 2.86 record lengths")
+                refuse("fundamental.record-lengths", *x, "a period of 0.01 to 2.86 record lengths")
             }
-            Self::FixedRadS(w) if !(*w > 0.0 && w.is_finite()) => {
-                refuse("fundamental.fixed-rad-s", w.to_string(), "a positive frequency, rad/s")
+            Self::FixedRadS(w) if !FREQUENCIES.contains(w) => {
+                refuse("fundamental.fixed-rad-s", *w, "a frequency of 1e-6 to 1000 rad/s")
             }
             _ => Ok(()),
         }

@@ -8,6 +8,7 @@
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::{Deserialize, Serialize};
+use ship::Shown;
 
 use crate::error::IdentifyError;
 use crate::settings::SettingsError;
@@ -17,6 +18,12 @@ const SMALLEST_AREA: f64 = 1e-9;
 
 /// Draws allowed for every triple asked for.
 const DRAWS_PER_TRIPLE: usize = 1000;
+
+/// Most triples: ten million draws where none of them is usable.
+pub const MOST_TRIPLES: usize = 10_000;
+
+/// Longest rest of the rudder that can be asked for, s: all rows within it are looked at for every row.
+const LONGEST_REST: f64 = 100.0;
 
 /// Which triples are used.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -63,7 +70,7 @@ impl Selection {
     /// Refuses settings that cannot mean anything.
     pub fn check(&self) -> Result<(), SettingsError> {
         let need = |holds: bool, key, found: f64, expected| {
-            if holds { Ok(()) } else { Err(SettingsError::new(key, found, expected)) }
+            if holds { Ok(()) } else { Err(SettingsError::new(key, Shown(found), expected)) }
         };
         match self {
             Self::Uniform => Ok(()),
@@ -77,7 +84,7 @@ impl Selection {
                 let key = "selection.well-conditioned.interior-share";
                 need(share > 0.0 && share <= 1.0, key, share, "above 0, at most 1")?;
                 let key = "selection.well-conditioned.rudder-rest-s";
-                need(seconds >= 0.0 && seconds.is_finite(), key, seconds, "0 s or more")?;
+                need((0.0..=LONGEST_REST).contains(&seconds), key, seconds, "0 to 100 s")?;
                 need(degrees > 0.0, "selection.well-conditioned.rudder-rest-deg", degrees, "above 0 deg")
             }
         }

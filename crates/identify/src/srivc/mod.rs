@@ -28,14 +28,14 @@ mod tests;
 
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
-use ship::FirstOrder;
 use ship::angle::to_deg;
 use ship::first_order::State;
+use ship::{FirstOrder, Shown};
 use trial::Trial;
 
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, check_iterations};
 use crate::{Identifier, IdentifyError};
 use covariance::Residuals;
 use filter::{Left, NormalEquations, Point, Shared};
@@ -69,17 +69,19 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings.
     ///
-    /// Fails when there is no iteration to do, the step is not within 1e-12 and 0.1, or the condition limit is not
+    /// Fails when there are no iterations to do or more than a thousand, the step is not within 1e-12 and 0.1, or the condition limit is not
     /// above 1.
     pub fn build(self) -> Result<Srivc, SettingsError> {
-        if self.max_iterations == 0 {
-            return Err(SettingsError::new("max-iterations", self.max_iterations, "at least 1"));
-        }
+        check_iterations("max-iterations", self.max_iterations)?;
         if !(1e-12..=0.1).contains(&self.relative_step) {
-            return Err(SettingsError::new("relative-step", self.relative_step, "a number within 1e-12 and 0.1"));
+            return Err(SettingsError::new(
+                "relative-step",
+                Shown(self.relative_step),
+                "a number within 1e-12 and 0.1",
+            ));
         }
         if !(self.condition_limit.is_finite() && self.condition_limit > 1.0) {
-            return Err(SettingsError::new("condition-limit", self.condition_limit, "a number above 1"));
+            return Err(SettingsError::new("condition-limit", Shown(self.condition_limit), "a number above 1"));
         }
         Ok(Srivc { settings: self })
     }

@@ -59,6 +59,13 @@ pub struct Parameter {
     pub odd: bool,
 }
 
+impl Parameter {
+    /// Whether a value lies within the physical range.
+    pub fn holds(&self, value: f64) -> bool {
+        (self.lowest..=self.highest).contains(&value)
+    }
+}
+
 /// The instant at which an effect is evaluated.
 #[derive(Debug, Clone, Copy)]
 pub struct Now<'a, R = f64> {

@@ -6,16 +6,17 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::{Model, Particulars, Ship};
-use crate::effects::{Effect, SecondOrder};
+use crate::effects::{Effect, Parameter, SecondOrder};
 use crate::first_order::FirstOrder;
 use crate::linear::SecondOrderIndices;
 use crate::response::{Response, ResponseModel};
+use crate::shown::Shown;
 
 /// Why numbers do not make a ship.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ShipError {
     /// A number has no physical meaning in its place.
-    #[error("{symbol} = {value} does not make a ship: {reason}")]
+    #[error("{symbol} = {} does not make a ship: {reason}", Shown(*.value))]
     Value {
         /// Symbol of the number.
         symbol: &'static str,
@@ -23,6 +24,19 @@ pub enum ShipError {
         value: f64,
         /// What is wrong with it.
         reason: &'static str,
+    },
+    /// A number that puts a parameter of the response beyond any ship.
+    #[error(
+        "{symbol} makes {} = {}, and ships have {} to {} {}",
+        .parameter.symbol, Shown(*.value), Shown(.parameter.lowest), Shown(.parameter.highest), .parameter.unit
+    )]
+    Range {
+        /// Symbol of the number.
+        symbol: &'static str,
+        /// The parameter of the response.
+        parameter: &'static Parameter,
+        /// Its value, in SI and radians.
+        value: f64,
     },
 }
 
@@ -42,6 +56,18 @@ fn check_indices(K: f64, T: f64, symbol: &'static str) -> Result<(), ShipError> 
     check("K", K, K / T > 0.0, "its sign has to be that of T, or the ship turns away from its rudder")
 }
 
+/// Refuses a response with a parameter outside the range it declares; `symbols` are the numbers it was made of, in the order
+/// of its parameters. A time constant of a nanosecond is no ship, and no simulation of one would end.
+fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), ShipError> {
+    let values = response.model().parameters().zip(response.parameters()).zip(symbols);
+    for ((parameter, &value), symbol) in values {
+        if !parameter.holds(value) {
+            return Err(ShipError::Range { symbol, parameter, value });
+        }
+    }
+    Ok(())
+}
+
 fn ship(name: String, response: Response, particulars: Option<Particulars>) -> Ship {
     Ship {
         id: "user".into(),
@@ -57,18 +83,21 @@ fn ship(name: String, response: Response, particulars: Option<Particulars>) -> S
 /// A first-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
 ///
 /// `K` (1/s) and `T` (s) both negative make a course-unstable ship. `rudder_bias` δ_r in rad. Fails for numbers that
-/// are not finite, K or T of zero, K and T of different sign, and particulars that are not positive.
+/// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and where 1/T, K/T or δ_r
+/// lies outside the range that [`crate::response::BASE`] declares.
 pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particulars>) -> Result<Ship, ShipError> {
     check_indices(K, T, "T")?;
     check("rudder bias", rudder_bias, true, "it has to be finite")?;
     check_particulars(particulars)?;
     let response = Response::first_order_ship(FirstOrder::from_indices(K, T, rudder_bias));
+    check_range(&response, &["T", "K", "rudder bias"])?;
     Ok(ship(format!("first order, K = {K} 1/s, T = {T} s"), response, particulars))
 }
 
 /// A second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
 ///
-/// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite.
+/// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite, and where they lie outside
+/// the range that [`SecondOrder`] declares.
 pub fn second_order(
     indices: SecondOrderIndices,
     rudder_bias: f64,
@@ -81,7 +110,9 @@ pub fn second_order(
     check("rudder bias", rudder_bias, true, "it has to be finite")?;
     check_particulars(particulars)?;
     let name = format!("second order, K = {K} 1/s, T1 = {T1} s, T2 = {T2} s, T3 = {T3} s");
-    Ok(ship(name, second_order_response(indices, rudder_bias, Vec::new(), &[]), particulars))
+    let response = second_order_response(indices, rudder_bias, Vec::new(), &[]);
+    check_range(&response, &["T1", "K", "rudder bias", "T2", "T3"])?;
+    Ok(ship(name, response, particulars))
 }
 
 /// A second-order response, and after it `more` effects with their `values`.
@@ -116,6 +147,21 @@ mod tests {
         let second = SecondOrderIndices { K: 0.1, T1: 20.0, T2: 2.5, T3: 6.2 };
         let ship = second_order(second, 0.0, None).expect("a ship");
         assert!(ship.first_order().is_none(), "a second-order ship has no exact K and T");
+    }
+
+    #[test]
+    fn refuses_ships_that_no_simulation_could_follow() {
+        for (K, T, expected) in [
+            (0.125, 0.0625, "T makes 1/T = 16, and ships have -10 to 10 1/s"),
+            (-0.1, -0.03125, "T makes 1/T = -32, and ships have -10 to 10 1/s"),
+            (1e300, 1.0, "K makes K/T = 1e300, and ships have 0 to 100 1/s²"),
+        ] {
+            let error = first_order(K, T, 0.0, None).err().expect("beyond any ship");
+            assert_eq!(error.to_string(), expected);
+        }
+        let fast = SecondOrderIndices { K: 0.1, T1: 20.0, T2: 1e-9, T3: 0.0 };
+        let error = second_order(fast, 0.0, None).err().expect("beyond any ship");
+        assert!(matches!(error, ShipError::Range { symbol: "T2", .. }), "{error}");
     }
 
     #[test]

@@ -33,9 +33,14 @@ pub(crate) struct ClosedForm {
 impl ClosedForm {
     /// The ship at time 0; `period` is the step most often asked for, s.
     pub fn new(ship: FirstOrder, weather: Weather, state: State, period: f64) -> Self {
-        let longest = LONGEST_STEP.min(LONGEST_SHARE_OF_T / ship.inverse_T.abs());
+        let longest = Self::longest_step(&ship);
         let usual = [period, GRID].map(|h| Transition::new(ship.inverse_T, h));
         Self { ship, weather, time: 0.0, state, candidate: state, cursor: 0, longest, usual }
+    }
+
+    /// Longest step, s.
+    pub fn longest_step(ship: &FirstOrder) -> f64 {
+        LONGEST_STEP.min(LONGEST_SHARE_OF_T / ship.inverse_T.abs())
     }
 
     fn transition(&self, h: f64) -> Transition {

@@ -88,7 +88,12 @@ impl<D: Dynamics + ?Sized> Dynamics for Exposed<'_, D> {
     }
 
     fn largest_step(&self) -> f64 {
-        // Stability of the compass state is no accuracy: a quarter of its time constant keeps both.
-        if self.gyro_lag > 0.0 { self.ship.largest_step().min(0.25 * self.gyro_lag) } else { self.ship.largest_step() }
+        largest_step(self.ship.largest_step(), self.gyro_lag)
     }
+}
+
+/// Largest step, s, of a ship that may take `of_ship` s, behind a compass with the time constant `gyro_lag`, s.
+pub(crate) fn largest_step(of_ship: f64, gyro_lag: f64) -> f64 {
+    // Stability of the compass state is no accuracy: a quarter of its time constant keeps both.
+    if gyro_lag > 0.0 { of_ship.min(0.25 * gyro_lag) } else { of_ship }
 }

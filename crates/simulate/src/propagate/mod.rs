@@ -4,7 +4,7 @@
 //! located by shortening the one step in which it lies. It knows nothing of helms and records.
 
 mod closed_form;
-mod exposed;
+pub(crate) mod exposed;
 mod integrated;
 
 pub(crate) use closed_form::ClosedForm;

@@ -4,6 +4,7 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 
 use super::{KEY, zig_zag};
+use crate::cost::{MOST_EXECUTES, MOST_ROWS};
 use crate::helm::Watches;
 use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
 use crate::recording::Start;
@@ -31,7 +32,10 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
     let limit = from_deg(8.0);
     assert_eq!(refused(|s| s.gear.maximum = limit), ("manoeuvre.rudder", Expected::AtMost(limit)));
     assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration", Expected::Duration));
-    assert_eq!(refused(|s| s.recording.duration = Some(1e300)), ("recording.duration", Expected::AtMost(1e7)));
+    assert_eq!(
+        refused(|s| s.recording.duration = Some(1e300)),
+        ("recording.duration", Expected::AtMost(MOST_ROWS as f64))
+    );
     assert_eq!(refused(|s| s.solver = Solver::RungeKutta(1e-300)).0, "solver.step");
     assert_eq!(refused(|s| s.sensors.heading.lag = 1e-300).0, "sensors.heading.lag");
     assert_eq!(refused(|s| s.helmsman.watches = Watches::Display { period: 1e-300 }).0, "helmsman.period");
@@ -83,6 +87,21 @@ fn a_record_that_starts_at_no_execute_is_an_error() {
     simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Executes(3));
     simulation.recording.start = Start::Execute { number: 5, offset: 0.0 };
     assert_eq!(failure(&simulation), SimulateError::NoSuchExecute { execute: 5, made: 3 });
+}
+
+/// What no estimate foresees: a helmsman who reverses the rudder at every breath of the heading, and a record that nothing but the
+/// last execute ends.
+#[test]
+fn a_run_that_takes_too_much_is_given_up() {
+    let mut simulation = zig_zag(10.0, 1e-290, f64::INFINITY, 100.0);
+    let given_up = |simulation: &Simulation| match failure(simulation) {
+        SimulateError::TooLong { what, most, .. } => (what, most),
+        other => panic!("expected to be given up, found {other}"),
+    };
+    assert_eq!(given_up(&simulation), ("executes", MOST_EXECUTES));
+    simulation.manoeuvre = Manoeuvre::zig_zag(0.1, 0.4, ZigZagEnd::Executes(12));
+    (simulation.recording.duration, simulation.recording.period) = (None, 1e-3);
+    assert_eq!(given_up(&simulation), ("rows", MOST_ROWS));
 }
 
 #[test]

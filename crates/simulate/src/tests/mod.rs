@@ -17,7 +17,7 @@ fn training_ship() -> FirstOrder {
 }
 
 /// A zig-zag (degrees) of the training ship with a rudder rate (deg/s), until the record is full.
-fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f64) -> Simulation {
+pub(crate) fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f64) -> Simulation {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(delta_deg), from_deg(psi_deg), ZigZagEnd::Record);
     let mut simulation = Simulation::new(Vessel::first_order(training_ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(rate_deg_s));
@@ -25,4 +25,4 @@ fn zig_zag(delta_deg: f64, psi_deg: f64, rate_deg_s: f64, duration: f64) -> Simu
     simulation
 }
 
-const KEY: StreamKey = StreamKey { seed: 20, cell: 3, replicate: 7 };
+pub(crate) const KEY: StreamKey = StreamKey { seed: 20, cell: 3, replicate: 7 };

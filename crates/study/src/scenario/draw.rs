@@ -4,9 +4,11 @@
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
 use serde::Deserialize;
+use ship::Shown;
 use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
+use super::limits;
 use super::part::Part;
 use super::problem::{KeyPath, Mark, Problem};
 
@@ -84,6 +86,7 @@ impl DrawWire {
     pub fn resolve(&self, index: usize) -> Result<Draw, Problem> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
+        limits::depth(&key, &place.child("key"))?;
         let is_of_trial = |first: &String| Part::of(first) == Part::Trial && first != "validation";
         if !key.parts().first().is_some_and(is_of_trial) {
             return Err(Problem::value(
@@ -99,7 +102,7 @@ impl DrawWire {
         if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
             return Err(Problem::value(
                 place.child("between"),
-                format!("the draw of `{}` is held between {low} and {high}", draw.key),
+                format!("the draw of `{}` is held between {} and {}", draw.key, Shown(low), Shown(high)),
                 format!("expected a range that holds at least {} % of the draws", 100.0 * LEAST_PROBABILITY),
                 "widen the range, or change the distribution",
             ));
@@ -114,10 +117,10 @@ impl DrawWire {
             if value.is_finite() && value > least && is_within_reach {
                 return Ok(value);
             }
-            let found = format!("`{number}` of the `{name}` distribution of `{}` is {value}", self.key);
+            let found = format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, Shown(value));
             let expected = match least {
                 f64::NEG_INFINITY => "expected a finite number".to_owned(),
-                _ => format!("expected a finite number above {least}"),
+                _ => format!("expected a finite number above {}", Shown(least)),
             };
             Err(Problem::value(place.child(name).child(number), found, expected, "change the number"))
         };

@@ -9,8 +9,9 @@ use ship::effects::{
     SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
 };
 use ship::ships::Model;
-use ship::{ResponseModel, Ship};
+use ship::{ResponseModel, Ship, Shown};
 
+use super::limits;
 use super::problem::{KeyPath, Problem};
 use super::wire::*;
 
@@ -44,6 +45,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
     if wire.is_empty() {
         return Ok(ship);
     }
+    limits::entries("effect", wire.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
     let Model::Response(response) = &ship.model else {
         return Err(Problem::name(
@@ -68,14 +70,15 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
             ));
         }
         for (description, setting) in effect.parameters().iter().zip(&settings) {
-            if !(description.lowest..=description.highest).contains(&setting.value) {
+            if !description.holds(setting.value) {
                 let key = key.child(setting.key);
-                let mut ends = [description.lowest, description.highest].map(|end| four_digits(end / setting.unit));
+                let mut ends =
+                    [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
-                ends.sort_by(f64::total_cmp);
+                ends.sort_by(|one, other| one.0.total_cmp(&other.0));
                 return Err(Problem::value(
                     key.clone(),
-                    format!("`{key}` is {}", setting.written),
+                    format!("`{key}` is {}", Shown(setting.written)),
                     format!("expected a number from {} to {}", ends[0], ends[1]),
                     format!("change the value; the effect is {}", effect.equation()),
                 ));
@@ -102,10 +105,6 @@ struct Setting {
 
 fn setting(key: &'static str, written: f64, unit: f64) -> Setting {
     Setting { value: written * unit, key, written, unit }
-}
-
-fn four_digits(value: f64) -> f64 {
-    format!("{value:.3e}").parse().expect("a number that was just written")
 }
 
 /// The effect and its parameters; nonlinear damping is written for T r' + r and stored for r', divided by T.

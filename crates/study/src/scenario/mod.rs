@@ -7,6 +7,7 @@
 mod draw;
 mod effect;
 pub mod identity;
+mod limits;
 mod locate;
 mod part;
 mod problem;
@@ -19,6 +20,7 @@ mod wire;
 mod words;
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -43,7 +45,7 @@ use reader::Gaps;
 pub use resolve::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
 use sweep::Axis;
-use wire::ScenarioWire;
+use wire::{PublishedWire, ScenarioWire};
 pub use words::Words;
 
 /// A method as a scenario names it.
@@ -317,7 +319,7 @@ impl Scenario {
             .map_err(&fail)?;
         check_titles(&axes).map_err(&fail)?;
         let combinations = sweep::product(&axes).map_err(&fail)?;
-        check_size(wire.replicates, combinations.len()).map_err(&fail)?;
+        check_size(wire.replicates, combinations.len(), methods.len()).map_err(&fail)?;
         check_draws(&wire.draw, &axes).map_err(&fail)?;
         let of_cells = only(&document, &[Part::Trial, Part::Cell]);
         let cells: Vec<Cell> = combinations
@@ -340,7 +342,7 @@ impl Scenario {
             draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
             axes,
             cells,
-            published: Published { k_per_s: wire.published.K_per_s, t_s: wire.published.T_s },
+            published: published(&wire.published).map_err(&fail)?,
             finding: wire.finding,
             showcase: wire.output.showcase,
             figure: wire.output.figure,
@@ -367,10 +369,23 @@ impl Scenario {
     }
 }
 
+/// Values of other authors; fails where one is no number.
+fn published(wire: &PublishedWire) -> Result<Published, Problem> {
+    let finite = |name: &str, value: Option<f64>| match value {
+        Some(value) if !value.is_finite() => {
+            let key = KeyPath::dotted("published").child(name);
+            let found = format!("`{key}` is {value}");
+            Err(Problem::value(key, found, "expected a finite number", "give the number, or leave the key out"))
+        }
+        _ => Ok(value),
+    };
+    Ok(Published { k_per_s: finite("K-per-s", wire.K_per_s)?, t_s: finite("T-s", wire.T_s)? })
+}
+
 /// Largest number of trials; more is a slip of the pen.
 const MOST_TRIALS: u64 = 1_000_000_000;
 
-fn check_size(replicates: u64, cells: usize) -> Result<(), Problem> {
+fn check_size(replicates: u64, cells: usize, methods: usize) -> Result<(), Problem> {
     let key = KeyPath::dotted("replicates");
     if replicates == 0 {
         return Err(Problem::value(
@@ -378,6 +393,14 @@ fn check_size(replicates: u64, cells: usize) -> Result<(), Problem> {
             "`replicates` is 0, so nothing would be run",
             "expected at least 1",
             "give the number of trials in every cell, or leave the key out for one",
+        ));
+    }
+    if cells * methods > limits::MOST_METHODS_OF_CELLS {
+        return Err(Problem::name(
+            KeyPath::dotted("sweep"),
+            format!("the sweeps make {cells} cells, each with {methods} methods"),
+            format!("expected at most {} methods of cells in all", limits::MOST_METHODS_OF_CELLS),
+            "use fewer points or fewer methods, or make several scenarios of this one",
         ));
     }
     if replicates.saturating_mul(cells as u64) > MOST_TRIALS {
@@ -408,6 +431,7 @@ fn check_titles(axes: &[Axis]) -> Result<(), Problem> {
 
 /// Draws and sweeps change different keys, and no key twice.
 fn check_draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
+    limits::entries("draw", draws.len(), limits::MOST_DRAWS)?;
     for (index, draw) in draws.iter().enumerate() {
         let own = KeyPath::dotted(draw.key());
         let place = KeyPath::dotted("draw").child(index).child("key");
@@ -429,8 +453,10 @@ fn check_draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
 /// Indices of the cells with these titles.
 fn detail(titles: &[String], cells: &[Cell]) -> Result<Vec<usize>, Problem> {
     let known: Vec<String> = cells.iter().map(Cell::title).filter(|title| !title.is_empty()).collect();
+    let places: HashMap<&str, usize> =
+        known.iter().enumerate().rev().map(|(cell, title)| (title.as_str(), cell)).collect();
     let place = |(index, title): (usize, &String)| {
-        known.iter().position(|known| known == title).ok_or_else(|| {
+        places.get(title.as_str()).copied().ok_or_else(|| {
             let key = KeyPath::dotted("output.detail").child(index);
             let advice = match &known[..known.len().min(20)] {
                 [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
@@ -503,6 +529,7 @@ fn swept(document: &Table, points: &[&sweep::Point], base: &[Method], folder: &P
             "sweep settings only, and name every method once in an [[identifier]] of its own",
         )));
     }
+    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(blame)?;
     let draws: Vec<Draw> = wire
         .draw
         .iter()

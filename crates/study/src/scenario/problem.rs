@@ -6,7 +6,7 @@ use std::fmt;
 use crate::name::{Unfit, shown};
 
 /// Path of a key from the root of a scenario; entries of a list are counted from 0, as a sweep addresses them.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct KeyPath(Vec<String>);
 
 impl KeyPath {

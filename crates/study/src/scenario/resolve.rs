@@ -6,11 +6,12 @@ use std::path::Path;
 use ::trace::search::Thresholds;
 use identify::IdentifierSettings;
 use ship::angle::{KNOT, from_deg};
+use ship::effects::Parameter;
 use ship::linear::SecondOrderIndices;
 use ship::narrow_band::NarrowBand;
 use ship::ships::Model;
 use ship::ships::user::ShipError;
-use ship::{FirstOrder, Particulars, Ship, ships};
+use ship::{FirstOrder, Particulars, Ship, Shown, ships};
 use simulate::disturbance::{GaussMarkov, Squall, Wind};
 use simulate::helm::Watches;
 use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
@@ -22,7 +23,7 @@ use simulate::{
 
 use super::problem::{KeyPath, Problem, of_text, suggestion};
 use super::wire::*;
-use super::{Means, Method, TRACE, effect, reader, specification};
+use super::{Means, Method, TRACE, effect, limits, reader, specification, sweep};
 use crate::name;
 
 /// Everything about a trial but its chance.
@@ -224,8 +225,15 @@ fn indices(own: &FirstOrderWire, key: &KeyPath, particulars: Option<Particulars>
 
 /// Numbers that make no ship, with the key of the number where there is one.
 fn not_a_ship(key: &KeyPath, table: &toml::Table, error: &ShipError) -> Problem {
-    let ShipError::Value { symbol, reason, .. } = error;
-    let own = match *symbol {
+    let (symbol, expected) = match *error {
+        ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
+        ShipError::Range { symbol, parameter, value } => {
+            let Parameter { symbol: of, unit, lowest, highest, .. } = parameter;
+            let range = format!("from {} to {} {unit}", Shown(*lowest), Shown(*highest));
+            (symbol, format!("expected {of} {range}, and this makes it {}", Shown(value)))
+        }
+    };
+    let own = match symbol {
         "K" if table.contains_key("K-prime") => "K-prime",
         "T" if table.contains_key("T-prime") => "T-prime",
         "K" => "K-per-s",
@@ -236,8 +244,8 @@ fn not_a_ship(key: &KeyPath, table: &toml::Table, error: &ShipError) -> Problem 
         _ => "rudder-bias-deg",
     };
     let key = key.child(own);
-    let value = table.get(own).map_or_else(String::new, toml::Value::to_string);
-    Problem::value(key.clone(), format!("`{key}` is {value}"), *reason, "change the number")
+    let value = table.get(own).map_or_else(String::new, sweep::written);
+    Problem::value(key.clone(), format!("`{key}` is {value}"), expected, "change the number")
 }
 
 fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> Result<Option<Particulars>, Problem> {
@@ -254,7 +262,7 @@ fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> R
         let is_right = value.is_finite() && value > 0.0;
         is_right.then_some(value).ok_or_else(|| {
             let key = key.child(name);
-            let found = format!("`{key}` is {value}");
+            let found = format!("`{key}` is {}", Shown(value));
             Problem::value(key, found, "expected a finite number above 0", "change the number")
         })
     };
@@ -390,7 +398,7 @@ fn recording(wire: &RecordingWire, place: &str) -> Result<Recording, Problem> {
         (RudderWire::Orders, Some(rate)) if rate > 0.0 => RudderColumn::Orders { assumed_rate: from_deg(rate) },
         (RudderWire::Orders, Some(rate)) => {
             let key = KeyPath::dotted(place).child("assumed-rudder-rate-deg-s");
-            let found = format!("`{key}` is {rate}");
+            let found = format!("`{key}` is {}", Shown(rate));
             let expected = "expected a number above 0, or inf for a rudder that jumps";
             return Err(Problem::value(key, found, expected, "give the rate the analyst assumes, for instance 2.5"));
         }
@@ -491,6 +499,7 @@ fn disturbances(wire: &DisturbanceWire) -> Disturbances {
 
 /// The methods, all with names of their own.
 pub fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
+    limits::entries("identifier", wire.len(), limits::MOST_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
@@ -554,7 +563,7 @@ fn means(entry: &IdentifierWire, key: &KeyPath) -> Result<Means, Problem> {
 fn tracing(wire: &TraceWire, key: &KeyPath) -> Result<::trace::Settings, Problem> {
     let refuse = |name: &str, value: f64, expected: &str| {
         let key = key.child(name);
-        let found = format!("`{key}` is {value}");
+        let found = format!("`{key}` is {}", Shown(value));
         Problem::value(key, found, format!("expected {expected}"), "change the value, or leave the key out")
     };
     if !(wire.gain.is_finite() && wire.gain >= 0.0) {
@@ -562,6 +571,12 @@ fn tracing(wire: &TraceWire, key: &KeyPath) -> Result<::trace::Settings, Problem
     }
     if !(wire.false_discovery > 0.0 && wire.false_discovery <= 1.0) {
         return Err(refuse("false-discovery", wire.false_discovery, "a probability above 0 and up to 1"));
+    }
+    if wire.most_effects > limits::MOST_EFFECTS {
+        let key = key.child("most-effects");
+        let found = format!("`{key}` is {}", wire.most_effects);
+        let expected = format!("expected at most {}", limits::MOST_EFFECTS);
+        return Err(Problem::value(key, found, expected, "change the value, or leave the key out"));
     }
     Ok(::trace::Settings {
         thresholds: Thresholds {

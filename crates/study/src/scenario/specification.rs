@@ -1,6 +1,8 @@
 //! A value the simulator refuses, in the words and units of a scenario: its own key, degrees, and what to do.
 
+use ship::Shown;
 use ship::angle::DEGREE;
+use simulate::cost::LONGEST_TIME;
 use simulate::{Expected, SpecificationError};
 
 use super::problem::{KeyPath, Problem};
@@ -81,6 +83,14 @@ pub fn problem(error: &SpecificationError, manoeuvre: &ManoeuvreWire, sampling_s
         Some(part) => format!("{own}.{part}"),
         None => error.key.to_owned(),
     };
+    if name == "vessel.dead_time" {
+        return Problem::name(
+            KeyPath::dotted("effect"),
+            format!("the dead times of all effects add up to {} s", Shown(error.value)),
+            format!("expected {}", error.expected),
+            "give dead times of 0 s or more: a rudder does not act before it moves",
+        );
+    }
     let known = KEYS.iter().find(|(specification, ..)| *specification == name);
     let Some(&(_, key, angle)) = known else {
         return Problem::value(KeyPath::dotted("manoeuvre"), error.to_string(), "not accepted", "change the value");
@@ -101,6 +111,7 @@ pub fn problem(error: &SpecificationError, manoeuvre: &ManoeuvreWire, sampling_s
             format!("expected a number from {} to {}", shown(low / unit), shown(high / unit))
         }
         Expected::AtMost(limit) => format!("expected at most {}", shown(limit / unit)),
+        Expected::Steps { .. } => format!("expected {}", error.expected),
         Expected::Duration => "expected a duration, because nothing else ends the run".to_owned(),
     };
     Problem::value(KeyPath::dotted(key), found, expected, advice(key, error.expected, sampling_s))
@@ -111,6 +122,7 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
         ("recording.duration-s", Expected::Duration) => {
             "add `duration-s = …` (seconds), or let `executes` end the zig-zag".to_owned()
         }
+        (_, Expected::AtMost(limit)) if limit == LONGEST_TIME => "give a time in seconds".to_owned(),
         (_, Expected::AtMost(limit)) if key.ends_with("duration-s") => format!(
             "record less, or more rarely: with `sampling-s` = {sampling_s} that limit is {:.0} rows",
             limit / sampling_s
@@ -118,6 +130,10 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
         (_, Expected::AtMost(_)) if key.ends_with("rudder-deg") => {
             "give less rudder, or set `steering-gear.maximum-deg` if the rudder of this ship goes further".to_owned()
         }
+        ("manoeuvre.zig-zag.executes" | "recording.after-execute", Expected::Steps { .. }) => {
+            "wait for fewer executes, each of which counts with the longest wait for it; or end the zig-zag by `duration-s`".to_owned()
+        }
+        (_, Expected::Steps { .. }) => "make the run shorter".to_owned(),
         ("recording.sampling-s", _) => "give the time between two rows of the record, in seconds".to_owned(),
         ("recording.after-execute", _) => {
             "count the executes from 1, or leave the key out to record from the start".to_owned()
@@ -129,6 +145,6 @@ fn advice(key: &str, expected: Expected, sampling_s: f64) -> String {
 }
 
 /// A number as it was written: conversion to radians and back must not show.
-fn shown(value: f64) -> f64 {
-    if value.abs() < 1e6 { (value * 1e9).round() / 1e9 } else { value }
+fn shown(value: f64) -> Shown {
+    Shown::rounded(value, 14)
 }

@@ -1,6 +1,7 @@
 //! The stopping rule of a scenario: `[stop]`. What it sees, and when it is met, is in [`crate::stopping`].
 
 use serde::Deserialize;
+use ship::Shown;
 
 use super::Method;
 use super::problem::{KeyPath, Problem, suggestion};
@@ -75,7 +76,7 @@ impl StopWire {
     pub fn resolve(&self, methods: &[Method]) -> Result<StopRule, Problem> {
         let key = KeyPath::dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
-            let found = format!("`stop.standard-error` is {}", self.standard_error);
+            let found = format!("`stop.standard-error` is {}", Shown(self.standard_error));
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
             return Err(Problem::value(key.child("standard-error"), found, "expected a finite number above 0", advice));
         }

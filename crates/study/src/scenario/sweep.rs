@@ -3,9 +3,13 @@
 //! A point of an axis sets one key or several; the changed document is resolved like any scenario, so a swept value is
 //! checked as strictly as one that is written down.
 
+use std::collections::HashSet;
+
 use serde::Deserialize;
+use ship::Shown;
 use toml::{Table, Value};
 
+use super::limits;
 use super::part::Part;
 use super::problem::{KeyPath, Mark, Problem, of_text};
 use crate::name;
@@ -91,7 +95,7 @@ impl Setting {
         // Where the point itself names the key, its name is underlined and not its value.
         let mark = if name && self.key_place == self.value_place { Mark::Name } else { Mark::Value };
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
-        let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, self.value);
+        let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
         // "to −1: `key` is −1" would say it twice.
         if !problem.found.starts_with(&format!("`{}` is", self.key)) {
             found = format!("{found}: {}", problem.found);
@@ -141,6 +145,7 @@ impl AxisWire {
             ));
         }
         for setting in points.iter().flat_map(|point| &point.set) {
+            limits::depth(&setting.key, &setting.key_place)?;
             let first = setting.key.parts().first().map_or("", String::as_str);
             if first.is_empty() || matches!(Part::of(first), Part::Prose | Part::Study) {
                 let found = match first {
@@ -157,6 +162,17 @@ impl AxisWire {
                     )
                 });
             }
+        }
+        let odd = points.iter().position(|point| point.value.is_some_and(|value| !value.is_finite()));
+        if let (Some(index), true) = (odd, self.points.is_some()) {
+            let key = place.child("points").child(index).child("value");
+            let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
+            return Err(Problem::value(
+                key,
+                found,
+                "expected a finite number",
+                "give the place of the point on its axis",
+            ));
         }
         distinguish(&mut points);
         for (i, point) in points.iter().enumerate() {
@@ -226,7 +242,7 @@ impl RangeWire {
     }
 
     fn problem(&self, place: &KeyPath, expected: &str) -> Problem {
-        let found = format!("a range of {} points from {} to {}", self.points, self.from, self.to);
+        let found = format!("a range of {} points from {} to {}", self.points, Shown(self.from), Shown(self.to));
         Problem::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
     }
 }
@@ -253,14 +269,26 @@ fn distinguish(points: &mut [Point]) {
     if labels.len() < before {
         for point in points {
             if let Some(value) = point.value {
-                point.label = value.to_string();
+                point.label = Shown(value).to_string();
             }
         }
     }
 }
 
-/// A number with at most four significant digits and no trailing zeros.
+/// A value as a person would write it.
+pub fn written(value: &Value) -> String {
+    match value {
+        Value::Float(number) if !Shown(*number).is_plain() => Shown(*number).to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// A number with four significant digits, more where they stand before the point, and no trailing zeros.
 fn trim(number: f64) -> String {
+    let rounded = Shown::rounded(number, 4);
+    if !rounded.is_plain() {
+        return rounded.to_string();
+    }
     let digits = if number == 0.0 { 0 } else { (3 - number.abs().log10().floor() as i32).clamp(0, 12) as usize };
     let text = format!("{number:.digits$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
@@ -270,6 +298,7 @@ fn trim(number: f64) -> String {
 ///
 /// Fails when there are too many, and when two axes change the same key.
 pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
+    limits::entries("sweep", axes.len(), limits::MOST_SWEEPS)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
     if count > MOST_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
@@ -280,17 +309,18 @@ pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
             "use fewer points, or fewer sweeps",
         ));
     }
+    let mut before: HashSet<&KeyPath> = HashSet::new();
     for (index, axis) in axes.iter().enumerate() {
-        let settings = |axis: &Axis| axis.points.iter().flat_map(|point| point.set.clone()).collect::<Vec<Setting>>();
-        let before: Vec<Setting> = axes[..index].iter().flat_map(settings).collect();
-        if let Some(again) = settings(axis).iter().find(|own| before.iter().any(|other| other.key == own.key)) {
+        let keys = || axis.points.iter().flat_map(|point| &point.set).map(|setting| &setting.key);
+        if let Some(again) = keys().find(|key| before.contains(key)) {
             return Err(Problem::name(
                 KeyPath::dotted("sweep").child(index),
-                format!("two sweeps change `{}`", again.key),
+                format!("two sweeps change `{again}`"),
                 "expected every sweep to change keys of its own",
                 "remove one of them, or join them into one sweep with `points`",
             ));
         }
+        before.extend(keys());
     }
     let mut cells: Vec<Vec<&Point>> = vec![Vec::new()];
     for axis in axes {
@@ -354,6 +384,21 @@ mod tests {
         assert!(axis("key = \"a\"").is_err());
         assert!(axis("key = \"a\"\nlinear = { from = 0.0, to = 1.0, points = 1000000000000000 }").is_err());
         assert!(axis("key = \"seed\"\nvalues = [1, 2]").is_err(), "a seed is not part of the design");
+    }
+
+    #[test]
+    fn labels_have_few_digits_whatever_the_size() {
+        let sizes = axis("key = \"a\"\nvalues = [1e308, -2.34567e-30, 1e-12, 0.1, 12345.6, 0]").expect("six values");
+        let labels: Vec<&str> = sizes.points.iter().map(|point| point.label.as_str()).collect();
+        assert_eq!(labels, ["1e308", "-2.346e-30", "1e-12", "0.1", "12346", "0"]);
+        let refused = Setting {
+            key: KeyPath::dotted("a"),
+            value: Value::Float(1e308),
+            key_place: KeyPath::default(),
+            value_place: KeyPath::default(),
+        }
+        .blamed(Problem::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
+        assert_eq!(refused.found, "the sweep sets `a` to 1e308: `b` is wrong");
     }
 
     #[test]

@@ -1,0 +1,48 @@
+//! Numbers in messages: as a person writes them, whatever their size.
+
+use std::fmt;
+
+/// A number for a message: with all its digits, and with a power of ten where zeros would hide them (1e-12, 1e300).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shown(pub f64);
+
+impl Shown {
+    /// A number rounded to so many significant digits, at least one.
+    pub fn rounded(value: f64, digits: usize) -> Self {
+        let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse();
+        Self(rounded.expect("a number that was just written"))
+    }
+
+    /// Whether it is written without a power of ten.
+    pub fn is_plain(&self) -> bool {
+        self.0 == 0.0 || !self.0.is_finite() || PLAIN.contains(&self.0.abs())
+    }
+}
+
+/// Sizes between which a number is written without a power of ten.
+const PLAIN: std::ops::Range<f64> = 1e-5..1e16;
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if self.is_plain() { write!(f, "{value}") } else { write!(f, "{value:e}") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_size_hides_the_digits() {
+        let shown =
+            [0.0, 10.0, -0.25, 1e-12, 1e300, -2.5e-7, 1e15, f64::NAN, f64::INFINITY].map(|x| Shown(x).to_string());
+        assert_eq!(shown, ["0", "10", "-0.25", "1e-12", "1e300", "-2.5e-7", "1000000000000000", "NaN", "inf"]);
+    }
+
+    #[test]
+    fn rounding_keeps_digits_whatever_the_size() {
+        let third = [1.0, 1e-30, -1e30, f64::NAN, f64::INFINITY].map(|size| Shown::rounded(size / 3.0, 3).to_string());
+        assert_eq!(third, ["0.333", "3.33e-31", "-3.33e29", "NaN", "inf"]);
+    }
+}
