@@ -99,7 +99,7 @@ pub struct LeastSquares {
 #[derive(Debug)]
 struct Stretch {
     time: Vec<f64>,
-    /// Rows with an equation.
+    /// Rows with an equation, at least one.
     rows: Vec<usize>,
 }
 
@@ -246,7 +246,9 @@ impl LeastSquares {
                 equations.acceleration.push(acceleration);
                 rows.push(k);
             }
-            equations.stretches.push(Stretch { time: time.to_vec(), rows });
+            if !rows.is_empty() {
+                equations.stretches.push(Stretch { time: time.to_vec(), rows });
+            }
         }
     }
 
