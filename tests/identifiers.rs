@@ -2,7 +2,7 @@
 //! says otherwise. What a method promises beyond it is in [`PROMISES`], with the reason; everything else is common.
 
 use identify::estimate::{Covariance, Quantity};
-use identify::{Estimate, Identifier, Uncertainty, registry};
+use identify::{Estimate, Identifier, IdentifierSettings, Uncertainty, registry};
 use kempf_tests::records::{self, Begin, Case};
 use nalgebra::{Matrix3, SymmetricEigen};
 use ship::FirstOrder;
@@ -217,6 +217,71 @@ fn gaps_are_survived() {
         ] {
             let found = identify(method.as_ref(), &[record]).response;
             check_promise(&GAPS, method.as_ref(), &found, when);
+        }
+    }
+}
+
+/// Rows that gaps leave alone, one, two or three at a time: at either end, between dense parts and all over. What a piece between
+/// gaps cannot say it does not say; what is left gives a finite ship or a typed error, never a panic.
+#[test]
+fn rows_that_gaps_leave_alone_are_survived() {
+    let whole = [case().trial(0), Case { noise_deg: 0.3, begin: Begin::Mid, ..case() }.trial(3)];
+    let rows = whole[0].len();
+    let mut tried: Vec<Trial> = Vec::new();
+    for trial in &whole {
+        let mut lose = |lost: &dyn Fn(usize) -> bool| {
+            tried.push(records::without_rows(trial, lost));
+            tried.push(records::without_headings(trial, lost));
+        };
+        for alone in 1..=3 {
+            let (first, last) = (move |row: usize| row < alone, move |row: usize| row + alone >= rows);
+            // At the beginning, at the end, at both, and nothing but both ends beside a dense middle of a few rows.
+            lose(&|row| !first(row) && row < 40);
+            lose(&|row| !last(row) && row + 40 > rows);
+            lose(&|row| !first(row) && !last(row) && (row < 40 || row + 40 > rows));
+            lose(&|row| !first(row) && !last(row) && !(130..140).contains(&row));
+            // Alternating with gaps behind a dense part, and everywhere.
+            for gap in [2, 9, 30] {
+                lose(&|row| row > 140 && row % (alone + gap) >= alone);
+                lose(&|row| row < 140 && row % (alone + gap) >= alone);
+                lose(&|row| row % (alone + gap) >= alone);
+            }
+        }
+    }
+    let every = |longest_gap_s: Option<f64>| {
+        let least = identify::least_squares::Settings { longest_gap_s, ..Default::default() };
+        let integral = identify::integral_least_squares::Settings { longest_gap_s, ..Default::default() };
+        let built = |settings: IdentifierSettings| settings.build().expect("a gap is a positive time");
+        [built(IdentifierSettings::LeastSquares(least)), built(IdentifierSettings::IntegralLeastSquares(integral))]
+    };
+    // A longest gap below the interval makes every row a piece.
+    for method in methods().into_iter().chain(every(Some(0.5))).chain(every(Some(1.5))) {
+        for trial in &tried {
+            check_answer(method.as_ref(), trial, &format!("{} rows", trial.len()));
+        }
+    }
+}
+
+/// A finite ship with finite errors, or a typed error.
+fn check_answer(method: &dyn Identifier, trial: &Trial, when: &str) {
+    let id = method.id();
+    match method.identify(std::slice::from_ref(trial)) {
+        Ok(found) => {
+            let FirstOrder { inverse_T, K_over_T, rudder_bias } = found.response;
+            let finite = inverse_T.is_finite() && K_over_T.is_finite() && rudder_bias.is_finite();
+            assert!(finite && K_over_T > 0.0, "{id} with {when}: {:?}", found.response);
+            for quantity in [found.K(), found.T(), found.rudder_bias()] {
+                let errors = quantity.sd.into_iter().chain(quantity.ci95.into_iter().flatten());
+                assert!(errors.into_iter().all(f64::is_finite), "{id} with {when}: {quantity:?}");
+            }
+            let robust = found.robust.iter().flat_map(|covariance| &covariance.matrix);
+            assert!(robust.into_iter().all(|value| value.is_finite()), "{id} with {when}: {:?}", found.robust);
+            let undefined = found.diagnostics.iter().find(|(_, value)| !value.is_finite());
+            assert!(undefined.is_none(), "{id} with {when}: {undefined:?}");
+        }
+        Err(error) => {
+            let text = error.to_string();
+            assert!(!text.is_empty() && !error.kind().contains(' '), "{id} with {when}: {text}");
         }
     }
 }

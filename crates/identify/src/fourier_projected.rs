@@ -8,6 +8,9 @@
 //! attenuation of a regression on a noisy yaw rate. The reported covariance takes all that the series leaves of the
 //! heading for white noise, truncation included, so that it is not too sure of a quiet record.
 //!
+//! Of a record of more than 50 000 rows neighbours are averaged, rudder and heading alike, down to as many: the equation is
+//! linear and does not notice, and the shortest harmonic there may be still has some 800 rows. Its noise is then that of the means.
+//!
 //! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series by
 //! generalised cross-validation (Golub, Heath and Wahba 1979) or AICc (Hurvich and Tsai 1989).
 
@@ -15,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use ship::Shown;
 use ship::angle::to_deg;
 use std::f64::consts::TAU;
+use std::ops::Range;
 use trial::Trial;
 
 use crate::Identifier;
@@ -24,11 +28,19 @@ use crate::fourier::basis::Nested;
 use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, Response, white_variance};
 use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
+use crate::gaps::{longest_gap, pieces};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit};
 
 /// Fewest observed rows of a trial.
 const FEWEST_ROWS: usize = 20;
+
+/// Rows of a trial beyond which neighbours are averaged.
+const MOST_ROWS: usize = 50_000;
+
+/// Frequency, in units of the zig-zag frequency, that the series has to reach: a zig-zag has no harmonic between the first and
+/// the third.
+const LEAST_REACH: f64 = 3.0;
 
 /// Harmonics with which w is searched where the order follows later.
 const SEARCH_HARMONICS: usize = 8;
@@ -133,14 +145,20 @@ impl Settings {
         }
         check_condition_limit(self.condition_limit)?;
         self.fundamental.check()?;
-        Ok(FourierProjected { settings: self })
+        Ok(FourierProjected { settings: self, most_rows: MOST_ROWS })
     }
 }
 
 /// The mended Fourier method.
+///
+/// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the highest series can follow, some
+/// twenty, with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is not
+/// positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierProjected {
     settings: Settings,
+    /// Rows of a trial beyond which neighbours are averaged.
+    most_rows: usize,
 }
 
 /// Heading and rudder of one trial as Fourier curves of one basis, for a figure.
@@ -159,6 +177,24 @@ struct Part {
     time: Vec<f64>,
     heading: Vec<f64>,
     rudder: Vec<f64>,
+}
+
+impl Part {
+    /// No more than about `most` rows: means of neighbours, but not across gaps.
+    fn averaged(self, most: usize) -> Self {
+        let group = self.time.len().div_ceil(most);
+        if group == 1 {
+            return self;
+        }
+        let pieces = pieces(&self.time, longest_gap(None, &self.time));
+        let groups: Vec<Range<usize>> = pieces
+            .flat_map(|piece| piece.clone().step_by(group).map(move |from| from..piece.end.min(from + group)))
+            .collect();
+        let means = |values: &[f64]| -> Vec<f64> {
+            groups.iter().map(|rows| values[rows.clone()].iter().sum::<f64>() / rows.len() as f64).collect()
+        };
+        Self { time: means(&self.time), heading: means(&self.heading), rudder: means(&self.rudder) }
+    }
 }
 
 /// What the residual of one heading fit says.
@@ -204,7 +240,8 @@ impl FourierProjected {
             enough(first)?;
         }
         let of = |values: &[f64]| values[first..].to_vec();
-        Ok(Part { time: of(&samples.time), heading: of(&samples.heading), rudder: of(&samples.rudder) })
+        let part = Part { time: of(&samples.time), heading: of(&samples.heading), rudder: of(&samples.rudder) };
+        Ok(part.averaged(self.most_rows))
     }
 
     fn fit(&self, part: &Part) -> Result<Fitted, IdentifyError> {
@@ -218,6 +255,11 @@ impl FourierProjected {
         let searched = SEARCH_HARMONICS.min((time.len() - 2) / 2);
         let choice = fundamental.choose(time, heading, searched)?;
         let zigzag = TAU / zero_crossing_period(time, heading)?;
+        let needed = (reach.min(LEAST_REACH) * zigzag / choice.fundamental).ceil() as usize;
+        if needed > MOST_HARMONICS {
+            let what = "harmonics to follow the many zig-zags of this record (give shorter records)";
+            return Err(IdentifyError::TooFewPoints { what, needed, found: MOST_HARMONICS });
+        }
         // At least the zig-zag itself must be in reach, and fewer coefficients than half the rows.
         let least = ((zigzag / choice.fundamental).ceil() as usize).max(1);
         let most = ((reach * zigzag / choice.fundamental).floor() as usize)

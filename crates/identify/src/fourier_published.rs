@@ -9,6 +9,7 @@
 //!
 //! Source: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method, eqs. (9) to (11).
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
@@ -110,15 +111,14 @@ impl FourierPublished {
         let rate = fitted.basis.derivative(&fitted.projection.coefficients);
         let yaw_rate = fitted.basis.values(&rate);
         let yaw_acceleration = fitted.basis.values(&fitted.basis.derivative(&rate));
-        let (signal, mut points) = (trial.rudder_signal(), 0..0);
+        let mut rudder_range = RudderRange::new(trial.rudder_signal());
         (0..samples.len())
             .filter(|&row| match self.settings.selection {
                 Selection::Uniform | Selection::Separated { .. } => true,
                 Selection::WellConditioned(rule) => {
                     let t = samples.time[row];
                     (t - 0.5 * length).abs() <= 0.5 * rule.interior_share * length
-                        && rudder_range(signal, &mut points, start + t, rule.rudder_rest_s)
-                            < from_deg(rule.rudder_rest_deg)
+                        && rudder_range.at(start + t, rule.rudder_rest_s) < from_deg(rule.rudder_rest_deg)
                 }
             })
             .map(|row| Instant {
@@ -235,18 +235,52 @@ fn warnings(fits: &[Fitted], drawn: &Drawn) -> Vec<String> {
     warnings
 }
 
-/// Range of the recorded rudder, rad, from `reach` seconds before to `reach` after `t` (clock of the record).
-///
-/// `points` are those of the signal in that time; they are moved on from where they were, so that `t` must not decrease.
-fn rudder_range(signal: &Polyline, points: &mut Range<usize>, t: f64, reach: f64) -> f64 {
-    let passed = |from: usize, holds: &dyn Fn(f64) -> bool| {
-        from + signal.times()[from..].iter().take_while(|&&point| holds(point)).count()
-    };
-    *points = passed(points.start, &|point| point < t - reach)..passed(points.end, &|point| point <= t + reach);
-    let ends = [signal.at_from(t - reach, points.start), signal.at_from(t + reach, points.end)];
-    let values = ends.iter().chain(&signal.values()[points.clone()]);
-    let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &x| (lo.min(x), hi.max(x)));
-    hi - lo
+/// Range of the recorded rudder about instants that follow each other, at a cost that does not grow with the reach.
+struct RudderRange<'a> {
+    signal: &'a Polyline,
+    /// Points of the signal in the time looked at.
+    points: Range<usize>,
+    /// Of these the ones that no later one exceeds (falls below), from the highest (lowest) on.
+    highest: VecDeque<usize>,
+    lowest: VecDeque<usize>,
+}
+
+impl<'a> RudderRange<'a> {
+    fn new(signal: &'a Polyline) -> Self {
+        Self { signal, points: 0..0, highest: VecDeque::new(), lowest: VecDeque::new() }
+    }
+
+    /// From `reach` seconds before to `reach` after `t` (clock of the record), rad; `t` must not decrease.
+    fn at(&mut self, t: f64, reach: f64) -> f64 {
+        let (times, values) = (self.signal.times(), self.signal.values());
+        while self.points.end < times.len() && times[self.points.end] <= t + reach {
+            let new = self.points.end;
+            while self.highest.back().is_some_and(|&last| values[last] <= values[new]) {
+                self.highest.pop_back();
+            }
+            while self.lowest.back().is_some_and(|&last| values[last] >= values[new]) {
+                self.lowest.pop_back();
+            }
+            self.highest.push_back(new);
+            self.lowest.push_back(new);
+            self.points.end += 1;
+        }
+        while self.points.start < self.points.end && times[self.points.start] < t - reach {
+            self.points.start += 1;
+        }
+        for extremes in [&mut self.highest, &mut self.lowest] {
+            while extremes.front().is_some_and(|&point| point < self.points.start) {
+                extremes.pop_front();
+            }
+        }
+        let ends = [self.signal.at_from(t - reach, self.points.start), self.signal.at_from(t + reach, self.points.end)];
+        let inside = self.highest.front().into_iter().chain(self.lowest.front()).map(|&point| values[point]);
+        let (lo, hi) = ends
+            .into_iter()
+            .chain(inside)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
+        hi - lo
+    }
 }
 
 fn sorted(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> Vec<f64> {
@@ -342,12 +376,16 @@ mod tests {
     #[test]
     fn the_window_of_the_rudder_moves_with_time() {
         let trial = Case { samples: 120, ..Case::default() }.trial();
-        let (signal, mut points) = (trial.rudder_signal(), 0..0);
-        for t in (0..480).map(|k| 0.25 * f64::from(k)) {
-            let moved = rudder_range(signal, &mut points, t, 2.0);
-            let values = (0..=400).map(|k| signal.at(t - 2.0 + 0.01 * f64::from(k)));
-            let (lo, hi) = values.fold((f64::MAX, f64::MIN), |(lo, hi), x| (lo.min(x), hi.max(x)));
-            assert!((moved - (hi - lo)).abs() < 1e-9, "at {t} s: {moved} and {}", hi - lo);
+        let signal = trial.rudder_signal();
+        for reach in [0.0, 2.0, 40.0] {
+            let mut rudder_range = RudderRange::new(signal);
+            for t in (0..480).map(|k| 0.25 * f64::from(k)) {
+                let moved = rudder_range.at(t, reach);
+                let values = (0..=400).map(|k| signal.at(t + reach * (0.005 * f64::from(k) - 1.0)));
+                let corners = signal.times().iter().filter(|at| (*at - t).abs() <= reach).map(|&at| signal.at(at));
+                let (lo, hi) = values.chain(corners).fold((f64::MAX, f64::MIN), |(lo, hi), x| (lo.min(x), hi.max(x)));
+                assert!((moved - (hi - lo)).abs() < 1e-9, "at {t} s within {reach} s: {moved} and {}", hi - lo);
+            }
         }
     }
 

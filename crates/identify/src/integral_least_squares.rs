@@ -142,7 +142,8 @@ impl IntegralLeastSquares {
             found.extend(pieces(&trial.time, gap).filter(long_enough).map(|rows| Piece::new(trial, rows)));
         }
         let equations: usize = found.iter().map(|piece| piece.time.len()).sum();
-        let needed = SHARED + 2 * found.len().max(1);
+        // Initial states, the shared parameters, and as many equations left to tell their error from.
+        let needed = 2 * SHARED + 2 * found.len().max(1);
         if equations < needed {
             return Err(IdentifyError::TooFewPoints {
                 what: "headings in stretches without a gap",

@@ -22,8 +22,8 @@ use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
 /// Bias of 1/T by noise, as a share, from which on a reader is warned.
 const WARN_OF_BIAS: f64 = 0.02;
 
-/// Fewest equations: one more than unknowns.
-const FEWEST_EQUATIONS: usize = 4;
+/// Fewest equations: twice the unknowns, so that as many are left to tell the error from.
+const FEWEST_EQUATIONS: usize = 6;
 
 /// What is differentiated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -99,7 +99,7 @@ pub struct LeastSquares {
 #[derive(Debug)]
 struct Stretch {
     time: Vec<f64>,
-    /// Rows with an equation.
+    /// Rows with an equation, at least one.
     rows: Vec<usize>,
 }
 
@@ -246,7 +246,9 @@ impl LeastSquares {
                 equations.acceleration.push(acceleration);
                 rows.push(k);
             }
-            equations.stretches.push(Stretch { time: time.to_vec(), rows });
+            if !rows.is_empty() {
+                equations.stretches.push(Stretch { time: time.to_vec(), rows });
+            }
         }
     }
 

@@ -78,7 +78,7 @@ fn bandwidth(scores: &[Vec<f64>]) -> usize {
     scores.iter().map(of_column).max().unwrap_or(1).min(longest)
 }
 
-/// Sums of a column over all windows of `length` rows, those that overlap an end only partly included.
+/// Sums of a column over all windows of `length` rows, those that overlap an end only partly included; an empty column has none.
 fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
     let mut sums = Vec::with_capacity(column.len() + length);
     let mut window = 0.0;
@@ -91,7 +91,8 @@ fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
         window += entering - leaving;
         window
     }));
-    sums.extend(column[column.len() - full..column.len() - 1].iter().map(|leaving| {
+    // The last row never leaves alone.
+    sums.extend(column[column.len() - full..].iter().take(full.saturating_sub(1)).map(|leaving| {
         window -= leaving;
         window
     }));
@@ -103,6 +104,15 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
     use nalgebra::DVector;
+
+    #[test]
+    fn a_trial_without_scores_adds_nothing() {
+        let some = [(); 3].map(|()| vec![1.0, -2.0, 0.5, 3.0, -1.0]);
+        let alone = newey_west_of_three(&[some.clone()]);
+        assert_eq!(newey_west_of_three(&[some.clone(), Default::default()]), alone);
+        let of_any_number = newey_west(&[some.to_vec()]);
+        assert_eq!(newey_west(&[some.to_vec(), vec![Vec::new(); 3]]), of_any_number);
+    }
 
     #[test]
     fn windows_are_bartlett_weights() {

@@ -115,9 +115,15 @@ pub(crate) fn thin(line: Vec<Place>, column: f64) -> Vec<Place> {
     kept
 }
 
+/// Most times the pattern of a dashed line is repeated. A line as long as that goes to and fro until it is a band, in which nobody
+/// sees dashes.
+const MOST_REPEATS: f64 = 5000.0;
+
 /// Chops a polyline into dashes; `pattern` holds the lengths of dash and gap in points.
 pub(crate) fn dashes(line: &[Place], pattern: &[f64]) -> Vec<Vec<Place>> {
-    if pattern.is_empty() || pattern.iter().any(|l| *l <= 0.0) {
+    let length: f64 = line.windows(2).map(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1)).sum();
+    let repeats = length / pattern.iter().sum::<f64>();
+    if pattern.is_empty() || pattern.iter().any(|l| *l <= 0.0) || repeats > MOST_REPEATS {
         return vec![line.to_vec()];
     }
     let mut parts = Vec::new();
@@ -184,5 +190,8 @@ mod tests {
         assert_eq!(parts[1], [(4.0, 0.0), (4.0, 3.0)]);
         assert_eq!(parts[2], [(4.0, 4.0), (4.0, 6.0)]);
         assert_eq!(dashes(&[(0.0, 0.0), (1.0, 0.0)], &[]).len(), 1);
+        // A band.
+        let band: Vec<Place> = (0..4000).map(|i| (0.1 * f64::from(i), f64::from(i % 2) * 80.0)).collect();
+        assert_eq!(dashes(&band, &[3.0, 1.0]), [band.clone()]);
     }
 }

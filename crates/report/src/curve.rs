@@ -5,7 +5,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A curve or a cloud of points: `y[i]` at `x[i]`, in the units the figure states.
 ///
 /// A pair with an undefined (NaN or infinite) number is a gap: it is skipped, and a line is broken there. When the
-/// lengths differ the surplus is ignored. In JSON a gap is `null`.
+/// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`Curve::new`] has no more pairs than a
+/// figure can show.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Curve {
     /// Abscissae.
@@ -16,10 +17,40 @@ pub struct Curve {
     pub y: Vec<f64>,
 }
 
+/// Most pairs of a curve.
+pub const MOST_PAIRS: usize = 4000;
+
+/// Pairs that are kept of every run of a curve with more: first, lowest, highest, last, and a gap.
+const KEPT_OF_RUN: usize = 5;
+
 impl Curve {
     /// A curve from its two columns.
+    ///
+    /// One with more than [`MOST_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours, all as long,
+    /// the first, the lowest, the highest and the last, and a gap where there is one.
     pub fn new(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
-        Self { x: x.into(), y: y.into() }
+        let curve = Self { x: x.into(), y: y.into() };
+        if curve.x.len().min(curve.y.len()) > MOST_PAIRS { curve.thinned() } else { curve }
+    }
+
+    fn thinned(&self) -> Self {
+        let length = self.x.len().min(self.y.len());
+        let mut thin = Self { x: Vec::with_capacity(MOST_PAIRS), y: Vec::with_capacity(MOST_PAIRS) };
+        let run = length.div_ceil(MOST_PAIRS / KEPT_OF_RUN);
+        for start in (0..length).step_by(run) {
+            let rows = start..length.min(start + run);
+            let is_gap = |row: &usize| !(self.x[*row].is_finite() && self.y[*row].is_finite());
+            let gap = rows.clone().find(is_gap);
+            let drawn = || rows.clone().filter(|row| !is_gap(row));
+            let by_height = |one: &usize, other: &usize| self.y[*one].total_cmp(&self.y[*other]);
+            let kept = [drawn().next(), drawn().min_by(by_height), drawn().max_by(by_height), drawn().next_back(), gap];
+            let mut kept: Vec<usize> = kept.into_iter().flatten().collect();
+            kept.sort_unstable();
+            kept.dedup();
+            thin.x.extend(kept.iter().map(|&row| self.x[row]));
+            thin.y.extend(kept.iter().map(|&row| self.y[row]));
+        }
+        thin
     }
 
     /// The pairs, gaps included.
@@ -51,5 +82,37 @@ mod tests {
         let curve = Curve::new([0.0, 1.0, f64::NAN, 3.0], [5.0, f64::INFINITY, 7.0]);
         assert_eq!(curve.finite().collect::<Vec<_>>(), [(0.0, 5.0)]);
         assert_eq!(curve.pairs().count(), 3);
+    }
+
+    #[test]
+    fn a_curve_that_can_be_shown_is_kept_to_the_bit() {
+        let x: Vec<f64> = (0..MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
+        let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
+        assert_eq!(Curve::new(x.as_slice(), y.as_slice()), Curve { x, y });
+    }
+
+    #[test]
+    fn a_dense_curve_keeps_its_ends_extremes_and_gaps() {
+        let rows = 1_000_003;
+        let x: Vec<f64> = (0..rows).map(f64::from).collect();
+        let mut y: Vec<f64> = x.iter().map(|x| (1e-4 * x).sin()).collect();
+        (y[123_456], y[654_321]) = (7.0, -7.0);
+        y[300_000..310_000].fill(f64::NAN);
+        y[500_000] = f64::NAN;
+        let thin = Curve::new(x.as_slice(), y.as_slice());
+        assert!(thin.x.len() <= MOST_PAIRS && thin.x.len() > MOST_PAIRS / 4, "{} pairs", thin.x.len());
+        assert_eq!((thin.x[0], thin.x.last()), (0.0, x.last()));
+        assert!(thin.x.is_sorted());
+        let kept: Vec<(f64, f64)> = thin.finite().collect();
+        assert!(kept.contains(&(123_456.0, 7.0)) && kept.contains(&(654_321.0, -7.0)));
+        // The line is broken at both gaps.
+        for gap in [300_000.0..310_000.0, 500_000.0..500_001.0] {
+            assert!(thin.pairs().any(|(x, y)| gap.contains(&x) && y.is_nan()), "{gap:?}");
+        }
+    }
+
+    #[test]
+    fn a_dense_curve_of_gaps_alone_draws_nothing() {
+        assert_eq!(Curve::new(vec![f64::NAN; 2 * MOST_PAIRS], vec![0.0; 2 * MOST_PAIRS]).finite().count(), 0);
     }
 }

@@ -218,15 +218,23 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     }
 }
 
-/// Characteristics in words, and the IMO criteria this record measures.
+/// Most overshoots that are written on the screen.
+const MOST_LISTED: usize = 12;
+
+/// Characteristics in words, and the IMO criteria this record measures; of very many overshoots the first.
 fn characteristics(entry: &ZigZagEntry) -> String {
     let overshoots: Vec<String> = entry
         .overshoots_deg
         .iter()
         .zip(&entry.overshoots_sd_deg)
+        .take(MOST_LISTED)
         .map(|(&angle, &sd)| with_uncertainty(angle, sd))
         .collect();
-    let overshoots = if overshoots.is_empty() { "none".to_owned() } else { format!("{} deg", overshoots.join(", ")) };
+    let overshoots = match entry.overshoots_deg.len().saturating_sub(MOST_LISTED) {
+        0 if overshoots.is_empty() => "none".to_owned(),
+        0 => format!("{} deg", overshoots.join(", ")),
+        more => format!("{} deg, and {more} more in fit.json", overshoots.join(", ")),
+    };
     let mut text = format!("zig-zag: initial turning time {}", seconds(entry.initial_turning_time_s, 2));
     text += &format!(", period {}\n  overshoots {overshoots}\n", seconds(entry.period_s, 1));
     for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
@@ -244,4 +252,24 @@ fn characteristics(entry: &ZigZagEntry) -> String {
 
 fn seconds(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(|| "not measured".to_owned(), |value| format!("{} s", fixed(value, decimals)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn very_many_overshoots_are_not_all_written_on_the_screen() {
+        let entry = |count: usize| ZigZagEntry {
+            initial_turning_time_s: None,
+            overshoots_deg: vec![8.25; count],
+            overshoots_sd_deg: vec![None; count],
+            period_s: None,
+            imo: Vec::new(),
+        };
+        assert!(characteristics(&entry(0)).contains("overshoots none"));
+        assert_eq!(characteristics(&entry(12)).matches("8.2").count(), 12);
+        let many = characteristics(&entry(3000));
+        assert!(many.contains("and 2988 more in fit.json") && many.len() < 400, "{many}");
+    }
 }

@@ -104,16 +104,6 @@ pub fn curve(time: &[f64], angle: &[f64]) -> Curve {
     Curve::new(time, angle.iter().map(|&angle| to_deg(angle)).collect::<Vec<_>>())
 }
 
-/// Rows a figure can show.
-const DRAWN_ROWS: usize = 4000;
-
-/// The same for a long record: every so many rows.
-pub fn thinned(time: &[f64], angle: &[f64]) -> Curve {
-    let step = time.len().div_ceil(DRAWN_ROWS).max(1);
-    let every = |values: &[f64]| values.iter().copied().step_by(step).collect::<Vec<f64>>();
-    curve(&every(time), &every(angle))
-}
-
 /// The trial with its characteristic points marked.
 pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     let mark = |time: f64, heading: f64| Mark { t_s: time, heading_deg: to_deg(heading) };

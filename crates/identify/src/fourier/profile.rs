@@ -27,6 +27,10 @@ const COARSEST_REACH: f64 = 1.25;
 /// Nodes are made where the record, folded, has at least this many times as many rows.
 const WORTHWHILE: usize = 2;
 
+/// Most nodes of a level. To make them takes as long as about a quarter of their number over N sums over the rows, and a search
+/// asks for some hundred.
+const MOST_NODES: usize = 4096;
+
 /// Steps of a walk after which its phasors are computed anew, before rounding adds up.
 const ANCHOR_STEPS: usize = 32;
 
@@ -71,7 +75,7 @@ impl Profile {
         let rows = Nodes::of_rows(time, &centred);
         let counts: Vec<usize> = (0..)
             .map(|level| Nodes::needed(2 * harmonics, FRAC_PI_2 * reach(level)))
-            .take_while(|&count| count / 2 * WORTHWHILE <= rows.used)
+            .take_while(|&count| count <= MOST_NODES && count / 2 * WORTHWHILE <= rows.used)
             .collect();
         let width = 2 * harmonics + 1;
         Self {
@@ -368,6 +372,17 @@ mod tests {
     use super::super::basis::Basis;
     use super::*;
     use approx::assert_relative_eq;
+
+    /// A thousand periods want so many nodes that to make them would take a time that grows with the square of the rows.
+    #[test]
+    fn a_record_of_very_many_periods_is_summed_row_by_row() {
+        let time: Vec<f64> = (0..60_000).map(f64::from).collect();
+        let heading: Vec<f64> = time.iter().map(|t| (TAU * t / 59.0).sin()).collect();
+        let mut profile = Profile::new(&time, &heading, 8);
+        assert!(profile.counts.last().is_some_and(|&most| most > MOST_NODES / 4 && most <= MOST_NODES));
+        assert!(profile.rss(TAU / 59.0) < 1e-6 * profile.total());
+        assert!(profile.coarse.iter().all(Option::is_none));
+    }
 
     #[test]
     fn agrees_with_the_orthogonal_decomposition() {

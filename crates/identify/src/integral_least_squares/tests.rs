@@ -199,3 +199,15 @@ fn settings_out_of_range_are_named() {
     assert_eq!(refused(Settings { longest_gap_s: Some(0.0), ..Settings::default() }), "longest-gap-s");
     assert_eq!(refused(Settings { condition_limit: f64::NAN, ..Settings::default() }), "condition-limit");
 }
+
+/// The rudder moves in rows alone only, so the stretches that are left hold none of it: the search for eigenvalues would not end.
+#[test]
+fn stretches_without_any_rudder_are_refused() {
+    let time: Vec<f64> = (0..40).map(f64::from).chain([400.0, 800.0]).collect();
+    let heading = time.iter().map(|t| 0.2 * (0.1 * t).sin()).collect();
+    let rudder = time.iter().map(|&t| if t > 40.0 { 0.2 } else { 0.0 }).collect();
+    let settings = Settings { longest_gap_s: Some(5.0), ..Settings::default() };
+    let method = settings.build().expect("valid settings");
+    let error = method.identify(&[record("rudder in the gaps", time, heading, rudder)]).expect_err("no rudder");
+    assert_eq!(error.kind(), "singular");
+}

@@ -195,3 +195,17 @@ fn settings_out_of_range_are_named() {
     assert_eq!(refused(Settings { longest_gap_s: Some(-1.0), ..Settings::default() }), "longest-gap-s");
     assert_eq!(refused(Settings { condition_limit: 1.0, ..Settings::default() }), "condition-limit");
 }
+
+/// A turn in seven rows and an eighth six hours later. Five equations gave a K of 0.56 ± 0.49, and seven integrated ones 1.6 ± 9.
+#[test]
+fn a_handful_of_rows_before_a_gap_is_too_little() {
+    let time = vec![0.0, 9.0, 46.0, 55.0, 64.0, 73.0, 82.0, 23_600.0];
+    let heading = [0.0, 0.0, 0.0, 10.0, -685.0, 0.0, 0.0, 0.0].map(from_deg).to_vec();
+    let rudder = [0.0, 0.0, 0.0, 0.0, -24.0, 0.0, 0.0, 0.0].map(from_deg).to_vec();
+    let trial = record("burst", time, heading, rudder);
+    for settings in crate::registry::defaults() {
+        let method = settings.build().expect("valid defaults");
+        let error = method.identify(std::slice::from_ref(&trial)).expect_err("nothing to be learnt");
+        assert!(error.kind().starts_with("too-few"), "{}: {error}", method.id());
+    }
+}

@@ -221,3 +221,22 @@ fn a_method_keeps_its_colour_in_every_figure() {
         }
     }
 }
+
+/// A run of days has thousands of executes; marks on top of each other once made a file that could not be drawn.
+#[test]
+fn a_zig_zag_of_very_many_executes_says_that_it_does_not_mark_them() {
+    let curve = wave(400, 0);
+    let mark = |k: usize| Mark { t_s: 0.05 * k as f64, heading_deg: 10.0 };
+    let trial = |count: usize| ZigzagTrial {
+        heading: curve.clone(),
+        rudder: curve.clone(),
+        executes: (0..count).map(mark).collect(),
+        overshoots: (1..count).map(|k| Overshoot { execute: mark(k), extremum: mark(k), angle_deg: 2.0 }).collect(),
+        ..ZigzagTrial::default()
+    };
+    let theme = Theme::screen();
+    let [few, many] = [12, 3000].map(|count| zigzag_trial(&trial(count), &theme).svg().to_owned());
+    assert!(few.contains("overshoot") && !few.contains("too many"));
+    assert!(many.contains("3000 executes: too many to be marked"));
+    assert!(many.len() < few.len());
+}

@@ -79,11 +79,30 @@ pub struct ZigzagTrial {
     pub period: Option<Span>,
 }
 
+/// Most executes that are marked: of more than that neither lines nor figures could be told apart.
+const MOST_MARKED: usize = 60;
+
 const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
 const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
 
-/// Draws a zig-zag trial: heading with its dimension lines above, rudder below.
+/// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn without
+/// its characteristic quantities, and a note says so.
 pub fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
+    if data.executes.len() > MOST_MARKED {
+        let curves = ZigzagTrial {
+            title: data.title.clone(),
+            heading: data.heading.clone(),
+            heading_as_points: data.heading_as_points,
+            rudder: data.rudder.clone(),
+            truth: data.truth.clone(),
+            ..ZigzagTrial::default()
+        };
+        return with_note(&curves, Some(format!("{} executes: too many to be marked.", data.executes.len())), theme);
+    }
+    with_note(data, None, theme)
+}
+
+fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
     let height = theme.tall(0.36);
@@ -112,7 +131,7 @@ pub fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
     for execute in &data.executes {
         upper.marker(&mut sheet.scene, (execute.t_s, execute.heading_deg), theme.marker, &EXECUTE);
     }
-    if let Some(text) = explanation(data, values) {
+    if let Some(text) = note.or_else(|| explanation(data, values)) {
         sheet.note(&text);
     }
     sheet.finish()

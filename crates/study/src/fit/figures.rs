@@ -1,5 +1,5 @@
 //! Figures of `study fit`: the first record with its characteristic points, and every record with the replays of all methods
-//! and with the best fit. A long record is drawn thinned.
+//! and with the best fit.
 
 use identify::Estimate;
 use identify::replay::replay;
@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::folder::ResultFolder;
 use crate::json::MethodEntry;
 use crate::publish::drawings::{first_failure, write_figure};
-use crate::showcase::{thinned, zigzag_figure};
+use crate::showcase::{curve, zigzag_figure};
 
 /// The method whose fit is drawn on its own where it has one.
 const BEST: &str = "output-error";
@@ -59,13 +59,13 @@ fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Repla
             let replay = replay(trial, &estimate.as_ref()?.response)?;
             Some(Replay {
                 origin: Origin::Method(entry.method.clone()),
-                heading: thinned(&replay.time, &replay.heading),
-                residual: thinned(&replay.residual_time, &replay.residual),
+                heading: curve(&replay.time, &replay.heading),
+                residual: curve(&replay.residual_time, &replay.residual),
                 rms_deg: Some(replay.heading_rmse_deg),
             })
         })
         .collect();
-    Replays { title: title(record), record: thinned(trial.time(), trial.heading()), truth: None, replays }
+    Replays { title: title(record), record: curve(trial.time(), trial.heading()), truth: None, replays }
 }
 
 fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {
@@ -80,8 +80,8 @@ fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {
     let trial = record.trial;
     let data = RecordFit {
         title: title(record),
-        heading: thinned(trial.time(), trial.heading()),
-        rudder: thinned(trial.time(), trial.rudder()),
+        heading: curve(trial.time(), trial.heading()),
+        rudder: curve(trial.time(), trial.rudder()),
         fits: fits.into_iter().collect(),
     };
     figures::record_fit(&data, theme)

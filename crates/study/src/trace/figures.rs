@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::folder::ResultFolder;
 use crate::publish::drawings::{first_failure, slug, write_figure};
 use crate::records::names;
-use crate::showcase::thinned;
+use crate::showcase::curve;
 
 /// Lags of the autocorrelation.
 const LAGS: usize = 60;
@@ -66,15 +66,15 @@ pub fn draw(told: &Told, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(St
 fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {
     let fit = |origin: Origin, replayed: &Replayed, error: f64| Fit {
         origin,
-        heading: thinned(&replayed.time, &replayed.heading),
-        residual: thinned(&replayed.time, &replayed.residual),
+        heading: curve(&replayed.time, &replayed.heading),
+        residual: curve(&replayed.time, &replayed.residual),
         rms_deg: Some(to_deg(error)),
     };
     let (before, after) = (&judged.before, &judged.after);
     let data = RecordFit {
         title: Some(title.to_owned()),
-        heading: thinned(trial.time(), trial.heading()),
-        rudder: thinned(trial.time(), trial.rudder()),
+        heading: curve(trial.time(), trial.heading()),
+        rudder: curve(trial.time(), trial.rudder()),
         fits: vec![
             fit(Origin::Before, &before.replayed, before.errors.heading),
             fit(Origin::After, &after.replayed, after.errors.heading),
