@@ -19,8 +19,8 @@ use targets::{cells, manifest, record, rows, scenario, sidecar};
 pub struct Target {
     /// Name of its folders.
     pub name: &'static str,
-    /// Feeds one file through and asserts; panics when a promise is broken.
-    pub run: fn(&[u8]),
+    /// Feeds one file through and asserts, panicking when a promise is broken; whether the file was accepted.
+    pub run: fn(&[u8]) -> bool,
     /// What files of the format are made of.
     pub words: &'static [&'static str],
     /// Its part of all cases, in twentieths.

@@ -1,10 +1,11 @@
 //! Runs a target on many damaged files, spread over threads, and says which input broke it.
 
+use std::any::Any;
 use std::fmt::Write as _;
-use std::panic::{self, AssertUnwindSafe};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, Once};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -29,6 +30,8 @@ const SEED: u64 = 0x6b65_6d70_6600_0000;
 pub struct Outcome {
     /// Cases run.
     pub cases: usize,
+    /// Cases that were accepted; the others were refused.
+    pub accepted: usize,
     /// Cases that met a fault of [`known::SIGNS`].
     pub known: usize,
     /// The longest case.
@@ -58,7 +61,7 @@ pub fn run_regressions(target: &Target) -> Outcome {
 }
 
 fn all(target: &Target, cases: usize, case: impl Fn(usize) -> Vec<u8> + Sync) -> Outcome {
-    listen();
+    panic::set_hook(Box::new(listen));
     let next = AtomicUsize::new(0);
     let outcome = Mutex::new(Outcome { cases, ..Outcome::default() });
     let threads = thread::available_parallelism().map_or(2, usize::from);
@@ -95,6 +98,7 @@ fn all(target: &Target, cases: usize, case: impl Fn(usize) -> Vec<u8> + Sync) ->
             }
         }
     });
+    drop(panic::take_hook());
     let mut outcome = outcome.into_inner().expect("nothing panicked");
     if let Some(mebibytes) = peak_memory().filter(|&mebibytes| mebibytes > MOST_MEMORY) {
         outcome.faults.push(format!("{}: {mebibytes} MiB of memory, expected at most {MOST_MEMORY}", target.name));
@@ -103,10 +107,11 @@ fn all(target: &Target, cases: usize, case: impl Fn(usize) -> Vec<u8> + Sync) ->
 }
 
 impl Outcome {
-    fn add(&mut self, target: &Target, data: &[u8], time: Duration, fault: Option<String>) {
+    fn add(&mut self, target: &Target, data: &[u8], time: Duration, found: Result<bool, String>) {
         self.longest = self.longest.max(time);
+        self.accepted += usize::from(found == Ok(true));
         let slow = (time > LONGEST).then(|| format!("a case of {:.1} s", time.as_secs_f64()));
-        for fault in fault.into_iter().chain(slow) {
+        for fault in found.err().into_iter().chain(slow) {
             if known::SIGNS.iter().any(|(name, sign)| *name == target.name && fault.contains(sign)) {
                 self.known += 1;
             } else if !self.faults.iter().any(|old| kind(old).contains(kind(&fault))) {
@@ -122,33 +127,35 @@ fn kind(fault: &str) -> &str {
     fault.split_once(" | ").map_or(fault, |(place, _)| place)
 }
 
-/// Runs one file; `place | message` of a panic.
-pub fn attempt(target: &Target, data: &[u8]) -> Option<String> {
+/// Runs one file: whether it was accepted, or `place | message` of a panic.
+fn attempt(target: &Target, data: &[u8]) -> Result<bool, String> {
     let caught = panic::catch_unwind(AssertUnwindSafe(|| (target.run)(data)));
-    let payload = caught.err()?;
-    let message = payload.downcast_ref::<String>().cloned();
-    let message = message.or_else(|| payload.downcast_ref::<&str>().map(|text| (*text).to_owned())).unwrap_or_default();
+    let payload = match caught {
+        Ok(accepted) => return Ok(accepted),
+        Err(payload) => payload,
+    };
+    let message = said(payload.as_ref());
     let place = PLACES.lock().expect("nothing panics here").iter().rev().find(|(_, found)| *found == message).cloned();
-    Some(format!("{} | {message}", place.map_or_else(|| "a panic".to_owned(), |(place, _)| place)))
+    Err(format!("{} | {message}", place.map_or_else(|| "a panic".to_owned(), |(place, _)| place)))
+}
+
+/// The message of a panic.
+fn said(payload: &(dyn Any + Send)) -> String {
+    let owned = payload.downcast_ref::<String>().cloned();
+    owned.or_else(|| payload.downcast_ref::<&str>().map(|&text| text.to_owned())).unwrap_or_default()
 }
 
 /// Where threads panicked lately, and with what: a reader may decode on a thread of its own.
 static PLACES: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
 
 /// Keeps panics off the screen and remembers their places.
-fn listen() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        panic::set_hook(Box::new(|info| {
-            let place = info
-                .location()
-                .map_or_else(|| "a panic".to_owned(), |place| format!("{}:{}", place.file(), place.line()));
-            let message = info.payload_as_str().unwrap_or_default().to_owned();
-            let mut places = PLACES.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            places.retain(|(_, found)| *found != message);
-            places.push((place, message));
-        }));
-    });
+fn listen(info: &PanicHookInfo<'_>) {
+    let place =
+        info.location().map_or_else(|| "a panic".to_owned(), |place| format!("{}:{}", place.file(), place.line()));
+    let message = said(info.payload());
+    let mut places = PLACES.lock().unwrap_or_else(PoisonError::into_inner);
+    places.retain(|(_, found)| *found != message);
+    places.push((place, message));
 }
 
 fn save(target: &Target, data: &[u8]) -> PathBuf {
@@ -172,14 +179,47 @@ pub fn peak_memory() -> Option<u64> {
 pub fn table(outcomes: &[(&str, Outcome)]) -> String {
     let mut text = String::new();
     for (name, outcome) in outcomes {
-        let Outcome { cases, known, longest, faults } = outcome;
+        let Outcome { cases, accepted, known, longest, faults } = outcome;
         writeln!(
             text,
-            "{name:10} {cases:8} cases, longest {:6.3} s, {known} known faults, {} new",
+            "{name:10} {cases:8} cases, {accepted:8} accepted, longest {:6.3} s, {known} known faults, {} new",
             longest.as_secs_f64(),
             faults.len()
         )
         .expect("writing to a string does not fail");
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::TARGETS;
+
+    fn breaks_on_an_empty_file(data: &[u8]) -> bool {
+        assert!(!data.is_empty(), "nothing in {} bytes", data.len());
+        data.len() > 1
+    }
+
+    /// A panic is one fault however often it comes, names its place, and its input can be had again.
+    #[test]
+    fn a_panic_is_named_with_its_input() {
+        let target = Target { run: breaks_on_an_empty_file, ..TARGETS[0] };
+        let outcome = all(&target, 30, |index| vec![b'x'; index % 3]);
+        assert_eq!((outcome.cases, outcome.accepted, outcome.known, outcome.faults.len()), (30, 10, 0, 1));
+        let fault = &outcome.faults[0];
+        assert!(fault.contains("runner.rs:") && fault.contains("nothing in 0 bytes"), "{fault}");
+        let (_, saved) = fault.split_once("saved as ").expect("the input was saved");
+        assert_eq!(std::fs::read(saved).expect("it is there"), b"");
+    }
+
+    /// The same damage in every run.
+    #[test]
+    fn damage_is_the_same_in_every_run() {
+        let target = &TARGETS[0];
+        let corpus = target.corpus();
+        let damaged = |seed| mutate::damaged(&corpus, target.words, &mut ChaCha8Rng::seed_from_u64(seed));
+        assert!((0..50).all(|seed| damaged(seed) == damaged(seed)));
+        assert!((0..50).any(|seed| damaged(seed) != damaged(seed + 1)));
+    }
 }

@@ -1,7 +1,7 @@
-//! One function a format: bytes in, promises asserted.
+//! One function a format: bytes in, promises asserted. Each says whether the file was accepted.
 
 use std::cell::OnceCell;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path};
 use std::sync::LazyLock;
 
 use identify::{Identifier, registry};
@@ -15,7 +15,7 @@ use study::store;
 use study::summary::Tally;
 use tempfile::TempDir;
 use trial::Trial;
-use trial::reader;
+use trial::reader::{self, Reading};
 use trial::sidecar::Sidecar;
 
 use super::seeds;
@@ -40,20 +40,20 @@ static METHODS: LazyLock<Vec<Box<dyn Identifier>>> = LazyLock::new(|| {
 });
 
 /// A measured record, read by its header alone and handed to every method.
-pub fn record(data: &[u8]) {
+pub fn record(data: &[u8]) -> bool {
     let name = Path::new("case.csv");
     match reader::read_bytes(name, data, Some(data.len() as u64), None) {
         Ok(reading) => {
-            reading.warnings.iter().for_each(|warning| is_one_message(warning));
-            is_a_record(&reading.trial);
+            is_a_reading(&reading);
             identified(&reading.trial);
+            true
         }
         Err(error) => is_one_message(&error.to_string()),
     }
 }
 
 /// A sidecar, and after the line `# table` the table it is for; without one a plain table.
-pub fn sidecar(data: &[u8]) {
+pub fn sidecar(data: &[u8]) -> bool {
     let text = String::from_utf8_lossy(data);
     let (text, table) = text.split_once(TABLE).unwrap_or((&text, PLAIN_TABLE));
     let sidecar = match Sidecar::parse(text, Path::new("case.trial.toml")) {
@@ -62,26 +62,29 @@ pub fn sidecar(data: &[u8]) {
     };
     match reader::read_bytes(Path::new("case.dat"), table.as_bytes(), None, Some(&sidecar)) {
         Ok(reading) => {
-            reading.warnings.iter().for_each(|warning| is_one_message(warning));
-            is_a_record(&reading.trial);
+            is_a_reading(&reading);
+            true
         }
         Err(error) => is_one_message(&error.to_string()),
     }
 }
 
 /// A scenario, resolved in every cell; no trial is run.
-pub fn scenario(data: &[u8]) {
-    let Ok(text) = std::str::from_utf8(data) else { return };
+pub fn scenario(data: &[u8]) -> bool {
+    let Ok(text) = std::str::from_utf8(data) else { return false };
     // Records that a scenario replays are looked for beside it, where there is nothing.
     let path = Path::new("no-such-folder/case.toml");
     match Scenario::parse(path, "case", text.to_owned(), None) {
-        Ok(scenario) => is_a_scenario(&scenario),
+        Ok(scenario) => {
+            is_a_scenario(&scenario);
+            true
+        }
         Err(failure) => is_a_failure(&failure),
     }
 }
 
 /// Stored rows of the small study, summarised.
-pub fn rows(data: &[u8]) {
+pub fn rows(data: &[u8]) -> bool {
     let design = &seeds::study().design;
     let layout = Layout::of(design);
     scratch(|folder| {
@@ -97,14 +100,14 @@ pub fn rows(data: &[u8]) {
             })
         });
         match read {
-            Ok(()) => drop(present::summary(&tally.finish().methods, design).to_csv()),
+            Ok(()) => !present::summary(&tally.finish().methods, design).to_csv().is_empty(),
             Err(failure) => is_a_failure(&failure),
         }
-    });
+    })
 }
 
 /// The stored design, with the rows of the small study.
-pub fn cells(data: &[u8]) {
+pub fn cells(data: &[u8]) -> bool {
     let study = seeds::study();
     scratch(|folder| {
         std::fs::write(folder.join(seeds::CELLS), data).expect("the scratch folder is writable");
@@ -127,16 +130,16 @@ pub fn cells(data: &[u8]) {
         match read {
             Ok(()) => {
                 let summary = tally.finish();
-                drop(present::summary(&summary.methods, &design).to_csv());
                 drop(present::summary_in_brief(&summary, &design).to_markdown());
+                !present::summary(&summary.methods, &design).to_csv().is_empty()
             }
             Err(failure) => is_a_failure(&failure),
         }
-    });
+    })
 }
 
 /// A manifest, compared with another and resolved as the scenario it holds.
-pub fn manifest(data: &[u8]) {
+pub fn manifest(data: &[u8]) -> bool {
     scratch(|folder| {
         let path = folder.join(store::MANIFEST);
         std::fs::write(&path, data).expect("the scratch folder is writable");
@@ -150,25 +153,32 @@ pub fn manifest(data: &[u8]) {
         }
         assert!(manifest.shard == Shard::WHOLE || manifest.shard.number <= manifest.shard.of);
         match Scenario::read(&path, None) {
-            Ok(scenario) => is_a_scenario(&scenario),
+            Ok(scenario) => {
+                is_a_scenario(&scenario);
+                true
+            }
             Err(failure) => is_a_failure(&failure),
         }
-    });
+    })
 }
 
-fn is_a_failure(failure: &Failure) {
-    is_one_message(&failure.message);
+fn is_a_failure(failure: &Failure) -> bool {
+    is_one_message(&failure.message)
 }
 
 /// One message for a person: not empty, not endless, and nothing in it that a terminal would obey.
-fn is_one_message(message: &str) {
+fn is_one_message(message: &str) -> bool {
     assert!(!message.trim().is_empty(), "an empty message");
     assert!(message.len() <= LONGEST_MESSAGE, "a message of {} bytes", message.len());
-    let control = message.chars().find(|&character| character.is_control() && character != '\n');
+    let control = message.chars().find(|&character| character.is_control() && !matches!(character, '\n' | '\t'));
     assert!(control.is_none(), "a message with the control character {control:?}");
+    false
 }
 
-fn is_a_record(trial: &Trial) {
+fn is_a_reading(Reading { trial, warnings }: &Reading) {
+    for warning in warnings {
+        is_one_message(warning);
+    }
     assert!(trial.len() >= Trial::FEWEST_ROWS);
     assert!(trial.time().iter().all(|time| time.is_finite()), "a time that is not finite");
     assert!(trial.time().is_sorted_by(|a, b| a < b), "time does not increase");
@@ -189,29 +199,38 @@ fn identified(trial: &Trial) {
                 // Neutral stability is an ordinary answer, with both at infinity.
                 assert!(!estimate.K().value.is_nan() && !estimate.T().value.is_nan(), "no number from {}", method.id());
             }
-            Err(error) => is_one_message(&error.to_string()),
+            Err(error) => {
+                is_one_message(&error.to_string());
+            }
         }
     }
 }
 
 fn is_a_scenario(scenario: &Scenario) {
+    let mut name = Path::new(&scenario.name).components();
+    assert!(
+        matches!((name.next(), name.next()), (Some(Component::Normal(_)), None)),
+        "a name that leads out of results/"
+    );
     assert!(!scenario.cells.is_empty() && scenario.replicates > 0);
     assert!(scenario.replicates.saturating_mul(scenario.cells.len() as u64) <= MOST);
     for cell in &scenario.cells {
         assert_eq!(cell.labels.len(), scenario.axes.len());
         assert_eq!(cell.values.len(), scenario.axes.len());
         assert!(!cell.methods.is_empty());
+        let mut labels = cell.labels.iter().chain(cell.methods.iter().map(|method| &method.label));
+        assert!(!labels.any(|label| label.contains(char::is_control)), "a label that no table can carry");
     }
     assert!(scenario.detail.iter().all(|&cell| cell < scenario.cells.len()));
 }
 
 /// Runs `work` in a folder of this thread, which is made once.
-fn scratch(work: impl FnOnce(&Path)) {
+fn scratch<T>(work: impl FnOnce(&Path) -> T) -> T {
     thread_local! {
         static FOLDER: OnceCell<TempDir> = const { OnceCell::new() };
     }
     FOLDER.with(|folder| {
         let folder: &TempDir = folder.get_or_init(|| tempfile::tempdir().expect("a folder can be made"));
-        work(&PathBuf::from(folder.path()));
-    });
+        work(folder.path())
+    })
 }
