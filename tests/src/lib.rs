@@ -5,8 +5,10 @@
 //! |---|---|
 //! | every number that is held against a published one | [`validation`] |
 //! | simulated records, and what can be done to a record | [`records`] |
+//! | damaged files for every reader | [`fuzz`] |
 //! | measured records, which are not part of the project | [`measured`] |
 
+pub mod fuzz;
 pub mod measured;
 pub mod records;
 pub mod validation;

@@ -1,0 +1,61 @@
+//! A small study that is run once, whose files are what stored files begin from.
+
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use study::collect::collect;
+use study::manifest::Manifest;
+use study::plan::Shard;
+use study::scenario::Scenario;
+use study::store::{self, Design};
+use tempfile::TempDir;
+
+/// Name of the stored design.
+pub(super) const CELLS: &str = "cells.json";
+
+/// The files of the study, and what they say.
+pub(super) struct Seed {
+    folder: TempDir,
+    /// Its rows.
+    pub rows: PathBuf,
+    /// Its design.
+    pub design: Design,
+    /// Its manifest.
+    pub manifest: Manifest,
+}
+
+static STUDY: LazyLock<Seed> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().expect("a folder can be made");
+    let path = folder.path().join("small.toml");
+    let scenario =
+        Scenario::parse(&path, "small", include_str!("../../fuzz/corpus/scenario/small.toml").to_owned(), None)
+            .unwrap_or_else(|failure| panic!("{failure}"));
+    collect(&scenario, Shard::WHOLE, folder.path(), false, true).unwrap_or_else(|failure| panic!("{failure}"));
+    Seed {
+        rows: folder.path().join(store::ROWS),
+        design: store::read_design(folder.path()).expect("it was just written"),
+        manifest: Manifest::read(&folder.path().join(store::MANIFEST)).expect("it was just written"),
+        folder,
+    }
+});
+
+/// The study.
+pub(super) fn study() -> &'static Seed {
+    &STUDY
+}
+
+fn stored(name: &str) -> Vec<Vec<u8>> {
+    vec![super::read(&study().folder.path().join(name))]
+}
+
+pub(super) fn rows() -> Vec<Vec<u8>> {
+    stored(store::ROWS)
+}
+
+pub(super) fn cells() -> Vec<Vec<u8>> {
+    stored(CELLS)
+}
+
+pub(super) fn manifest() -> Vec<Vec<u8>> {
+    stored(store::MANIFEST)
+}

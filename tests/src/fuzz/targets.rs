@@ -1,0 +1,236 @@
+//! One function a format: bytes in, promises asserted. Each says whether the file was accepted.
+
+use std::cell::OnceCell;
+use std::path::{Component, Path};
+use std::sync::LazyLock;
+
+use identify::{Identifier, registry};
+use study::failure::Failure;
+use study::manifest::Manifest;
+use study::plan::Shard;
+use study::present;
+use study::rows::{Layout, Reader};
+use study::scenario::Scenario;
+use study::store;
+use study::summary::Tally;
+use tempfile::TempDir;
+use trial::Trial;
+use trial::reader::{self, Reading};
+use trial::sidecar::Sidecar;
+
+use super::seeds;
+
+/// Longest message, bytes: a few lines of a file and the advice.
+const LONGEST_MESSAGE: usize = 8192;
+
+/// Rows of the longest record that is handed on to the methods; more only costs time.
+const IDENTIFIED_ROWS: usize = 300;
+
+/// Cells and trials that an accepted scenario may ask for.
+const MOST: u64 = 1_000_000_000;
+
+/// Line between a sidecar and the table it is for.
+const TABLE: &str = "\n# table\n";
+
+/// Table for sidecars that bring none: names of the contract beside others.
+const PLAIN_TABLE: &str = include_str!("../../fuzz/corpus/record/plain.csv");
+
+static METHODS: LazyLock<Vec<Box<dyn Identifier>>> = LazyLock::new(|| {
+    registry::defaults().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
+});
+
+/// A measured record, read by its header alone and handed to every method.
+pub fn record(data: &[u8]) -> bool {
+    let name = Path::new("case.csv");
+    match reader::read_bytes(name, data, Some(data.len() as u64), None) {
+        Ok(reading) => {
+            is_a_reading(&reading);
+            identified(&reading.trial);
+            true
+        }
+        Err(error) => is_one_message(&error.to_string()),
+    }
+}
+
+/// A sidecar, and after the line `# table` the table it is for; without one a plain table.
+pub fn sidecar(data: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(data);
+    let (text, table) = text.split_once(TABLE).unwrap_or((&text, PLAIN_TABLE));
+    let sidecar = match Sidecar::parse(text, Path::new("case.trial.toml")) {
+        Ok(sidecar) => sidecar,
+        Err(error) => return is_one_message(&error.to_string()),
+    };
+    match reader::read_bytes(Path::new("case.dat"), table.as_bytes(), None, Some(&sidecar)) {
+        Ok(reading) => {
+            is_a_reading(&reading);
+            true
+        }
+        Err(error) => is_one_message(&error.to_string()),
+    }
+}
+
+/// A scenario, resolved in every cell; no trial is run.
+pub fn scenario(data: &[u8]) -> bool {
+    let Ok(text) = std::str::from_utf8(data) else { return false };
+    // Records that a scenario replays are looked for beside it, where there is nothing.
+    let path = Path::new("no-such-folder/case.toml");
+    match Scenario::parse(path, "case", text.to_owned(), None) {
+        Ok(scenario) => {
+            is_a_scenario(&scenario);
+            true
+        }
+        Err(failure) => is_a_failure(&failure),
+    }
+}
+
+/// Stored rows of the small study, summarised.
+pub fn rows(data: &[u8]) -> bool {
+    let design = &seeds::study().design;
+    let layout = Layout::of(design);
+    scratch(|folder| {
+        let path = folder.join(store::ROWS);
+        std::fs::write(&path, data).expect("the scratch folder is writable");
+        let mut tally = Tally::new(design);
+        let read = Reader::open(&path, &layout).and_then(|rows| {
+            rows.for_each(|row| {
+                assert!((row.cell as usize) < design.cells.len(), "a row of cell {}", row.cell);
+                assert!(row.method < design.methods.len(), "a row of method {}", row.method);
+                tally.add(&row);
+                Ok(())
+            })
+        });
+        match read {
+            Ok(()) => !present::summary(&tally.finish().methods, design).to_csv().is_empty(),
+            Err(failure) => is_a_failure(&failure),
+        }
+    })
+}
+
+/// The stored design, with the rows of the small study.
+pub fn cells(data: &[u8]) -> bool {
+    let study = seeds::study();
+    scratch(|folder| {
+        std::fs::write(folder.join(seeds::CELLS), data).expect("the scratch folder is writable");
+        let design = match store::read_design(folder) {
+            Ok(design) => design,
+            Err(failure) => return is_a_failure(&failure),
+        };
+        for cell in &design.cells {
+            assert_eq!(cell.labels.len(), design.axes.len(), "labels of a cell and axes");
+            assert_eq!(cell.values.len(), design.axes.len(), "values of a cell and axes");
+        }
+        let layout = Layout::of(&design);
+        let mut tally = Tally::new(&design);
+        let read = Reader::open(&study.rows, &layout).and_then(|rows| {
+            rows.for_each(|row| {
+                tally.add(&row);
+                Ok(())
+            })
+        });
+        match read {
+            Ok(()) => {
+                let summary = tally.finish();
+                drop(present::summary_in_brief(&summary, &design).to_markdown());
+                !present::summary(&summary.methods, &design).to_csv().is_empty()
+            }
+            Err(failure) => is_a_failure(&failure),
+        }
+    })
+}
+
+/// A manifest, compared with another and resolved as the scenario it holds.
+pub fn manifest(data: &[u8]) -> bool {
+    scratch(|folder| {
+        let path = folder.join(store::MANIFEST);
+        std::fs::write(&path, data).expect("the scratch folder is writable");
+        let manifest = match Manifest::read(&path) {
+            Ok(manifest) => manifest,
+            Err(failure) => return is_a_failure(&failure),
+        };
+        let own = &seeds::study().manifest;
+        for difference in own.differences(&manifest).iter().chain(&manifest.differences_of_study(own)) {
+            is_one_message(difference);
+        }
+        assert!(manifest.shard == Shard::WHOLE || manifest.shard.number <= manifest.shard.of);
+        match Scenario::read(&path, None) {
+            Ok(scenario) => {
+                is_a_scenario(&scenario);
+                true
+            }
+            Err(failure) => is_a_failure(&failure),
+        }
+    })
+}
+
+fn is_a_failure(failure: &Failure) -> bool {
+    is_one_message(&failure.message)
+}
+
+/// One message for a person: not empty, not endless, and nothing in it that a terminal would obey.
+fn is_one_message(message: &str) -> bool {
+    assert!(!message.trim().is_empty(), "an empty message");
+    assert!(message.len() <= LONGEST_MESSAGE, "a message of {} bytes", message.len());
+    let control = message.chars().find(|&character| character.is_control() && !matches!(character, '\n' | '\t'));
+    assert!(control.is_none(), "a message with the control character {control:?}");
+    false
+}
+
+fn is_a_reading(Reading { trial, warnings }: &Reading) {
+    for warning in warnings {
+        is_one_message(warning);
+    }
+    assert!(trial.len() >= Trial::FEWEST_ROWS);
+    assert!(trial.time().iter().all(|time| time.is_finite()), "a time that is not finite");
+    assert!(trial.time().is_sorted_by(|a, b| a < b), "time does not increase");
+    assert!(trial.rudder().iter().all(|rudder| rudder.is_finite()), "a rudder that is not finite");
+    let mut present = trial.channels().flat_map(|(_, values)| values);
+    assert!(present.all(|value| !value.is_infinite()), "a value that is infinite");
+    assert!(trial.heading().iter().filter(|heading| heading.is_finite()).count() >= Trial::FEWEST_ROWS);
+}
+
+/// Every method gives numbers or a reason.
+fn identified(trial: &Trial) {
+    if trial.len() > IDENTIFIED_ROWS {
+        return;
+    }
+    for method in METHODS.iter() {
+        match method.identify(std::slice::from_ref(trial)) {
+            Ok(estimate) => {
+                // Neutral stability is an ordinary answer, with both at infinity.
+                assert!(!estimate.K().value.is_nan() && !estimate.T().value.is_nan(), "no number from {}", method.id());
+            }
+            Err(error) => {
+                is_one_message(&error.to_string());
+            }
+        }
+    }
+}
+
+fn is_a_scenario(scenario: &Scenario) {
+    let mut name = Path::new(&scenario.name).components();
+    assert!(
+        matches!((name.next(), name.next()), (Some(Component::Normal(_)), None)),
+        "a name that leads out of results/"
+    );
+    assert!(!scenario.cells.is_empty() && scenario.replicates > 0);
+    assert!(scenario.replicates.saturating_mul(scenario.cells.len() as u64) <= MOST);
+    for cell in &scenario.cells {
+        assert_eq!(cell.labels.len(), scenario.axes.len());
+        assert_eq!(cell.values.len(), scenario.axes.len());
+        assert!(!cell.methods.is_empty());
+        let mut labels = cell.labels.iter().chain(cell.methods.iter().map(|method| &method.label));
+        assert!(!labels.any(|label| label.contains(char::is_control)), "a label that no table can carry");
+    }
+    assert!(scenario.detail.iter().all(|&cell| cell < scenario.cells.len()));
+}
+
+/// Runs `work` in a folder of this thread, which is made once.
+fn scratch<T>(work: impl FnOnce(&Path) -> T) -> T {
+    thread_local! {
+        static FOLDER: OnceCell<TempDir> = const { OnceCell::new() };
+    }
+    FOLDER.with(|folder| {
+        let folder: &TempDir = folder.get_or_init(|| tempfile::tempdir().expect("a folder can be made"));
+        work(folder.path())
+    })
+}
