@@ -24,7 +24,8 @@ pub const ROWS: &str = "rows.parquet";
 pub const TIMINGS: &str = "timings.csv";
 /// What ran, and on what; written last.
 pub const MANIFEST: &str = "manifest.toml";
-const DESIGN: &str = "cells.json";
+/// The design: axes, methods, cells.
+pub const DESIGN: &str = "cells.json";
 const SHOWCASES: &str = "showcase.json";
 
 /// Largest size of a stored text, bytes.

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use rand::{SeedableRng, rngs::ChaCha8Rng};
 
-use super::{Target, known, mutate};
+use super::{Target, mutate};
 
 /// Longest time a case may take.
 const LONGEST: Duration = Duration::from_secs(5);
@@ -32,8 +32,6 @@ pub struct Outcome {
     pub cases: usize,
     /// Cases that were accepted; the others were refused.
     pub accepted: usize,
-    /// Cases that met a fault of [`known::SIGNS`].
-    pub known: usize,
     /// The longest case.
     pub longest: Duration,
     /// What went wrong, one line a fault, with where its input was saved; the first of each kind.
@@ -112,9 +110,7 @@ impl Outcome {
         self.accepted += usize::from(found == Ok(true));
         let slow = (time > LONGEST).then(|| format!("a case of {:.1} s", time.as_secs_f64()));
         for fault in found.err().into_iter().chain(slow) {
-            if known::SIGNS.iter().any(|(name, sign)| *name == target.name && fault.contains(sign)) {
-                self.known += 1;
-            } else if !self.faults.iter().any(|old| kind(old).contains(kind(&fault))) {
+            if !self.faults.iter().any(|old| kind(old).contains(kind(&fault))) {
                 let saved = save(target, data);
                 self.faults.push(format!("{}: {fault}\n  saved as {}", target.name, saved.display()));
             }
@@ -179,10 +175,10 @@ pub fn peak_memory() -> Option<u64> {
 pub fn table(outcomes: &[(&str, Outcome)]) -> String {
     let mut text = String::new();
     for (name, outcome) in outcomes {
-        let Outcome { cases, accepted, known, longest, faults } = outcome;
+        let Outcome { cases, accepted, longest, faults } = outcome;
         writeln!(
             text,
-            "{name:10} {cases:8} cases, {accepted:8} accepted, longest {:6.3} s, {known} known faults, {} new",
+            "{name:10} {cases:8} cases, {accepted:8} accepted, longest {:6.3} s, {} faults",
             longest.as_secs_f64(),
             faults.len()
         )
@@ -206,7 +202,7 @@ mod tests {
     fn a_panic_is_named_with_its_input() {
         let target = Target { run: breaks_on_an_empty_file, ..TARGETS[0] };
         let outcome = all(&target, 30, |index| vec![b'x'; index % 3]);
-        assert_eq!((outcome.cases, outcome.accepted, outcome.known, outcome.faults.len()), (30, 10, 0, 1));
+        assert_eq!((outcome.cases, outcome.accepted, outcome.faults.len()), (30, 10, 1));
         let fault = &outcome.faults[0];
         assert!(fault.contains("runner.rs:") && fault.contains("nothing in 0 bytes"), "{fault}");
         let (_, saved) = fault.split_once("saved as ").expect("the input was saved");

@@ -1,23 +1,18 @@
 //! A small study that is run once, whose files are what stored files begin from.
 
-use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use study::collect::collect;
+use study::folder::ResultFolder;
 use study::manifest::Manifest;
 use study::plan::Shard;
 use study::scenario::Scenario;
-use study::store::{self, Design};
+use study::store::{self, Design, Stored};
 use tempfile::TempDir;
-
-/// Name of the stored design.
-pub(super) const CELLS: &str = "cells.json";
 
 /// The files of the study, and what they say.
 pub(super) struct Seed {
     folder: TempDir,
-    /// Its rows.
-    pub rows: PathBuf,
     /// Its design.
     pub design: Design,
     /// Its manifest.
@@ -30,13 +25,12 @@ static STUDY: LazyLock<Seed> = LazyLock::new(|| {
     let scenario =
         Scenario::parse(&path, "small", include_str!("../../fuzz/corpus/scenario/small.toml").to_owned(), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
-    collect(&scenario, Shard::WHOLE, folder.path(), false, true).unwrap_or_else(|failure| panic!("{failure}"));
-    Seed {
-        rows: folder.path().join(store::ROWS),
-        design: store::read_design(folder.path()).expect("it was just written"),
-        manifest: Manifest::read(&folder.path().join(store::MANIFEST)).expect("it was just written"),
-        folder,
-    }
+    ResultFolder::hold(folder.path())
+        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, true))
+        .unwrap_or_else(|failure| panic!("{failure}"));
+    let stored = Stored::read(folder.path()).unwrap_or_else(|failure| panic!("{failure}"));
+    let Stored { design, manifest, .. } = stored;
+    Seed { design, manifest, folder }
 });
 
 /// The study.
@@ -53,7 +47,7 @@ pub(super) fn rows() -> Vec<Vec<u8>> {
 }
 
 pub(super) fn cells() -> Vec<Vec<u8>> {
-    stored(CELLS)
+    stored(store::DESIGN)
 }
 
 pub(super) fn manifest() -> Vec<Vec<u8>> {
