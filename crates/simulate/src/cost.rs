@@ -20,8 +20,8 @@ pub const LONGEST_TIME: f64 = 1e7;
 /// Most steps of one run: a minute or two of computing. A zig-zag takes some thousand.
 pub const MOST_STEPS: usize = 100_000_000;
 
-/// Most rows of one record: three days at one a second, and a tenth of a gigabyte while it is made.
-pub const MOST_ROWS: usize = 250_000;
+/// Most rows of one record: eleven days at one a second, and less than half a gigabyte while it is made.
+pub const MOST_ROWS: usize = 1_000_000;
 
 /// Most executes of one run: each leaves three segments of the path of the rudder in memory.
 pub const MOST_EXECUTES: usize = 100_000;

@@ -70,7 +70,9 @@ fn study(folder: &Path) -> Result<Study, Failure> {
     let missing = || Failure::input(format!("{}: there is no such file any more", path.display()));
     let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
     let words = manifest.words();
-    let unfit = |stem: &str, unfit| Failure::input(format!("{}: `output.figure` is {}; {unfit}", path.display(), name::shown(stem)));
+    let unfit = |stem: &str, unfit| {
+        Failure::input(format!("{}: `output.figure` is {}; {unfit}", path.display(), name::shown(stem)))
+    };
     let figure = match &words.figure {
         Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
         None => None,

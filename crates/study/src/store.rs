@@ -3,7 +3,7 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -112,8 +112,8 @@ impl Design {
 }
 
 /// A finished study: everything but its rows, which are read a few at a time.
-pub struct Stored<'a> {
-    folder: &'a Path,
+pub struct Stored {
+    folder: PathBuf,
     /// What ran, and on what.
     pub manifest: Manifest,
     /// The design.
@@ -125,9 +125,9 @@ pub struct Stored<'a> {
     _reading: Option<Reading>,
 }
 
-impl<'a> Stored<'a> {
+impl Stored {
     /// Reads a finished study and keeps others from writing there. Fails as wrong input when the folder holds none.
-    pub fn read(folder: &'a Path) -> Result<Self, Failure> {
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
         // A folder that is not there is not worth a lock.
         expected_in(folder)?;
         let reading = Reading::begin(folder)?;
@@ -136,11 +136,11 @@ impl<'a> Stored<'a> {
     }
 
     /// Reads a finished study in a folder that is held.
-    pub fn held(folder: &'a ResultFolder) -> Result<Self, Failure> {
+    pub fn held(folder: &ResultFolder) -> Result<Self, Failure> {
         Self::of(folder.path(), expected_in(folder.path())?)
     }
 
-    fn of(folder: &'a Path, manifest: Manifest) -> Result<Self, Failure> {
+    fn of(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
         for name in [ROWS, DESIGN, SHOWCASES, TIMINGS] {
             is_unchanged(folder, name, &manifest)?;
         }
@@ -152,7 +152,7 @@ impl<'a> Stored<'a> {
         let path = folder.join(TIMINGS);
         let timings = Timings::of_text(&text(&path)?, &design).map_err(|problem| refused(&path, &problem))?;
         let design = Design { words: manifest.words(), ..design };
-        Ok(Self { folder, manifest, design, showcases, timings, _reading: None })
+        Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings, _reading: None })
     }
 
     /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.

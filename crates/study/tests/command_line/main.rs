@@ -6,4 +6,5 @@ mod monte_carlo;
 mod names;
 mod records;
 mod scenarios;
+mod stored;
 mod traces;

@@ -179,16 +179,28 @@ fn a_folder_belongs_to_one_study() {
     assert!(rows != desk.bytes(ROWS));
 }
 
-/// What a kill in the last moment leaves: a folder `unfinished` without its manifest.
+/// What a kill in the last moment leaves: a folder `unfinished` with its mark and without its manifest.
 #[test]
 fn what_is_left_of_an_ended_study_does_no_harm() {
     let desk = Desk::new();
+    desk.file("long.toml", scenario(100_000));
+    let mut run = desk.start(&["long.toml", "--out", "cut", "--quiet"]);
+    while parts(&desk, "cut") < 1 {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.kill().expect("it is ours to kill");
+    run.wait().expect("it ends");
+    let leave = || {
+        desk.file("whole/unfinished/README", desk.bytes("cut/unfinished/README"));
+        desk.file("whole/unfinished/00000000.parquet", "half a part");
+    };
     desk.file("study.toml", scenario(10));
     let rows = uninterrupted(&desk);
-    desk.file("whole/unfinished/00000000.parquet", "half a part");
-    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
+    leave();
     desk.run(&["report", "whole", "--quiet"]).is_done();
-    assert!(rows == desk.bytes(ROWS));
+    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
+    assert!(rows == desk.bytes(ROWS) && !desk.path("whole/unfinished").exists());
+    leave();
     std::fs::remove_file(desk.path(ROWS)).expect("it was there");
     let run = desk.run(&["study.toml", "--out", "whole", "--quiet"]);
     assert_eq!(run.is_done().err, "", "a part of another study is no part of this one");

@@ -1,0 +1,232 @@
+//! What is stored is checked by everyone who reads it, only our own files are replaced or removed, and nothing is lost in
+//! silence.
+
+use std::fs;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::desk::Desk;
+
+const STUDY: &str = r#"
+question = "Is it still the same?"
+seed = 3
+replicates = 4
+ship.yukun = {}
+manoeuvre.zig-zag = { rudder-deg = 10.0, heading-deg = 10.0 }
+recording = { sampling-s = 2.0, duration-s = 120.0 }
+[[identifier]]
+method.integral-least-squares = {}
+[[identifier]]
+method.least-squares = {}
+[[sweep]]
+key = "sensor.heading-noise-deg"
+values = [0.1, 0.5]
+"#;
+
+/// A finished study in `whole`.
+fn desk() -> Desk {
+    let desk = Desk::new();
+    desk.file("study.toml", STUDY);
+    desk.run(&["study.toml", "--out", "whole", "--quiet"]).is_done();
+    desk
+}
+
+fn copy(desk: &Desk, from: &str, to: &str) {
+    for entry in fs::read_dir(desk.path(from)).expect("a folder").flatten() {
+        if entry.path().is_file() {
+            desk.file(
+                &format!("{to}/{}", entry.file_name().to_string_lossy()),
+                fs::read(entry.path()).expect("a file"),
+            );
+        }
+    }
+}
+
+#[test]
+fn a_flipped_bit_is_noticed_by_every_reader() {
+    let desk = desk();
+    for name in ["rows.parquet", "cells.json", "showcase.json", "timings.csv"] {
+        let bytes = desk.bytes(&format!("whole/{name}"));
+        for place in [0, bytes.len() / 3, bytes.len() / 2, bytes.len() - 2] {
+            copy(&desk, "whole", "flipped");
+            let mut damaged = bytes.clone();
+            damaged[place] ^= 0x10;
+            desk.file(&format!("flipped/{name}"), &damaged);
+            let expected = [name, "SHA-256", "--restart"];
+            desk.run(&["report", "flipped", "--quiet"]).is_refused(2, &expected);
+            desk.run(&["study.toml", "--out", "flipped", "--quiet"]).is_refused(2, &expected);
+            desk.run(&["merge", "flipped", "--out", "joined", "--quiet"]).is_refused(2, &expected);
+            assert!(desk.bytes(&format!("flipped/{name}")) == damaged, "a refusal changes nothing");
+        }
+    }
+    desk.run(&["study.toml", "--out", "flipped", "--quiet", "--restart"]).is_done();
+    assert!(desk.bytes("flipped/rows.parquet") == desk.bytes("whole/rows.parquet"));
+}
+
+#[test]
+fn rows_of_another_design_are_refused() {
+    let desk = desk();
+    desk.file("more.toml", STUDY.replace("[0.1, 0.5]", "[0.1, 0.2, 0.5, 0.7]"));
+    desk.run(&["more.toml", "--out", "more", "--quiet"]).is_done();
+    for (rows, folder, scenario) in [("whole", "more", "more.toml"), ("more", "whole", "study.toml")] {
+        let own = desk.bytes(&format!("{folder}/rows.parquet"));
+        desk.file(&format!("{folder}/rows.parquet"), desk.bytes(&format!("{rows}/rows.parquet")));
+        desk.run(&["report", folder]).is_refused(2, &["rows.parquet", "changed"]);
+        desk.run(&[scenario, "--out", folder]).is_refused(2, &["rows.parquet", "changed"]);
+        desk.file(&format!("{folder}/rows.parquet"), own);
+    }
+    // The same with a manifest that was made to fit.
+    let manifest = String::from_utf8(desk.bytes("more/manifest.toml")).expect("UTF-8");
+    let sha256 = |text: &str| {
+        let line = text.lines().find(|line| line.starts_with("\"rows.parquet\"")).expect("it is in the manifest");
+        line.to_owned()
+    };
+    let whole = String::from_utf8(desk.bytes("whole/manifest.toml")).expect("UTF-8");
+    desk.file("more/manifest.toml", manifest.replace(&sha256(&manifest), &sha256(&whole)));
+    desk.file("more/rows.parquet", desk.bytes("whole/rows.parquet"));
+    desk.run(&["report", "more"]).is_refused(2, &["rows.parquet", "axis", "another point"]);
+}
+
+#[test]
+fn a_shard_that_lacks_trials_is_not_merged() {
+    let desk = desk();
+    for shard in ["1/2", "2/2", "1/4"] {
+        let out = shard.replace('/', "-");
+        desk.run(&["study.toml", "--shard", shard, "--out", &out, "--quiet"]).is_done();
+    }
+    // A quarter that says it is a half.
+    let quarter = String::from_utf8(desk.bytes("1-4/manifest.toml")).expect("UTF-8");
+    desk.file("1-4/manifest.toml", quarter.replace("shard = \"1/4\"", "shard = \"1/2\""));
+    let merge = ["merge", "1-4", "2-2", "--out", "joined", "--quiet"];
+    desk.run(&merge).is_refused(2, &["2-2", "trials of cell 0 begin with", "run this shard again"]);
+    assert!(!desk.path("joined/rows.parquet").exists());
+    desk.run(&["merge", "1-2", "2-2", "--out", "joined", "--quiet"]).is_done();
+    assert!(desk.bytes("joined/rows.parquet") == desk.bytes("whole/rows.parquet"));
+}
+
+/// A study that was stopped after some parts.
+fn stopped(desk: &Desk) -> usize {
+    desk.file("long.toml", STUDY.replace("replicates = 4", "replicates = 60000"));
+    let mut run = desk.start(&["long.toml", "--out", "cut", "--quiet", "--threads", "2"]);
+    while !desk.path("cut/unfinished/00000002.parquet").exists() {
+        assert!(run.try_wait().expect("it can be asked").is_none(), "the study ended before it was stopped");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.kill().expect("it is ours to kill");
+    run.wait().expect("it ends");
+    let names = fs::read_dir(desk.path("cut/unfinished")).expect("a folder").flatten();
+    names.filter(|entry| entry.file_name().to_string_lossy().ends_with(".parquet")).count()
+}
+
+#[test]
+fn a_part_that_cannot_be_read_costs_no_other() {
+    let desk = Desk::new();
+    let parts = stopped(&desk);
+    let part = desk.path("cut/unfinished/00000000.parquet");
+    let bytes = fs::read(&part).expect("a part");
+    // A folder in its place cannot be read, whoever runs this.
+    fs::remove_file(&part).expect("it was there");
+    fs::create_dir(&part).expect("a folder");
+    let run = desk.run(&["long.toml", "--out", "cut", "--quiet"]);
+    run.is_refused(1, &["00000000.parquet", "failed to read", "nothing is removed"]);
+    fs::remove_dir(&part).expect("it is empty");
+    fs::write(&part, bytes).expect("it was read");
+    let left = fs::read_dir(desk.path("cut/unfinished")).expect("a folder").flatten();
+    let left = left.filter(|entry| entry.file_name().to_string_lossy().ends_with(".parquet")).count();
+    assert_eq!(left, parts);
+
+    // A part that is gone takes those after it along, and that is said.
+    fs::remove_file(&part).expect("it was there");
+    let mut run = desk.start(&["long.toml", "--out", "cut", "--quiet"]);
+    while !part.exists() {
+        assert!(run.try_wait().expect("it can be asked").is_none());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    run.kill().expect("it is ours to kill");
+    let output = run.wait_with_output().expect("it ends");
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(message.contains("00000000.parquet is missing") && message.contains("run again"), "{message}");
+}
+
+#[test]
+fn files_of_somebody_else_are_left_alone() {
+    let desk = Desk::new();
+    desk.file("study.toml", STUDY);
+    desk.file("out/unfinished/notes.txt", "precious");
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_refused(2, &["out/unfinished", "notes.txt", "--out"]);
+    desk.run(&["study.toml", "--out", "out", "--quiet", "--restart"]).is_refused(2, &["notes.txt"]);
+    assert_eq!(desk.bytes("out/unfinished/notes.txt"), b"precious");
+
+    desk.run(&["study.toml", "--quiet"]).is_done();
+    desk.file("results/README.md", "mine");
+    desk.run(&["overview", "results"]).is_refused(2, &["results/README.md", "was not made by"]);
+    assert_eq!(desk.bytes("results/README.md"), b"mine");
+    fs::remove_file(desk.path("results/README.md")).expect("it was there");
+    desk.run(&["overview", "results", "--quiet"]).is_done();
+    desk.run(&["overview", "results", "--quiet"]).is_done();
+}
+
+#[cfg(unix)]
+#[test]
+fn links_in_the_result_folder_are_not_followed() {
+    let desk = Desk::new();
+    desk.file("study.toml", STUDY);
+    let names = ["report.md", "rows.parquet.tmp", "manifest.toml.tmp", "errors.png", "summary.csv"];
+    for name in names {
+        desk.file(&format!("victims/{name}"), "precious");
+        desk.file("out/.keep", "");
+        std::os::unix::fs::symlink(format!("../victims/{name}"), desk.path(&format!("out/{name}"))).expect("a link");
+    }
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
+    for name in names {
+        assert_eq!(desk.bytes(&format!("victims/{name}")), b"precious", "{name}");
+    }
+    // A folder behind a link is somebody else's too.
+    desk.file("elsewhere/precious", "");
+    desk.file("linked/.keep", "");
+    std::os::unix::fs::symlink("../elsewhere", desk.path("linked/unfinished")).expect("a link");
+    desk.run(&["study.toml", "--out", "linked", "--quiet"]).is_refused(2, &["linked/unfinished", "link"]);
+    assert_eq!(fs::read_dir(desk.path("elsewhere")).expect("a folder").count(), 1);
+}
+
+/// A trial of minutes: many dense rows to trace.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_does_not_wait_for_a_trial() {
+    let desk = Desk::new();
+    let slow =
+        STUDY.replace("sampling-s = 2.0", "sampling-s = 0.01").replace("0.5]", "0.5]\n[[identifier]]\ntrace = {}");
+    desk.file("slow.toml", slow);
+    let run = desk.start(&["slow.toml", "--out", "slow", "--quiet", "--threads", "2"]);
+    while !desk.path("slow/unfinished/manifest.toml").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    let asked = Instant::now();
+    let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().expect("a Unix system has kill");
+    assert!(sent.success());
+    let output = run.wait_with_output().expect("it ends");
+    let waited = asked.elapsed();
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(message.starts_with("error: stopped after 0 of 8 trials"), "{message}");
+    assert_eq!(output.status.code(), Some(1));
+    // Half a second on a machine with nothing else to do.
+    assert!(waited < Duration::from_secs(2), "{waited:?}");
+    desk.run(&["report", "slow"]).is_refused(2, &["not finished"]);
+}
+
+#[test]
+fn two_reruns_and_a_report_at_once_leave_a_whole_study() {
+    let desk = desk();
+    for round in 0..4 {
+        desk.file("told.toml", format!("finding = \"{round}\"\n{STUDY}"));
+        let runs = [
+            desk.start(&["told.toml", "--out", "whole", "--quiet"]),
+            desk.start(&["told.toml", "--out", "whole", "--quiet"]),
+            desk.start(&["report", "whole", "--quiet"]),
+        ];
+        let codes = runs.map(|mut run| run.wait().expect("it ends").code());
+        assert!(codes.iter().all(|code| matches!(code, Some(0 | 1))) && codes.contains(&Some(0)), "{codes:?}");
+        desk.run(&["report", "whole", "--quiet"]).is_done();
+    }
+}
