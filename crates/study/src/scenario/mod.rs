@@ -317,8 +317,8 @@ impl Scenario {
             .map(|(index, axis)| axis.resolve(index))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
-        check_titles(&axes).map_err(&fail)?;
         let combinations = sweep::product(&axes).map_err(&fail)?;
+        check_titles(&axes).map_err(&fail)?;
         check_size(wire.replicates, combinations.len(), methods.len()).map_err(&fail)?;
         check_draws(&wire.draw, &axes).map_err(&fail)?;
         let of_cells = only(&document, &[Part::Trial, Part::Cell]);
