@@ -19,7 +19,7 @@ use crate::manifest::Manifest;
 use crate::plan::{Plan, Shard, Task};
 use crate::progress;
 use crate::rows::{Layout, Row};
-use crate::scenario::{Scenario, Words};
+use crate::scenario::Scenario;
 use crate::screen;
 use crate::showcase;
 use crate::store::{self, CellFacts, Design, Stored};
@@ -117,7 +117,7 @@ fn design(scenario: &Scenario) -> Design {
         methods: scenario.method_names(),
         draws: scenario.draws.clone(),
         cells: scenario.cells.iter().map(bare).collect(),
-        words: Words::of(&scenario.text),
+        words: scenario.words.clone(),
     }
 }
 

@@ -210,7 +210,6 @@ fn is_a_scenario(scenario: &Scenario) {
         let mut labels = cell.labels.iter().chain(cell.methods.iter().map(|method| &method.label));
         assert!(!labels.any(|label| label.contains(char::is_control)), "a label that no table can carry");
     }
-    assert!(scenario.detail.iter().all(|&cell| cell < scenario.cells.len()));
 }
 
 /// Runs `work` in a folder of this thread, which is made once.

@@ -20,7 +20,7 @@ mod wire;
 mod words;
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::HashSet;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -231,10 +231,6 @@ pub struct Published {
 pub struct Scenario {
     /// Stem of the file.
     pub name: String,
-    /// The question it answers.
-    pub question: String,
-    /// What was seen, in prose.
-    pub analysis: String,
     /// Key of every random draw.
     pub seed: u64,
     /// Trials per cell.
@@ -245,14 +241,10 @@ pub struct Scenario {
     pub cells: Vec<Cell>,
     /// Values of other authors.
     pub published: Published,
-    /// The answer in one sentence.
-    pub finding: String,
+    /// What it says about itself.
+    pub words: Words,
     /// Whether the first replicate of every cell is shown in detail.
     pub showcase: bool,
-    /// Stem of the figure that stands for the study on an overview.
-    pub figure: Option<String>,
-    /// Cells whose errors are shown one by one.
-    pub detail: Vec<usize>,
     /// Keys that are drawn anew in every trial.
     pub draws: Vec<String>,
     /// When a cell has had enough trials.
@@ -328,25 +320,23 @@ impl Scenario {
             .map(|cell| cell.map(|cell| cell.named(name)))
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
-        let mut detail = detail(&wire.output.detail, &cells).map_err(&fail)?;
-        if cells.len() == 1 {
-            // A study of one cell is about that cell.
-            detail = vec![0];
-        }
+        check_detail(&wire.output.detail, &cells).map_err(&fail)?;
         Ok(Self {
             name: name.to_owned(),
-            question: wire.question,
-            analysis: wire.analysis,
             seed: seed.unwrap_or(wire.seed),
             replicates: wire.replicates,
             draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
             axes,
             cells,
             published: published(&wire.published).map_err(&fail)?,
-            finding: wire.finding,
             showcase: wire.output.showcase,
-            figure: wire.output.figure,
-            detail,
+            words: Words {
+                question: wire.question,
+                analysis: wire.analysis,
+                finding: wire.finding,
+                figure: wire.output.figure,
+                detail: wire.output.detail,
+            },
             stop,
             design_sha256: sha256_of(&identity::design_of(&document), &folder)?,
             sha256: hex(&Sha256::digest(text.as_bytes())),
@@ -450,27 +440,23 @@ fn check_draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Indices of the cells with these titles.
-fn detail(titles: &[String], cells: &[Cell]) -> Result<Vec<usize>, Problem> {
+/// Every title is that of a cell.
+fn check_detail(titles: &[String], cells: &[Cell]) -> Result<(), Problem> {
     let known: Vec<String> = cells.iter().map(Cell::title).filter(|title| !title.is_empty()).collect();
-    let places: HashMap<&str, usize> =
-        known.iter().enumerate().rev().map(|(cell, title)| (title.as_str(), cell)).collect();
-    let place = |(index, title): (usize, &String)| {
-        places.get(title.as_str()).copied().ok_or_else(|| {
-            let key = KeyPath::dotted("output.detail").child(index);
-            let advice = match &known[..known.len().min(20)] {
-                [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
-                shown => suggestion(title, shown),
-            };
-            Problem::value(
-                key,
-                format!("no cell is called {title:?}"),
-                "expected labels of points, joined by commas",
-                advice,
-            )
-        })
+    let places: HashSet<&str> = known.iter().map(String::as_str).collect();
+    let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
+        return Ok(());
     };
-    titles.iter().enumerate().map(place).collect()
+    let advice = match &known[..known.len().min(20)] {
+        [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
+        shown => suggestion(title, shown),
+    };
+    Err(Problem::value(
+        KeyPath::dotted("output.detail").child(index),
+        format!("no cell is called {title:?}"),
+        "expected labels of points, joined by commas",
+        advice,
+    ))
 }
 
 /// SHA-256 of a design and of the records it replays.
