@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn a_trial_without_scores_adds_nothing() {
         let some = [(); 3].map(|()| vec![1.0, -2.0, 0.5, 3.0, -1.0]);
-        let alone = newey_west_of_three(&[some.clone()]);
+        let alone = newey_west_of_three(std::slice::from_ref(&some));
         assert_eq!(newey_west_of_three(&[some.clone(), Default::default()]), alone);
         let of_any_number = newey_west(&[some.to_vec()]);
         assert_eq!(newey_west(&[some.to_vec(), vec![Vec::new(); 3]]), of_any_number);

@@ -17,26 +17,26 @@ pub struct Curve {
     pub y: Vec<f64>,
 }
 
-/// Most pairs of a curve.
-pub const MOST_PAIRS: usize = 4000;
-
 /// Pairs that are kept of every run of a curve with more: first, lowest, highest, last, and a gap.
 const KEPT_OF_RUN: usize = 5;
 
 impl Curve {
+    /// Most pairs of a curve.
+    pub const MOST_PAIRS: usize = 4000;
+
     /// A curve from its two columns.
     ///
-    /// One with more than [`MOST_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours, all as long,
+    /// One with more than [`Self::MOST_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours, all as long,
     /// the first, the lowest, the highest and the last, and a gap where there is one.
     pub fn new(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
         let curve = Self { x: x.into(), y: y.into() };
-        if curve.x.len().min(curve.y.len()) > MOST_PAIRS { curve.thinned() } else { curve }
+        if curve.x.len().min(curve.y.len()) > Self::MOST_PAIRS { curve.thinned() } else { curve }
     }
 
     fn thinned(&self) -> Self {
         let length = self.x.len().min(self.y.len());
-        let mut thin = Self { x: Vec::with_capacity(MOST_PAIRS), y: Vec::with_capacity(MOST_PAIRS) };
-        let run = length.div_ceil(MOST_PAIRS / KEPT_OF_RUN);
+        let mut thin = Self { x: Vec::with_capacity(Self::MOST_PAIRS), y: Vec::with_capacity(Self::MOST_PAIRS) };
+        let run = length.div_ceil(Self::MOST_PAIRS / KEPT_OF_RUN);
         for start in (0..length).step_by(run) {
             let rows = start..length.min(start + run);
             let is_gap = |row: &usize| !(self.x[*row].is_finite() && self.y[*row].is_finite());
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn a_curve_that_can_be_shown_is_kept_to_the_bit() {
-        let x: Vec<f64> = (0..MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
+        let x: Vec<f64> = (0..Curve::MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
         let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
         assert_eq!(Curve::new(x.as_slice(), y.as_slice()), Curve { x, y });
     }
@@ -100,7 +100,7 @@ mod tests {
         y[300_000..310_000].fill(f64::NAN);
         y[500_000] = f64::NAN;
         let thin = Curve::new(x.as_slice(), y.as_slice());
-        assert!(thin.x.len() <= MOST_PAIRS && thin.x.len() > MOST_PAIRS / 4, "{} pairs", thin.x.len());
+        assert!(thin.x.len() <= Curve::MOST_PAIRS && thin.x.len() > Curve::MOST_PAIRS / 4, "{} pairs", thin.x.len());
         assert_eq!((thin.x[0], thin.x.last()), (0.0, x.last()));
         assert!(thin.x.is_sorted());
         let kept: Vec<(f64, f64)> = thin.finite().collect();
@@ -113,6 +113,9 @@ mod tests {
 
     #[test]
     fn a_dense_curve_of_gaps_alone_draws_nothing() {
-        assert_eq!(Curve::new(vec![f64::NAN; 2 * MOST_PAIRS], vec![0.0; 2 * MOST_PAIRS]).finite().count(), 0);
+        assert_eq!(
+            Curve::new(vec![f64::NAN; 2 * Curve::MOST_PAIRS], vec![0.0; 2 * Curve::MOST_PAIRS]).finite().count(),
+            0
+        );
     }
 }

@@ -118,7 +118,8 @@ pub fn zigzag_figure(trial: &Trial, zigzag: &ZigZag) -> ZigzagTrial {
     ZigzagTrial {
         title: None,
         heading: curve(trial.time(), trial.heading()),
-        heading_as_points: zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
+        // What is left of a thinned record are its extremes: as points they would be taken for the record.
+        heading_as_points: trial.len() <= Curve::MOST_PAIRS && zigzag.heading_noise.is_some_and(|sd| to_deg(sd) > 0.02),
         rudder: curve(trial.time(), trial.rudder()),
         truth: None,
         executes: zigzag.executes.iter().map(|execute| mark(execute.time.value, execute.heading.value)).collect(),

@@ -200,7 +200,7 @@ fn settings_out_of_range_are_named() {
     assert_eq!(refused(Settings { condition_limit: f64::NAN, ..Settings::default() }), "condition-limit");
 }
 
-/// The rudder moves in rows alone only, so the stretches that are left hold none of it: the search for eigenvalues would not end.
+/// The rudder moves only in rows that gaps leave alone, so the stretches between them hold none of it.
 #[test]
 fn stretches_without_any_rudder_are_refused() {
     let time: Vec<f64> = (0..40).map(f64::from).chain([400.0, 800.0]).collect();
