@@ -11,7 +11,7 @@ use ship::angle::to_deg;
 use thiserror::Error;
 
 use crate::record::Trial;
-use regression::{Slope, rudder_on_heading, yaw_rate_on_heading};
+use regression::{Slope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 
 /// Why a record is not believed. Angles in degrees, for people.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -106,6 +106,18 @@ pub enum Implausible {
         /// The one of the two that disagrees with the rudder.
         culprit: &'static str,
     },
+    /// The ship turns round and round away from its rudder.
+    #[error(
+        "the rudder sign looks flipped: the heading moves through {heading_deg:.0}°, and the ship turns to port under positive \
+         rudder for {share_percent:.0} % of that; write `flip = true` for the rudder column in a sidecar NAME.trial.toml \
+         (the heading, if that grows to port)"
+    )]
+    TurnsAgainstRudder {
+        /// Range of the heading, deg.
+        heading_deg: f64,
+        /// Share of its changes that go against the rudder, each weighed by the rudder, %.
+        share_percent: f64,
+    },
     /// The ship turns away from its rudder.
     #[error(
         "the rudder sign looks flipped: the ship turns to port under positive rudder (K/T = {gain:.2e} 1/s², and the rudder \
@@ -133,8 +145,12 @@ const ANSWERED_DEG: f64 = 1.0;
 /// More reversals than any manoeuvre has: a dither, a pseudo-random sequence or an autopilot in waves.
 const REVERSALS_OF_A_DITHER: usize = 24;
 
+/// A heading that moves further is that of a turning circle, where the integrals of heading and rudder grow alike and a
+/// regression cannot tell them apart, deg.
+const TURNED_DEG: f64 = 360.0;
+
 /// Share of the heading a flipped rudder has to explain. The zig-zags of KVLCC2 and Esso Osaka reach 0.82 to 0.99 with the
-/// right sign (SIMMAN 2008; Wakita et al. 2022, in wind); a turning circle 0.59.
+/// right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
 const DECISIVE_SHARE: f64 = 0.7;
 
 /// Share from which on a flipped rudder is worth a warning.
@@ -144,11 +160,12 @@ const NOTABLE_SHARE: f64 = 0.4;
 ///
 /// Fails with [`Implausible`] when nothing moves, a unit is off by the factor between degrees and radians, or rudder,
 /// heading and yaw rate contradict each other in sign. The sign of the rudder is that of b = K/T in
-/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice).
+/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle that of ∫δ dψ.
 pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     let mut warnings = Vec::new();
     ranges(trial, &mut warnings)?;
-    let response = rudder_on_heading(trial);
+    let turns = range_deg(trial.heading()) > TURNED_DEG;
+    let response = if turns { turn_with_rudder(trial) } else { rudder_on_heading(trial) };
     yaw_rate(trial, response, &mut warnings)?;
     rudder_sign(trial, response, &mut warnings)?;
     gaps(trial, &mut warnings);
@@ -277,14 +294,22 @@ fn rudder_sign(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String
     let moved = range_deg(trial.rudder()) >= MOVED_DEG && range_deg(trial.heading()) >= ANSWERED_DEG;
     let Some(slope) = response.filter(|_| moved) else { return Ok(()) };
     if slope.value < 0.0 {
-        let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent: 100.0 * slope.share };
+        let (heading_deg, share_percent) = (range_deg(trial.heading()), 100.0 * slope.share);
+        if heading_deg > TURNED_DEG {
+            // A circle is one movement of the rudder: enough to ask, not to refuse.
+            warnings.push(Implausible::TurnsAgainstRudder { heading_deg, share_percent }.to_string());
+            return Ok(());
+        }
+        let flipped = Implausible::RudderFlipped { gain: slope.value, share_percent };
         if slope.share >= DECISIVE_SHARE {
             return Err(flipped);
         }
         if slope.share >= NOTABLE_SHARE {
             warnings.push(flipped.to_string());
         }
-    } else if let Some(particulars) = trial.particulars().filter(|_| slope.share >= DECISIVE_SHARE) {
+    } else if let Some(particulars) = trial.particulars().filter(|_| slope.share >= DECISIVE_SHARE)
+        && range_deg(trial.heading()) <= TURNED_DEG
+    {
         // K'/T' = (K/T)(L/U)² is 0.3 to 1.5 for merchant ships.
         let prime = slope.value * (particulars.length / particulars.speed).powi(2);
         if !(0.02..=30.0).contains(&prime) {

@@ -43,6 +43,27 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
     partial_slope(thin(&rows))
 }
 
+/// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a rudder.
+pub(super) fn turn_with_rudder(trial: &Trial) -> Option<Slope> {
+    let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
+    let seen: Vec<usize> = (0..time.len()).filter(|&i| psi[i].is_finite()).collect();
+    let (mut with, mut against, mut square) = (0.0, 0.0, 0.0);
+    for pair in seen.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let rudder = 0.5 * (delta[from] + delta[to]);
+        let work = rudder * (psi[to] - psi[from]);
+        if work > 0.0 {
+            with += work
+        } else {
+            against -= work
+        }
+        square += rudder * rudder * (time[to] - time[from]);
+    }
+    let share = f64::max(with, against) / (with + against);
+    Some(Slope { value: (with - against) / square, share })
+        .filter(|slope| slope.value.is_finite() && slope.share.is_finite())
+}
+
 /// Slope of the heading on the integral of the yaw rate: 1 where both agree in unit and sign.
 ///
 /// ψ = c₀ + c₁ t + s ∫r, so that a bias of the rate does no harm. `None` as above, or without a yaw rate of its own.

@@ -438,9 +438,13 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
             let Reading { trial, warnings } = read(&path).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(warnings, [""; 0], "{stem}");
             let own = if folder == "esso_osaka" { stem.as_str() } else { folder };
-            let described = read_with(&path, Some(&measured_sidecar(own))).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(described.warnings, [""; 0], "{stem}");
-            assert!(described.trial.particulars().is_some());
+            let sidecar = measured_sidecar(own);
+            // Circles are not part of what is published.
+            if stem.starts_with("zigzag") || sidecar.exists() {
+                let described = read_with(&path, Some(&sidecar)).unwrap_or_else(|error| panic!("{error}"));
+                assert_eq!(described.warnings, [""; 0], "{stem}");
+                assert!(described.trial.particulars().is_some());
+            }
 
             let changed = |channel: Channel, factor: f64| {
                 let mut channels: std::collections::BTreeMap<_, _> =
