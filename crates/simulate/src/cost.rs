@@ -20,8 +20,9 @@ pub const LONGEST_TIME: f64 = 1e7;
 /// Most steps of one run: a minute or two of computing. A zig-zag takes some thousand.
 pub const MOST_STEPS: usize = 100_000_000;
 
-/// Most rows of one record: eleven days at one a second, and less than half a gigabyte while it is made.
-pub const MOST_ROWS: usize = 1_000_000;
+/// Most rows of one record, a million periods and the first row: eleven days at one a second, and less than half a gigabyte
+/// while it is made.
+pub const MOST_ROWS: usize = 1_000_001;
 
 /// Most executes of one run: each leaves three segments of the path of the rudder in memory.
 pub const MOST_EXECUTES: usize = 100_000;
@@ -169,7 +170,7 @@ mod tests {
             refused(&|s| s.recording.start = Start::Execute { number: 90_000, offset: 0.0 }),
             "recording.start.execute"
         );
-        assert_eq!(refused(&|s| s.recording.duration = Some(1e6)), "recording.duration");
+        assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration");
         assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead_in");
         let fast = |s: &mut Simulation| {
             s.vessel = Vessel::first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });

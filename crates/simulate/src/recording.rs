@@ -60,7 +60,7 @@ impl Default for Recording {
 impl Recording {
     /// Longest record that is taken for meant, s.
     pub(crate) fn longest(&self) -> f64 {
-        MOST_ROWS as f64 * self.period
+        (MOST_ROWS - 1) as f64 * self.period
     }
 
     /// Number of rows, where the duration says it.

@@ -27,7 +27,7 @@ pub fn warn(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", shown(line));
 }
 
-/// The lines without anything but text in them.
-fn shown(lines: &str) -> String {
+/// The lines without anything but text in them, as they are written.
+pub fn shown(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
 }

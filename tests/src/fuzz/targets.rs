@@ -11,6 +11,7 @@ use study::plan::Shard;
 use study::present;
 use study::rows::{Layout, Reader, Sequence};
 use study::scenario::Scenario;
+use study::screen;
 use study::store::{self, Design};
 use study::summary::Tally;
 use tempfile::TempDir;
@@ -155,11 +156,12 @@ fn is_a_failure(failure: &Failure) -> bool {
     is_one_message(&failure.message)
 }
 
-/// One message for a person: not empty, not endless, and nothing in it that a terminal would obey.
+/// One message for a person: not empty, not endless, and, as it is written, nothing in it that a terminal would obey.
 fn is_one_message(message: &str) -> bool {
     assert!(!message.trim().is_empty(), "an empty message");
     assert!(message.len() <= LONGEST_MESSAGE, "a message of {} bytes", message.len());
-    let control = message.chars().find(|&character| character.is_control() && !matches!(character, '\n' | '\t'));
+    let shown = screen::shown(message);
+    let control = shown.chars().find(|&character| character.is_control() && character != '\n');
     assert!(control.is_none(), "a message with the control character {control:?}");
     false
 }

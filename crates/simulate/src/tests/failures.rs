@@ -34,7 +34,7 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
     assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration", Expected::Duration));
     assert_eq!(
         refused(|s| s.recording.duration = Some(1e300)),
-        ("recording.duration", Expected::AtMost(MOST_ROWS as f64))
+        ("recording.duration", Expected::AtMost((MOST_ROWS - 1) as f64))
     );
     assert_eq!(refused(|s| s.solver = Solver::RungeKutta(1e-300)).0, "solver.step");
     assert_eq!(refused(|s| s.sensors.heading.lag = 1e-300).0, "sensors.heading.lag");

@@ -195,7 +195,7 @@ fn links_in_the_result_folder_are_not_followed() {
 fn ctrl_c_does_not_wait_for_a_trial() {
     let desk = Desk::new();
     let slow =
-        STUDY.replace("sampling-s = 2.0", "sampling-s = 0.01").replace("0.5]", "0.5]\n[[identifier]]\ntrace = {}");
+        STUDY.replace("sampling-s = 2.0", "sampling-s = 0.001").replace("0.5]", "0.5]\n[[identifier]]\ntrace = {}");
     desk.file("slow.toml", slow);
     let run = desk.start(&["slow.toml", "--out", "slow", "--quiet", "--threads", "2"]);
     while !desk.path("slow/unfinished/manifest.toml").exists() {
