@@ -4,7 +4,7 @@
 //! |---|---|
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`] |
-//! | which files are opened, and how much of them is read | [`file`] |
+//! | which files are opened, and how much of them is read | [`mod@file`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
