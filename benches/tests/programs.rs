@@ -53,7 +53,7 @@ fn shards_are_joined() {
     let table = String::from_utf8_lossy(&output.stdout);
     let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).skip(1).take(4).collect::<Vec<_>>();
     let lines: Vec<Vec<String>> = table.lines().skip(2).map(cells).collect();
-    assert_eq!(lines, [["3", "120", "840", "15"], ["7", "7", "49", "35"]]);
+    assert_eq!(lines, [["3", "120", "840", "18"], ["7", "7", "49", "42"]]);
     let refused = Command::new(env!("CARGO_BIN_EXE_shards")).args(["3"]).output().expect("the program starts");
     assert_eq!(refused.status.code(), Some(2));
 }

@@ -88,8 +88,7 @@ fn run(sizes: &[(u64, u64)]) -> Outcome<()> {
 
 fn measure(shards: u64, trials: u64) -> Outcome<Vec<String>> {
     let folder = tempfile::tempdir()?;
-    let text = text_of(Scenario::read(&works::throughput(), None))?;
-    let scenario = Scenario { replicates: shards * trials, ..text };
+    let scenario = throughput(shards * trials)?;
     let start = Instant::now();
     let folders = write(&scenario, shards, folder.path())?;
     let written = start.elapsed();
@@ -106,7 +105,7 @@ fn measure(shards: u64, trials: u64) -> Outcome<Vec<String>> {
         shards.to_string(),
         scenario.replicates.to_string(),
         fixed(rows, 0),
-        (shards * 5).to_string(),
+        (shards * 6).to_string(),
         fixed(written.as_secs_f64(), 1),
         fixed(join, 2),
         significant(join * 1e6 / rows, 3),
@@ -117,6 +116,14 @@ fn measure(shards: u64, trials: u64) -> Outcome<Vec<String>> {
         significant(footer(&out.join(store::ROWS))? as f64 * 1e-3 / (rows / GROUP as f64).ceil(), 3),
         significant(command as f64 * 1e-3, 3),
     ])
+}
+
+/// The scenario of the throughput with another number of trials.
+fn throughput(trials: u64) -> Outcome<Scenario> {
+    let path = works::throughput();
+    let mut scenario: toml::Table = fs::read_to_string(&path)?.parse()?;
+    scenario.insert("replicates".to_owned(), toml::Value::Integer(i64::try_from(trials)?));
+    text_of(Scenario::parse(&path, "throughput", toml::to_string(&scenario)?, None))
 }
 
 fn text_of<T>(result: Result<T, Failure>) -> Outcome<T> {
@@ -135,7 +142,7 @@ fn footer(path: &Path) -> Outcome<u32> {
 /// Writes all shards and returns their folders.
 fn write(scenario: &Scenario, shards: u64, folder: &Path) -> Outcome<Vec<PathBuf>> {
     // The trial that all rows are made from.
-    let few = Scenario { replicates: 1, ..text_of(Scenario::read(&works::throughput(), None))? };
+    let few = throughput(1)?;
     let (design, rows) = in_memory(&few);
     let manifest = Manifest::new(scenario, Shard::WHOLE);
     let digits = shards.to_string().len();
