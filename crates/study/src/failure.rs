@@ -1,5 +1,6 @@
 //! How the command line fails: one message and an exit code, never a backtrace.
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
 use std::ops::Range;
@@ -56,10 +57,25 @@ impl Failure {
         let span = span.start.min(text.len())..span.end.min(text.len());
         let place = AnnotationKind::Primary.span(span).label(expected);
         let snippet = Snippet::source(text).path(&name).annotation(place);
-        let group = Level::ERROR.primary_title(found).element(snippet).element(Level::HELP.message(advice));
+        let (found, advice) = (shortened(found), shortened(advice));
+        let group = Level::ERROR.primary_title(&*found).element(snippet).element(Level::HELP.message(&*advice));
         let shown = Renderer::plain().render(&[group]);
         Self { blame: Blame::Input, message: shown.strip_prefix(ERROR).unwrap_or(&shown).to_owned() }
     }
+}
+
+/// Most characters of a sentence in a message: what was found may be a key of any length.
+const LONGEST_SENTENCE: usize = 1000;
+
+/// A sentence, without its middle where it is too long.
+fn shortened(sentence: &str) -> Cow<'_, str> {
+    let count = sentence.chars().count();
+    if count <= LONGEST_SENTENCE {
+        return Cow::Borrowed(sentence);
+    }
+    let half = LONGEST_SENTENCE / 2;
+    let (head, tail) = (sentence.chars().take(half), sentence.chars().skip(count - half));
+    Cow::Owned(head.chain(['…']).chain(tail).collect())
 }
 
 impl fmt::Display for Failure {
