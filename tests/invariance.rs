@@ -3,19 +3,19 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use campaign::design::Design;
+use campaign::folder::ResultFolder;
+use campaign::rows::{Layout, Row, Writer};
+use campaign::task::Task;
+use campaign::{collect, engine};
 use identify::registry;
 use kempf_tests::records::{Case, zig_zag};
+use scenario::Scenario;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::{Mmg, Parameters, Propeller, Rudder};
 use simulate::{StreamKey, Truth, Vessel};
-use study::folder::ResultFolder;
-use study::plan::Task;
-use study::rows::{Layout, Row, Writer};
-use study::scenario::Scenario;
-use study::store::Design;
-use study::{collect, engine};
 
 /// Scale of the KVLCC2 model of HSVA; time goes with its square root.
 const FROUDE: f64 = 45.714;

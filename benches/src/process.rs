@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-use study::cli::{Common, Format, Style};
+use study::options::{Common, Format, Style};
 
 /// What goes wrong is told to the user and ends the program.
 pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;

@@ -8,22 +8,24 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use campaign::collect::in_memory;
+use campaign::design::Design;
+use campaign::folder::ResultFolder;
+use campaign::manifest::Manifest;
+use campaign::plan::Plan;
+use campaign::rows::{Layout, Row, Writer};
+use campaign::task::Shard;
+use campaign::timings::Timing;
+use campaign::timings::Timings;
+use campaign::{files, store};
 use kempf_benches::process::{self, Cost, Outcome, STYLE, quiet};
 use kempf_benches::works;
 use rayon::prelude::*;
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
-use study::collect::in_memory;
-use study::engine::Timing;
-use study::failure::Failure;
-use study::folder::ResultFolder;
-use study::manifest::Manifest;
-use study::plan::{Plan, Shard};
-use study::rows::{Layout, Row, Writer};
-use study::scenario::Scenario;
-use study::store::{self, Design};
-use study::timings::Timings;
-use study::{merge, publish};
+use scenario::Scenario;
+use scenario::failure::Failure;
+use study::commands::{merge, report as republish};
 
 /// What is measured when nothing is asked for: the same trials in more and more shards, then more trials.
 const SIZES: [(u64, u64); 5] = [(10, 10_000), (100, 1000), (1000, 100), (10_000, 10), (10_000, 100)];
@@ -98,7 +100,7 @@ fn measure(shards: u64, trials: u64) -> Outcome<Vec<String>> {
         process::again([MERGE.as_ref(), out.as_os_str()].into_iter().chain(folders.iter().map(|f| f.as_os_str())))?;
     let report = process::again([REPORT.as_ref(), out.as_os_str()])?;
     let rows = (scenario.replicates * scenario.labels().count() as u64) as f64;
-    let file = fs::metadata(out.join(store::ROWS))?.len() as f64;
+    let file = fs::metadata(out.join(files::ROWS))?.len() as f64;
     let Cost { wall, memory } = merge;
     let join = (wall - report.wall).max(0.0);
     Ok(vec![
@@ -113,7 +115,7 @@ fn measure(shards: u64, trials: u64) -> Outcome<Vec<String>> {
         significant(report.wall * 1e6 / rows, 3),
         memory.map_or(MISSING.to_owned(), |memory| fixed(memory, 0)),
         significant(file / rows, 3),
-        significant(footer(&out.join(store::ROWS))? as f64 * 1e-3 / (rows / GROUP as f64).ceil(), 3),
+        significant(footer(&out.join(files::ROWS))? as f64 * 1e-3 / (rows / GROUP as f64).ceil(), 3),
         significant(command as f64 * 1e-3, 3),
     ])
 }
@@ -166,7 +168,7 @@ fn made_up(
     let mut design = design.clone();
     design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
     let layout = Layout::of(&design);
-    let mut writer = Writer::create(&folder, store::ROWS, &layout)?;
+    let mut writer = Writer::create(&folder, files::ROWS, &layout)?;
     let mut timings = Timings::new(design.methods.len());
     let mut plan = Plan::new(scenario, manifest.shard);
     loop {
@@ -188,7 +190,7 @@ fn made_up(
     }
     let (file, sha256) = writer.finish()?;
     file.put()?;
-    store::finish(&folder, manifest, sha256, &design, &[], &timings)
+    store::finish(&folder, manifest, sha256, design, Vec::new(), &timings).map(drop)
 }
 
 /// The same row with other last digits, so that columns cannot be packed better than those of real trials.
@@ -216,7 +218,7 @@ fn varied(row: &Row, replicate: u64) -> Row {
 fn joined(arguments: &[String]) -> Outcome<()> {
     let (out, folders) = arguments.split_first().ok_or("this is not a command")?;
     let folders: Vec<PathBuf> = folders.iter().map(PathBuf::from).collect();
-    text_of(merge::merge(&folders, &STYLE, &quiet(out)))?;
+    text_of(merge::run(&folders, &STYLE, &quiet(out)))?;
     process::tell();
     Ok(())
 }
@@ -224,7 +226,7 @@ fn joined(arguments: &[String]) -> Outcome<()> {
 /// `study report OUT --quiet`.
 fn published(arguments: &[String]) -> Outcome<()> {
     let [out] = arguments else { return Err("this is not a command".into()) };
-    text_of(publish::report(Path::new(out), &STYLE, &quiet(out)))?;
+    text_of(republish::run(Path::new(out), &STYLE, &quiet(out)))?;
     process::tell();
     Ok(())
 }

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use campaign::collect::in_memory;
+use campaign::curves::zigzag_figure;
 use rayon::prelude::*;
 use report::{Figure, Theme};
-use study::collect::in_memory;
-use study::scenario::Scenario;
-use study::showcase::zigzag_figure;
+use scenario::Scenario;
 use trial::ZigZag;
 
 use crate::records::{ROWS, first_order_zig_zag, record};

@@ -5,16 +5,16 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::cli::{Common, Format, Style};
-use crate::collect::collect;
-use crate::disk::faults;
-use crate::failure::Failure;
-use crate::folder::ResultFolder;
-use crate::merge::merge;
-use crate::plan::Shard;
-use crate::publish;
-use crate::scenario::Scenario;
-use crate::store;
+use crate::commands::{merge, report};
+use crate::options::{Common, Format, Style};
+use campaign::Unwatched;
+use campaign::collect::collect;
+use campaign::disk::faults;
+use campaign::files;
+use campaign::folder::ResultFolder;
+use campaign::task::Shard;
+use scenario::Scenario;
+use scenario::failure::Failure;
 
 const TEXT: &str = r#"
 question = "Is anything lost?"
@@ -44,7 +44,7 @@ const STYLE: Style = Style { paper: Some(60.0), dpi: 72.0 };
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
-    collect(scenario, shard, &ResultFolder::hold(folder)?, false, true)
+    collect(scenario, shard, &ResultFolder::hold(folder)?, false, &Unwatched).map(drop)
 }
 
 /// All files of a folder with their bytes; but times differ from run to run.
@@ -136,7 +136,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_report() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let whole = desk.path().join("whole");
     run(&scenario(""), Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
-    assert!(fail_each(Some(&whole), |folder| publish::report(folder, &STYLE, &quiet(None))) > 50);
+    assert!(fail_each(Some(&whole), |folder| report::run(folder, &STYLE, &quiet(None))) > 50);
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_merge() {
     for (number, folder) in (1..).zip(&shards) {
         run(&study, Shard { number, of: 2 }, folder).unwrap_or_else(|failure| panic!("{failure}"));
     }
-    assert!(fail_each(None, |folder| merge(&shards, &STYLE, &quiet(Some(folder)))) > 50);
+    assert!(fail_each(None, |folder| merge::run(&shards, &STYLE, &quiet(Some(folder)))) > 50);
 }
 
 /// Every operation of going on after a kill fails once; no part is lost by it.
@@ -167,7 +167,7 @@ fn no_fault_of_the_disk_loses_a_part() {
     assert_eq!(parts(&cut), 1);
     let go_on = |folder: &Path| {
         let outcome = run(&study, Shard::WHOLE, folder);
-        let is_whole = folder.join(store::MANIFEST).exists();
+        let is_whole = folder.join(files::MANIFEST).exists();
         assert!(is_whole || parts(folder) == 1, "a part is gone: {outcome:?}");
         outcome
     };

@@ -4,8 +4,8 @@
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::failure::Failure;
 use crate::screen;
+use scenario::failure::Failure;
 
 static LISTENING: AtomicBool = AtomicBool::new(false);
 static ASKED: AtomicBool = AtomicBool::new(false);
@@ -39,14 +39,13 @@ impl Listener {
         Self(())
     }
 
+    /// Listens no more: an interruption ends the program again.
+    pub fn end(&self) {
+        LISTENING.store(false, Ordering::SeqCst);
+    }
+
     /// Whether to stop.
     pub fn is_asked(&self) -> bool {
         ASKED.load(Ordering::Relaxed)
-    }
-}
-
-impl Drop for Listener {
-    fn drop(&mut self) {
-        LISTENING.store(false, Ordering::SeqCst);
     }
 }

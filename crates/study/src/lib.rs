@@ -1,49 +1,22 @@
-//! Studies: scenario files, the engine that runs them, and the command line.
-//!
-//! This is the only crate that seeds generators and writes result folders.
+//! The command line `study`: what a user may ask for, which of the crates below answers, and how the answer looks. It knows no
+//! hydrodynamics.
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | scenario files | [`scenario`] |
-//! | what may be a name or a label | [`name`] |
-//! | one trial | [`engine`] |
-//! | many of them, in order | [`plan`], [`stopping`], [`collect`], [`unfinished`], [`merge`] |
-//! | what is stored | [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`]; how, [`folder`] |
-//! | what is said about it | [`summary`], [`statistics`], [`present`], [`publish`], [`overview`] |
-//! | measured records | [`fit`], [`mod@trace`] |
-//! | commands and exit codes | [`cli`], [`failure`], [`screen`] |
+//! | commands and exit codes | [`cli`], [`commands`] |
+//! | options | [`options`] |
+//! | tables, figures, pages and JSON | [`views`] |
+//! | the terminal | [`screen`], `terminal`, `progress`, `interrupt`, `threads` |
 
-pub mod check;
 pub mod cli;
-pub mod collect;
-mod disk;
-pub mod engine;
-pub mod failure;
+pub mod commands;
 #[cfg(test)]
 mod faults;
-pub mod fit;
-pub mod folder;
 mod interrupt;
-pub mod json;
-pub mod list;
-pub mod manifest;
-pub mod merge;
-pub mod name;
-pub mod overview;
-pub mod plan;
-pub mod present;
+pub mod options;
 mod progress;
-pub mod publish;
 mod records;
-pub mod rows;
-pub mod run;
-pub mod scenario;
 pub mod screen;
-pub mod showcase;
-pub mod statistics;
-pub mod stopping;
-pub mod store;
-pub mod summary;
-pub mod timings;
-pub mod trace;
-pub mod unfinished;
+mod terminal;
+mod threads;
+pub mod views;

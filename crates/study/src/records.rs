@@ -4,8 +4,8 @@ use std::path::Path;
 
 use trial::{Origin, Reading, Trial};
 
-use crate::failure::Failure;
-use crate::name;
+use scenario::failure::Failure;
+use scenario::name;
 
 /// Reads a record; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder that
 /// holds one for it.

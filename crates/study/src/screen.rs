@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Write};
 
 use report::printable::escaped;
 
-use crate::failure::Failure;
+use scenario::failure::Failure;
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///

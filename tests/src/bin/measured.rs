@@ -12,7 +12,7 @@ use report::number::{fixed, significant};
 use report::{Column, Table};
 use serde_json::Value;
 use ship::angle::to_deg;
-use study::cli::{Common, Format, Style, TraceRequest, Withheld};
+use study::options::{Common, Format, Style, TraceRequest, Withheld};
 use trace::candidates::{self, Sizes};
 use trace::fit::Problem;
 use trace::noise::Colour;
@@ -157,7 +157,7 @@ fn trace_one(set: &Set, record: &str, without_wind: bool, out: &Path) -> Outcome
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
     eprintln!("{}: {record}{}", set.folder, if without_wind { ", wind withheld" } else { "" });
-    study::trace::run(&request, &common).map_err(|failure| failure.to_string().into())
+    study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string().into())
 }
 
 /// One line of the table, from `trace.json`.

@@ -2,12 +2,14 @@
 
 use std::sync::LazyLock;
 
-use study::collect::collect;
-use study::folder::ResultFolder;
-use study::manifest::Manifest;
-use study::plan::Shard;
-use study::scenario::Scenario;
-use study::store::{self, Design, Stored};
+use campaign::collect::collect;
+use campaign::folder::ResultFolder;
+use campaign::manifest::Manifest;
+use campaign::design::Design;
+use campaign::files;
+use campaign::store::Stored;
+use campaign::task::Shard;
+use scenario::Scenario;
 use tempfile::TempDir;
 
 /// The files of the study, and what they say.
@@ -26,7 +28,7 @@ static STUDY: LazyLock<Seed> = LazyLock::new(|| {
         Scenario::parse(&path, "small", include_str!("../../fuzz/corpus/scenario/small.toml").to_owned(), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
     ResultFolder::hold(folder.path())
-        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, true))
+        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, &campaign::Unwatched))
         .unwrap_or_else(|failure| panic!("{failure}"));
     let stored = Stored::read(folder.path()).unwrap_or_else(|failure| panic!("{failure}"));
     let Stored { design, manifest, .. } = stored;
@@ -43,13 +45,13 @@ fn stored(name: &str) -> Vec<Vec<u8>> {
 }
 
 pub(super) fn rows() -> Vec<Vec<u8>> {
-    stored(store::ROWS)
+    stored(files::ROWS)
 }
 
 pub(super) fn cells() -> Vec<Vec<u8>> {
-    stored(store::DESIGN)
+    stored(files::DESIGN)
 }
 
 pub(super) fn manifest() -> Vec<Vec<u8>> {
-    stored(store::MANIFEST)
+    stored(files::MANIFEST)
 }

@@ -4,16 +4,17 @@ use std::cell::OnceCell;
 use std::path::{Component, Path};
 use std::sync::LazyLock;
 
+use campaign::design::Design;
+use campaign::manifest::Manifest;
+use campaign::rows::{Layout, Reader, Sequence};
+use campaign::summary::Tally;
+use campaign::task::Shard;
+use campaign::files;
 use identify::{Identifier, registry};
-use study::failure::Failure;
-use study::manifest::Manifest;
-use study::plan::Shard;
-use study::present;
-use study::rows::{Layout, Reader, Sequence};
-use study::scenario::Scenario;
+use scenario::Scenario;
+use scenario::failure::Failure;
 use study::screen;
-use study::store::{self, Design};
-use study::summary::Tally;
+use study::views::tables;
 use tempfile::TempDir;
 use trial::Trial;
 use trial::reader::{self, Reading};
@@ -108,7 +109,7 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
     let layout = Layout::of(design);
     let mut tally = Tally::new(design);
     let mut sequence = Sequence::new(design);
-    let read = Reader::of_bytes(rows.to_vec(), Path::new(store::ROWS), &layout).and_then(|rows| {
+    let read = Reader::of_bytes(rows.to_vec(), Path::new(files::ROWS), &layout).and_then(|rows| {
         rows.for_each(|row| {
             sequence.see(&row).map_err(Failure::input)?;
             assert!((row.cell as usize) < design.cells.len(), "a row of cell {}", row.cell);
@@ -121,8 +122,8 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
     match read {
         Ok(()) => {
             let summary = tally.finish();
-            drop(present::summary_in_brief(&summary, design).to_markdown());
-            !present::summary(&summary.methods, design).to_csv().is_empty()
+            drop(tables::summary_in_brief(&summary, design).to_markdown());
+            !tables::summary(&summary.methods, design).to_csv().is_empty()
         }
         Err(failure) => is_a_failure(&failure),
     }
@@ -131,7 +132,7 @@ fn summarised(rows: &[u8], design: &Design) -> bool {
 /// A manifest, compared with another and resolved as the scenario it holds.
 pub fn manifest(data: &[u8]) -> bool {
     scratch(|folder| {
-        let path = folder.join(store::MANIFEST);
+        let path = folder.join(files::MANIFEST);
         std::fs::write(&path, data).expect("the scratch folder is writable");
         let manifest = match Manifest::read(&path) {
             Ok(manifest) => manifest.expect("it was just written"),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use kempf_benches::process::{self, Cost, Outcome, STYLE, quiet};
-use study::cli::{Common, RunRequest};
+use study::options::{Common, RunRequest};
 
 /// First argument of a child.
 pub const CHILD: &str = "--as-study";
@@ -26,18 +26,22 @@ pub fn check(scenarios: &[PathBuf]) -> Outcome<Cost> {
 
 /// What a child does.
 pub fn answer(arguments: &[&str]) -> Outcome<()> {
-    let text = |failure: study::failure::Failure| failure.to_string();
+    let text = |failure: scenario::failure::Failure| failure.to_string();
     match arguments {
         ["run", scenario, out, threads] => {
             let threads: u16 = threads.parse()?;
             rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;
             let common = Common { threads: Some(threads), ..quiet(out) };
-            study::run::run(Path::new(scenario), &RunRequest { shard: None, restart: false, style: STYLE }, &common)
-                .map_err(text)?;
+            study::commands::run::run(
+                Path::new(scenario),
+                &RunRequest { shard: None, restart: false, style: STYLE },
+                &common,
+            )
+            .map_err(text)?;
         }
         ["check", scenarios @ ..] => {
             let scenarios: Vec<PathBuf> = scenarios.iter().map(PathBuf::from).collect();
-            study::check::run(&scenarios).map_err(text)?;
+            study::commands::check::run(&scenarios).map_err(text)?;
         }
         _ => return Err("this is not a command".into()),
     }

@@ -9,9 +9,9 @@ use kempf_benches::records::{K, KEY, PERIOD, T, first_order_zig_zag};
 use kempf_benches::work::Work;
 use kempf_benches::{rivals, works};
 
+use campaign::collect::in_memory;
+use scenario::Scenario;
 use ship::FirstOrder;
-use study::collect::in_memory;
-use study::scenario::Scenario;
 
 use crate::say;
 

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use campaign::manifest::Manifest;
 use kempf_benches::measure::Measured;
 use kempf_benches::process::Outcome;
 use kempf_benches::works;
-use study::manifest::Manifest;
 use tempfile::TempDir;
 
 use crate::growth::{self, Growth};
@@ -114,7 +114,7 @@ pub fn measure(quick: bool) -> Outcome<Trials> {
             Growth::new("whole command", over(|study| study.whole)),
         ],
         studies,
-        methods: study::scenario::Scenario::read(&works::throughput(), None)
+        methods: scenario::Scenario::read(&works::throughput(), None)
             .map_err(|failure| failure.to_string())?
             .labels()
             .count() as u64,
@@ -145,9 +145,9 @@ fn run(folder: &TempDir, trials: u64, threads: usize) -> Outcome<Study> {
     let scenario = with_replicates(folder.path(), trials)?;
     let out = folder.path().join("study");
     let cost = child::study(&scenario, &out, threads)?;
-    let manifest = Manifest::read(&out.join(study::store::MANIFEST)).map_err(|failure| failure.to_string())?;
+    let manifest = Manifest::read(&out.join(campaign::files::MANIFEST)).map_err(|failure| failure.to_string())?;
     let manifest = manifest.ok_or("the study left no manifest")?;
-    let bytes = std::fs::metadata(out.join(study::store::ROWS))?.len();
+    let bytes = std::fs::metadata(out.join(campaign::files::ROWS))?.len();
     std::fs::remove_dir_all(&out)?;
     Ok(Study { trials, threads, work: manifest.machine.wall_time_s, whole: cost.wall, memory: cost.memory, bytes })
 }

@@ -3,8 +3,8 @@
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-use study::rows::Row;
-use study::store::Stored;
+use campaign::rows::Row;
+use campaign::store::Stored;
 
 use crate::desk::Desk;
 

@@ -1,0 +1,357 @@
+//! Running the trials of a study into its folder: what is there already is checked and kept, the rest is run in parallel and
+//! stored as it comes, and in the end everything is where [`crate::store`] expects it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, channel, sync_channel};
+use std::thread::Scope;
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+use scenario::{Cell, Scenario};
+
+use crate::design::{CellFacts, Design};
+use crate::disk;
+use crate::engine::{self, Bench, Outcome};
+use crate::files;
+use crate::folder::ResultFolder;
+use crate::manifest::Manifest;
+use crate::observer::Observer;
+use crate::plan::Plan;
+use crate::rows::{Layout, Row};
+use crate::showcase;
+use crate::store::{self, Stored};
+use crate::task::{Shard, Task};
+use crate::unfinished::{self, Unfinished};
+use scenario::failure::{Failure, OnPath};
+
+/// Time a batch of trials should take: long beside the wait for its last trial, short beside a second.
+const BATCH_TIME: Duration = Duration::from_millis(250);
+
+/// Most trials of a batch: they are in memory.
+const MOST_BATCH: usize = 2048;
+
+/// Stored trials that are run again before a study goes on, to see that this program computes the same.
+const SPOT_CHECKS: usize = 32;
+
+/// Runs a shard of a scenario into a folder, or what is missing of it; returns what is stored.
+///
+/// Fails when the folder holds another study, when its rows are not what this program computes, and when it is interrupted;
+/// what was stored stays.
+pub fn collect(
+    scenario: &Scenario,
+    shard: Shard,
+    folder: &ResultFolder,
+    restart: bool,
+    observer: &dyn Observer,
+) -> Result<Stored, Failure> {
+    let manifest = Manifest::new(scenario, shard);
+    if restart {
+        discard(folder, observer)?;
+    }
+    if let Some(stored) = store::manifest_of_rows(folder.path())? {
+        is_same(&stored, &manifest, folder.path())?;
+        return look_again(scenario, manifest, folder, observer);
+    }
+    let design = design(scenario);
+    let layout = Layout::of(&design);
+    let rows = folder.path().join(files::ROWS);
+    if let Some(stored) = unfinished::manifest_in(folder.path())? {
+        is_same(&stored, &manifest, folder.path())?;
+    } else if disk::is_there(&rows).on("look for", &rows)? {
+        return Err(Failure::input(format!(
+            "{} holds rows of an unknown study, without {}; give another folder with --out, or --restart to discard them",
+            folder.path().display(),
+            files::MANIFEST
+        )));
+    }
+    let mut plan = Plan::new(scenario, shard);
+    let mut unfinished = Unfinished::open(folder, manifest, &design, &layout, observer)?;
+    let mut spots = SpotCheck::new(scenario, folder.path());
+    unfinished.resume(&mut plan, |row| spots.see(row))?;
+    spots.finish()?;
+    let resumed = plan.most() - plan.left();
+    if resumed > 0 {
+        observer.note(&format!("going on after {resumed} of {} trials in {}", plan.most(), folder.path().display()));
+    }
+    run_all(scenario, &mut plan, &mut unfinished, folder.path(), observer)?;
+    finish(scenario, &plan, unfinished, folder)
+}
+
+/// A finished study that is run again: its rows are looked at, and its words may have changed.
+fn look_again(
+    scenario: &Scenario,
+    manifest: Manifest,
+    folder: &ResultFolder,
+    observer: &dyn Observer,
+) -> Result<Stored, Failure> {
+    let study = Stored::held(folder)?;
+    let mut spots = SpotCheck::new(scenario, folder.path());
+    study.rows(|row| spots.see(row))?;
+    spots.finish()?;
+    let stored = &study.manifest;
+    // What a kill in the last moment left.
+    unfinished::discard(folder, observer)?;
+    let told = Manifest {
+        machine: stored.machine.clone(),
+        git_revision: stored.git_revision.clone(),
+        sha256: stored.sha256.clone(),
+        ..manifest
+    };
+    if told == *stored {
+        return Ok(study);
+    }
+    told.write(folder)?;
+    Ok(study.told(told))
+}
+
+/// Everything of a study in a folder, thrown away on request.
+fn discard(folder: &ResultFolder, observer: &dyn Observer) -> Result<(), Failure> {
+    unfinished::discard(folder, observer)?;
+    let rows = folder.path().join(files::ROWS);
+    disk::remove_if_there(&rows).on("remove", &rows)
+}
+
+/// The design without what takes trials to know.
+fn design(scenario: &Scenario) -> Design {
+    let bare = |cell: &Cell| CellFacts {
+        labels: cell.labels.clone(),
+        values: cell.values.clone(),
+        trials: 0..0,
+        missing: cell.missing(),
+        bound_percent2: None,
+    };
+    Design {
+        axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
+        methods: scenario.method_names(),
+        draws: scenario.draws.clone(),
+        cells: scenario.cells.iter().map(bare).collect(),
+        words: scenario.words.clone(),
+    }
+}
+
+/// Refuses a folder whose rows belong to another study, and says what differs.
+pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), Failure> {
+    let differences = stored.differences(own);
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{} holds rows of another study (there: what is stored, here: what is asked for):\n  {}\ngive another folder with \
+         --out, or --restart to discard what is there",
+        folder.display(),
+        differences.join("\n  ")
+    )))
+}
+
+/// How a run of trials ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// All were run, or nobody takes more.
+    Done,
+    /// It was asked to stop, and no trial is under way.
+    Interrupted,
+    /// It was asked to stop, and a trial under way does not end.
+    Stuck,
+}
+
+/// Runs what is left of a plan; rows go to a writer of their own while the next trials run.
+fn run_all(
+    scenario: &Scenario,
+    plan: &mut Plan,
+    unfinished: &mut Unfinished,
+    folder: &Path,
+    observer: &dyn Observer,
+) -> Result<(), Failure> {
+    observer.begin(plan.most(), plan.most() - plan.left());
+    std::thread::scope(|scope| {
+        // One batch may wait while one is written and one runs: memory stays what it is.
+        let (send, receive) = sync_channel::<Vec<Outcome>>(1);
+        let writer = scope.spawn(move || unfinished.store(receive));
+        let take = |outcomes| send.send(outcomes).is_ok();
+        let end = run_batches(plan, |tasks| watched(scope, scenario, tasks, observer), take);
+        drop(send);
+        let written = writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        observer.end();
+        let stopped = || {
+            Failure::work(format!(
+                "stopped after {} of {} trials; their rows are kept in {}, and the same command goes on from there",
+                plan.most() - plan.left(),
+                plan.most(),
+                folder.join(unfinished::NAME).display()
+            ))
+        };
+        match end {
+            End::Done => written,
+            End::Interrupted => written.and_then(|()| Err(stopped())),
+            End::Stuck => {
+                let failure = written.err().unwrap_or_else(stopped);
+                observer.give_up(&failure);
+                Err(failure)
+            }
+        }
+    })
+}
+
+/// Time after which a trial that is under way when the study is asked to stop is not waited for any more.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// Time between two looks whether the study is asked to stop.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Runs batch after batch by `run` until the plan is done, a batch is not whole, or `take` wants no more.
+fn run_batches(
+    plan: &mut Plan,
+    mut run: impl FnMut(Vec<Task>) -> (Vec<Outcome>, End),
+    mut take: impl FnMut(Vec<Outcome>) -> bool,
+) -> End {
+    let least = (4 * rayon::current_num_threads()).min(MOST_BATCH);
+    let mut size = least;
+    loop {
+        let tasks = plan.next(size as u64);
+        if tasks.is_empty() {
+            return End::Done;
+        }
+        let start = Instant::now();
+        let (outcomes, end) = run(tasks.clone());
+        outcomes.iter().flat_map(|outcome| &outcome.rows).for_each(|row| plan.saw(row));
+        if let Some(&next) = tasks.get(outcomes.len()) {
+            plan.go_back_to(next);
+        }
+        if !take(outcomes) || end != End::Done {
+            return end;
+        }
+        let wanted = size as f64 * BATCH_TIME.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
+        size = (wanted as usize).clamp(least, MOST_BATCH);
+    }
+}
+
+/// A bench for tasks, which come in order.
+fn bench<'a>(scenario: &'a Scenario, tasks: &[Task]) -> Bench<'a> {
+    Bench::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
+}
+
+/// Runs a batch on a thread of its own, so that an interruption need not wait for a trial that does not end. Returns the
+/// outcomes up to the first that is missing.
+fn watched<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    scenario: &'scope Scenario,
+    tasks: Vec<Task>,
+    observer: &'scope dyn Observer,
+) -> (Vec<Outcome>, End) {
+    let mut outcomes: Vec<Option<Outcome>> = tasks.iter().map(|_| None).collect();
+    let (send, receive) = channel();
+    scope.spawn(move || {
+        let bench = bench(scenario, &tasks);
+        tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
+            if !observer.is_asked_to_stop() {
+                // Nobody receives any more when the wait for a trial was given up.
+                let _ = send.send((index, bench.run(task)));
+            }
+        });
+    });
+    let mut asked: Option<Instant> = None;
+    let is_stuck = loop {
+        match receive.recv_timeout(LOOK) {
+            Ok((index, outcome)) => {
+                outcomes[index] = Some(outcome);
+                observer.advance();
+            }
+            Err(RecvTimeoutError::Disconnected) => break false,
+            Err(RecvTimeoutError::Timeout) if observer.is_asked_to_stop() => {
+                if asked.get_or_insert_with(Instant::now).elapsed() >= PATIENCE {
+                    break true;
+                }
+            }
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+    };
+    let is_whole = outcomes.iter().all(Option::is_some);
+    let end = match (is_stuck, is_whole) {
+        (true, _) => End::Stuck,
+        (false, false) => End::Interrupted,
+        (false, true) => End::Done,
+    };
+    (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
+}
+
+/// All rows of a small study, in their order, without a folder; and its design.
+pub fn in_memory(scenario: &Scenario) -> (Design, Vec<Row>) {
+    let mut rows = Vec::new();
+    let run = |tasks: Vec<Task>| {
+        let bench = bench(scenario, &tasks);
+        (tasks.par_iter().map(|&task| bench.run(task)).collect(), End::Done)
+    };
+    let take = |outcomes: Vec<Outcome>| {
+        rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
+        true
+    };
+    run_batches(&mut Plan::new(scenario, Shard::WHOLE), run, take);
+    let mut cells: Vec<CellFacts> =
+        (0..scenario.cells.len()).into_par_iter().map(|cell| engine::facts(scenario, cell)).collect();
+    rows.iter().for_each(|row: &Row| cells[row.cell as usize].trials.end = row.replicate + 1);
+    (Design { cells, ..design(scenario) }, rows)
+}
+
+/// Makes the result folder whole: rows, facts of the cells, showcases, times, and the manifest last.
+fn finish(scenario: &Scenario, plan: &Plan, unfinished: Unfinished, folder: &ResultFolder) -> Result<Stored, Failure> {
+    let rows_sha256 = unfinished.join(folder)?;
+    let own = |cell: usize| plan.holds(Task { cell, replicate: 0 });
+    let design = unfinished.design();
+    let facts = |cell: usize| {
+        let known = design.cells[cell].clone();
+        if own(cell) { CellFacts { trials: known.trials, ..engine::facts(scenario, cell) } } else { known }
+    };
+    let cells = (0..scenario.cells.len()).into_par_iter().map(facts).collect();
+    let shown = if scenario.showcase { scenario.cells.len() } else { 0 };
+    let showcases: Vec<_> = (0..shown)
+        .into_par_iter()
+        .filter(|&cell| own(cell))
+        .filter_map(|cell| showcase::of_cell(scenario, cell))
+        .collect();
+    let design = Design { cells, ..design.clone() };
+    let stored = store::finish(folder, unfinished.manifest(), rows_sha256, design, showcases, unfinished.timings())?;
+    unfinished.remove()?;
+    Ok(stored)
+}
+
+/// Runs some of the stored trials again: rows of a program that computes something else must not be mixed with new ones.
+struct SpotCheck<'a> {
+    scenario: &'a Scenario,
+    folder: &'a Path,
+    every: usize,
+    kept: BTreeMap<Task, Vec<Row>>,
+}
+
+impl<'a> SpotCheck<'a> {
+    fn new(scenario: &'a Scenario, folder: &'a Path) -> Self {
+        let every = scenario.cells.len().div_ceil(SPOT_CHECKS);
+        Self { scenario, folder, every, kept: BTreeMap::new() }
+    }
+
+    /// Keeps the first trial of some cells.
+    fn see(&mut self, row: Row) -> Result<(), Failure> {
+        let task = Task { cell: row.cell as usize, replicate: row.replicate };
+        if task.cell.is_multiple_of(self.every) && (task.replicate == 0 || self.kept.is_empty())
+            || self.kept.contains_key(&task)
+        {
+            self.kept.entry(task).or_default().push(row);
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), Failure> {
+        let differs = self
+            .kept
+            .par_iter()
+            .find_first(|(task, rows)| Bench::new(self.scenario, task.cell..=task.cell).run(**task).rows != **rows);
+        let Some((task, _)) = differs else { return Ok(()) };
+        Err(Failure::input(format!(
+            "the rows in {} are not what this program computes (trial {} of cell {} differs): they were made by another version \
+             of it; give another folder with --out, or --restart to run the study anew",
+            self.folder.display(),
+            task.replicate,
+            task.cell
+        )))
+    }
+}

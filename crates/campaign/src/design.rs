@@ -1,0 +1,87 @@
+//! The design of a study as it is stored: axes, methods and cells, without how a trial is made.
+
+use std::collections::HashSet;
+use std::ops::Range;
+
+use scenario::{MethodName, Words, name};
+use serde::{Deserialize, Serialize};
+
+/// What tables and figures need of a scenario.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// Names of the axes.
+    pub axes: Vec<String>,
+    /// The methods.
+    pub methods: Vec<MethodName>,
+    /// Keys that are drawn anew in every trial.
+    pub draws: Vec<String>,
+    /// The cells, in their order.
+    pub cells: Vec<CellFacts>,
+    /// What is said about the study. It may change when the rows do not, so it is kept in the manifest alone.
+    #[serde(skip)]
+    pub words: Words,
+}
+
+/// What is known of a cell without its rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CellFacts {
+    /// Labels of its points, one an axis.
+    pub labels: Vec<String>,
+    /// Values of its points, where an axis is a number.
+    pub values: Vec<Option<f64>>,
+    /// Replicates whose rows are stored: all of them, or those of a shard.
+    pub trials: Range<u64>,
+    /// Identifiers of the effects that a first-order base lacks in its trials.
+    pub missing: Vec<String>,
+    /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a bound
+    /// of its own, and where there is none.
+    pub bound_percent2: Option<[[f64; 2]; 2]>,
+}
+
+impl Design {
+    /// The design in the text of a `cells.json`.
+    ///
+    /// Fails when it is not one, or contradicts itself, and says where.
+    pub fn of_text(text: &[u8]) -> Result<Self, String> {
+        let design: Self = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+        design.check().map(|()| design)
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let cells = self.cells.iter().flat_map(|cell| &cell.labels);
+        for text in self.axes.iter().chain(self.methods.iter().map(|method| &method.label)).chain(cells) {
+            name::label(text).map_err(|unfit| format!("a label is {}; {unfit}", name::shown(text)))?;
+        }
+        let mut labels = HashSet::new();
+        if let Some(twice) = self.methods.iter().find(|method| !labels.insert(&method.label)) {
+            return Err(format!("two methods are called {:?}", twice.label));
+        }
+        if self.methods.is_empty() || self.cells.is_empty() {
+            return Err("there is no method or no cell".to_owned());
+        }
+        for (index, cell) in self.cells.iter().enumerate() {
+            let counts = [cell.labels.len(), cell.values.len()];
+            if counts != [self.axes.len(); 2] {
+                let [labels, values] = counts;
+                let axes = self.axes.len();
+                return Err(format!("cell {index} has {labels} labels and {values} values for {axes} axes"));
+            }
+            if cell.trials.start > cell.trials.end {
+                return Err(format!("the trials of cell {index} end before they begin"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Indices of the cells whose errors are shown one by one.
+    pub fn detail(&self) -> Vec<usize> {
+        if self.cells.len() == 1 {
+            // A study of one cell is about that cell.
+            return vec![0];
+        }
+        let place = |title: &String| self.cells.iter().position(|cell| cell.labels.join(", ") == *title);
+        self.words.detail.iter().filter_map(place).collect()
+    }
+}

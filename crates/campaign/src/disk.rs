@@ -1,0 +1,197 @@
+//! The file operations of result folders, in one place, so that a test can make any one of them fail. Everything else in
+//! this crate that writes, goes through [`crate::folder`].
+
+use std::fs;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use parquet::file::reader::{ChunkReader, Length};
+
+pub mod faults;
+
+/// Where a test may let an operation fail.
+fn strike(path: &Path) -> io::Result<()> {
+    faults::strike(path)
+}
+
+/// An open file.
+#[derive(Debug)]
+pub struct File {
+    file: fs::File,
+    path: PathBuf,
+}
+
+impl File {
+    /// Opens a file to read.
+    pub fn open(path: &Path) -> io::Result<Self> {
+        strike(path)?;
+        Ok(Self { file: fs::File::open(path)?, path: path.to_owned() })
+    }
+
+    /// Makes a file that is not there yet; a link is not followed.
+    pub fn create_new(path: &Path) -> io::Result<Self> {
+        strike(path)?;
+        Ok(Self { file: fs::File::create_new(path)?, path: path.to_owned() })
+    }
+
+    /// Opens a file that others may have open too, and makes it when it is missing; its content stays.
+    pub fn open_shared(path: &Path) -> io::Result<Self> {
+        strike(path)?;
+        let file = fs::OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        Ok(Self { file, path: path.to_owned() })
+    }
+
+    /// Waits until all that was written is on the disk.
+    pub fn sync(&self) -> io::Result<()> {
+        strike(&self.path)?;
+        self.file.sync_all()
+    }
+
+    /// Keeps all others out while the file is open; `false` when another one holds it.
+    pub fn lock(&self) -> io::Result<bool> {
+        strike(&self.path)?;
+        taken(self.file.try_lock())
+    }
+
+    /// Keeps out those who want to write while the file is open; `false` when one of them holds it.
+    pub fn lock_for_reading(&self) -> io::Result<bool> {
+        strike(&self.path)?;
+        taken(self.file.try_lock_shared())
+    }
+}
+
+fn taken(lock: Result<(), fs::TryLockError>) -> io::Result<bool> {
+    match lock {
+        Ok(()) => Ok(true),
+        Err(fs::TryLockError::WouldBlock) => Ok(false),
+        Err(fs::TryLockError::Error(error)) => Err(error),
+    }
+}
+
+impl Read for File {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        strike(&self.path)?;
+        self.file.read(buffer)
+    }
+}
+
+impl Write for File {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        if let Err(error) = strike(&self.path) {
+            // A disk that is full takes the beginning.
+            let _ = self.file.write(&buffer[..buffer.len() / 2]);
+            return Err(error);
+        }
+        self.file.write(buffer)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Length for File {
+    fn len(&self) -> u64 {
+        self.file.metadata().map_or(0, |about| about.len())
+    }
+}
+
+impl ChunkReader for File {
+    type T = io::BufReader<Self>;
+
+    fn get_read(&self, start: u64) -> parquet::errors::Result<Self::T> {
+        let mut file = Self { file: self.file.try_clone()?, path: self.path.clone() };
+        file.file.seek(SeekFrom::Start(start))?;
+        Ok(io::BufReader::new(file))
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> parquet::errors::Result<bytes::Bytes> {
+        let mut buffer = Vec::new();
+        self.get_read(start)?.take(length as u64).read_to_end(&mut buffer)?;
+        match buffer.len() == length {
+            true => Ok(buffer.into()),
+            false => Err(io::Error::from(io::ErrorKind::UnexpectedEof).into()),
+        }
+    }
+}
+
+/// Whether something is there, a link to nowhere included. Unlike `Path::exists`, fails where that cannot be told.
+pub fn is_there(path: &Path) -> io::Result<bool> {
+    strike(path)?;
+    match fs::symlink_metadata(path) {
+        Ok(_) => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Whether a link is there.
+pub fn is_link(path: &Path) -> io::Result<bool> {
+    Ok(is_there(path)? && fs::symlink_metadata(path)?.is_symlink())
+}
+
+/// Reads a file of at most `largest` bytes; `None` when there is none.
+pub fn read(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
+    let mut file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    if !file.file.metadata()?.is_file() {
+        return Err(io::Error::other("this is not a regular file"));
+    }
+    let mut bytes = Vec::new();
+    (&mut file).take(largest + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > largest {
+        true => Err(io::Error::other(format!("it has more than {largest} bytes"))),
+        false => Ok(Some(bytes)),
+    }
+}
+
+/// Makes a folder and those above it.
+pub fn create_folder(path: &Path) -> io::Result<()> {
+    strike(path)?;
+    fs::create_dir_all(path)
+}
+
+/// Gives a file another name in its folder, in the place of whatever had it.
+pub fn rename(from: &Path, to: &Path) -> io::Result<()> {
+    strike(to)?;
+    fs::rename(from, to)
+}
+
+/// Removes a file or a link.
+pub fn remove(path: &Path) -> io::Result<()> {
+    strike(path)?;
+    fs::remove_file(path)
+}
+
+/// Removes a file or a link if it is there.
+pub fn remove_if_there(path: &Path) -> io::Result<()> {
+    match remove(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        other => other,
+    }
+}
+
+/// Removes an empty folder.
+pub fn remove_folder(path: &Path) -> io::Result<()> {
+    strike(path)?;
+    fs::remove_dir(path)
+}
+
+/// Names in a folder, sorted.
+pub fn names(path: &Path) -> io::Result<Vec<String>> {
+    strike(path)?;
+    let entries = fs::read_dir(path)?.collect::<io::Result<Vec<_>>>()?;
+    let mut names: Vec<String> = entries.iter().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    Ok(names)
+}
+
+/// Waits until the names in a folder are on the disk.
+pub fn sync_folder(path: &Path) -> io::Result<()> {
+    strike(path)?;
+    // Other systems have no such call: there a name is as safe as the file system makes it.
+    if cfg!(unix) { fs::File::open(path)?.sync_all() } else { Ok(()) }
+}

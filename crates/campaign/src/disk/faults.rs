@@ -1,0 +1,59 @@
+//! Faults of the disk for tests: below one folder, operations from the n-th on fail, one of them or all that follow.
+
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// The folder below which operations fail, which of them do, and how many there were.
+struct Fault {
+    root: PathBuf,
+    failing: Range<u64>,
+    seen: u64,
+}
+
+static FAULTS: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
+
+/// How many folders there are whose operations fail: none, outside of tests.
+static ARMED: AtomicUsize = AtomicUsize::new(0);
+
+/// While this lives, operations below its folder fail.
+pub struct Armed(PathBuf);
+
+/// Lets the operations below `root` with these numbers, counted from 0, fail.
+pub fn arm(root: &Path, failing: Range<u64>) -> Armed {
+    let fault = Fault { root: root.to_owned(), failing, seen: 0 };
+    FAULTS.lock().unwrap_or_else(PoisonError::into_inner).push(fault);
+    ARMED.fetch_add(1, Ordering::SeqCst);
+    Armed(root.to_owned())
+}
+
+impl Armed {
+    /// Operations so far.
+    pub fn seen(&self) -> u64 {
+        let faults = FAULTS.lock().unwrap_or_else(PoisonError::into_inner);
+        faults.iter().find(|fault| fault.root == self.0).map_or(0, |fault| fault.seen)
+    }
+}
+
+impl Drop for Armed {
+    fn drop(&mut self) {
+        FAULTS.lock().unwrap_or_else(PoisonError::into_inner).retain(|fault| fault.root != self.0);
+        ARMED.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+pub(super) fn strike(path: &Path) -> io::Result<()> {
+    if ARMED.load(Ordering::Relaxed) == 0 {
+        return Ok(());
+    }
+    let mut faults = FAULTS.lock().unwrap_or_else(PoisonError::into_inner);
+    let Some(fault) = faults.iter_mut().find(|fault| path.starts_with(&fault.root)) else { return Ok(()) };
+    let number = fault.seen;
+    fault.seen += 1;
+    match fault.failing.contains(&number) {
+        true => Err(io::Error::other(format!("fault {number}"))),
+        false => Ok(()),
+    }
+}

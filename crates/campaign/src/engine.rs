@@ -1,0 +1,331 @@
+//! The engine: one trial simulated, every method on that same trial, one row each. Which trials there are, and in what
+//! order, is decided in [`crate::plan`]; where rows go in [`crate::unfinished`].
+//!
+//! Everything random follows from the key of a trial, so rows do not depend on threads, order or company.
+
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+use ::trace::analysis::Traced;
+use ::trace::record::Record;
+use ::trace::{Analysis, TraceError, errors};
+use identify::estimate::Quantity;
+use identify::replay::replay;
+use identify::{Estimate, Identifier, StopReason, output_error};
+use nalgebra::{Matrix2, Matrix2x3};
+use ship::FirstOrder;
+use ship::angle::to_deg;
+use ship::first_order::State;
+use simulate::recording::RudderColumn;
+use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simulated, Simulation, StreamKey};
+use trial::Trial;
+
+use crate::design::CellFacts;
+use crate::rows::{Bound, Row, TracedCells};
+use crate::task::Task;
+use crate::timings::Timing;
+use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
+
+/// Rows of one trial, and what they took.
+pub struct Outcome {
+    /// One row per method, in the order of the scenario.
+    pub rows: Vec<Row>,
+    /// Time to simulate, and of every method.
+    pub timing: Timing,
+}
+
+/// Key of all that is random in one trial.
+pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
+    StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
+}
+
+/// Simulates one trial.
+pub fn simulate(scenario: &Scenario, task: Task) -> Result<Simulated, String> {
+    let key = key(scenario, task);
+    let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
+    specimen.specification.simulation.run(&key).map_err(|error| error.to_string())
+}
+
+/// What the trials of a cell are held against.
+struct Yardstick {
+    /// K, T and δ_r that a method should find.
+    truth: Option<FirstOrder>,
+    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T, %².
+    bound: Option<(Bound, Matrix2<f64>)>,
+    /// Undisturbed second manoeuvre, perfectly recorded.
+    validation: Option<Trial>,
+    /// What a likelihood ratio of the whole truth against the nearest first-order response would be on average.
+    expected: Option<f64>,
+}
+
+impl Yardstick {
+    fn of(specimen: &Specimen, simulated: &Simulated, key: &StreamKey, traces: bool) -> Self {
+        let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
+        let nearest = if truth.is_none() || traces { nearest_first_order(simulation, key) } else { None };
+        // A trace is after the base itself, not after the response that imitates base and effects together.
+        let truth = truth.or_else(|| base.filter(|_| traces)).or_else(|| nearest.as_ref().map(|near| near.response));
+        let sd = simulation.sensors.declared_noise().heading;
+        let bound = truth.zip(sd).and_then(|(truth, sd)| bound(simulated, &truth, sd));
+        let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
+        let expected = nearest.filter(|_| traces).zip(sd).map(|(near, sd)| near.mean_square / (sd * sd) * near.rows);
+        Self { truth, bound, validation: validation.map(|simulated| simulated.trial), expected }
+    }
+}
+
+/// The first-order response that comes nearest to an undisturbed, perfectly recorded trial, and how near.
+struct Nearest {
+    response: FirstOrder,
+    /// Mean square heading error, rad².
+    mean_square: f64,
+    rows: f64,
+}
+
+/// The first-order response nearest to the trial of a ship that is none.
+fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<Nearest> {
+    let calm = Simulation {
+        disturbances: Disturbances::default(),
+        sensors: Sensors::default(),
+        recording: Recording { rudder: RudderColumn::Feedback, ..simulation.recording },
+        ..simulation.clone()
+    };
+    let trial = calm.run(key).ok()?.trial;
+    let method = output_error::Settings::default().build().ok()?;
+    let response = method.identify(std::slice::from_ref(&trial)).ok()?.response;
+    let residual = replay(&trial, &response)?.residual;
+    let rows = residual.len() as f64;
+    Some(Nearest { response, mean_square: residual.iter().map(|e| e * e).sum::<f64>() / rows, rows })
+}
+
+/// Cramér–Rao bound of a trial for white heading noise of `sd`, rad.
+fn bound(simulated: &Simulated, truth: &FirstOrder, sd: f64) -> Option<(Bound, Matrix2<f64>)> {
+    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
+    let covariance = output_error::cramer_rao(&simulated.trial, truth, initial, sd)?;
+    let (a, b) = (truth.inverse_T, truth.K_over_T);
+    // Gradients of ln K = ln b − ln a and ln T = −ln a.
+    let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
+    let relative = gradient * covariance.matrix * gradient.transpose();
+    let bound = Bound {
+        k_per_s: relative[(0, 0)].sqrt() * truth.K().abs(),
+        t_s: relative[(1, 1)].sqrt() * truth.T().abs(),
+        k_over_t_per_s2: covariance.matrix[(1, 1)].sqrt(),
+    };
+    let finite = [bound.k_per_s, bound.t_s, bound.k_over_t_per_s2].iter().all(|sd| sd.is_finite());
+    finite.then_some((bound, relative * 1e4))
+}
+
+/// Runs trials of one study; what all trials of a cell share is made once.
+pub struct Bench<'a> {
+    scenario: &'a Scenario,
+    first_cell: usize,
+    yardsticks: Vec<OnceLock<Yardstick>>,
+    /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
+    prepared: Vec<OnceLock<Result<Prepared, SimulateError>>>,
+}
+
+/// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a tenth of a megabyte.
+const MOST_PREPARED: usize = 64;
+
+impl<'a> Bench<'a> {
+    /// A bench for trials of these cells.
+    pub fn new(scenario: &'a Scenario, cells: std::ops::RangeInclusive<usize>) -> Self {
+        let count = cells.clone().count();
+        let kept = if count <= MOST_PREPARED { count } else { 0 };
+        Self {
+            scenario,
+            first_cell: *cells.start(),
+            yardsticks: (0..count).map(|_| OnceLock::new()).collect(),
+            prepared: (0..kept).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    fn simulate(&self, cell: usize, specimen: &Specimen, key: &StreamKey) -> Result<Simulated, SimulateError> {
+        let simulation = &specimen.specification.simulation;
+        let is_fixed = self.scenario.cells[cell].is_fixed();
+        match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
+            None => simulation.run(key),
+            Some(prepared) => match prepared.get_or_init(|| Prepared::new(simulation.clone())) {
+                Ok(prepared) => prepared.run(key),
+                Err(error) => Err(error.clone()),
+            },
+        }
+    }
+
+    /// Runs one trial.
+    pub fn run(&self, task: Task) -> Outcome {
+        let cell = &self.scenario.cells[task.cell];
+        let key = key(self.scenario, task);
+        let start = Instant::now();
+        let specimen = match cell.specimen(&key) {
+            Ok(specimen) => specimen,
+            Err(refusal) => return nothing(cell, task, None, start.elapsed(), &format!("specification: {refusal}")),
+        };
+        let simulated = self.simulate(task.cell, &specimen, &key);
+        let simulation = start.elapsed();
+        let drawn: Option<Arc<[f64]>> = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
+        let simulated = match simulated {
+            Ok(simulated) => simulated,
+            Err(error) => return nothing(cell, task, drawn, simulation, &format!("simulation: {error}")),
+        };
+        let own;
+        let yardstick = if cell.is_fixed() {
+            self.yardsticks[task.cell - self.first_cell].get_or_init(|| self.shared(task.cell))
+        } else {
+            own = Yardstick::of(&specimen, &simulated, &key, cell.traces());
+            &own
+        };
+        let blank = Row {
+            true_k_per_s: yardstick.truth.map(|truth| truth.K()),
+            true_t_s: yardstick.truth.map(|truth| truth.T()),
+            bound: yardstick.bound.map(|(bound, _)| bound),
+            ..empty(task, drawn)
+        };
+        let mut rows = Vec::with_capacity(cell.methods.len());
+        let mut methods = Vec::with_capacity(cell.methods.len());
+        for (index, method) in cell.methods.iter().enumerate() {
+            let start = Instant::now();
+            let blank = Row { method: index, ..blank.clone() };
+            let validation = yardstick.validation.as_ref();
+            rows.push(match &method.procedure {
+                Procedure::Identify { identifier, .. } => {
+                    let answer = identify(identifier.as_ref(), &simulated.trial, &key);
+                    methods.push(start.elapsed());
+                    match answer {
+                        Err(error) => Row { failure: Some(error.kind().into()), ..blank },
+                        Ok(estimate) => answered(blank, &simulated.trial, validation, &estimate),
+                    }
+                }
+                Procedure::Trace(settings) => {
+                    let answer = ::trace::trace(std::slice::from_ref(&simulated.trial), &[], settings);
+                    methods.push(start.elapsed());
+                    match answer {
+                        Err(error) => Row { failure: Some(reason(&error).into()), ..blank },
+                        Ok(analysis) => {
+                            let missing = &specimen.specification.missing;
+                            traced(blank, validation, &analysis, missing, yardstick.expected)
+                        }
+                    }
+                }
+            });
+        }
+        Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+    }
+
+    /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial asks.
+    fn shared(&self, cell: usize) -> Yardstick {
+        let key = key(self.scenario, Task { cell, replicate: 0 });
+        let nothing = Yardstick { truth: None, bound: None, validation: None, expected: None };
+        let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return nothing };
+        match self.simulate(cell, &specimen, &key) {
+            Ok(simulated) => Yardstick::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
+            Err(_) => Yardstick { truth: specimen.specification.truth, ..nothing },
+        }
+    }
+}
+
+fn empty(task: Task, drawn: Option<Arc<[f64]>>) -> Row {
+    Row { cell: task.cell as u64, replicate: task.replicate, drawn, ..Row::default() }
+}
+
+/// A trial that could not be made: a row for every method all the same.
+fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
+    let blank = Row { failure: Some(reason.into()), ..empty(task, drawn) };
+    let rows = (0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect();
+    Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }
+}
+
+/// Why there is no trace, in a word.
+fn reason(error: &TraceError) -> &'static str {
+    match error {
+        TraceError::Base(error) => error.kind(),
+        TraceError::Replay { .. } => "not-finite",
+    }
+}
+
+/// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
+fn traced(
+    blank: Row,
+    validation: Option<&Trial>,
+    analysis: &Analysis,
+    missing: &[String],
+    expected: Option<f64>,
+) -> Row {
+    let elsewhere = |trial: &Trial| {
+        let start = [trial.heading()[0], 0.0];
+        let record = Record::whole(trial);
+        let replayed = errors::full(&analysis.ship(), &record, &[start])?;
+        let square = replayed.residual.iter().map(|e| e * e).sum::<f64>() / replayed.residual.len() as f64;
+        finite(to_deg(square.sqrt()))
+    };
+    let group = |effect: &Traced| {
+        let mut ids = vec![effect.id];
+        ids.extend(effect.aliases.iter().map(|(id, _)| *id));
+        ids.dedup();
+        ids.join("|")
+    };
+    Row {
+        heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
+        validation_rmse_deg: validation.and_then(elsewhere),
+        stop: Some(StopReason::Converged.as_str()),
+        traced: Some(Box::new(TracedCells {
+            verdict: analysis.verdict.as_str().into(),
+            named: analysis.effects.iter().map(|effect| effect.id).collect::<Vec<_>>().join("+").into(),
+            groups: analysis.effects.iter().map(group).collect::<Vec<_>>().join("+").into(),
+            margin: margin(analysis, missing),
+            expected,
+        })),
+        ..with_indices(blank, analysis.indices)
+    }
+}
+
+/// By how much the one missing effect gains more in BIC than the best other one, each added alone.
+fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
+    let [truth] = missing else { return None };
+    let best = |is_truth: bool| {
+        let gains = analysis.candidates.iter().filter(|one| (one.id == truth) == is_truth);
+        gains.filter_map(|one| one.gain_alone).max_by(f64::total_cmp)
+    };
+    Some(best(true)? - best(false)?)
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+/// A row with K (1/s), T (s) and δ_r (rad) and their intervals.
+fn with_indices(blank: Row, [k, t, bias]: [Quantity; 3]) -> Row {
+    Row {
+        k_per_s: finite(k.value),
+        k_ci95_per_s: k.ci95,
+        t_s: finite(t.value),
+        t_ci95_s: t.ci95,
+        rudder_bias_deg: finite(to_deg(bias.value)),
+        rudder_bias_ci95_deg: bias.ci95.map(|ends| ends.map(to_deg)),
+        ..blank
+    }
+}
+
+fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
+    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| replay.heading_rmse_deg);
+    Row {
+        heading_rmse_deg: error(trial),
+        validation_rmse_deg: validation.and_then(error),
+        evaluations: Some(estimate.evaluations as u64),
+        stop: Some(estimate.stop.as_str()),
+        ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
+    }
+}
+
+/// What is known of a cell without its rows.
+pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
+    let bound = || Bench::new(scenario, cell..=cell).shared(cell).bound;
+    let about = &scenario.cells[cell];
+    let bound = about.is_fixed().then(bound).flatten();
+    CellFacts {
+        labels: about.labels.clone(),
+        values: about.values.clone(),
+        trials: 0..0,
+        missing: about.missing(),
+        bound_percent2: bound
+            .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),
+    }
+}

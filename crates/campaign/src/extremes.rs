@@ -1,0 +1,595 @@
+//! Every number of a scenario is checked: put to NaN it is refused, and the message shows its own key at its own line. Put to any
+//! other extreme it is refused, or its trials end.
+
+use std::path::Path;
+
+use simulate::cost::MOST_STEPS;
+
+use crate::engine::{Bench, key};
+use crate::task::Task;
+use scenario::{Scenario, effect_keys};
+
+/// Scenarios that together hold every key with a number.
+const EVERYTHING: [&str; 5] = [
+    "
+[ship.first-order]
+K-per-s = 0.1
+T-s = 16.3
+rudder-bias-deg = 0.1
+length-m = 105.0
+speed-kn = 16.7
+
+[[effect]]
+[effect.second_order]
+T2-s = 2.0
+T3-s = 3.0
+
+[[effect]]
+nonlinear_damping.n3-s2-per-deg2 = 0.1
+
+[[effect]]
+[effect.wind_moment]
+rudder-deg = 1.0
+from-deg = 30.0
+
+[manoeuvre.zig-zag]
+rudder-deg = 10.0
+heading-deg = 20.0
+duration-s = 200.0
+
+[steering-gear]
+rate-deg-s = 2.5
+lag-s = 0.1
+dead-time-s = 0.1
+dead-band-deg = 0.1
+maximum-deg = 35.0
+
+[helmsman]
+reads-display-every-s = 1.0
+reaction-time-s = 0.5
+
+[approach]
+heading-deg = 10.0
+yaw-rate-deg-s = 0.1
+rudder-deg = 0.5
+lead-in-s = 10.0
+
+[recording]
+sampling-s = 1.0
+duration-s = 270.0
+after-execute = 1
+offset-s = 1.0
+
+[sensor]
+heading-noise-deg = 0.1
+heading-quantum-deg = 0.1
+heading-lag-s = 0.5
+heading-bias-deg = 0.1
+yaw-rate-noise-deg-s = 0.1
+yaw-rate-bias-deg-s = 0.1
+yaw-rate-scale-error = 0.01
+rudder-noise-deg = 0.1
+rudder-quantum-deg = 0.1
+jitter-s = 0.1
+heading-delay-s = 0.1
+
+[sensor.drop-out]
+probability = 0.1
+burst-probability = 0.1
+burst-mean-rows = 3.0
+
+[disturbance]
+drift-deg-per-s = 0.001
+random-walk-deg-per-root-s = 0.01
+
+[disturbance.wind]
+moment-deg = 1.0
+from-deg = 30.0
+speed-m-s = 10.0
+
+[disturbance.wind.gusting]
+sd = 0.1
+correlation-s = 20.0
+
+[disturbance.gusts]
+sd-deg = 0.1
+correlation-s = 20.0
+
+[disturbance.squall]
+moment-deg = 1.0
+start-s = 50.0
+duration-s = 30.0
+edge-s = 5.0
+
+[disturbance.waves]
+sd-deg = 0.2
+frequency-rad-s = 0.6
+damping = 0.1
+",
+    "
+[ship.second-order]
+K-per-s = 0.1
+T1-s = 16.3
+T2-s = 2.0
+T3-s = 3.0
+rudder-bias-deg = 0.1
+length-m = 105.0
+speed-kn = 16.7
+
+[[effect]]
+nonlinear_damping.n2-s-per-deg = 0.1
+
+[[effect]]
+steering_lag.dead-time-s = 0.5
+
+[[effect]]
+rudder_deadband.backlash-deg = 0.5
+
+[[effect]]
+[effect.speed_loss]
+loss-s-per-deg2 = 0.1
+recovery-s = 60.0
+gain-exponent = 2.0
+
+[manoeuvre.turning-circle]
+rudder-deg = 35.0
+duration-s = 600.0
+
+[recording]
+sampling-s = 1.0
+",
+    "
+[ship.yukun]
+
+[[effect]]
+nonlinear_damping.n11-s-per-deg = 0.1
+
+[[effect]]
+steering_lag.first-order-s = 0.5
+
+[[effect]]
+rudder_deadband.dead-band-deg = 0.5
+
+[[effect]]
+rudder_saturation.c3-per-deg2 = 0.0001
+
+[[effect]]
+port_starboard_asymmetry.gain-share = 0.05
+
+[[effect]]
+moment_drift.rudder-deg-per-s = 0.01
+
+[manoeuvre.turning-circle]
+rudder-deg = 35.0
+heading-change-deg = 540.0
+
+[recording]
+sampling-s = 1.0
+",
+    "
+[ship.yukun]
+
+[[effect]]
+[effect.transient_disturbance]
+rudder-deg = 2.0
+centre-s = 100.0
+duration-s = 30.0
+
+[[effect]]
+[effect.wave_yaw]
+sd-deg = 0.2
+frequency-rad-s = 0.6
+damping = 0.1
+
+[manoeuvre.pull-out]
+rudder-deg = 35.0
+hold-s = 200.0
+duration-s = 200.0
+
+[recording]
+sampling-s = 1.0
+",
+    "
+[ship.first-order]
+K-prime = 1.2
+T-prime = 1.1
+length-m = 105.0
+speed-kn = 16.7
+
+[manoeuvre.zig-zag]
+rudder-deg = 10.0
+heading-deg = 10.0
+
+[recording]
+sampling-s = 1.0
+duration-s = 270.0
+rudder = \"orders\"
+assumed-rudder-rate-deg-s = 2.5
+
+[validation.manoeuvre.zig-zag]
+rudder-deg = 20.0
+heading-deg = 20.0
+
+[validation.recording]
+sampling-s = 1.0
+duration-s = 270.0
+
+[stop]
+figure = \"rms-K\"
+standard-error = 0.1
+every = 100
+
+[[draw]]
+key = \"ship.first-order.K-prime\"
+[draw.normal]
+mean = 1.2
+sd = 0.1
+
+[[draw]]
+key = \"ship.first-order.T-prime\"
+[draw.log-normal]
+median = 1.2
+sigma = 0.1
+
+[[draw]]
+key = \"sensor.heading-noise-deg\"
+[draw.uniform]
+from = 0.1
+to = 0.2
+
+[[draw]]
+key = \"disturbance.random-walk-deg-per-root-s\"
+[draw.log-uniform]
+from = 0.1
+to = 0.2
+",
+];
+
+/// Numbers of the study and of its methods, as far as [`EVERYTHING`] has none of them.
+const OF_STUDY: &str = "
+replicates = 3
+
+[ship.yukun]
+
+[manoeuvre.zig-zag]
+rudder-deg = 10.0
+heading-deg = 10.0
+executes = 5
+
+[recording]
+sampling-s = 1.0
+
+[sensor]
+heading-noise-deg = 0.1
+yaw-rate-noise-deg-s = 0.1
+
+[published]
+K-per-s = 0.1
+T-s = 16.3
+
+[[sweep]]
+key = \"sensor.rudder-noise-deg\"
+[sweep.linear]
+from = 0.1
+to = 0.2
+points = 2
+
+[[sweep]]
+key = \"sensor.heading-quantum-deg\"
+[sweep.log]
+from = 0.1
+to = 0.2
+points = 2
+
+[[sweep]]
+name = \"point\"
+[[sweep.points]]
+label = \"one\"
+value = 1.0
+set = {}
+
+[[identifier]]
+label = \"separated\"
+[identifier.method.fourier-published]
+harmonics = 4
+triples = 10
+seed = 1
+fundamental.fixed-rad-s = 0.02
+selection.separated.separation-s = 2.0
+
+[[identifier]]
+label = \"well conditioned\"
+[identifier.method.fourier-published]
+fundamental.record-and-periods = 0.5
+[identifier.method.fourier-published.selection.well-conditioned]
+condition-limit = 10.0
+interior-share = 0.9
+rudder-rest-s = 2.0
+rudder-rest-deg = 0.5
+
+[[identifier]]
+label = \"fixed\"
+[identifier.method.fourier-projected]
+fundamental.record-lengths = 1.5
+harmonics.fixed = 6
+skip-s = 1.0
+trim-share = 0.05
+condition-limit = 1e4
+
+[[identifier]]
+label = \"gcv\"
+[identifier.method.fourier-projected]
+fundamental.best-conditioned.r-squared-loss = 0.01
+harmonics.gcv.reach = 4.0
+
+[[identifier]]
+label = \"aicc\"
+[identifier.method.fourier-projected]
+harmonics.aicc.reach = 4.0
+
+[[identifier]]
+[identifier.method.characteristic-points]
+half-width-s = 3.0
+base-course-deg = 1.0
+rudder-bias-deg = 0.1
+condition-limit = 1e6
+
+[[identifier]]
+[identifier.method.least-squares]
+longest-gap-s = 5.0
+condition-limit = 1e6
+[identifier.method.least-squares.smoothing]
+window-samples = 15
+order = 3
+
+[[identifier]]
+[identifier.method.integral-least-squares]
+longest-gap-s = 5.0
+condition-limit = 1e6
+
+[[identifier]]
+[identifier.method.output-error]
+grid-per-decade = 8
+smallest-time-constant-s = 0.5
+iterations = 50
+
+[[identifier]]
+label = \"refined\"
+[identifier.method.srivc]
+max-iterations = 50
+relative-step = 1e-9
+condition-limit = 1e6
+";
+
+/// Numbers of a trace.
+const OF_TRACE: &str = "
+[ship.yukun]
+
+[manoeuvre.zig-zag]
+rudder-deg = 10.0
+heading-deg = 10.0
+
+[recording]
+sampling-s = 1.0
+duration-s = 270.0
+
+[[identifier]]
+[identifier.trace]
+gain = 10.0
+false-discovery = 0.01
+most-effects = 4
+";
+
+/// Numbers that somebody may write, and nobody can mean.
+const EXTREMES: [&str; 13] = [
+    "0",
+    "-1",
+    "nan",
+    "inf",
+    "-inf",
+    "1e-300",
+    "1e-12",
+    "1e-9",
+    "1e9",
+    "1e300",
+    "1000000000",
+    "1000000000000000000",
+    "9223372036854775807",
+];
+
+fn parse(text: &str) -> Result<Scenario, String> {
+    let text = format!("question = \"?\"\nseed = 1{text}\n[[identifier]]\nmethod.srivc = {{}}\n");
+    Scenario::parse(Path::new("all.toml"), "all", text, None).map_err(|failure| failure.message)
+}
+
+#[test]
+fn every_number_is_checked_and_found_again() {
+    for text in EVERYTHING {
+        parse(text).unwrap_or_else(|message| panic!("{message}"));
+        let lines: Vec<&str> = text.lines().collect();
+        for (number, line) in lines.iter().enumerate() {
+            let Some((key, value)) = line.rsplit_once(" = ") else { continue };
+            if value.parse::<f64>().is_err() || ["after-execute", "every"].contains(&key) {
+                continue;
+            }
+            let changed: Vec<String> = lines
+                .iter()
+                .enumerate()
+                .map(|(other, &text)| if other == number { format!("{key} = nan") } else { text.to_owned() })
+                .collect();
+            let Err(message) = parse(&changed.join("\n")) else { panic!("`{key} = nan` was accepted in\n{text}") };
+            let own = key.rsplit('.').next().expect("a key");
+            let place = format!("--> all.toml:{}:", number + 2);
+            assert!(message.contains(&place) && message.contains(own), "{key}, expected {place}\n{message}");
+            assert!(message.to_lowercase().contains("is nan"), "{key}\n{message}");
+        }
+    }
+}
+
+/// A text with one of its numbers put to `value` after the other.
+fn with_each_number(text: &str, value: &str, mut see: impl FnMut(&str)) {
+    let lines: Vec<&str> = text.lines().collect();
+    for number in 0..lines.len() {
+        let Some((key, before)) = lines[number].rsplit_once(" = ") else { continue };
+        if before.parse::<f64>().is_ok() {
+            let own = format!("{key} = {value}");
+            let mut changed = lines.clone();
+            changed[number] = &own;
+            see(&changed.join("\n"));
+        }
+    }
+}
+
+/// Every extreme at every number is refused with a message, or the first trial is made and identified by every method: that
+/// this test ends is what it is about.
+fn is_refused_or_ends(text: &str) {
+    parse(text).unwrap_or_else(|message| panic!("{message}"));
+    for value in EXTREMES {
+        with_each_number(text, value, |changed| match parse(changed) {
+            Err(message) => assert!(message.contains("--> all.toml:") && message.contains("= help: "), "{message}"),
+            Ok(scenario) => {
+                let task = Task { cell: 0, replicate: 0 };
+                if let Ok(specimen) = scenario.cells[0].specimen(&key(&scenario, task)) {
+                    let steps = specimen.specification.simulation.cost().steps;
+                    assert!(steps <= MOST_STEPS as f64, "{steps} steps in\n{changed}");
+                }
+                let rows = Bench::new(&scenario, 0..=0).run(task).rows;
+                assert_eq!(rows.len(), scenario.cells[0].methods.len());
+            }
+        });
+    }
+}
+
+#[test]
+fn no_number_of_a_disturbed_zig_zag_makes_a_trial_without_end() {
+    is_refused_or_ends(EVERYTHING[0]);
+}
+
+#[test]
+fn no_number_of_another_manoeuvre_makes_a_trial_without_end() {
+    EVERYTHING[1..4].iter().for_each(|text| is_refused_or_ends(text));
+}
+
+#[test]
+fn no_number_of_a_draw_makes_a_trial_without_end() {
+    is_refused_or_ends(EVERYTHING[4]);
+}
+
+#[test]
+fn no_number_of_a_study_or_a_method_makes_a_trial_without_end() {
+    is_refused_or_ends(OF_STUDY);
+}
+
+/// A trace is too slow to be run for every number here; its loops end when no candidate is believed.
+#[test]
+fn no_number_of_a_trace_is_taken_for_another() {
+    for value in EXTREMES {
+        with_each_number(OF_TRACE, value, |changed| {
+            if !changed.contains(&OF_TRACE[..OF_TRACE.find("gain").expect("a trace")]) {
+                // Another number than one of the trace.
+                return;
+            }
+            let accepted = parse(changed).is_ok();
+            let gain = changed.contains(&format!("gain = {value}"));
+            let small = ["0", "1e-300", "1e-12", "1e-9"].contains(&value);
+            let large = ["1e9", "1e300", "1000000000", "1000000000000000000", "9223372036854775807"].contains(&value);
+            let most = changed.contains(&format!("most-effects = {value}"));
+            let expected = match (gain, most) {
+                (true, _) => small || large,
+                (_, true) => value == "0",
+                _ => small && value != "0",
+            };
+            assert_eq!(accepted, expected, "{changed}");
+        });
+    }
+}
+
+/// A distribution without ends reaches what no check can see beforehand: such a trial is a row with its reason, and the others
+/// are made.
+#[test]
+fn a_drawn_trial_without_end_is_a_failed_row() {
+    let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
+    let draw = "[[draw]]\nkey = \"approach.lead-in-s\"\n[draw.log-normal]\nmedian = 10.0\nsigma = 20.0\n";
+    let scenario = parse(&format!("{head}{draw}")).unwrap_or_else(|message| panic!("{message}"));
+    let bench = Bench::new(&scenario, 0..=0);
+    let failures: Vec<Option<String>> = (0..40)
+        .map(|replicate| {
+            bench.run(Task { cell: 0, replicate }).rows[0].failure.as_ref().map(|reason| reason.to_string())
+        })
+        .collect();
+    let refused =
+        failures.iter().flatten().filter(|reason| reason.starts_with("specification: `approach.lead-in-s` is"));
+    assert!(refused.count() > 2 && failures.iter().any(Option::is_none), "{failures:?}");
+}
+
+/// What the study is asked for in all, and how deep.
+#[test]
+fn no_list_is_longer_than_a_person_writes() {
+    let head = EVERYTHING[4].split("[stop]").next().expect("the trial");
+    let entries = |list: &str, body: &dyn Fn(usize) -> String, count: usize| {
+        let all: String = (0..count).map(|index| format!("[[{list}]]\n{}\n", body(index))).collect();
+        parse(&format!("{head}{all}")).err().unwrap_or_default()
+    };
+    let key = "a.".repeat(60_000);
+    for (found, message) in [
+        ("`sweep` has 8000 entries", entries("sweep", &|k| format!("key = \"sensor.k{k}\"\nvalues = [0.1]"), 8000)),
+        (
+            "`draw` has 65 entries",
+            entries("draw", &|k| format!("key = \"sensor.k{k}\"\nnormal = {{ mean = 1.0, sd = 0.1 }}"), 65),
+        ),
+        (
+            "`identifier` has 102 entries",
+            entries("identifier", &|k| format!("label = \"{k}\"\nmethod.srivc = {{}}"), 101),
+        ),
+        ("`effect` has 21 entries", entries("effect", &|_| "moment_drift.rudder-deg-per-s = 0.0".to_owned(), 21)),
+        ("60000 names joined by dots", entries("sweep", &|_| format!("key = \"{key}\"\nvalues = [0.1]"), 1)),
+        (
+            "60000 names joined by dots",
+            entries("sweep", &|_| format!("points = [{{ label = \"a\", set = {{ \"{key}\" = 1 }} }}]"), 1),
+        ),
+        (
+            "60000 names joined by dots",
+            entries("draw", &|_| format!("key = \"{key}\"\nnormal = {{ mean = 1.0, sd = 0.1 }}"), 1),
+        ),
+    ] {
+        assert!(message.contains(found), "{found}\n{}", &message[..message.len().min(400)]);
+    }
+}
+
+/// Sizes that a fixed number of digits would hide, or spell out.
+#[test]
+fn numbers_are_shown_as_they_are_written() {
+    for (key, value, shown) in [
+        ("sampling-s = 1.0", "1e-12", "`recording.sampling-s` is 1e-12"),
+        ("heading-deg = 20.0", "-1e300", "`manoeuvre.zig-zag.heading-deg` is -1e300"),
+        ("duration-s = 200.0", "1e300", "`manoeuvre.zig-zag.duration-s` is 1e300"),
+        ("T-s = 16.3", "1e-12", "`ship.first-order.T-s` is 1e-12"),
+        ("T2-s = 2.0", "1e-12", "`effect.0.second_order.T2-s` is 1e-12"),
+        ("probability = 0.1", "1e300", "probability` is 1e300"),
+    ] {
+        let (name, _) = key.split_once(" = ").expect("a key");
+        let message = parse(&EVERYTHING[0].replacen(key, &format!("{name} = {value}"), 1)).err().expect("refused");
+        assert!(message.contains(shown), "{message}");
+    }
+}
+
+/// What `study list effects` says can be written in a scenario, and nothing else.
+#[test]
+fn the_listed_keys_of_an_effect_are_those_it_has() {
+    for effect in ship::effects::all() {
+        let Some(keys) = effect_keys(effect.as_ref()) else { continue };
+        let lines: Vec<String> = keys.split(", ").map(|key| format!("{key} = 0.3\n")).collect();
+        let text = format!(
+            "\n[ship.yukun]\n[[effect]]\n[effect.{}]\n{}[manoeuvre.zig-zag]\nrudder-deg = 10\nheading-deg = 10\n[recording]\n\
+             sampling-s = 1\nduration-s = 100",
+            effect.id(),
+            lines.concat(),
+        );
+        // 0.3 may be outside its range (no 0.3 s of squall), but every key is known.
+        if let Err(message) = parse(&text) {
+            assert!(message.contains("` is 0.3"), "{message}");
+        }
+    }
+    let listed = ship::effects::all().iter().filter(|effect| effect_keys(effect.as_ref()).is_some()).count();
+    assert_eq!(listed, 15, "all forms but measured wind, measured speed and measured sway");
+}

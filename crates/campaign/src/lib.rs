@@ -1,0 +1,39 @@
+//! A campaign: the trials of a scenario, run to rows that are stored, joined and summarised.
+//!
+//! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. Nothing here draws, prints or reads
+//! the command line; who wants to see how far a campaign is implements [`Observer`].
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | one trial | [`engine`] |
+//! | many of them, in order | [`task`], [`plan`], [`stopping`], [`collect`], [`merge`] |
+//! | what is stored | [`design`], [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`], [`unfinished`] |
+//! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
+//! | what is said about it | [`summary`], [`statistics`] |
+//! | records and answers for figures and other programs | [`curves`], [`answer`] |
+
+pub mod answer;
+pub mod collect;
+pub mod curves;
+pub mod design;
+pub mod disk;
+pub mod engine;
+#[cfg(test)]
+mod extremes;
+pub mod files;
+pub mod folder;
+pub mod manifest;
+pub mod merge;
+pub mod observer;
+pub mod plan;
+pub mod rows;
+pub mod showcase;
+pub mod statistics;
+pub mod stopping;
+pub mod store;
+pub mod summary;
+pub mod task;
+pub mod timings;
+pub mod unfinished;
+
+pub use observer::{Observer, Unwatched};

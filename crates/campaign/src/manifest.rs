@@ -1,0 +1,191 @@
+//! `manifest.toml`: what is needed to run a study again, beside what it ran on.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::disk;
+use crate::files::MANIFEST;
+use crate::folder::ResultFolder;
+use crate::task::Shard;
+use scenario::failure::{Failure, OnPath};
+use scenario::{Scenario, Words, identity};
+
+/// The manifest of a study or a shard of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Manifest {
+    /// Name of the scenario.
+    pub name: String,
+    /// Seed that was used.
+    pub seed: u64,
+    /// Which part of the study this is.
+    pub shard: Shard,
+    /// SHA-256 of the scenario text.
+    pub scenario_sha256: String,
+    /// SHA-256 of all that decides the rows: the scenario without its prose, and the files it reads.
+    pub design_sha256: String,
+    /// Version of the program.
+    pub version: String,
+    /// Git revision of the program's source, where it was built in a repository.
+    pub git_revision: Option<String>,
+    /// What it ran on. Nothing in the rows depends on this.
+    pub machine: Machine,
+    /// Versions of the crates that decide the numbers.
+    pub crates: Vec<String>,
+    /// SHA-256 of the files a finished study is read from, by their names; of one in progress none.
+    #[serde(default)]
+    pub sha256: BTreeMap<String, String>,
+    /// The scenario file as it was read.
+    pub scenario: String,
+}
+
+/// What a study ran on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Machine {
+    /// Operating system and processor family.
+    pub target: String,
+    /// Threads used.
+    pub threads: usize,
+    /// Wall time of trials and identification, s.
+    pub wall_time_s: f64,
+}
+
+/// The lock file the program was built with.
+const LOCK: &str = include_str!("../../../Cargo.lock");
+
+/// Crates whose version is part of a result's identity.
+const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
+
+/// Largest manifest, bytes: a scenario and little beside it.
+const LARGEST: u64 = 1 << 22;
+
+/// First line of the file.
+const REPEAT: &str = "# `study manifest.toml --out DIR` runs this study again.\n";
+
+impl Manifest {
+    /// The manifest of a scenario that is about to run.
+    pub fn new(scenario: &Scenario, shard: Shard) -> Self {
+        Self {
+            name: scenario.name.clone(),
+            seed: scenario.seed,
+            shard,
+            scenario_sha256: scenario.sha256.clone(),
+            design_sha256: scenario.design_sha256.clone(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),
+            machine: Machine {
+                target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
+                threads: rayon::current_num_threads(),
+                wall_time_s: 0.0,
+            },
+            crates: NUMERIC.iter().flat_map(|name| locked(name)).collect(),
+            sha256: BTreeMap::new(),
+            scenario: scenario.text.clone(),
+        }
+    }
+
+    /// The manifest of the whole study, from that of a shard and the wall time of all of them together, s.
+    pub fn of_whole(self, wall_time_s: f64) -> Self {
+        let machine = Machine { wall_time_s, ..self.machine };
+        Self { shard: Shard::WHOLE, machine, sha256: BTreeMap::new(), ..self }
+    }
+
+    /// What makes the rows of another manifest other rows, in words; empty when they are the same.
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let mut differences = Vec::new();
+        if self.design_sha256 != other.design_sha256 {
+            let design = |manifest: &Self| manifest.scenario.parse().ok().as_ref().map(identity::design_of);
+            let designs = design(self).zip(design(other));
+            let found = designs.map_or_else(Vec::new, |(own, theirs)| identity::differences(&own, &theirs));
+            match found.is_empty() {
+                true => differences.push("a record that the scenario replays has changed".to_owned()),
+                false => differences.extend(found.iter().map(ToString::to_string)),
+            }
+        }
+        if self.seed != other.seed {
+            differences.push(format!("seed: {} there, {} here", self.seed, other.seed));
+        }
+        if self.shard != other.shard {
+            differences.push(format!("shard: {} there, {} here", self.shard, other.shard));
+        }
+        differences
+    }
+
+    /// The same for shards of one study, which have to come from one program too.
+    pub fn differences_of_study(&self, other: &Self) -> Vec<String> {
+        let of = |shard: Shard| Shard { number: 1, ..shard };
+        let mut differences = Self { shard: of(self.shard), ..self.clone() }
+            .differences(&Self { shard: of(other.shard), ..other.clone() });
+        if self.version != other.version {
+            differences.push(format!("version: {} there, {} here", self.version, other.version));
+        }
+        let missing = |own: &Self, theirs: &Self| {
+            own.crates.iter().filter(|name| !theirs.crates.contains(name)).cloned().collect::<Vec<_>>().join(", ")
+        };
+        if self.crates != other.crates {
+            differences.push(format!("crates: {} there, {} here", missing(self, other), missing(other, self)));
+        }
+        differences
+    }
+
+    /// Trials of every cell of the study; `None` where a stopping rule decides.
+    pub fn replicates(&self) -> Option<u64> {
+        let scenario: toml::Table = self.scenario.parse().ok()?;
+        let replicates = scenario.get("replicates").map_or(Some(1), |value| u64::try_from(value.as_integer()?).ok());
+        replicates.filter(|_| !scenario.contains_key("stop"))
+    }
+
+    /// What the scenario says about itself.
+    pub fn words(&self) -> Words {
+        Words::of(&self.scenario)
+    }
+
+    /// Writes the manifest of a folder.
+    pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
+        let rounded = Machine { wall_time_s: (self.machine.wall_time_s * 1e3).round() / 1e3, ..self.machine.clone() };
+        let text =
+            toml::to_string(&Self { machine: rounded, ..self.clone() }).on("describe the run in", folder.path())?;
+        folder.keep(MANIFEST, REPEAT.to_owned() + &text).map(drop)
+    }
+
+    /// The manifest in a text that is one.
+    pub fn of_text(text: &str) -> Option<Self> {
+        toml::from_str(text).ok()
+    }
+
+    /// Reads a manifest; `None` when there is none.
+    pub fn read(path: &Path) -> Result<Option<Self>, Failure> {
+        let refuse =
+            |problem: &str| Failure::input(format!("{}: {problem}; expected the manifest of a study", path.display()));
+        let Some(bytes) = disk::read(path, LARGEST).on("read", path)? else { return Ok(None) };
+        let text = String::from_utf8(bytes).map_err(|_| refuse("it is not UTF-8 text"))?;
+        toml::from_str(&text).map(Some).map_err(|error| refuse(error.message()))
+    }
+}
+
+/// "name version" of a crate, once for every version in the lock file.
+fn locked(name: &str) -> Vec<String> {
+    let wanted = format!("name = \"{name}\"");
+    let lines: Vec<&str> = LOCK.lines().collect();
+    lines
+        .windows(2)
+        .filter(|pair| pair[0] == wanted)
+        .filter_map(|pair| pair[1].strip_prefix("version = "))
+        .map(|version| format!("{name} {}", version.trim_matches('"')))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_numeric_crate_is_in_the_lock_file() {
+        for name in NUMERIC {
+            assert!(!locked(name).is_empty(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! The shards of one study joined to what one run would have given, byte for byte.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use scenario::failure::Failure;
+
+use crate::collect::is_same;
+use crate::design::Design;
+use crate::files::ROWS;
+use crate::folder::ResultFolder;
+use crate::manifest::Manifest;
+use crate::rows::{Layout, Writer};
+use crate::store::{self, Stored};
+use crate::task::Shard;
+use crate::timings::Timings;
+use crate::unfinished;
+
+/// Missing shards that a message names.
+const SHOWN: usize = 10;
+
+/// All shards of one study.
+struct Shards<'a> {
+    /// Their folders, in their order.
+    folders: Vec<&'a Path>,
+    /// The manifest of the whole.
+    manifest: Manifest,
+}
+
+/// Joins the shards in these folders to a finished study, byte for byte what one run would have given.
+///
+/// Fails when they are not all shards of one study, and when `out` holds another one.
+pub fn join(folders: &[PathBuf], out: &ResultFolder) -> Result<Stored, Failure> {
+    let Shards { folders, manifest } = shards(folders)?;
+    if let Some(stored) = store::manifest_of_rows(out.path())? {
+        is_same(&stored, &manifest, out.path())?;
+    }
+    if unfinished::is_in(out.path())? {
+        return Err(Failure::input(format!(
+            "{}: a study in it is not finished; give another folder with --out",
+            out.path().display()
+        )));
+    }
+    let mut design = Stored::read(folders[0])?.design;
+    design.cells.iter_mut().for_each(|cell| cell.trials = 0..0);
+    let layout = Layout::of(&design);
+    let mut writer = Writer::create(out, ROWS, &layout)?;
+    let mut timings = Timings::new(design.methods.len());
+    let mut showcases = Vec::new();
+    // One shard after the other: thousands of designs of thousands of cells do not fit into memory.
+    for folder in folders {
+        let stored = Stored::read(folder)?;
+        append(&mut design, &stored.design)
+            .map_err(|problem| Failure::input(format!("{}: {problem}; run this shard again", folder.display())))?;
+        stored.rows(|row| writer.push([row]))?;
+        timings.join(&stored.timings);
+        showcases.extend(stored.showcases);
+    }
+    if let Some(replicates) = manifest.replicates()
+        && let Some(cell) = design.cells.iter().position(|cell| cell.trials != (0..replicates))
+    {
+        let found = &design.cells[cell].trials;
+        return Err(Failure::input(format!(
+            "{}: of cell {cell} the shards hold trials {} to {}, expected 0 to {replicates}; run the shards again",
+            out.path().display(),
+            found.start,
+            found.end
+        )));
+    }
+    let (rows, sha256) = writer.finish()?;
+    rows.put()?;
+    store::finish(out, &manifest, sha256, design, showcases, &timings)
+}
+
+/// Adds what the next shard knows of the cells. Fails when its trials are not the next ones.
+fn append(design: &mut Design, next: &Design) -> Result<(), String> {
+    let cells = || design.cells.iter().zip(&next.cells);
+    let is_same = (&design.axes, &design.methods, &design.draws) == (&next.axes, &next.methods, &next.draws)
+        && design.cells.len() == next.cells.len()
+        && cells().all(|(own, theirs)| (&own.labels, &own.values) == (&theirs.labels, &theirs.values));
+    if !is_same {
+        return Err("its design is not that of the other shards".to_owned());
+    }
+    for (index, (cell, theirs)) in design.cells.iter_mut().zip(&next.cells).enumerate() {
+        cell.bound_percent2 = cell.bound_percent2.or(theirs.bound_percent2);
+        if theirs.trials.is_empty() {
+            continue;
+        }
+        if theirs.trials.start != cell.trials.end {
+            return Err(format!(
+                "its trials of cell {index} begin with {}, and those of the shards before it end with {}",
+                theirs.trials.start, cell.trials.end
+            ));
+        }
+        cell.trials.end = theirs.trials.end;
+    }
+    Ok(())
+}
+
+/// The shards in their order, or what is wrong with them.
+fn shards(folders: &[PathBuf]) -> Result<Shards<'_>, Failure> {
+    // Of thousands of shards only one manifest is kept: each holds the text of the scenario.
+    let mut lowest: Option<(&Path, Manifest)> = None;
+    let mut found: BTreeMap<u64, (&Path, f64)> = BTreeMap::new();
+    for folder in folders {
+        let Some(manifest) = store::manifest_of_rows(folder)? else {
+            let problem = match unfinished::is_in(folder)? {
+                true => "this shard is not finished; run it again with the same --shard and --out",
+                false => "there is no finished shard in it; give folders written with --shard",
+            };
+            return Err(Failure::input(format!("{}: {problem}", folder.display())));
+        };
+        if let Some((first, known)) = &lowest {
+            let differences = known.differences_of_study(&manifest);
+            if !differences.is_empty() {
+                return Err(Failure::input(format!(
+                    "{} and {} are not shards of one study (there: the first, here: the second):\n  {}\nmerge shards of the \
+                     same scenario, seed and program",
+                    first.display(),
+                    folder.display(),
+                    differences.join("\n  ")
+                )));
+            }
+        }
+        if let Some((twice, _)) = found.insert(manifest.shard.number, (folder, manifest.machine.wall_time_s)) {
+            return Err(Failure::input(format!(
+                "{} and {} are both shard {}; give each one once",
+                twice.display(),
+                folder.display(),
+                manifest.shard
+            )));
+        }
+        if lowest.as_ref().is_none_or(|(_, known)| manifest.shard.number < known.shard.number) {
+            lowest = Some((folder, manifest));
+        }
+    }
+    let Some((_, manifest)) = lowest else {
+        return Err(Failure::input("no shards are given; name the folders written with --shard"));
+    };
+    let of = manifest.shard.of;
+    let missing: Vec<String> =
+        (1..=of).filter(|number| !found.contains_key(number)).map(|number| Shard { number, of }.to_string()).collect();
+    if missing.is_empty() {
+        let wall_time_s = found.values().map(|(_, wall_time_s)| wall_time_s).sum();
+        let folders = found.into_values().map(|(folder, _)| folder).collect();
+        return Ok(Shards { folders, manifest: manifest.of_whole(wall_time_s) });
+    }
+    let shown = missing[..missing.len().min(SHOWN)].join(", ");
+    let more = if missing.len() > SHOWN { ", …" } else { "" };
+    Err(Failure::input(format!("{} of {of} shards are missing: {shown}{more}; run them first", missing.len())))
+}

@@ -1,0 +1,310 @@
+//! Parquet files of rows, written and read a few rows at a time, so that neither needs memory in proportion to the file.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
+
+use bytes::Bytes;
+use parquet::basic::Compression;
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReader};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::ColumnPath;
+
+use super::columns::{Layout, Values};
+use super::decoding;
+use super::row::Row;
+use crate::disk;
+use crate::folder::{Beside, ResultFolder};
+use scenario::failure::{Failure, OnPath};
+
+/// Rows of a row group. Part of the identity of a file: groups are cut here however the rows arrive.
+const GROUP: usize = 65_536;
+
+/// Rows handed out at a time.
+const BATCH: usize = 4096;
+
+/// Longest text in a row, bytes; the labels and words that studies write are shorter.
+const LONGEST_TEXT: usize = 4096;
+
+/// Largest size of one column of a row group before it is packed, bytes.
+const LARGEST_COLUMN: i64 = 1 << 28;
+
+/// Length of the tail of a Parquet file, bytes.
+const TAIL: u64 = 8;
+
+/// Writes rows in their order to a new file, which appears under its name whole or not at all.
+pub struct Writer<'a> {
+    layout: &'a Layout,
+    path: PathBuf,
+    file: SerializedFileWriter<Beside>,
+    waiting: Vec<Row>,
+}
+
+impl<'a> Writer<'a> {
+    /// Begins a file.
+    pub fn create(folder: &ResultFolder, name: &str, layout: &'a Layout) -> Result<Self, Failure> {
+        let file = folder.create(name)?;
+        let path = file.path().to_owned();
+        let mut properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
+        for name in layout.names().filter(|name| !Layout::repeats(name)) {
+            properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
+        }
+        let file = SerializedFileWriter::new(file, Arc::new(layout.schema()), Arc::new(properties.build()))
+            .on("write", &path)?;
+        Ok(Self { layout, path, file, waiting: Vec::new() })
+    }
+
+    /// Adds rows.
+    pub fn push(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), Failure> {
+        for row in rows {
+            self.waiting.push(row);
+            if self.waiting.len() == GROUP {
+                self.write_group()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends the file, waits until it is on the disk and returns it, still without its name, and its SHA-256.
+    pub fn finish(mut self) -> Result<(Beside, String), Failure> {
+        if !self.waiting.is_empty() {
+            self.write_group()?;
+        }
+        let mut file = self.file.into_inner().on("finish", &self.path)?;
+        let sha256 = file.seal()?;
+        Ok((file, sha256))
+    }
+
+    fn write_group(&mut self) -> Result<(), Failure> {
+        let path = &self.path;
+        let mut group = self.file.next_row_group().on("write", path)?;
+        for values in self.layout.take(&self.waiting) {
+            let mut target = group.next_column().on("write", path)?.expect("the file has the columns of its layout");
+            match values {
+                Values::Counts(values) => {
+                    target.typed::<Int64Type>().write_batch(&values, None, None).on("write", path)?;
+                }
+                Values::Numbers(values) => {
+                    let (present, values) = presence(values);
+                    target.typed::<DoubleType>().write_batch(&values, Some(&present), None).on("write", path)?;
+                }
+                Values::Texts(values) => {
+                    let (present, values) = presence(values);
+                    let values: Vec<ByteArray> = values.iter().map(|text| ByteArray::from(text.as_str())).collect();
+                    target.typed::<ByteArrayType>().write_batch(&values, Some(&present), None).on("write", path)?;
+                }
+            }
+            target.close().on("write", path)?;
+        }
+        group.close().on("write", path)?;
+        self.waiting.clear();
+        Ok(())
+    }
+}
+
+/// Definition levels, and the values that are there.
+fn presence<T>(values: Vec<Option<T>>) -> (Vec<i16>, Vec<T>) {
+    (values.iter().map(|value| i16::from(value.is_some())).collect(), values.into_iter().flatten().collect())
+}
+
+/// Reads rows back in their order. What it reads may have been damaged, or made to do harm: sizes are looked at before
+/// anything is unpacked, and where the decoder gives up the reader fails.
+pub struct Reader<'a> {
+    layout: &'a Layout,
+    path: PathBuf,
+    file: SerializedFileReader<Source>,
+    group: usize,
+    columns: Vec<ColumnReader>,
+    left: usize,
+}
+
+/// Where the bytes of a file come from.
+enum Source {
+    Disk(disk::File),
+    Memory(Bytes),
+}
+
+impl Length for Source {
+    fn len(&self) -> u64 {
+        match self {
+            Self::Disk(file) => Length::len(file),
+            Self::Memory(bytes) => Length::len(bytes),
+        }
+    }
+}
+
+impl ChunkReader for Source {
+    type T = Box<dyn std::io::Read>;
+
+    /// The decoder asks in this way for the tail of a file and for the head of every page.
+    fn get_read(&self, start: u64) -> parquet::errors::Result<Self::T> {
+        if start.checked_add(TAIL) != Some(Length::len(self)) {
+            let left = Length::len(self).saturating_sub(start);
+            let head = self.get_bytes(start, decoding::PAGE_HEAD.min(usize::try_from(left)?))?;
+            decoding::check_page(&head)?;
+        }
+        Ok(match self {
+            Self::Disk(file) => Box::new(file.get_read(start)?),
+            Self::Memory(bytes) => Box::new(bytes.get_read(start)?),
+        })
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> parquet::errors::Result<Bytes> {
+        match self {
+            Self::Disk(file) => file.get_bytes(start, length),
+            Self::Memory(bytes) => bytes.get_bytes(start, length),
+        }
+    }
+}
+
+impl<'a> Reader<'a> {
+    /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
+    pub fn open(path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+        let file = disk::File::open(path)
+            .map_err(|error| Failure::input(format!("{}: cannot be opened: {error}", path.display())))?;
+        Self::new(Source::Disk(file), path, layout)
+    }
+
+    /// Reads from memory what `path` held. Fails as [`Reader::open`] does.
+    pub fn of_bytes(bytes: Vec<u8>, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+        Self::new(Source::Memory(bytes.into()), path, layout)
+    }
+
+    fn new(file: Source, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+        let refuse =
+            |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
+        decoding::guarded(|| {
+            let file = SerializedFileReader::new(file).map_err(|error| refuse(error.to_string()))?;
+            let schema = file.metadata().file_metadata().schema_descr_ptr();
+            let found: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
+            if let Some(name) = layout.names().find(|name| !found.contains(&name.as_str())) {
+                return Err(refuse(format!("there is no column `{name}`")));
+            }
+            if *schema.root_schema() != layout.schema() {
+                return Err(refuse(format!("the columns are {}", found.join(", "))));
+            }
+            for group in file.metadata().row_groups() {
+                if !(0..=GROUP as i64).contains(&group.num_rows()) {
+                    return Err(refuse(format!("a group of it has {} rows", group.num_rows())));
+                }
+                let sizes = || group.columns().iter().map(|column| column.uncompressed_size());
+                if let Some(size) = sizes().find(|size| !(0..=LARGEST_COLUMN).contains(size)) {
+                    return Err(refuse(format!("a column of it has {size} bytes")));
+                }
+            }
+            Ok(Self { layout, path: path.to_owned(), file, group: 0, columns: Vec::new(), left: 0 })
+        })
+        .unwrap_or_else(|| Err(refuse("it is damaged".to_owned())))
+    }
+
+    /// Number of rows in the file.
+    pub fn len(&self) -> u64 {
+        self.file.metadata().file_metadata().num_rows().unsigned_abs()
+    }
+
+    /// Whether the file holds no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The next rows, a few thousand at most; nothing when all have been read.
+    pub(super) fn next_rows(&mut self) -> Result<Vec<Row>, Failure> {
+        let path = self.path.clone();
+        decoding::guarded(|| self.decoded()).unwrap_or_else(|| {
+            Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
+        })
+    }
+
+    fn decoded(&mut self) -> Result<Vec<Row>, Failure> {
+        while self.left == 0 {
+            if self.group == self.file.num_row_groups() {
+                return Ok(Vec::new());
+            }
+            let group = self.file.get_row_group(self.group).map_err(|error| self.damaged(&error.to_string()))?;
+            self.left = group.metadata().num_rows().unsigned_abs() as usize;
+            self.columns = (0..group.metadata().num_columns())
+                .map(|column| group.get_column_reader(column))
+                .collect::<Result<_, _>>()
+                .map_err(|error| self.damaged(&error.to_string()))?;
+            self.group += 1;
+        }
+        let length = self.left.min(BATCH);
+        self.left -= length;
+        let values: Result<Vec<Values>, String> =
+            self.columns.iter_mut().map(|column| values(column, length)).collect();
+        values.and_then(|values| self.layout.put(values, length)).map_err(|problem| self.damaged(&problem))
+    }
+
+    fn damaged(&self, problem: &str) -> Failure {
+        Failure::input(format!("{}: {problem}; the file was changed or is of another study", self.path.display()))
+    }
+
+    /// Hands every row to `take`, in order.
+    pub fn for_each(mut self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+        // Rows are decoded while those before them are taken.
+        std::thread::scope(|scope| {
+            let (send, receive) = sync_channel(1);
+            let decoder = scope.spawn(move || {
+                loop {
+                    let rows = self.next_rows()?;
+                    if rows.is_empty() || send.send(rows).is_err() {
+                        return Ok(());
+                    }
+                }
+            });
+            let taken = receive.into_iter().flatten().try_for_each(&mut take);
+            let decoded = decoder.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+            taken.and(decoded)
+        })
+    }
+}
+
+fn values(column: &mut ColumnReader, length: usize) -> Result<Values, String> {
+    Ok(match column {
+        ColumnReader::Int64ColumnReader(reader) => {
+            let (_, values) = read(reader, length)?;
+            Values::Counts(values)
+        }
+        ColumnReader::DoubleColumnReader(reader) => {
+            let (present, values) = read(reader, length)?;
+            Values::Numbers(spread(&present, values))
+        }
+        ColumnReader::ByteArrayColumnReader(reader) => {
+            let (present, values) = read(reader, length)?;
+            let texts: Result<Vec<String>, String> = values.iter().map(text).collect();
+            Values::Texts(spread(&present, texts?))
+        }
+        _ => unreachable!("the schema was compared when the file was opened"),
+    })
+}
+
+fn text(bytes: &ByteArray) -> Result<String, String> {
+    match bytes.len() {
+        0..=LONGEST_TEXT => bytes.as_utf8().map(str::to_owned).map_err(|error| error.to_string()),
+        long => Err(format!("a text of it has {long} bytes, more than the {LONGEST_TEXT} of any study")),
+    }
+}
+
+/// Definition levels and values of `length` rows.
+fn read<T: DataType>(reader: &mut ColumnReaderImpl<T>, length: usize) -> Result<(Vec<i16>, Vec<T::T>), String> {
+    let (mut present, mut values) = (Vec::with_capacity(length), Vec::with_capacity(length));
+    let mut read = 0;
+    while read < length {
+        let (rows, ..) = reader
+            .read_records(length - read, Some(&mut present), None, &mut values)
+            .map_err(|error| error.to_string())?;
+        if rows == 0 {
+            return Err("it ends too early".to_owned());
+        }
+        read += rows;
+    }
+    Ok((present, values))
+}
+
+fn spread<T>(present: &[i16], values: Vec<T>) -> Vec<Option<T>> {
+    let mut values = values.into_iter();
+    present.iter().map(|&level| if level > 0 { values.next() } else { None }).collect()
+}

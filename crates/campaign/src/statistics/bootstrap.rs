@@ -1,0 +1,130 @@
+//! The bootstrap over batches (Efron 1979): which batches a resample holds is drawn once and used for every figure, so that
+//! figures of two methods are resampled together.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+use super::statistic::{FEWEST, Statistic};
+use super::sums::BatchSums;
+
+/// Resamples: enough for the 2.5 and 97.5 % points to two digits.
+const RESAMPLES: usize = 1000;
+
+/// A fixed seed: the same rows give the same interval.
+const SEED: u64 = 1979;
+
+/// How often each batch is in each resample.
+#[derive(Debug, Clone)]
+pub struct Resamples {
+    batches: usize,
+    /// [`RESAMPLES`] counts of every batch.
+    counts: Vec<u8>,
+}
+
+impl Resamples {
+    /// Resamples of so many batches.
+    pub fn new(batches: usize) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+        let mut counts = vec![0u8; RESAMPLES * batches];
+        for resample in 0..RESAMPLES {
+            for _ in 0..batches {
+                let drawn: usize = rng.random_range(0..batches);
+                let count = &mut counts[drawn * RESAMPLES + resample];
+                *count = count.saturating_add(1);
+            }
+        }
+        Self { batches, counts }
+    }
+
+    /// Number of batches.
+    pub fn batches(&self) -> usize {
+        self.batches
+    }
+
+    /// Several statistics of the same sums, each with a percentile interval; none for what is undefined, and no interval for
+    /// fewer than six values.
+    pub fn figures<const N: usize>(
+        &self,
+        batches: &[BatchSums],
+        statistics: impl Fn(&BatchSums) -> [Option<f64>; N],
+    ) -> [Option<Statistic>; N] {
+        let whole = batches.iter().fold(BatchSums::default(), plus);
+        let values = statistics(&whole);
+        if whole.count < FEWEST as f64 || batches.len() > self.batches {
+            return values.map(|value| value.map(|value| Statistic { value, ci95: None }));
+        }
+        let mut resampled: [Vec<f64>; N] = std::array::from_fn(|_| Vec::with_capacity(RESAMPLES));
+        for total in self.totals(batches) {
+            for (all, value) in resampled.iter_mut().zip(statistics(&total)) {
+                all.extend(value.filter(|value| value.is_finite()));
+            }
+        }
+        std::array::from_fn(|k| {
+            let value = values[k]?;
+            let all = &mut resampled[k];
+            // A statistic that most resamples do not have is not known.
+            let ci95 = (all.len() > RESAMPLES / 2).then(|| {
+                let rank = |p: f64| ((all.len() - 1) as f64 * p).round() as usize;
+                let (low, high) = (rank(0.025), rank(0.975));
+                let (below, &mut high, _) = all.select_nth_unstable_by(high, f64::total_cmp);
+                let (_, &mut low, _) = below.select_nth_unstable_by(low, f64::total_cmp);
+                [low, high]
+            });
+            Some(Statistic { value, ci95 })
+        })
+    }
+
+    /// The sums of every resample. Batch by batch, so that many resamples go through the processor together.
+    fn totals(&self, batches: &[BatchSums]) -> impl Iterator<Item = BatchSums> {
+        let [mut counts, mut firsts, mut seconds] = [const { [0.0; RESAMPLES] }; 3];
+        for (batch, times) in batches.iter().zip(self.counts.chunks_exact(RESAMPLES)) {
+            let sums = counts.iter_mut().zip(&mut firsts).zip(&mut seconds);
+            for (((count, first), second), &n) in sums.zip(times) {
+                let n = f64::from(n);
+                *count += n * batch.count;
+                *first += n * batch.first;
+                *second += n * batch.second;
+            }
+        }
+        counts.into_iter().zip(firsts).zip(seconds).map(|((count, first), second)| BatchSums { count, first, second })
+    }
+}
+
+fn plus(sum: BatchSums, batch: &BatchSums) -> BatchSums {
+    BatchSums { count: sum.count + batch.count, first: sum.first + batch.first, second: sum.second + batch.second }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::{BATCHES, Sums};
+    use rand_distr::StandardNormal;
+
+    /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a batch is
+    /// one value or several.
+    #[test]
+    fn intervals_cover_what_they_say() {
+        for (size, fewest) in [(200, 0.91), (2000, 0.92)] {
+            let resamples = Resamples::new(BATCHES.min(size));
+            let samples = 400;
+            let mut rng = ChaCha8Rng::seed_from_u64(5);
+            let covered = (0..samples).filter(|_| {
+                let mut sums = Sums::default();
+                (0..size as u64).for_each(|replicate| sums.add(replicate, rng.sample::<f64, _>(StandardNormal)));
+                let [sd] = resamples.figures(sums.batches(), |total| [sums.sd(total)]);
+                let [lo, hi] = sd.and_then(|figure| figure.ci95).expect("enough values");
+                lo <= 1.0 && 1.0 <= hi
+            });
+            let share = covered.count() as f64 / f64::from(samples);
+            assert!((fewest..0.985).contains(&share), "{size}: {share}");
+        }
+    }
+
+    #[test]
+    fn few_values_have_no_interval() {
+        let mut sums = Sums::default();
+        (0..5).for_each(|replicate| sums.add(replicate, replicate as f64));
+        let [mean, none] = Resamples::new(5).figures(sums.batches(), |total| [sums.mean(total), None]);
+        assert_eq!((mean, none), (Some(Statistic { value: 2.0, ci95: None }), None));
+    }
+}

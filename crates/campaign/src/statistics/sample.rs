@@ -1,0 +1,229 @@
+//! A sample of any size in bounded memory: every value up to some thousands, and beyond that counts in bins whose width is a
+//! fixed share of the value (Masson, Rim and Lee 2019, "DDSketch").
+
+use std::collections::BTreeMap;
+
+use super::statistic::{FEWEST, Statistic, Z95};
+
+/// Values kept exactly.
+const EXACT: usize = 8192;
+
+/// Relative accuracy of a binned value.
+const ACCURACY: f64 = 1e-3;
+
+/// Below this a value is zero.
+const ZERO: f64 = 1e-12;
+
+/// A sample that is being taken.
+#[derive(Debug, Clone, Default)]
+pub struct Sample {
+    exact: Vec<f64>,
+    /// Counts by bin, in the order of the values; empty while all are exact.
+    bins: BTreeMap<i32, u64>,
+}
+
+impl Sample {
+    /// Adds a finite value; others are left out.
+    pub fn add(&mut self, value: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        if self.bins.is_empty() && self.exact.len() < EXACT {
+            self.exact.push(value);
+            return;
+        }
+        for value in self.exact.drain(..).chain([value]) {
+            *self.bins.entry(bin(value)).or_default() += 1;
+        }
+    }
+
+    /// The values in order.
+    pub fn ordered(&self) -> Ordered {
+        if self.bins.is_empty() {
+            return Ordered::of(self.exact.iter().map(|&value| (value, 1)).collect());
+        }
+        Ordered::of(self.bins.iter().map(|(&bin, &count)| (value_of(bin), count)).collect())
+    }
+}
+
+/// Bin 0 is zero, bin ±(1 + k + OFFSET) holds |x| in (γᵏ⁻¹, γᵏ].
+const OFFSET: i32 = 1 << 20;
+
+fn growth() -> f64 {
+    (1.0 + ACCURACY) / (1.0 - ACCURACY)
+}
+
+fn bin(value: f64) -> i32 {
+    let size = value.abs();
+    if size < ZERO {
+        return 0;
+    }
+    let place = 1 + OFFSET + (size.ln() / growth().ln()).ceil() as i32;
+    if value < 0.0 { -place } else { place }
+}
+
+fn value_of(bin: i32) -> f64 {
+    if bin == 0 {
+        return 0.0;
+    }
+    let size = 2.0 * growth().powi(bin.abs() - 1 - OFFSET) / (growth() + 1.0);
+    if bin < 0 { -size } else { size }
+}
+
+/// Values in ascending order with their counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ordered {
+    values: Vec<f64>,
+    /// Values up to and with each.
+    up_to: Vec<u64>,
+}
+
+impl Ordered {
+    fn of(mut counted: Vec<(f64, u64)>) -> Self {
+        counted.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut total = 0;
+        let up_to = counted.iter().map(|&(_, count)| {
+            total += count;
+            total
+        });
+        let up_to = up_to.collect();
+        Self { values: counted.into_iter().map(|(value, _)| value).collect(), up_to }
+    }
+
+    /// Number of values.
+    pub fn len(&self) -> u64 {
+        self.up_to.last().copied().unwrap_or(0)
+    }
+
+    /// Whether there is no value.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    fn counted(&self) -> impl Iterator<Item = (f64, u64)> {
+        let before = std::iter::once(0).chain(self.up_to.iter().copied());
+        self.values.iter().copied().zip(self.up_to.iter().zip(before).map(|(up_to, before)| up_to - before))
+    }
+
+    /// The value of a rank, from 0.
+    fn at(&self, rank: u64) -> f64 {
+        self.values[self.up_to.partition_point(|&up_to| up_to <= rank)]
+    }
+
+    /// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7); `None` of nothing.
+    pub fn quantile(&self, p: f64) -> Option<f64> {
+        let last = self.len().checked_sub(1)?;
+        let place = p * last as f64;
+        let below = place.floor() as u64;
+        let (low, high) = (self.at(below), self.at((below + 1).min(last)));
+        Some(low + (place - below as f64) * (high - low))
+    }
+
+    /// Quantile with the distribution-free interval of order statistics, in the normal approximation of the binomial
+    /// (Thompson 1936); no interval where the sample does not reach that far.
+    pub fn figure(&self, p: f64) -> Option<Statistic> {
+        let value = self.quantile(p)?;
+        let n = self.len() as f64;
+        let reach = Z95 * (n * p * (1.0 - p)).sqrt();
+        let (low, high) = ((n * p - reach).floor(), (n * p + reach).ceil() - 1.0);
+        let ci95 =
+            (self.len() >= FEWEST && low >= 0.0 && high < n).then(|| [self.at(low as u64), self.at(high as u64)]);
+        Some(Statistic { value, ci95 })
+    }
+
+    /// The distances of all values from a centre.
+    pub fn distances(&self, centre: f64) -> Self {
+        Self::of(self.counted().map(|(value, count)| ((value - centre).abs(), count)).collect())
+    }
+
+    /// Median absolute deviation from the median, not scaled to a standard deviation.
+    pub fn mad(&self) -> Option<Statistic> {
+        self.distances(self.quantile(0.5)?).figure(0.5)
+    }
+
+    /// Steps (value, share of `of` values that are not larger), at most `most` of them; the rest of `of` never comes.
+    pub fn steps(&self, of: u64, most: u64) -> Vec<(f64, f64)> {
+        let n = self.len();
+        let count = n.min(most);
+        let ranks = (1..=count).map(|step| (u128::from(n) * u128::from(step) / u128::from(count)) as u64 - 1);
+        ranks.map(|rank| (self.at(rank), (rank + 1) as f64 / of as f64)).collect()
+    }
+
+    /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, with the bandwidth of
+    /// Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
+    pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
+        let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
+        let n = self.len() as f64;
+        // 1.349: quartile distance of a normal distribution over its standard deviation, robust against heavy tails.
+        let spread = (quantiles[2] - quantiles[1]) / 1.349;
+        if self.len() < 10 || spread <= 0.0 || points < 2 {
+            return Vec::new();
+        }
+        let bandwidth = 0.9 * spread * n.powf(-0.2);
+        let (from, to) = (quantiles[0] - 2.0 * bandwidth, quantiles[3] + 2.0 * bandwidth);
+        let norm = 1.0 / (n * bandwidth * (2.0 * std::f64::consts::PI).sqrt());
+        (0..points)
+            .map(|k| {
+                let x = from + (to - from) * k as f64 / (points - 1) as f64;
+                let kernel = |value: f64| (-0.5 * ((x - value) / bandwidth).powi(2)).exp();
+                (x, norm * self.counted().map(|(value, count)| count as f64 * kernel(value)).sum::<f64>())
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    fn sample(values: impl IntoIterator<Item = f64>) -> Ordered {
+        let mut sample = Sample::default();
+        values.into_iter().for_each(|value| sample.add(value));
+        sample.ordered()
+    }
+
+    /// Quantiles of a normal distribution: a sample without chance.
+    fn normal(n: usize) -> impl Iterator<Item = f64> {
+        let law = Normal::standard();
+        (0..n).map(move |k| law.inverse_cdf((k as f64 + 0.5) / n as f64))
+    }
+
+    #[test]
+    fn small_samples_are_exact() {
+        let ordered = sample((1..=101).rev().map(f64::from));
+        // Ranks of the exact binomial interval for n = 101: 41 and 61.
+        assert_eq!(ordered.figure(0.5), Some(Statistic { value: 51.0, ci95: Some([41.0, 61.0]) }));
+        assert_eq!(ordered.mad().map(|figure| figure.value), Some(25.0));
+        assert_eq!(ordered.quantile(0.125), Some(13.5));
+        assert_eq!(ordered.steps(202, 2), [(50.0, 50.0 / 202.0), (101.0, 0.5)]);
+        assert_eq!(sample([]).figure(0.5), None);
+        assert_eq!(sample([1.0, f64::NAN, f64::INFINITY]).len(), 1);
+        assert_eq!(sample([1.0, 2.0, 3.0]).figure(0.5).and_then(|figure| figure.ci95), None, "too few for an interval");
+    }
+
+    #[test]
+    fn large_samples_are_within_the_accuracy_of_a_bin() {
+        let n = 100_000;
+        let (ordered, law) = (sample(normal(n).map(|x| 3.0 * x - 0.5)), Normal::standard());
+        assert_eq!(ordered.len(), n as u64);
+        assert!(ordered.values.len() < 20_000, "{} bins", ordered.values.len());
+        for p in [0.001, 0.025, 0.25, 0.75, 0.975, 0.999] {
+            let (found, expected) = (ordered.quantile(p).expect("not empty"), 3.0 * law.inverse_cdf(p) - 0.5);
+            assert!((found / expected - 1.0).abs() < 2.0 * ACCURACY, "{p}: {found} for {expected}");
+        }
+        // Φ⁻¹(0.75) standard deviations.
+        assert!((ordered.mad().expect("not empty").value / (3.0 * 0.674_489_75) - 1.0).abs() < 2.0 * ACCURACY);
+    }
+
+    #[test]
+    fn a_density_has_the_area_and_height_of_its_law() {
+        let density = sample(normal(4000)).density(200);
+        let step = density[1].0 - density[0].0;
+        let area: f64 = density.iter().map(|(_, height)| height * step).sum();
+        assert!((area - 0.985).abs() < 0.01, "{area}");
+        let peak = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
+        assert!((peak * (2.0 * std::f64::consts::PI).sqrt() - 1.0).abs() < 0.03, "{peak}");
+        assert!(sample([1.0; 50]).density(20).is_empty());
+    }
+}

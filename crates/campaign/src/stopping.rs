@@ -1,0 +1,119 @@
+//! The stopping rule: whether a figure of a cell is known well enough. It keeps running sums and no rows.
+
+use crate::rows::Row;
+use crate::statistics::Moments;
+use scenario::{Index, StopFigure, StopRule};
+
+/// What a rule has seen of one cell.
+#[derive(Clone)]
+pub struct Verdict {
+    rule: StopRule,
+    cell: u64,
+    methods: Vec<Sums>,
+}
+
+impl Verdict {
+    /// Before any row.
+    pub fn new(rule: &StopRule, methods: usize) -> Self {
+        Self { rule: rule.clone(), cell: 0, methods: vec![Sums::default(); methods] }
+    }
+
+    /// Takes note of a row; one of another cell begins anew.
+    pub fn see(&mut self, row: &Row) {
+        if row.cell != self.cell {
+            self.cell = row.cell;
+            self.methods.fill(Sums::default());
+        }
+        let sums = &mut self.methods[row.method];
+        let (error, truth, ends) = match self.rule.figure.index() {
+            Index::K => (row.k_error(), row.true_k_per_s, row.k_ci95_per_s),
+            Index::T => (row.t_error(), row.true_t_s, row.t_ci95_s),
+        };
+        if let Some(error) = error {
+            sums.errors.add(100.0 * error);
+        }
+        if let Some((truth, [low, high])) = truth.zip(ends) {
+            sums.quoted += 1.0;
+            sums.held += f64::from(u8::from(low <= truth && truth <= high));
+        }
+    }
+
+    /// Whether the standard error is at most what the rule asks for, for its method or for all.
+    pub fn is_met(&self) -> bool {
+        let met = |sums: &Sums| {
+            sums.standard_error(self.rule.figure).is_some_and(|error| error <= self.rule.standard_error_percent)
+        };
+        match self.rule.method {
+            Some(method) => met(&self.methods[method]),
+            None => self.methods.iter().all(met),
+        }
+    }
+}
+
+/// Moments of relative errors, per cent, and counts of intervals.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    errors: Moments,
+    quoted: f64,
+    held: f64,
+}
+
+impl Sums {
+    /// Standard error of a figure in per cent, by the delta method; `None` below 20 values, too few to judge by.
+    fn standard_error(&self, figure: StopFigure) -> Option<f64> {
+        let Moments { count: n, mean, second, third, fourth, .. } = self.errors;
+        let enough = |count: f64| (count >= 20.0).then_some(count);
+        let (m2, m3, m4) = (second / n, third / n, fourth / n);
+        match figure {
+            StopFigure::MeanK | StopFigure::MeanT => enough(n).map(|n| (m2 / (n - 1.0)).sqrt()),
+            // Var(s) ≈ (m₄ − m₂²)/(4 n m₂).
+            StopFigure::SdK | StopFigure::SdT if m2 == 0.0 => enough(n).map(|_| 0.0),
+            StopFigure::SdK | StopFigure::SdT => enough(n).map(|n| ((m4 - m2 * m2).max(0.0) / (4.0 * n * m2)).sqrt()),
+            StopFigure::RmsK | StopFigure::RmsT => {
+                let square = m2 + mean * mean;
+                // Variance of x² from the central moments of x.
+                let spread = m4 + 4.0 * mean * m3 + 4.0 * mean * mean * m2 - m2 * m2;
+                let error = if square == 0.0 { 0.0 } else { (spread.max(0.0) / (4.0 * n * square)).sqrt() };
+                enough(n).map(|_| error)
+            }
+            StopFigure::CoverageK | StopFigure::CoverageT => enough(self.quoted).map(|n| {
+                // Agresti and Coull (1998): a share of 0 or 1 has an error too.
+                let (n, held) = (n + 4.0, self.held + 2.0);
+                let share = held / n;
+                100.0 * (share * (1.0 - share) / n).sqrt()
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn standard_errors_are_those_of_the_sample() {
+        // Two-point sample ±1 about 3: m₂ = 1, m₃ = 0, m₄ = 1.
+        let mut sums = Sums::default();
+        (0..100).for_each(|k| sums.errors.add(if k % 2 == 0 { 2.0 } else { 4.0 }));
+        let error = |figure| sums.standard_error(figure).expect("enough values");
+        assert!((error(StopFigure::MeanK) - (1.0_f64 / 99.0).sqrt()).abs() < 1e-12);
+        assert!(error(StopFigure::SdK) < 1e-7, "a two-point sample has a standard deviation without scatter");
+        // Var(x²) = 4·9·1; error of √10 is √36/(2·√10·10).
+        assert!((error(StopFigure::RmsK) - 6.0 / (20.0 * 10.0_f64.sqrt())).abs() < 1e-12);
+        assert_eq!(sums.standard_error(StopFigure::CoverageK), None, "no interval was quoted");
+    }
+
+    #[test]
+    fn the_error_of_a_standard_deviation_is_that_of_a_normal_sample() {
+        // Quantiles of a normal distribution: se(s)/s = 1/√(2n).
+        let mut sums = Sums::default();
+        let n = 4000;
+        let normal = |p: f64| {
+            use statrs::distribution::{ContinuousCDF, Normal};
+            Normal::standard().inverse_cdf(p)
+        };
+        (0..n).for_each(|k| sums.errors.add(2.0 * normal((k as f64 + 0.5) / n as f64)));
+        let error = sums.standard_error(StopFigure::SdT).expect("enough values");
+        assert!((error / (2.0 / (2.0 * n as f64).sqrt()) - 1.0).abs() < 0.02, "{error}");
+    }
+}

@@ -1,0 +1,165 @@
+//! The files of a result folder that everything else is made from: rows, design, showcases, times and manifest. The manifest
+//! is written last and carries the SHA-256 of the others, and who reads them looks first whether they are still the same.
+
+use std::path::{Path, PathBuf};
+
+use scenario::failure::{Failure, OnPath};
+
+use crate::design::Design;
+use crate::disk;
+use crate::files::{DESIGN, MANIFEST, ROWS, SHOWCASES, TIMINGS};
+use crate::folder::{Reading, ResultFolder, sha256_of};
+use crate::manifest::Manifest;
+use crate::rows::{Layout, Reader, Row, Sequence};
+use crate::showcase::Showcase;
+use crate::timings::Timings;
+use crate::unfinished;
+
+/// Largest size of a stored text, bytes.
+const LARGEST_TEXT: u64 = 1 << 29;
+
+/// A finished study: everything but its rows, which are read a few at a time.
+pub struct Stored {
+    folder: PathBuf,
+    /// What ran, and on what.
+    pub manifest: Manifest,
+    /// The design.
+    pub design: Design,
+    /// The first trial of every cell in detail, where it was asked for.
+    pub showcases: Vec<Showcase>,
+    /// How long the methods took.
+    pub timings: Timings,
+    _reading: Option<Reading>,
+}
+
+impl Stored {
+    /// Reads a finished study and keeps others from writing there. Fails as wrong input when the folder holds none.
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
+        // A folder that is not there is not worth a lock.
+        expected_in(folder)?;
+        let reading = Reading::begin(folder)?;
+        let stored = Self::of(folder, expected_in(folder)?)?;
+        Ok(Self { _reading: Some(reading), ..stored })
+    }
+
+    /// Reads a finished study in a folder that is held.
+    pub fn held(folder: &ResultFolder) -> Result<Self, Failure> {
+        Self::of(folder.path(), expected_in(folder.path())?)
+    }
+
+    fn of(folder: &Path, manifest: Manifest) -> Result<Self, Failure> {
+        for name in [ROWS, DESIGN, SHOWCASES, TIMINGS] {
+            is_unchanged(folder, name, &manifest)?;
+        }
+        let path = folder.join(DESIGN);
+        let design = Design::of_text(&text(&path)?).map_err(|problem| refused(&path, &problem))?;
+        let path = folder.join(SHOWCASES);
+        let showcases =
+            serde_json::from_slice(&text(&path)?).map_err(|problem| refused(&path, &problem.to_string()))?;
+        let path = folder.join(TIMINGS);
+        let timings = Timings::of_text(&text(&path)?, &design).map_err(|problem| refused(&path, &problem))?;
+        let design = Design { words: manifest.words(), ..design };
+        Ok(Self { folder: folder.to_owned(), manifest, design, showcases, timings, _reading: None })
+    }
+
+    /// The same study after its words have changed.
+    pub(crate) fn told(self, manifest: Manifest) -> Self {
+        let design = Design { words: manifest.words(), ..self.design };
+        Self { manifest, design, ..self }
+    }
+
+    /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.
+    pub fn rows(&self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+        let path = self.folder.join(ROWS);
+        let refuse = |problem: String| refused(&path, &problem);
+        let mut sequence = Sequence::new(&self.design);
+        Reader::open(&path, &Layout::of(&self.design))?.for_each(|row| {
+            sequence.see(&row).map_err(refuse)?;
+            take(row)
+        })?;
+        sequence.finish().map_err(refuse)
+    }
+}
+
+/// A file that is not what a study wrote, and what to do.
+fn refused(path: &Path, problem: &str) -> Failure {
+    Failure::input(format!(
+        "{}: {problem}; expected what a finished study wrote; put the file back, or run the study again with --restart",
+        path.display()
+    ))
+}
+
+fn text(path: &Path) -> Result<Vec<u8>, Failure> {
+    disk::read(path, LARGEST_TEXT).on("read", path)?.ok_or_else(|| refused(path, "it is missing"))
+}
+
+/// Compares a file with what the manifest says of it.
+fn is_unchanged(folder: &Path, name: &str, manifest: &Manifest) -> Result<(), Failure> {
+    let path = folder.join(name);
+    let Some(written) = manifest.sha256.get(name) else {
+        return Err(Failure::input(format!(
+            "{}: it has no SHA-256 of {name}, as an earlier version of this program wrote it; run the study again with \
+             --restart",
+            folder.join(MANIFEST).display()
+        )));
+    };
+    if !disk::is_there(&path).on("look for", &path)? {
+        return Err(refused(&path, "it is missing"));
+    }
+    match sha256_of(&path).on("read", &path)? == *written {
+        true => Ok(()),
+        false => Err(refused(&path, "it was changed: its SHA-256 is not the one in the manifest")),
+    }
+}
+
+/// The manifest of the finished rows in a folder; `None` when there are none. A folder that holds what was published
+/// without its rows is not a finished study.
+pub fn manifest_of_rows(folder: &Path) -> Result<Option<Manifest>, Failure> {
+    let is_there = |name: &str| disk::is_there(&folder.join(name)).on("look for", &folder.join(name));
+    if unfinished::is_in(folder)? || !is_there(ROWS)? { Ok(None) } else { Manifest::read(&folder.join(MANIFEST)) }
+}
+
+/// Fails unless a folder holds a finished study.
+pub fn is_finished(folder: &Path) -> Result<(), Failure> {
+    expected_in(folder).map(drop)
+}
+
+/// The same where there have to be rows.
+fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
+    manifest_of_rows(folder)?.ok_or_else(|| {
+        let problem = match unfinished::is_in(folder) {
+            Ok(true) => "the study in it is not finished; run it again to go on",
+            _ => "there are no rows in it; expected the folder of a finished study",
+        };
+        Failure::input(format!("{}: {problem}", folder.display()))
+    })
+}
+
+/// Makes a folder that holds rows with this SHA-256 a finished study: design, showcases, times, and the manifest last.
+/// What is returned is what was written, and need not be read again.
+pub fn finish(
+    folder: &ResultFolder,
+    manifest: &Manifest,
+    rows_sha256: String,
+    design: Design,
+    showcases: Vec<Showcase>,
+    timings: &Timings,
+) -> Result<Stored, Failure> {
+    let json = |name: &str, text: serde_json::Result<String>| {
+        let text = text.on("describe", &folder.path().join(name))?;
+        Ok((name.to_owned(), folder.keep(name, text + "\n")?))
+    };
+    let times = timings.to_text(&design)?;
+    let sha256 = [
+        (ROWS.to_owned(), rows_sha256),
+        json(DESIGN, serde_json::to_string(&design))?,
+        json(SHOWCASES, serde_json::to_string(&showcases))?,
+        (TIMINGS.to_owned(), folder.keep(TIMINGS, &times)?),
+    ];
+    let manifest = Manifest { sha256: sha256.into(), ..manifest.clone() };
+    manifest.write(folder)?;
+    // As they are written: to the nanosecond.
+    let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
+    let design = Design { words: manifest.words(), ..design };
+    Ok(Stored { folder: folder.path().to_owned(), manifest, design, showcases, timings, _reading: None })
+}

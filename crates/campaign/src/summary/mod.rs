@@ -1,0 +1,18 @@
+//! What the rows say: bias, spread, failures, coverage and predictive error of every method in every cell and over all of
+//! them, each with its own uncertainty, and every method against a reference on the same trials.
+//!
+//! Rows are seen once, in their order. Only the sums of the present cell and those over all cells are kept, so memory does
+//! not grow with the number of replicates.
+
+mod detail;
+mod record;
+mod tally;
+mod tracing;
+
+pub use detail::{CellDetail, Cloud, MethodDetail, Violin};
+pub use record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Record, Summary};
+pub use tally::{Tally, summarise};
+pub use tracing::{CLEAR, TraceSummary};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,137 @@
+//! What is said of methods: in one cell, against one another, and over all cells.
+
+use crate::statistics::Statistic;
+
+use super::detail::{CellDetail, MethodDetail};
+use super::tracing::TraceSummary;
+
+/// Errors of one index over trials, relative to the truth. All but shares are in per cent.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Errors {
+    /// Mean error.
+    pub mean: Option<Statistic>,
+    /// Median error.
+    pub median: Option<Statistic>,
+    /// Standard deviation.
+    pub sd: Option<Statistic>,
+    /// Root mean square error.
+    pub rms: Option<Statistic>,
+    /// Median absolute deviation from the median, not scaled.
+    pub mad: Option<Statistic>,
+    /// Quantiles of the error: 2.5, 25, 75 and 97.5 %.
+    pub quantiles: [Option<Statistic>; 4],
+    /// Median of the size of the error.
+    pub median_size: Option<Statistic>,
+    /// The size that 90 % of the errors do not exceed.
+    pub high_size: Option<Statistic>,
+    /// Share of quoted 95 % intervals that hold the truth.
+    pub coverage: Option<Statistic>,
+    /// Share of answers that quote an interval.
+    pub quoting: Option<Statistic>,
+    /// Standard deviation over the Cramér–Rao bound: the root mean square of the bounds of the trials.
+    pub sd_over_bound: Option<Statistic>,
+}
+
+/// One method on a set of trials.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Record {
+    /// Trials run.
+    pub trials: u64,
+    /// Reasons of trials without an estimate, with their counts, in the order in which they came.
+    pub failures: Vec<(String, u64)>,
+    /// Share of trials without an estimate.
+    pub failure_rate: Option<Statistic>,
+    /// Errors of K.
+    pub k: Errors,
+    /// Errors of T.
+    pub t: Errors,
+    /// Errors of K/T.
+    pub k_over_t: Errors,
+    /// Median over trials of the heading error of the replay on the trial itself, deg.
+    pub heading_rmse_deg: Option<Statistic>,
+    /// The same on the validation manoeuvre, deg.
+    pub validation_rmse_deg: Option<Statistic>,
+    /// The validation error that 90 % of the trials do not exceed, deg.
+    pub high_validation_rmse_deg: Option<Statistic>,
+    /// Mean number of model evaluations.
+    pub evaluations: Option<f64>,
+}
+
+impl Record {
+    /// Number of failed trials.
+    pub fn failed(&self) -> u64 {
+        self.failures.iter().map(|(_, count)| count).sum()
+    }
+}
+
+/// One method in one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MethodSummary {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the method.
+    pub method: usize,
+    /// What it did there.
+    pub record: Record,
+}
+
+/// One index of one method against the reference, on trials where both gave an answer.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Comparison {
+    /// Difference of the rms errors, per cent: negative where the method is better.
+    pub rms_difference: Option<Statistic>,
+    /// Ratio of the rms errors.
+    pub rms_ratio: Option<Statistic>,
+    /// Share of trials in which the method is closer to the truth.
+    pub closer: Option<Statistic>,
+}
+
+/// One method against the reference in one cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PairSummary {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the method.
+    pub method: usize,
+    /// Trials where both gave an answer.
+    pub trials: u64,
+    /// Errors of K.
+    pub k: Comparison,
+    /// Errors of T.
+    pub t: Comparison,
+}
+
+/// One method over all cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overall {
+    /// What it did.
+    pub record: Record,
+    /// Distributions of its errors.
+    pub detail: MethodDetail,
+}
+
+/// All that is said of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Per cell and method, in the order of the rows.
+    pub methods: Vec<MethodSummary>,
+    /// Per cell and method other than the reference.
+    pub pairs: Vec<PairSummary>,
+    /// Index of the method that others are compared with.
+    pub reference: usize,
+    /// Per method, over all cells.
+    pub overall: Vec<Overall>,
+    /// Distributions in the cells whose detail was asked for.
+    pub details: Vec<CellDetail>,
+    /// What traces said, in the cells that have them.
+    pub tracing: Vec<TraceSummary>,
+}
+
+impl Summary {
+    /// The record of a method in a cell.
+    pub fn record(&self, cell: usize, method: usize) -> Option<&Record> {
+        let key = |summary: &MethodSummary| (summary.cell, summary.method);
+        let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
+        Some(&self.methods[place].record)
+    }
+}

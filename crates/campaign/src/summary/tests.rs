@@ -1,0 +1,141 @@
+use super::*;
+use crate::design::CellFacts;
+use crate::design::Design;
+use crate::rows::{Bound, Row};
+use crate::statistics::Statistic;
+use scenario::{MethodName, Words};
+
+fn design(methods: &[&str], cells: usize) -> Design {
+    let cell = |index: usize| CellFacts {
+        labels: vec![index.to_string()],
+        values: vec![None],
+        trials: 0..0,
+        missing: Vec::new(),
+        bound_percent2: None,
+    };
+    Design {
+        axes: vec!["case".into()],
+        methods: methods.iter().map(|&label| MethodName { label: label.into(), id: label.into() }).collect(),
+        draws: Vec::new(),
+        cells: (0..cells).map(cell).collect(),
+        words: Words { detail: vec!["0".into()], ..Words::default() },
+    }
+}
+
+/// An answer with relative errors in per cent and intervals of ± 2 %.
+fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> Row {
+    let (true_k, true_t) = (0.1, 20.0);
+    let about = |value: f64, truth: f64| [value - 0.02 * truth, value + 0.02 * truth];
+    let (k, t) = (true_k * (1.0 + k / 100.0), true_t * (1.0 + t / 100.0));
+    Row {
+        cell,
+        replicate,
+        method,
+        true_k_per_s: Some(true_k),
+        true_t_s: Some(true_t),
+        bound: Some(Bound { k_per_s: 0.001, t_s: 0.2, k_over_t_per_s2: 1e-4 }),
+        k_per_s: Some(k),
+        k_ci95_per_s: Some(about(k, true_k)),
+        t_s: Some(t),
+        t_ci95_s: Some(about(t, true_t)),
+        heading_rmse_deg: Some(0.5),
+        evaluations: Some(7),
+        ..Row::default()
+    }
+}
+
+fn near(figure: Option<Statistic>, value: f64) {
+    let found = figure.expect("defined").value;
+    assert!((found - value).abs() < 1e-9 * value.abs().max(1.0), "{found}, {value} expected");
+}
+
+/// Errors of −3, −2, … 3 % of K and a tenth of that of T.
+fn ladder() -> Vec<Row> {
+    (0..7).map(|r| answer(0, r, 0, r as f64 - 3.0, 0.1 * (r as f64 - 3.0))).collect()
+}
+
+#[test]
+fn figures_are_those_of_the_errors() {
+    let summary = summarise(&ladder(), &design(&["output-error"], 1));
+    let record = summary.record(0, 0).expect("one cell");
+    let sd = (28.0_f64 / 6.0).sqrt();
+    near(record.k.mean, 0.0);
+    near(record.k.median, 0.0);
+    near(record.k.sd, sd);
+    near(record.k.rms, 2.0);
+    near(record.k.mad, 2.0);
+    near(record.k.quantiles[1], -1.5);
+    near(record.k.median_size, 2.0);
+    // Five of seven intervals of ± 2 % hold the truth; the ends of two just do, or just do not.
+    let coverage = record.k.coverage.expect("quoted").value * 7.0;
+    assert!((3.0..=5.0).contains(&coverage.round()), "{coverage}");
+    near(record.t.coverage, 1.0);
+    near(record.k.sd_over_bound, sd);
+    near(record.t.sd_over_bound, 0.1 * sd);
+    near(record.k.quoting, 1.0);
+    near(record.heading_rmse_deg, 0.5);
+    assert_eq!((record.trials, record.failed(), record.evaluations), (7, 0, Some(7.0)));
+    assert_eq!(record.validation_rmse_deg, None);
+    assert_eq!(summary.overall[0].record, *record, "one cell is all cells");
+}
+
+#[test]
+fn failures_count_and_do_not_spoil() {
+    let mut rows = ladder();
+    rows.extend((7..10).map(|replicate| Row { replicate, failure: Some("not-excited".into()), ..Row::default() }));
+    let summary = summarise(&rows, &design(&["output-error"], 1));
+    let record = summary.record(0, 0).expect("one cell");
+    assert_eq!((record.failed(), record.failures.as_slice()), (3, [("not-excited".to_owned(), 3)].as_slice()));
+    near(record.failure_rate, 0.3);
+    near(record.k.rms, 2.0);
+    let last = summary.details[0].methods[0].ecdf_k.last().expect("steps");
+    assert!((last.0 - 3.0).abs() < 1e-9 && last.1 == 0.7, "{last:?}: failures never come");
+}
+
+#[test]
+fn methods_are_compared_on_the_same_trials() {
+    let mut rows = Vec::new();
+    for r in 0..40u64 {
+        let error = if r % 2 == 0 { 1.0 } else { -1.0 };
+        // The second method fails on some trials, and only those of both count.
+        rows.push(match r % 4 {
+            3 => Row { replicate: r, method: 0, failure: Some("singular".into()), ..Row::default() },
+            _ => answer(0, r, 0, 3.0 * error, 0.5 * error),
+        });
+        rows.push(answer(0, r, 1, error, error));
+    }
+    let summary = summarise(&rows, &design(&["srivc", "output-error"], 1));
+    assert_eq!(summary.reference, 1);
+    let [pair] = summary.pairs.as_slice() else { panic!("one method beside the reference") };
+    assert_eq!((pair.method, pair.trials), (0, 30));
+    near(pair.k.rms_difference, 2.0);
+    near(pair.k.rms_ratio, 3.0);
+    near(pair.k.closer, 0.0);
+    near(pair.t.rms_ratio, 0.5);
+    near(pair.t.closer, 1.0);
+}
+
+#[test]
+fn cells_are_told_apart_and_pooled() {
+    let mut rows = ladder();
+    rows.extend(
+        ladder()
+            .into_iter()
+            .map(|row| Row { cell: 2, ..row })
+            .map(|row| Row { k_per_s: row.k_per_s.map(|k| k + 0.01), ..row }),
+    );
+    let summary = summarise(&rows, &design(&["output-error"], 3));
+    near(summary.record(0, 0).expect("rows").k.median, 0.0);
+    near(summary.record(2, 0).expect("rows").k.median, 10.0);
+    assert!(summary.record(1, 0).is_none(), "a cell without rows");
+    near(summary.overall[0].record.k.mean, 5.0);
+    assert_eq!(summary.details.len(), 1);
+}
+
+#[test]
+fn one_trial_has_no_interval() {
+    let summary = summarise(&ladder()[..1], &design(&["output-error"], 1));
+    let record = summary.record(0, 0).expect("rows");
+    assert_eq!((record.k.sd, record.k.rms.expect("one").ci95), (None, None));
+    assert_eq!(summarise(&[], &design(&["output-error"], 1)).methods, []);
+}

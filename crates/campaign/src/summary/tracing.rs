@@ -1,0 +1,154 @@
+//! What traces said, cell by cell: was everything named that was missing, and anything that was not.
+
+use std::collections::BTreeMap;
+
+use crate::design::Design;
+use crate::rows::Row;
+use crate::statistics::{Statistic, share};
+use scenario::HULL;
+
+/// Margin in BIC beyond which the right effect has to be named: below, a rival explains the trial nearly as well.
+pub const CLEAR: f64 = 20.0;
+
+/// What traces said in one cell.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TraceSummary {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Identifiers of what was missing.
+    pub missing: Vec<String>,
+    /// Trials traced.
+    pub trials: u64,
+    /// Trials with the verdicts clean, traced and unexplained.
+    pub verdicts: [u64; 3],
+    /// How often every identifier was named.
+    pub named: BTreeMap<String, u64>,
+    /// Trials in which nothing was named.
+    pub silent: u64,
+    /// Trials in which every missing effect is in one of the groups named.
+    pub complete: u64,
+    /// Trials in which a group was named that holds no missing effect.
+    pub wrong: u64,
+    /// Trials in which the one missing effect is clearly better than any other alone, and those of them in which it was named.
+    pub clear: [u64; 2],
+    /// Mean expected likelihood ratio.
+    pub expected: Option<f64>,
+}
+
+impl TraceSummary {
+    /// Share of trials in which all that is missing was named.
+    pub fn complete_share(&self) -> Option<Statistic> {
+        if self.missing.is_empty() || self.is_hull() { None } else { share(self.complete, self.trials) }
+    }
+
+    /// Share of trials in which something was named that is not missing; `None` for a hull, of which nobody knows what it
+    /// lacks.
+    pub fn wrong_share(&self) -> Option<Statistic> {
+        if self.is_hull() { None } else { share(self.wrong, self.trials) }
+    }
+
+    /// Share of clear trials in which the right effect was named.
+    pub fn clear_share(&self) -> Option<Statistic> {
+        share(self.clear[1], self.clear[0])
+    }
+
+    fn is_hull(&self) -> bool {
+        self.missing.iter().any(|id| id == HULL)
+    }
+}
+
+/// Counts over the rows of traces.
+#[derive(Debug, Default)]
+pub struct TraceTally {
+    missing: Vec<Vec<String>>,
+    cells: Vec<TraceSummary>,
+    expected: (f64, u64),
+}
+
+impl TraceTally {
+    /// A tally of the cells of a design.
+    pub fn new(design: &Design) -> Self {
+        Self { missing: design.cells.iter().map(|cell| cell.missing.clone()).collect(), ..Self::default() }
+    }
+
+    /// Takes note of a row, in the order of rows.
+    pub fn add(&mut self, row: &Row) {
+        let Some(cells) = &row.traced else { return };
+        let cell = row.cell as usize;
+        if self.cells.last().is_none_or(|last| last.cell != cell) {
+            self.expected = (0.0, 0);
+            self.cells.push(TraceSummary { cell, missing: self.missing[cell].clone(), ..TraceSummary::default() });
+        }
+        let summary = self.cells.last_mut().expect("one was pushed");
+        summary.trials += 1;
+        let verdict = ["clean", "traced", "unexplained"].iter().position(|word| **word == *cells.verdict);
+        verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
+        let parts = |text: &str| text.split('+').filter(|part| !part.is_empty()).map(str::to_owned).collect::<Vec<_>>();
+        let mut named = parts(&cells.named);
+        summary.silent += u64::from(named.is_empty());
+        named.sort_unstable();
+        named.dedup();
+        named.into_iter().for_each(|id| *summary.named.entry(id).or_default() += 1);
+        let groups: Vec<Vec<String>> =
+            parts(&cells.groups).iter().map(|group| group.split('|').map(str::to_owned).collect()).collect();
+        let holds = |group: &Vec<String>| group.iter().any(|id| summary.missing.contains(id));
+        summary.wrong += u64::from(!groups.iter().all(holds));
+        let complete = summary.missing.iter().all(|id| groups.iter().any(|group| group.contains(id)));
+        summary.complete += u64::from(complete && !summary.missing.is_empty());
+        if cells.margin.is_some_and(|margin| margin > CLEAR) {
+            summary.clear[0] += 1;
+            summary.clear[1] += u64::from(complete);
+        }
+        if let Some(expected) = cells.expected {
+            self.expected.0 += expected;
+            self.expected.1 += 1;
+            summary.expected = Some(self.expected.0 / self.expected.1 as f64);
+        }
+    }
+
+    /// All cells with traces, in order.
+    pub fn finish(self) -> Vec<TraceSummary> {
+        self.cells
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::TracedCells;
+
+    fn row(groups: &str, margin: Option<f64>) -> Row {
+        let named: Vec<&str> =
+            groups.split('+').filter(|g| !g.is_empty()).map(|g| g.split('|').next().unwrap_or(g)).collect();
+        let cells = TracedCells {
+            verdict: "traced".into(),
+            named: named.join("+").into(),
+            groups: groups.into(),
+            margin,
+            expected: Some(4.0),
+        };
+        Row { traced: Some(Box::new(cells)), ..Row::default() }
+    }
+
+    #[test]
+    fn groups_are_right_when_they_hold_what_is_missing() {
+        let mut tally = TraceTally { missing: vec![vec!["a".into(), "b".into()]], ..TraceTally::default() };
+        for groups in ["a+b", "c|a+b", "a", "a+b+d", ""] {
+            tally.add(&row(groups, Some(30.0)));
+        }
+        let [summary] = tally.finish().try_into().expect("one cell");
+        assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
+        assert_eq!(summary.clear, [5, 3]);
+        assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
+        assert_eq!(summary.expected, Some(4.0));
+    }
+
+    #[test]
+    fn any_name_is_wrong_where_nothing_is_missing() {
+        let mut tally = TraceTally { missing: vec![vec![]], ..TraceTally::default() };
+        tally.add(&row("", None));
+        tally.add(&row("a", None));
+        let [summary] = tally.finish().try_into().expect("one cell");
+        assert_eq!((summary.wrong, summary.complete_share()), (1, None));
+    }
+}

@@ -1,0 +1,141 @@
+//! How long simulation and identification took: the one result that depends on the machine, kept apart from the rows.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::design::Design;
+use crate::statistics::Moments;
+use scenario::failure::Failure;
+
+/// Name of the simulation among the methods.
+const SIMULATION: &str = "(simulation)";
+
+/// Wall time of one trial.
+pub struct Timing {
+    /// Index of the cell.
+    pub cell: u64,
+    /// To simulate it.
+    pub simulation: Duration,
+    /// Of every method that was asked, in the order of the scenario; empty where the trial could not be simulated.
+    pub methods: Vec<Duration>,
+}
+
+/// Times of one method in one cell: `timings.csv` has one line each.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    cell: u64,
+    method: String,
+    trials: u64,
+    mean_us: f64,
+    sd_us: f64,
+    shortest_us: f64,
+}
+
+/// Times of a study or a part of it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Timings {
+    /// Per cell seen, in order: the simulation, then the methods.
+    cells: Vec<(u64, Vec<Moments>)>,
+    methods: usize,
+}
+
+impl Timings {
+    /// No times of so many methods.
+    pub fn new(methods: usize) -> Self {
+        Self { cells: Vec::new(), methods }
+    }
+
+    /// Takes note of one trial.
+    pub fn add(&mut self, timing: &Timing) {
+        let moments = self.of_cell(timing.cell);
+        let microseconds = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
+        moments[0].add(microseconds(&timing.simulation));
+        moments[1..].iter_mut().zip(&timing.methods).for_each(|(moments, time)| moments.add(microseconds(time)));
+    }
+
+    /// Joins the times of another part.
+    pub fn join(&mut self, other: &Self) {
+        for (cell, theirs) in &other.cells {
+            self.of_cell(*cell).iter_mut().zip(theirs).for_each(|(own, their)| own.join(their));
+        }
+    }
+
+    fn of_cell(&mut self, cell: u64) -> &mut [Moments] {
+        // Cells come in order, nearly always the last one.
+        let place = match self.cells.last() {
+            Some((last, _)) if *last == cell => self.cells.len() - 1,
+            _ => match self.cells.binary_search_by_key(&cell, |(cell, _)| *cell) {
+                Ok(place) => place,
+                Err(place) => {
+                    self.cells.insert(place, (cell, vec![Moments::default(); 1 + self.methods]));
+                    place
+                }
+            },
+        };
+        &mut self.cells[place].1
+    }
+
+    /// Mean time of a method over all its trials, µs, with its standard error; `None` when it was never asked.
+    pub fn mean_us(&self, method: usize) -> Option<(f64, f64)> {
+        let mut all = Moments::default();
+        self.cells.iter().filter_map(|(_, moments)| moments.get(1 + method)).for_each(|moments| all.join(moments));
+        (all.count > 0.0).then(|| (all.mean, all.sd() / all.count.sqrt()))
+    }
+
+    /// One line for every cell and method that was timed.
+    pub fn lines<'a>(&'a self, design: &'a Design) -> impl Iterator<Item = Line> + 'a {
+        let names = || std::iter::once(SIMULATION).chain(design.methods.iter().map(|method| method.label.as_str()));
+        self.cells.iter().flat_map(move |(cell, moments)| {
+            names().zip(moments).filter(|(_, moments)| moments.count > 0.0).map(|(method, moments)| Line {
+                cell: *cell,
+                method: method.to_owned(),
+                trials: moments.count as u64,
+                mean_us: to_the_nanosecond(moments.mean),
+                sd_us: to_the_nanosecond(moments.sd()),
+                shortest_us: to_the_nanosecond(moments.smallest),
+            })
+        })
+    }
+
+    /// Times from their lines; methods the design does not have are left out.
+    pub fn of_lines(lines: impl IntoIterator<Item = Line>, design: &Design) -> Self {
+        let mut timings = Self::new(design.methods.len());
+        for line in lines {
+            let place = match line.method.as_str() {
+                SIMULATION => Some(0),
+                label => design.methods.iter().position(|method| method.label == label).map(|place| place + 1),
+            };
+            if let Some(place) = place {
+                timings.of_cell(line.cell)[place] = Moments {
+                    count: line.trials as f64,
+                    mean: line.mean_us,
+                    second: line.sd_us.powi(2) * (line.trials.saturating_sub(1)) as f64,
+                    smallest: line.shortest_us,
+                    ..Moments::default()
+                };
+            }
+        }
+        timings
+    }
+
+    /// The text of `timings.csv`.
+    pub fn to_text(&self, design: &Design) -> Result<Vec<u8>, Failure> {
+        let refuse = |error: &dyn std::fmt::Display| Failure::work(format!("failed to describe times: {error}"));
+        let mut file = csv::Writer::from_writer(Vec::new());
+        self.lines(design).try_for_each(|line| file.serialize(line)).map_err(|error| refuse(&error))?;
+        file.into_inner().map_err(|error| refuse(&error))
+    }
+
+    /// Reads the text of a `timings.csv`; methods the design does not have are left out. Fails when it is none.
+    pub fn of_text(text: &[u8], design: &Design) -> Result<Self, String> {
+        let lines = csv::Reader::from_reader(text).into_deserialize().collect::<Result<Vec<Line>, _>>();
+        Ok(Self::of_lines(lines.map_err(|error| error.to_string())?, design))
+    }
+}
+
+/// What a clock tells, of a time in µs.
+fn to_the_nanosecond(time: f64) -> f64 {
+    (time * 1e3).round() / 1e3
+}

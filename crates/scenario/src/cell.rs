@@ -1,0 +1,197 @@
+//! Cells of a design: everything about a trial but its chance, and how one with drawn values is made.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use simulate::StreamKey;
+use toml::{Table, Value};
+
+use crate::draw::Draw;
+use crate::method::{Method, Procedure, methods};
+use crate::part::Part;
+use crate::problem::{KeyPath, Problem};
+use crate::reader::Gaps;
+use crate::specification::Specification;
+use crate::wire::ScenarioWire;
+use crate::{limits, reader, resolve, sweep};
+
+/// One cell of the design: everything but chance is fixed.
+pub struct Cell {
+    /// Labels of its points, one an axis.
+    pub labels: Vec<String>,
+    /// Values of its points, where an axis is a number.
+    pub values: Vec<Option<f64>>,
+    /// The methods, all on the same trial.
+    pub methods: Vec<Method>,
+    /// How a trial is made; drawn values are in the middle of their distributions.
+    specification: Specification,
+    /// How a trial with drawn values is made.
+    drawn: Option<Drawn>,
+}
+
+/// What a trial with drawn values is made from.
+struct Drawn {
+    draws: Vec<Draw>,
+    /// The document of the cell, as far as it says how a trial is made, with every drawn value in the middle.
+    document: Table,
+    /// Where the drawn values stand in it.
+    gaps: Gaps,
+    folder: PathBuf,
+}
+
+/// How one trial is made.
+pub struct Specimen<'a> {
+    /// The specification, whole.
+    pub specification: Cow<'a, Specification>,
+    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`].
+    pub drawn: Vec<f64>,
+}
+
+/// Drawn values that make no trial.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refusal(String);
+
+impl Cell {
+    /// The same cell; its trials carry the name of the scenario.
+    pub(crate) fn named(mut self, scenario: &str) -> Self {
+        self.specification.name(scenario);
+        self
+    }
+
+    /// Whether one of its methods is a trace.
+    pub fn traces(&self) -> bool {
+        self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
+    }
+
+    /// Effects a first-order base lacks in its trials.
+    pub fn missing(&self) -> Vec<String> {
+        self.specification.missing.clone()
+    }
+
+    /// Labels of the points joined, or nothing when there is no axis.
+    pub fn title(&self) -> String {
+        self.labels.join(", ")
+    }
+
+    /// Whether all its trials have one specification.
+    pub fn is_fixed(&self) -> bool {
+        self.drawn.is_none()
+    }
+
+    /// How the trial of `key` is made.
+    ///
+    /// Fails when drawn values make no trial, which only a distribution without ends can do.
+    pub fn specimen(&self, key: &StreamKey) -> Result<Specimen<'_>, Refusal> {
+        let Some(drawn) = &self.drawn else {
+            return Ok(Specimen { specification: Cow::Borrowed(&self.specification), drawn: Vec::new() });
+        };
+        let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
+        let mut specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
+        specification.name(&self.specification.simulation.scenario);
+        Ok(Specimen { specification: Cow::Owned(specification), drawn: values })
+    }
+}
+
+impl Drawn {
+    /// Draws for a cell, each tried in the middle and at the ends of its range, and the specification in the middle of all;
+    /// `None` where nothing is drawn.
+    ///
+    /// Fails with the draw at fault and what is wrong with the trial.
+    fn new(draws: &[Draw], document: &Table, folder: &Path) -> Result<Option<(Self, Specification)>, (usize, Problem)> {
+        if draws.is_empty() {
+            return Ok(None);
+        }
+        let blamed = |index: usize, problem: Problem| {
+            let of_key = draws.iter().position(|draw| draw.key.meets(&problem.key));
+            (of_key.unwrap_or(index), problem)
+        };
+        let middle: Vec<f64> = draws.iter().map(Draw::middle).collect();
+        let mut document = only(document, &[Part::Trial]);
+        for (draw, &value) in draws.iter().zip(&middle) {
+            sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
+        }
+        let gaps = Gaps::new(draws.iter().map(|draw| &draw.key));
+        let drawn = Self { draws: draws.to_vec(), document, gaps, folder: folder.to_owned() };
+        let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
+        for (index, draw) in draws.iter().enumerate() {
+            for value in draw.ends() {
+                let mut values = middle.clone();
+                values[index] = value;
+                drawn.specification(&values).map_err(|problem| blamed(index, problem))?;
+            }
+        }
+        Ok(Some((drawn, specification)))
+    }
+
+    /// The specification with these values; what they do not touch is as it is in the middle.
+    fn specification(&self, values: &[f64]) -> Result<Specification, Problem> {
+        let values: Vec<Value> = values.iter().copied().map(Value::Float).collect();
+        resolve::specification(&reader::filled(&self.document, &self.gaps, &values)?, &self.folder)
+    }
+}
+
+/// Some parts of a document, and empty ones where a document needs more.
+pub(crate) fn only(document: &Table, parts: &[Part]) -> Table {
+    let empty = [
+        ("question", Value::String(String::new())),
+        ("seed", Value::Integer(0)),
+        ("identifier", Value::Array(Vec::new())),
+    ];
+    let mut some: Table = empty.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    let kept = document.iter().filter(|(key, _)| parts.contains(&Part::of(key)));
+    some.extend(kept.map(|(key, value)| (key.clone(), value.clone())));
+    some
+}
+
+/// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved like
+/// any scenario.
+pub(crate) fn swept(
+    document: &Table,
+    points: &[&sweep::Point],
+    base: &[Method],
+    folder: &Path,
+) -> Result<Cell, Problem> {
+    let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
+    let settings = || points.iter().flat_map(|point| &point.set);
+    let cell = (labels.len() > 1).then(|| labels.join(", "));
+    // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of several.
+    let blame = |problem: Problem| {
+        let of_key = settings().rfind(|setting| setting.key.meets(&problem.key));
+        match of_key.or_else(|| settings().next_back()) {
+            Some(setting) => setting.blamed(problem, cell.as_deref()),
+            None => problem,
+        }
+    };
+    let mut changed = document.clone();
+    for setting in settings() {
+        sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(blame)?;
+    }
+    let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
+    let specification = resolve::specification(&wire, folder).map_err(blame)?;
+    let methods = methods(&wire.identifier).map_err(blame)?;
+    if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
+        return Err(blame(Problem::value(
+            KeyPath::dotted("identifier"),
+            "the methods are not the same in every cell",
+            "expected settings of methods",
+            "sweep settings only, and name every method once in an [[identifier]] of its own",
+        )));
+    }
+    limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(blame)?;
+    let draws: Vec<Draw> = wire
+        .draw
+        .iter()
+        .enumerate()
+        .map(|(index, draw)| draw.resolve(index))
+        .collect::<Result<_, _>>()
+        .map_err(|problem| if points.is_empty() { problem } else { blame(problem) })?;
+    let drawn =
+        Drawn::new(&draws, &changed, folder).map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
+    let (drawn, specification) = match drawn {
+        Some((drawn, specification)) => (Some(drawn), specification),
+        None => (None, specification),
+    };
+    let values = points.iter().map(|point| point.value).collect();
+    Ok(Cell { labels, values, methods, specification, drawn })
+}

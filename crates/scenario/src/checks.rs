@@ -1,0 +1,97 @@
+//! What has to hold for a scenario as a whole: sizes, titles, draws.
+
+use std::collections::HashSet;
+
+use crate::cell::Cell;
+use crate::draw::DrawWire;
+use crate::limits;
+use crate::name::LONGEST_NAME;
+use crate::problem::{KeyPath, Problem, suggestion};
+use crate::sweep::Axis;
+
+/// Largest number of trials; more is a slip of the pen.
+const MOST_TRIALS: u64 = 1_000_000_000;
+
+pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), Problem> {
+    let key = KeyPath::dotted("replicates");
+    if replicates == 0 {
+        return Err(Problem::value(
+            key,
+            "`replicates` is 0, so nothing would be run",
+            "expected at least 1",
+            "give the number of trials in every cell, or leave the key out for one",
+        ));
+    }
+    if cells * methods > limits::MOST_METHODS_OF_CELLS {
+        return Err(Problem::name(
+            KeyPath::dotted("sweep"),
+            format!("the sweeps make {cells} cells, each with {methods} methods"),
+            format!("expected at most {} methods of cells in all", limits::MOST_METHODS_OF_CELLS),
+            "use fewer points or fewer methods, or make several scenarios of this one",
+        ));
+    }
+    if replicates.saturating_mul(cells as u64) > MOST_TRIALS {
+        return Err(Problem::value(
+            key,
+            format!("`replicates` is {replicates}, for a design of size {cells}"),
+            format!("expected at most {MOST_TRIALS} trials in all"),
+            "use fewer replicates; 200 are enough for a first look",
+        ));
+    }
+    Ok(())
+}
+
+/// Files are named after cells, so their labels are not too long together.
+pub fn titles(axes: &[Axis]) -> Result<(), Problem> {
+    let longest = |axis: &Axis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
+    let found = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
+    if found <= LONGEST_NAME {
+        return Ok(());
+    }
+    Err(Problem::name(
+        KeyPath::dotted("sweep"),
+        format!("the labels of a cell have up to {found} characters together"),
+        format!("expected at most {LONGEST_NAME}"),
+        "shorten the longest labels, or sweep along fewer axes",
+    ))
+}
+
+/// Draws and sweeps change different keys, and no key twice.
+pub fn draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
+    limits::entries("draw", draws.len(), limits::MOST_DRAWS)?;
+    for (index, draw) in draws.iter().enumerate() {
+        let own = KeyPath::dotted(draw.key());
+        let place = KeyPath::dotted("draw").child(index).child("key");
+        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).meets(&own));
+        let by_sweep =
+            axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.meets(&own));
+        if by_draw || by_sweep {
+            return Err(Problem::value(
+                place,
+                format!("`{own}` is drawn, and {} changes it too", if by_draw { "another draw" } else { "a sweep" }),
+                "expected a key that nothing else changes",
+                "remove one of them; a sweep can change the numbers of a draw, for instance `draw.0.normal.sd`",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Every title is that of a cell.
+pub fn detail(titles: &[String], cells: &[Cell]) -> Result<(), Problem> {
+    let known: Vec<String> = cells.iter().map(Cell::title).filter(|title| !title.is_empty()).collect();
+    let places: HashSet<&str> = known.iter().map(String::as_str).collect();
+    let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
+        return Ok(());
+    };
+    let advice = match &known[..known.len().min(20)] {
+        [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
+        shown => suggestion(title, shown),
+    };
+    Err(Problem::value(
+        KeyPath::dotted("output.detail").child(index),
+        format!("no cell is called {title:?}"),
+        "expected labels of points, joined by commas",
+        advice,
+    ))
+}

@@ -1,0 +1,318 @@
+//! Values drawn anew for every trial: `[[draw]]`. A draw has a stream of its own, keyed by the replicate and its place in the
+//! list and not by the cell, so a replicate has the same drawn ship in every cell and another draw changes nothing of it.
+
+use rand::rngs::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal, Uniform};
+use serde::Deserialize;
+use ship::Shown;
+use simulate::{Purpose, StreamKey};
+use statrs::distribution::ContinuousCDF as _;
+
+use crate::limits;
+use crate::part::Part;
+use crate::problem::{KeyPath, Mark, Problem};
+
+/// A draw as it is written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct DrawWire {
+    /// Dotted key that is drawn.
+    key: String,
+    normal: Option<NormalWire>,
+    log_normal: Option<LogNormalWire>,
+    uniform: Option<RangeWire>,
+    log_uniform: Option<RangeWire>,
+    /// Values outside are drawn again.
+    between: Option<[f64; 2]>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NormalWire {
+    mean: f64,
+    sd: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LogNormalWire {
+    median: f64,
+    /// Standard deviation of the natural logarithm.
+    sigma: f64,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RangeWire {
+    from: f64,
+    to: f64,
+}
+
+/// A key that is drawn, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draw {
+    /// The key.
+    pub key: KeyPath,
+    /// Where the file says how.
+    place: KeyPath,
+    index: u32,
+    shape: Shape,
+    between: [f64; 2],
+}
+
+/// A distribution of the value, or of its natural logarithm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Shape {
+    of_logarithm: bool,
+    law: Law,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Law {
+    Normal(Normal<f64>),
+    Uniform { uniform: Uniform<f64>, ends: [f64; 2] },
+}
+
+/// Least probability of the range that is kept: below it, drawing again and again would take for ever.
+const LEAST_PROBABILITY: f64 = 1e-3;
+
+impl DrawWire {
+    /// The key that is drawn, with dots.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// Checks a draw; `index` is its place in the list.
+    pub fn resolve(&self, index: usize) -> Result<Draw, Problem> {
+        let place = KeyPath::dotted("draw").child(index);
+        let key = KeyPath::dotted(&self.key);
+        limits::depth(&key, &place.child("key"))?;
+        let is_of_trial = |first: &String| Part::of(first) == Part::Trial && first != "validation";
+        if !key.parts().first().is_some_and(is_of_trial) {
+            return Err(Problem::value(
+                place.child("key"),
+                format!("the draw changes `{key}`"),
+                "expected a key that says how a trial is made",
+                "for instance `ship.first-order.T-s` or `sensor.heading-noise-deg`",
+            ));
+        }
+        let (shape, support, name) = self.shape(&place)?;
+        let [low, high] = self.between.unwrap_or(support);
+        let draw = Draw { key, place: place.child(name), index: index as u32, shape, between: [low, high] };
+        if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
+            return Err(Problem::value(
+                place.child("between"),
+                format!("the draw of `{}` is held between {} and {}", draw.key, Shown(low), Shown(high)),
+                format!("expected a range that holds at least {} % of the draws", 100.0 * LEAST_PROBABILITY),
+                "widen the range, or change the distribution",
+            ));
+        }
+        Ok(draw)
+    }
+
+    /// The distribution, where it lives, and its name.
+    fn shape(&self, place: &KeyPath) -> Result<(Shape, [f64; 2], &'static str), Problem> {
+        let number = |name: &str, number: &str, value: f64, least: f64| {
+            let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
+            if value.is_finite() && value > least && is_within_reach {
+                return Ok(value);
+            }
+            let found = format!("`{number}` of the `{name}` distribution of `{}` is {}", self.key, Shown(value));
+            let expected = match least {
+                f64::NEG_INFINITY => "expected a finite number".to_owned(),
+                _ => format!("expected a finite number above {}", Shown(least)),
+            };
+            Err(Problem::value(place.child(name).child(number), found, expected, "change the number"))
+        };
+        let everything = [f64::NEG_INFINITY, f64::INFINITY];
+        match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
+            (Some(NormalWire { mean, sd }), None, None, None) => {
+                let mean = number("normal", "mean", mean, f64::NEG_INFINITY)?;
+                let law = normal(mean, number("normal", "sd", sd, 0.0)?);
+                Ok((Shape { of_logarithm: false, law }, everything, "normal"))
+            }
+            (None, Some(LogNormalWire { median, sigma }), None, None) => {
+                let median = number("log-normal", "median", median, 0.0)?;
+                let law = normal(median.ln(), number("log-normal", "sigma", sigma, 0.0)?);
+                Ok((Shape { of_logarithm: true, law }, [0.0, f64::INFINITY], "log-normal"))
+            }
+            (None, None, Some(RangeWire { from, to }), None) => {
+                let from = number("uniform", "from", from, f64::NEG_INFINITY)?;
+                let to = number("uniform", "to", to, from)?;
+                Ok((Shape { of_logarithm: false, law: uniform(from, to) }, [from, to], "uniform"))
+            }
+            (None, None, None, Some(RangeWire { from, to })) => {
+                let from = number("log-uniform", "from", from, 0.0)?;
+                let to = number("log-uniform", "to", to, from)?;
+                Ok((Shape { of_logarithm: true, law: uniform(from.ln(), to.ln()) }, [from, to], "log-uniform"))
+            }
+            _ => Err(Problem::name(
+                place.clone(),
+                format!("the draw of `{}` does not say from which distribution", self.key),
+                "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
+                "for instance `uniform = { from = 0.5, to = 3.0 }`",
+            )),
+        }
+    }
+}
+
+/// A normal law; both numbers have been checked.
+fn normal(mean: f64, sd: f64) -> Law {
+    Law::Normal(Normal::new(mean, sd).expect("a finite standard deviation"))
+}
+
+/// A uniform law; both ends have been checked.
+fn uniform(from: f64, to: f64) -> Law {
+    Law::Uniform { uniform: Uniform::new_inclusive(from, to).expect("finite ends in order"), ends: [from, to] }
+}
+
+impl Draw {
+    /// The value of one trial, in the unit of its key.
+    pub fn value(&self, key: &StreamKey) -> f64 {
+        let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
+        let [low, high] = self.between;
+        loop {
+            let value = self.shape.one(&mut rng);
+            if (low..=high).contains(&value) {
+                return value;
+            }
+        }
+    }
+
+    /// The middle of the distribution, within its range.
+    pub fn middle(&self) -> f64 {
+        let [low, high] = self.between;
+        self.shape.middle().clamp(low, high)
+    }
+
+    /// The ends of its range, where it has any.
+    pub fn ends(&self) -> impl Iterator<Item = f64> {
+        self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite())
+    }
+
+    /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution; `cell`
+    /// names the cell where it helps.
+    pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
+        let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
+        let (key, mark, what) = match problem.mark {
+            Mark::Name => (self.key_place(), Mark::Value, "changes a key that cannot be drawn"),
+            Mark::Value => (self.place.clone(), Mark::Name, "reaches a value that makes no trial"),
+        };
+        let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
+        Problem { key, mark, found, ..problem }
+    }
+
+    fn key_place(&self) -> KeyPath {
+        KeyPath::dotted("draw").child(self.index).child("key")
+    }
+
+    /// Probability of a value within the range.
+    fn probability(&self) -> f64 {
+        let [below, above] = self.between.map(|end| self.shape.probability_below(end));
+        above - below
+    }
+}
+
+impl Shape {
+    fn one(&self, rng: &mut ChaCha8Rng) -> f64 {
+        let drawn = match &self.law {
+            Law::Normal(normal) => normal.sample(rng),
+            Law::Uniform { uniform, .. } => uniform.sample(rng),
+        };
+        if self.of_logarithm { drawn.exp() } else { drawn }
+    }
+
+    /// What the law is about: the value, or its logarithm.
+    fn of_value(&self, value: f64) -> f64 {
+        if self.of_logarithm { value.ln() } else { value }
+    }
+
+    fn middle(&self) -> f64 {
+        let middle = match &self.law {
+            Law::Normal(normal) => normal.mean(),
+            Law::Uniform { ends, .. } => 0.5 * (ends[0] + ends[1]),
+        };
+        if self.of_logarithm { middle.exp() } else { middle }
+    }
+
+    fn probability_below(&self, value: f64) -> f64 {
+        let x = self.of_value(value);
+        match &self.law {
+            Law::Normal(normal) => match statrs::distribution::Normal::new(normal.mean(), normal.std_dev()) {
+                Ok(law) => law.cdf(x),
+                Err(_) => f64::NAN,
+            },
+            Law::Uniform { ends: [from, to], .. } => ((x - from) / (to - from)).clamp(0.0, 1.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn draw(text: &str) -> Result<Draw, Problem> {
+        toml::from_str::<DrawWire>(&format!("key = \"ship.first-order.T-s\"\n{text}")).expect("well formed").resolve(0)
+    }
+
+    fn values(draw: &Draw) -> Vec<f64> {
+        (0..20_000).map(|replicate| draw.value(&StreamKey { seed: 4, cell: 9, replicate })).collect()
+    }
+
+    /// Mean and standard deviation against the closed forms, within four standard errors of 20,000 draws.
+    fn moments(values: &[f64], mean: f64, sd: f64) {
+        let n = values.len() as f64;
+        let found = values.iter().sum::<f64>() / n;
+        let spread = (values.iter().map(|x| (x - found).powi(2)).sum::<f64>() / n).sqrt();
+        assert!((found - mean).abs() < 4.0 * sd / n.sqrt(), "mean {found}, {mean} expected");
+        assert!((spread / sd - 1.0).abs() < 0.03, "sd {spread}, {sd} expected");
+    }
+
+    #[test]
+    fn draws_have_the_moments_of_their_distribution() {
+        let of = |text: &str| values(&draw(text).expect("valid"));
+        moments(&of("normal = { mean = 15.0, sd = 3.0 }"), 15.0, 3.0);
+        moments(&of("uniform = { from = 0.5, to = 3.0 }"), 1.75, 2.5 / 12.0_f64.sqrt());
+        // exp(σ²/2) and its square less one: σ = 0.3.
+        moments(
+            &of("log-normal = { median = 2.0, sigma = 0.3 }"),
+            2.0 * 0.045_f64.exp(),
+            2.0 * 0.045_f64.exp() * (0.09_f64.exp() - 1.0).sqrt(),
+        );
+        // A normal cut at one sd on either side: variance 1 − 2φ(1)/(2Φ(1) − 1).
+        moments(
+            &of("normal = { mean = 0.0, sd = 1.0 }\nbetween = [-1.0, 1.0]"),
+            0.0,
+            (1.0 - 2.0 * 0.241_970_724_5 / 0.682_689_492_1_f64).sqrt(),
+        );
+        let log: Vec<f64> = of("log-uniform = { from = 0.3, to = 5.0 }").iter().map(|x| x.ln()).collect();
+        moments(&log, 0.5 * (0.3_f64.ln() + 5.0_f64.ln()), (5.0_f64 / 0.3).ln() / 12.0_f64.sqrt());
+    }
+
+    #[test]
+    fn a_replicate_has_the_same_ship_in_every_cell() {
+        let draw = draw("uniform = { from = 0.5, to = 3.0 }").expect("valid");
+        let at = |cell: u64, replicate: u64| draw.value(&StreamKey { seed: 1, cell, replicate });
+        assert_eq!(at(0, 5), at(7, 5));
+        assert_ne!(at(0, 5), at(0, 6));
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused() {
+        for wrong in [
+            "",
+            "normal = { mean = 1.0, sd = 0.0 }",
+            "normal = { mean = nan, sd = 1.0 }",
+            "log-normal = { median = -1.0, sigma = 0.3 }",
+            "uniform = { from = 3.0, to = 0.5 }",
+            "uniform = { from = 0.0, to = inf }",
+            "uniform = { from = -1e308, to = 1e308 }",
+            "log-uniform = { from = 0.0, to = 5.0 }",
+            "normal = { mean = 0.0, sd = 1.0 }\nuniform = { from = 0.0, to = 1.0 }",
+            "normal = { mean = 0.0, sd = 1.0 }\nbetween = [8.0, 9.0]",
+            "uniform = { from = 0.0, to = 1.0 }\nbetween = [1.0, 0.0]",
+        ] {
+            assert!(draw(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one give
+//! the same rows; where they differ, the keys say how.
+
+use std::path::Path;
+use std::{fmt, io};
+
+use sha2::{Digest, Sha256};
+use toml::{Table, Value};
+use trial::file::{self, FileError};
+use trial::reader::RECORD;
+
+use crate::failure::{Failure, OnPath};
+
+use crate::part::Part;
+
+/// The document without prose and presentation; comments and layout are gone by themselves.
+pub fn design_of(document: &Table) -> Table {
+    document
+        .iter()
+        .filter(|(key, _)| Part::of(key) != Part::Prose)
+        .map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
+}
+
+/// SHA-256 of a design and of the records it replays.
+///
+/// Fails when such a record is there and cannot be read to its end.
+pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
+    let mut digest = Sha256::new_with_prefix(design.to_string());
+    let mut tables = vec![design];
+    while let Some(table) = tables.pop() {
+        for (key, value) in table {
+            match value {
+                Value::Table(inner) => tables.push(inner),
+                Value::String(name) if key == "file" => {
+                    let path = folder.join(name);
+                    match file::open(&path, RECORD) {
+                        Ok(mut record) => drop(io::copy(&mut record, &mut digest).on("read", &path)?),
+                        // It has been refused, or belongs to a point that is never resolved with it.
+                        Err(FileError::NotFound | FileError::Folder | FileError::NoFile) => {}
+                        Err(error) => return Err(error).on("read", &path),
+                    }
+                }
+                Value::Array(items) => tables.extend(items.iter().filter_map(Value::as_table)),
+                _ => {}
+            }
+        }
+    }
+    Ok(hex(&digest.finalize()))
+}
+
+/// Bytes as hexadecimal digits.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A key with different values in two documents; `None` where it has none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    key: String,
+    there: Option<Value>,
+    here: Option<Value>,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown = |value: &Option<Value>| value.as_ref().map_or_else(|| "nothing".to_owned(), shortened);
+        write!(f, "`{}`: {} there, {} here", self.key, shown(&self.there), shown(&self.here))
+    }
+}
+
+/// Most letters of a value in a message.
+const LONGEST: usize = 60;
+
+fn shortened(value: &Value) -> String {
+    let text = value.to_string();
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
+/// Keys in which two documents differ, with dots, entries of lists counted from 0.
+pub fn differences(there: &Table, here: &Table) -> Vec<Difference> {
+    let mut found = Vec::new();
+    compare("", Some(&Value::Table(there.clone())), Some(&Value::Table(here.clone())), &mut found);
+    found
+}
+
+fn compare(key: &str, there: Option<&Value>, here: Option<&Value>, found: &mut Vec<Difference>) {
+    let below = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+    match (there, here) {
+        (Some(Value::Table(one)), Some(Value::Table(other))) => {
+            let only = other.keys().filter(|name| !one.contains_key(*name));
+            for name in one.keys().chain(only) {
+                compare(&below(name), one.get(name), other.get(name), found);
+            }
+        }
+        (Some(Value::Array(one)), Some(Value::Array(other))) => {
+            for index in 0..one.len().max(other.len()) {
+                compare(&below(&index.to_string()), one.get(index), other.get(index), found);
+            }
+        }
+        (Some(one), Some(other)) if same(one, other) => {}
+        (there, here) => found.push(Difference { key: key.to_owned(), there: there.cloned(), here: here.cloned() }),
+    }
+}
+
+/// 1 and 1.0 are the same number.
+fn same(one: &Value, other: &Value) -> bool {
+    let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
+    match (number(one), number(other)) {
+        (Some(one), Some(other)) => one.to_bits() == other.to_bits(),
+        _ => one == other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn document(text: &str) -> Table {
+        text.parse().expect("well formed")
+    }
+
+    #[test]
+    fn differences_name_keys_and_both_values() {
+        let there =
+            document("seed = 1\nsensor.heading-noise-deg = 0.1\nidentifier = [{ method.srivc = {} }]\n[ship.yukun]");
+        let here =
+            document("seed = 1.0\nsensor.heading-noise-deg = 0.2\nidentifier = []\nstop.every = 20\n[ship.yukun]");
+        let found: Vec<String> = differences(&there, &here).iter().map(ToString::to_string).collect();
+        assert_eq!(
+            found,
+            [
+                "`identifier.0`: { method = { srivc = {} } } there, nothing here",
+                "`sensor.heading-noise-deg`: 0.1 there, 0.2 here",
+                "`stop`: nothing there, { every = 20 } here"
+            ]
+        );
+        assert!(differences(&there, &there).is_empty());
+    }
+
+    #[test]
+    fn prose_and_presentation_are_not_part_of_a_design() {
+        let bare = document("seed = 1\n[ship.yukun]");
+        let told = document(
+            "# Why?\nquestion = \"?\"\nanalysis = \"!\"\nseed    = 1\n[ship.yukun]\n[output]\nshowcase = true",
+        );
+        assert_eq!(design_of(&bare), design_of(&told));
+    }
+}

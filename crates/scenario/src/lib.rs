@@ -1,0 +1,42 @@
+//! Scenario files: one question each, read strictly, resolved completely before anything runs.
+//!
+//! A value of [`Scenario`] has been checked in every cell of its design.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | what a file says, and how it is read | `wire`, `reader`, [`part`], [`words`] |
+//! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
+//! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`] |
+//! | the checks | `resolve`, `refusal`, `checks`, `limits`, [`name`] |
+//! | which scenarios give the same rows | [`identity`] |
+
+pub mod cell;
+mod checks;
+mod draw;
+mod effect;
+pub mod failure;
+pub mod identity;
+mod limits;
+mod locate;
+pub mod method;
+pub mod name;
+pub mod part;
+pub mod problem;
+mod reader;
+mod refusal;
+mod resolve;
+mod scenario;
+mod specification;
+pub mod stop;
+pub mod sweep;
+mod wire;
+pub mod words;
+
+pub use cell::{Cell, Refusal, Specimen};
+pub use effect::keys as effect_keys;
+pub use identity::hex;
+pub use method::{Method, MethodName, Procedure, TRACE, identify};
+pub use scenario::{Published, Scenario};
+pub use specification::{HULL, Specification};
+pub use stop::{Index, StopFigure, StopRule};
+pub use words::Words;

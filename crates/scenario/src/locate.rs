@@ -1,0 +1,82 @@
+//! Where in a scenario file a key stands, so that an error can point at its line.
+
+use std::ops::Range;
+
+use toml::de::{DeArray, DeTable, DeValue};
+
+use crate::problem::{KeyPath, Mark};
+
+/// Byte range of the name or value at a path, or of the name of the nearest key above it that exists; the first line that
+/// says anything when there is none.
+///
+/// A table or list is shown by its name, since its own range may be pages long.
+pub fn span(text: &str, path: &KeyPath, mark: Mark) -> Range<usize> {
+    let nowhere = first_line(text);
+    let Ok(document) = DeTable::parse(text) else { return nowhere };
+    let mut place = nowhere;
+    let mut table = Some(document.get_ref());
+    let mut array: Option<&DeArray> = None;
+    let last = path.parts().len().wrapping_sub(1);
+    for (depth, part) in path.parts().iter().enumerate() {
+        let value = match (table, array) {
+            (Some(table), _) => {
+                table.iter().find(|(key, _)| key.get_ref() == part).map(|(key, value)| (key.span(), value))
+            }
+            (None, Some(array)) => {
+                part.parse().ok().and_then(|index: usize| array.get(index)).map(|value| (value.span(), value))
+            }
+            (None, None) => None,
+        };
+        let Some((key_span, value)) = value else { break };
+        (table, array) = match value.get_ref() {
+            DeValue::Table(inner) => (Some(inner), None),
+            DeValue::Array(inner) => (None, Some(inner)),
+            _ => (None, None),
+        };
+        let by_name = table.is_some() || array.is_some() || (depth == last && mark == Mark::Name);
+        place = if by_name { key_span } else { value.span() };
+    }
+    place
+}
+
+/// The first line that is neither empty nor a comment.
+fn first_line(text: &str) -> Range<usize> {
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let content = line.trim_end();
+        if !content.is_empty() && !content.starts_with('#') {
+            return start..start + content.len();
+        }
+        start += line.len();
+    }
+    0..0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "# note\nseed = 1\n[sensor]\nheading-noise-deg = -0.1\n[[identifier]]\nsrivc = {}\n[[identifier]]\nlabel = \"x\"\n\
+         [[sweep]]\npoints = [{ set = { \"a.b\" = 3 } }]\n";
+
+    fn at(path: &str, mark: Mark) -> &str {
+        &TEXT[span(TEXT, &KeyPath::dotted(path), mark)]
+    }
+
+    #[test]
+    fn finds_names_and_values_in_tables_and_lists() {
+        assert_eq!(at("sensor.heading-noise-deg", Mark::Value), "-0.1");
+        assert_eq!(at("sensor.heading-noise-deg", Mark::Name), "heading-noise-deg");
+        assert_eq!(at("identifier.1.label", Mark::Value), "\"x\"");
+        let swept = KeyPath::dotted("sweep.0.points.0.set").child("a.b");
+        assert_eq!(&TEXT[span(TEXT, &swept, Mark::Value)], "3");
+        assert_eq!(&TEXT[span(TEXT, &swept, Mark::Name)], "\"a.b\"");
+    }
+
+    #[test]
+    fn falls_back_to_the_nearest_key_above() {
+        assert_eq!(at("sensor.no-such-key", Mark::Value), "sensor");
+        assert_eq!(at("nothing.here", Mark::Value), "seed = 1");
+        assert_eq!(span("", &KeyPath::default(), Mark::Name), 0..0);
+    }
+}

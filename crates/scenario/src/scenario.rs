@@ -1,0 +1,209 @@
+//! A scenario that has been checked in every cell, and how it is read.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use toml::Table;
+use trial::file::{self, FileError, Kind};
+
+use crate::cell::{self, Cell};
+use crate::failure::Failure;
+use crate::identity::{self, hex};
+use crate::method::{MethodName, methods};
+use crate::part::Part;
+use crate::problem::{KeyPath, Problem, of_text};
+use crate::stop::StopRule;
+use crate::sweep::{self, Axis};
+use crate::wire::{PublishedWire, ScenarioWire};
+use crate::words::Words;
+use crate::{checks, locate, name, reader, resolve};
+
+/// Values of other authors, shown beside the results.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Published {
+    /// K, 1/s.
+    pub k_per_s: Option<f64>,
+    /// T, s.
+    pub t_s: Option<f64>,
+}
+
+/// A scenario that has been checked in every cell.
+pub struct Scenario {
+    /// Stem of the file.
+    pub name: String,
+    /// Key of every random draw.
+    pub seed: u64,
+    /// Trials per cell.
+    pub replicates: u64,
+    /// Axes of the design.
+    pub axes: Vec<Axis>,
+    /// Cells of the design, the first axis slowest.
+    pub cells: Vec<Cell>,
+    /// Values of other authors.
+    pub published: Published,
+    /// What it says about itself.
+    pub words: Words,
+    /// Whether the first replicate of every cell is shown in detail.
+    pub showcase: bool,
+    /// Keys that are drawn anew in every trial.
+    pub draws: Vec<String>,
+    /// When a cell has had enough trials.
+    pub stop: Option<StopRule>,
+    /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the files it reads.
+    pub design_sha256: String,
+    /// The file as it was read.
+    pub text: String,
+    /// SHA-256 of the file, hexadecimal.
+    pub sha256: String,
+}
+
+/// What a manifest says of the scenario that was run; it may say more.
+#[derive(Deserialize)]
+struct Stored {
+    name: String,
+    seed: u64,
+    scenario: String,
+}
+
+impl Scenario {
+    /// Reads and resolves a file; of a manifest the scenario in it, with the seed it was run with.
+    ///
+    /// Fails with a message that names the file, the line and the key, what was found and what was expected. The name of
+    /// the study, which its folder is called by, has to be one ([`name::file`]).
+    pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
+        let text = read_text(path)?;
+        if let Ok(manifest) = toml::from_str::<Stored>(&text) {
+            name::file(&manifest.name).map_err(|unfit| {
+                let Problem { key, mark, found, expected, advice } =
+                    of_text(KeyPath::dotted("name"), &manifest.name, unfit);
+                Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
+            })?;
+            return Self::parse(path, &manifest.name, manifest.scenario, Some(seed.unwrap_or(manifest.seed)));
+        }
+        Self::parse(path, &name::of_file(path)?, text, seed)
+    }
+
+    /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
+    pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
+        let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
+        let fail = |problem: Problem| {
+            let span = locate::span(&text, &problem.key, problem.mark);
+            Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
+        };
+        if document.is_empty() {
+            return Err(fail(Problem::name(
+                KeyPath::default(),
+                "there is nothing in this scenario",
+                "expected keys",
+                "start from one of the files in scenarios/; the README explains the keys",
+            )));
+        }
+        let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
+        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        for (key, text) in [("question", &wire.question), ("analysis", &wire.analysis), ("finding", &wire.finding)] {
+            name::prose(text).map_err(|unfit| fail(of_text(KeyPath::dotted(key), text, unfit)))?;
+        }
+        if let Some(stem) = &wire.output.figure {
+            name::file(stem).map_err(|unfit| fail(of_text(KeyPath::dotted("output.figure"), stem, unfit)))?;
+        }
+        // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
+        resolve::specification(&wire, &folder).map_err(&fail)?;
+        let methods = methods(&wire.identifier).map_err(&fail)?;
+        let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose().map_err(&fail)?;
+        let axes: Vec<Axis> = wire
+            .sweep
+            .iter()
+            .enumerate()
+            .map(|(index, axis)| axis.resolve(index))
+            .collect::<Result<_, _>>()
+            .map_err(&fail)?;
+        let combinations = sweep::product(&axes).map_err(&fail)?;
+        checks::titles(&axes).map_err(&fail)?;
+        checks::size(wire.replicates, combinations.len(), methods.len()).map_err(&fail)?;
+        checks::draws(&wire.draw, &axes).map_err(&fail)?;
+        let of_cells = cell::only(&document, &[Part::Trial, Part::Cell]);
+        let cells: Vec<Cell> = combinations
+            .iter()
+            .map(|points| cell::swept(&of_cells, points, &methods, &folder))
+            .map(|cell| cell.map(|cell| cell.named(name)))
+            .collect::<Result<_, _>>()
+            .map_err(&fail)?;
+        checks::detail(&wire.output.detail, &cells).map_err(&fail)?;
+        Ok(Self {
+            name: name.to_owned(),
+            seed: seed.unwrap_or(wire.seed),
+            replicates: wire.replicates,
+            draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
+            axes,
+            cells,
+            published: published(&wire.published).map_err(&fail)?,
+            showcase: wire.output.showcase,
+            words: Words {
+                question: wire.question,
+                analysis: wire.analysis,
+                finding: wire.finding,
+                figure: wire.output.figure,
+                detail: wire.output.detail,
+            },
+            stop,
+            design_sha256: identity::sha256_of(&identity::design_of(&document), &folder)?,
+            sha256: hex(&Sha256::digest(text.as_bytes())),
+            text,
+        })
+    }
+
+    /// Labels and ids of the methods, in the order of the scenario.
+    pub fn method_names(&self) -> Vec<MethodName> {
+        self.cells[0]
+            .methods
+            .iter()
+            .map(|method| MethodName { label: method.label.clone(), id: method.id.to_owned() })
+            .collect()
+    }
+
+    /// Labels of the methods, in the order of the scenario.
+    pub fn labels(&self) -> impl Iterator<Item = &str> {
+        self.cells[0].methods.iter().map(|method| method.label.as_str())
+    }
+}
+
+/// Values of other authors; fails where one is no number.
+fn published(wire: &PublishedWire) -> Result<Published, Problem> {
+    let finite = |name: &str, value: Option<f64>| match value {
+        Some(value) if !value.is_finite() => {
+            let key = KeyPath::dotted("published").child(name);
+            let found = format!("`{key}` is {value}");
+            Err(Problem::value(key, found, "expected a finite number", "give the number, or leave the key out"))
+        }
+        _ => Ok(value),
+    };
+    Ok(Published { k_per_s: finite("K-per-s", wire.K_per_s)?, t_s: finite("T-s", wire.T_s)? })
+}
+
+/// A file that is not TOML, at the place where it stops to be.
+fn not_toml(path: &Path, text: &str, error: &toml::de::Error) -> Failure {
+    let span = error.span().unwrap_or(0..0);
+    let message = match error.message() {
+        message if message.starts_with("invalid type: integer") => "this number has too many digits".to_owned(),
+        message => message.split_whitespace().collect::<Vec<_>>().join(" "),
+    };
+    let advice = match path.extension().is_some_and(|extension| extension == "toml") {
+        true => "mend the line; a scenario is a TOML file of `key = value` lines under [table] headings",
+        false => "give a scenario (a TOML file); a record is identified with `study fit`",
+    };
+    Failure::at(path, text, span, "this is not valid TOML", &message, advice)
+}
+
+/// A scenario, alone or in a manifest; the longest published one has a hundredth of this.
+const SCENARIO: Kind = Kind { name: "a scenario", largest: 1 << 20 };
+
+fn read_text(path: &Path) -> Result<String, Failure> {
+    file::read_text(path, SCENARIO).map_err(|error| {
+        let advice = match error {
+            FileError::TooLarge { .. } => "a record is identified with `study fit`",
+            _ => "expected the path of a scenario (a TOML file)",
+        };
+        Failure::input(format!("{}: {error}; {advice}", path.display()))
+    })
+}

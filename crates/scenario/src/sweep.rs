@@ -1,0 +1,436 @@
+//! The design of a study: axes over any keys of the scenario, and their product as cells.
+//!
+//! A point of an axis sets one key or several; the changed document is resolved like any scenario, so a swept value is
+//! checked as strictly as one that is written down.
+
+use std::collections::HashSet;
+
+use serde::Deserialize;
+use ship::Shown;
+use toml::{Table, Value};
+
+use crate::limits;
+use crate::name;
+use crate::part::Part;
+use crate::problem::{KeyPath, Mark, Problem, of_text};
+
+/// Largest number of cells; more is a mistake in a range.
+const MOST_CELLS: usize = 100_000;
+
+/// An axis as it is written: `[[sweep]]`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct AxisWire {
+    /// Name on plots and in tables; the key when it is left out.
+    name: Option<String>,
+    /// Dotted key that is swept, with `values`, `linear` or `log`.
+    key: Option<String>,
+    /// The values one by one.
+    values: Option<Vec<Value>>,
+    /// Evenly spaced values.
+    linear: Option<RangeWire>,
+    /// Evenly spaced values of the logarithm.
+    log: Option<RangeWire>,
+    /// Points that set several keys at once.
+    points: Option<Vec<PointWire>>,
+}
+
+/// A range of numbers, both ends included.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RangeWire {
+    from: f64,
+    to: f64,
+    points: usize,
+}
+
+/// A point that sets several keys.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PointWire {
+    label: String,
+    /// Where it lies on an axis of numbers.
+    value: Option<f64>,
+    set: Table,
+}
+
+/// One axis of the design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Name on plots and in tables.
+    pub name: String,
+    /// The points in order.
+    pub points: Vec<Point>,
+}
+
+/// One point of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// What it is called.
+    pub label: String,
+    /// Its value, where the axis is a number.
+    pub value: Option<f64>,
+    /// The keys it sets.
+    pub set: Vec<Setting>,
+}
+
+/// A key that a point sets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setting {
+    /// The key that is changed.
+    pub key: KeyPath,
+    /// The value it gets.
+    pub value: Value,
+    /// Where the file names the key.
+    pub key_place: KeyPath,
+    /// Where the file says the value.
+    pub value_place: KeyPath,
+}
+
+impl Setting {
+    /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
+    pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
+        let name = problem.mark == Mark::Name;
+        let place = if name { &self.key_place } else { &self.value_place };
+        // Where the point itself names the key, its name is underlined and not its value.
+        let mark = if name && self.key_place == self.value_place { Mark::Name } else { Mark::Value };
+        let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
+        let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
+        // "to −1: `key` is −1" would say it twice.
+        if !problem.found.starts_with(&format!("`{}` is", self.key)) {
+            found = format!("{found}: {}", problem.found);
+        }
+        Problem { key: place.clone(), mark, found, ..problem }
+    }
+}
+
+impl AxisWire {
+    /// Checks an axis; `index` is its place in the `sweep` array.
+    pub fn resolve(&self, index: usize) -> Result<Axis, Problem> {
+        let place = KeyPath::dotted("sweep").child(index);
+        let single =
+            |key: &str, value: Value, value_place: KeyPath| Point::of(key, value, place.child("key"), value_place);
+        let mut points: Vec<Point> = match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
+            (Some(key), Some(values), None, None, None) => values
+                .iter()
+                .enumerate()
+                .map(|(i, value)| single(key, value.clone(), place.child("values").child(i)))
+                .collect(),
+            (Some(key), None, Some(range), None, None) => {
+                let place = place.child("linear");
+                range.linear(&place)?.map(|value| single(key, Value::Float(value), place.clone())).collect()
+            }
+            (Some(key), None, None, Some(range), None) => {
+                let place = place.child("log");
+                range.log(&place)?.map(|value| single(key, Value::Float(value), place.clone())).collect()
+            }
+            (None, None, None, None, Some(points)) => {
+                points.iter().enumerate().map(|(i, point)| point.resolve(&place.child("points").child(i))).collect()
+            }
+            _ => {
+                return Err(Problem::name(
+                    place,
+                    "this sweep does not say what it changes and how",
+                    "expected `key` with one of `values`, `linear` and `log`, or `points` alone",
+                    "for instance `key = \"sensor.heading-noise-deg\"` and `values = [0.01, 0.1, 1.0]`",
+                ));
+            }
+        };
+        if points.is_empty() {
+            return Err(Problem::name(
+                place,
+                "this sweep has no points",
+                "expected at least one",
+                "add a value, or remove the sweep",
+            ));
+        }
+        for setting in points.iter().flat_map(|point| &point.set) {
+            limits::depth(&setting.key, &setting.key_place)?;
+            let first = setting.key.parts().first().map_or("", String::as_str);
+            if first.is_empty() || matches!(Part::of(first), Part::Prose | Part::Study) {
+                let found = match first {
+                    "" => "the sweep names no key".to_owned(),
+                    _ => format!("the sweep changes `{}`, which is the same for the whole study", setting.key),
+                };
+                return Err(Problem {
+                    mark: if setting.key_place == setting.value_place { Mark::Name } else { Mark::Value },
+                    ..Problem::value(
+                        setting.key_place.clone(),
+                        found,
+                        "expected a key of the trial or of a method",
+                        "for instance `sensor.heading-noise-deg`, `ship.first-order.T-s`, `identifier.0.method.srivc.max-iterations`",
+                    )
+                });
+            }
+        }
+        let odd = points.iter().position(|point| point.value.is_some_and(|value| !value.is_finite()));
+        if let (Some(index), true) = (odd, self.points.is_some()) {
+            let key = place.child("points").child(index).child("value");
+            let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
+            return Err(Problem::value(
+                key,
+                found,
+                "expected a finite number",
+                "give the place of the point on its axis",
+            ));
+        }
+        distinguish(&mut points);
+        for (i, point) in points.iter().enumerate() {
+            name::label(&point.label).map_err(|unfit| {
+                let (key, advice) = match &self.points {
+                    Some(_) => (place.child("points").child(i).child("label"), "change the label"),
+                    None => (place.child("values").child(i), "give the value a shorter name: a `label` under `points`"),
+                };
+                Problem { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
+            })?;
+        }
+        let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| "point".to_owned());
+        name::label(&name).map_err(|unfit| {
+            let key = if self.name.is_some() { "name" } else { "key" };
+            Problem { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), &name, unfit) }
+        })?;
+        let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
+        labels.sort_unstable();
+        if let Some(twice) = labels.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(Problem::name(
+                place,
+                format!("two points of this sweep are called `{}`", twice[0]),
+                "expected points with names of their own",
+                "remove one of them, or give it another label",
+            ));
+        }
+        Ok(Axis { name, points })
+    }
+}
+
+impl PointWire {
+    fn resolve(&self, place: &KeyPath) -> Point {
+        let set = self.set.iter().map(|(key, value)| {
+            let place = place.child("set").child(key);
+            Setting { key: KeyPath::dotted(key), value: value.clone(), key_place: place.clone(), value_place: place }
+        });
+        Point { label: self.label.clone(), value: self.value, set: set.collect() }
+    }
+}
+
+impl RangeWire {
+    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, Problem> {
+        if !(self.from.is_finite() && self.to.is_finite()) {
+            return Err(self.problem(place, "expected finite ends"));
+        }
+        if !(2..=MOST_CELLS).contains(&self.points) {
+            return Err(self.problem(place, &format!("expected 2 to {MOST_CELLS} points")));
+        }
+        let Self { from, to, points } = *self;
+        let step = (to - from) / (points - 1) as f64;
+        Ok((0..points).map(move |k| if k + 1 == points { to } else { from + k as f64 * step }))
+    }
+
+    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, Problem> {
+        if !(self.from > 0.0 && self.to > 0.0) {
+            return Err(self.problem(place, "expected both ends of a logarithmic range to be above 0"));
+        }
+        let Self { from, to, points } = *self;
+        // Between the ends, which are exact: evenly spaced shares of the range of the logarithm.
+        let ratio = (to / from).ln();
+        let exact = move |k: usize| match k {
+            0 => from,
+            k if k + 1 == points => to,
+            k => from * (ratio * k as f64 / (points - 1) as f64).exp(),
+        };
+        Ok(self.linear(place)?.enumerate().map(move |(k, _)| exact(k)))
+    }
+
+    fn problem(&self, place: &KeyPath, expected: &str) -> Problem {
+        let found = format!("a range of {} points from {} to {}", self.points, Shown(self.from), Shown(self.to));
+        Problem::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
+    }
+}
+
+impl Point {
+    fn of(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
+        let number = value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
+        let label = match (&value, number) {
+            (_, Some(number)) => trim(number),
+            (Value::String(text), None) => text.clone(),
+            (other, None) => other.to_string(),
+        };
+        let set = vec![Setting { key: KeyPath::dotted(key), value, key_place, value_place }];
+        Self { label, value: number, set }
+    }
+}
+
+/// Gives numbers all their digits where four are too few to tell points apart.
+fn distinguish(points: &mut [Point]) {
+    let mut labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
+    labels.sort_unstable();
+    let before = labels.len();
+    labels.dedup();
+    if labels.len() < before {
+        for point in points {
+            if let Some(value) = point.value {
+                point.label = Shown(value).to_string();
+            }
+        }
+    }
+}
+
+/// A value as a person would write it.
+pub fn written(value: &Value) -> String {
+    match value {
+        Value::Float(number) if !Shown(*number).is_plain() => Shown(*number).to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// A number with four significant digits, more where they stand before the point, and no trailing zeros.
+fn trim(number: f64) -> String {
+    let rounded = Shown::rounded(number, 4);
+    if !rounded.is_plain() {
+        return rounded.to_string();
+    }
+    let digits = if number == 0.0 { 0 } else { (3 - number.abs().log10().floor() as i32).clamp(0, 12) as usize };
+    let text = format!("{number:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Every combination of points, the first axis slowest; one empty combination when there is no axis.
+///
+/// Fails when there are too many, and when two axes change the same key.
+pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
+    limits::entries("sweep", axes.len(), limits::MOST_SWEEPS)?;
+    let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
+    if count > MOST_CELLS {
+        let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
+        return Err(Problem::name(
+            KeyPath::dotted("sweep"),
+            format!("the sweeps make {} = {count} cells", sizes.join(" × ")),
+            format!("expected at most {MOST_CELLS} cells"),
+            "use fewer points, or fewer sweeps",
+        ));
+    }
+    let mut before: HashSet<&KeyPath> = HashSet::new();
+    for (index, axis) in axes.iter().enumerate() {
+        let keys = || axis.points.iter().flat_map(|point| &point.set).map(|setting| &setting.key);
+        if let Some(again) = keys().find(|key| before.contains(key)) {
+            return Err(Problem::name(
+                KeyPath::dotted("sweep").child(index),
+                format!("two sweeps change `{again}`"),
+                "expected every sweep to change keys of its own",
+                "remove one of them, or join them into one sweep with `points`",
+            ));
+        }
+        before.extend(keys());
+    }
+    let mut cells: Vec<Vec<&Point>> = vec![Vec::new()];
+    for axis in axes {
+        cells = cells
+            .into_iter()
+            .flat_map(|cell| axis.points.iter().map(move |point| cell.iter().copied().chain([point]).collect()))
+            .collect();
+    }
+    Ok(cells)
+}
+
+/// Sets a key in a document, making tables on the way; numbers in the path count the entries of lists from 0.
+///
+/// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
+pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), Problem> {
+    let fault = |problem: String, expected: String| Problem::name(key.clone(), problem, expected, "change the key");
+    let mut place = document;
+    let mut parts = key.parts().iter().peekable();
+    while let Some(part) = parts.next() {
+        if parts.peek().is_none() {
+            place.insert(part.clone(), value);
+            return Ok(());
+        }
+        let mut next = place.entry(part.clone()).or_insert_with(|| Value::Table(Table::new()));
+        while let Value::Array(items) = next {
+            let index = parts.next().map_or("", String::as_str);
+            let length = items.len();
+            next = index.parse().ok().and_then(|index: usize| items.get_mut(index)).ok_or_else(|| {
+                fault(
+                    format!("`{part}` has {length} entries, and `{index}` is none of them"),
+                    format!("expected a number from 0 to {}", length.saturating_sub(1)),
+                )
+            })?;
+            if parts.peek().is_none() {
+                *next = value;
+                return Ok(());
+            }
+        }
+        place = next
+            .as_table_mut()
+            .ok_or_else(|| fault(format!("`{part}` is a value"), "nothing can be set below a value".to_owned()))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(text: &str) -> Result<Axis, Problem> {
+        toml::from_str::<AxisWire>(text).expect("well formed").resolve(0)
+    }
+
+    #[test]
+    fn ranges_hit_both_ends() {
+        let log = axis("key = \"a.b\"\nlog = { from = 0.01, to = 1.0, points = 3 }").expect("valid");
+        let values: Vec<f64> = log.points.iter().filter_map(|point| point.value).collect();
+        assert!((values[1] - 0.1).abs() < 1e-12 && (values[2] - 1.0).abs() < 1e-12, "{values:?}");
+        assert_eq!(log.points[1].label, "0.1");
+        assert!(axis("key = \"a\"\nlog = { from = 0.0, to = 1.0, points = 3 }").is_err());
+        assert!(axis("key = \"a\"").is_err());
+        assert!(axis("key = \"a\"\nlinear = { from = 0.0, to = 1.0, points = 1000000000000000 }").is_err());
+        assert!(axis("key = \"seed\"\nvalues = [1, 2]").is_err(), "a seed is not part of the design");
+    }
+
+    #[test]
+    fn labels_have_few_digits_whatever_the_size() {
+        let sizes = axis("key = \"a\"\nvalues = [1e308, -2.34567e-30, 1e-12, 0.1, 12345.6, 0]").expect("six values");
+        let labels: Vec<&str> = sizes.points.iter().map(|point| point.label.as_str()).collect();
+        assert_eq!(labels, ["1e308", "-2.346e-30", "1e-12", "0.1", "12346", "0"]);
+        let refused = Setting {
+            key: KeyPath::dotted("a"),
+            value: Value::Float(1e308),
+            key_place: KeyPath::default(),
+            value_place: KeyPath::default(),
+        }
+        .blamed(Problem::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
+        assert_eq!(refused.found, "the sweep sets `a` to 1e308: `b` is wrong");
+    }
+
+    #[test]
+    fn points_can_be_told_apart() {
+        let near = axis("key = \"a\"\nvalues = [1.00001, 1.00002]").expect("two values");
+        assert_eq!([&near.points[0].label, &near.points[1].label], ["1.00001", "1.00002"]);
+        assert!(axis("key = \"a\"\nvalues = [1, 1.0]").is_err(), "the same value twice");
+        let once = axis("key = \"a\"\nvalues = [1]").expect("one value");
+        assert!(product(&[once.clone(), once]).is_err(), "the same key twice");
+    }
+
+    #[test]
+    fn cells_are_the_product_in_order() {
+        let two = axis("key = \"x\"\nvalues = [1, 2]").expect("valid");
+        let named = axis("name = \"trial\"\npoints = [{ label = \"p\", set = { \"m.r\" = 10, \"m.h\" = 20 } }, { label = \"q\", set = {} }]")
+            .expect("valid");
+        let axes = [two, named];
+        let cells = product(&axes).expect("few");
+        let labels: Vec<Vec<&str>> =
+            cells.iter().map(|cell| cell.iter().map(|point| point.label.as_str()).collect()).collect();
+        assert_eq!(labels, [["1", "p"], ["1", "q"], ["2", "p"], ["2", "q"]]);
+    }
+
+    #[test]
+    fn sets_keys_in_tables_and_arrays() {
+        let mut document: Table = "x = 1\n[[identifier]]\nsrivc = {}".parse().expect("well formed");
+        let mut set = |key: &str, value: Value| super::set(&mut document, &KeyPath::dotted(key), value);
+        set("sensor.noise", Value::Float(0.5)).expect("makes the table");
+        set("identifier.0.srivc.n", Value::Integer(3)).expect("indexes the array");
+        assert!(set("x.y", Value::Integer(1)).is_err());
+        assert!(set("identifier.4.x", Value::Integer(1)).is_err());
+        assert_eq!(document["sensor"]["noise"].as_float(), Some(0.5));
+        assert_eq!(document["identifier"][0]["srivc"]["n"].as_integer(), Some(3));
+    }
+}

@@ -1,0 +1,244 @@
+//! `study fit`: identify measured records with every method, replay the answers on them and on others.
+
+use std::path::{Path, PathBuf};
+
+use identify::replay::replay;
+use identify::{Estimate, Identifier, IdentifierSettings, registry};
+use indicatif::ParallelProgressIterator;
+use rayon::prelude::*;
+use report::number::{fixed, optional, with_uncertainty};
+use trial::{Trial, ZigZag};
+
+use crate::options::{Common, FitRequest, Format};
+use crate::records::{file_of, names, read, warn_of_repetition};
+use crate::views::fit_figures::{self, Drawn};
+use crate::views::fit_file::{FitFile, ZigZagEntry, trial_entry, zigzag_entry};
+use crate::views::method_table;
+use crate::{progress, screen};
+use campaign::answer::{MethodEntry, Validation, entry};
+use campaign::folder::ResultFolder;
+use scenario::failure::{Failure, OnPath};
+
+/// What other programs read.
+const FIT: &str = "fit.json";
+
+/// Identifies the records, prints the table, writes figures and `fit.json`.
+///
+/// Fails when a record cannot be read, and when no method can identify the records.
+pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
+    let methods = methods(&request.methods, common.seed)?;
+    let mut warnings = Vec::new();
+    let mut read_all = |paths: &[PathBuf]| {
+        paths
+            .iter()
+            .map(|path| read(path, request.columns.as_deref(), &mut warnings))
+            .collect::<Result<Vec<Trial>, _>>()
+    };
+    let trials = read_all(&request.trials)?;
+    let others = read_all(&request.validate)?;
+    warn_of_repetition(&trials, &others, &mut warnings);
+
+    let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
+        .par_iter()
+        .progress_with(progress::of("methods", methods.len() as u64, common.quiet))
+        .map(|method| {
+            let (mut entry, estimate) = entry(method.id(), method.identify(&trials), &trials);
+            entry.validation = others.iter().map(|other| validate(other, estimate.as_ref())).collect();
+            (entry, estimate)
+        })
+        .collect();
+    let entries: Vec<MethodEntry> = answers.iter().map(|(entry, _)| entry.clone()).collect();
+    // A record that no method can use is wrong input, not a result.
+    if entries.iter().all(|entry| entry.parameters.is_none()) {
+        return Err(unusable(&request.trials[0], &entries, &warnings));
+    }
+
+    let zigzag = ZigZag::of(&trials[0]);
+    let default = || PathBuf::from(format!("{}-fit", trials[0].name()));
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?;
+    let file = FitFile {
+        schema: "fit/1".into(),
+        trials: trials.iter().map(trial_entry).collect(),
+        methods: entries,
+        zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, &trials[0])),
+    };
+    let path = folder.path().join(FIT);
+    let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
+    folder.keep(FIT, text + "\n")?;
+    let names = names(trials.iter().chain(&others).map(Trial::name));
+    let records: Vec<Drawn> = trials
+        .iter()
+        .chain(&others)
+        .zip(&names)
+        .enumerate()
+        .map(|(number, (trial, name))| Drawn { trial, name, validation: number >= trials.len() })
+        .collect();
+    fit_figures::draw(&records, &answers, zigzag.as_ref().ok(), &folder)?;
+
+    if !common.quiet {
+        let table = method_table::table(&file.methods, &names[trials.len()..]);
+        let table = common.format.render(&table);
+        let mut notes = renamed(&records) + &reasons(&file.methods);
+        match (&zigzag, &file.zigzag) {
+            (_, Some(entry)) => notes += &format!("\n{}", characteristics(entry)),
+            (Err(error), None) => notes += &format!("\nno zig-zag characteristics: {error}\n"),
+            (Ok(_), None) => {}
+        }
+        notes += &format!("\nresults: {}", path.display());
+        if common.format == Format::Text {
+            screen::say(&format!("{}\n\n{table}{notes}", headline(&trials)))?;
+        } else {
+            // Another program reads the table: nothing else may stand beside it.
+            screen::say(table.trim_end())?;
+            screen::warn(notes.trim_start());
+        }
+    }
+    for entry in &file.methods {
+        warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
+    }
+    for warning in warnings {
+        screen::warn(&format!("warning: {warning}"));
+    }
+    Ok(())
+}
+
+fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier>>, Failure> {
+    let all: Vec<Box<dyn Identifier>> = registry::defaults()
+        .iter()
+        .map(IdentifierSettings::build)
+        .collect::<Result<_, _>>()
+        .map_err(|error| Failure::work(format!("default settings: {error}")))?;
+    let known: Vec<&str> = all.iter().map(|method| method.id()).collect();
+    if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
+        return Err(Failure::input(format!("--method {unknown}: no such method; use one of {}", known.join(", "))));
+    }
+    Ok(all
+        .into_iter()
+        .filter(|method| names.is_empty() || names.iter().any(|name| name == method.id()))
+        .map(|method| seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method))
+        .collect())
+}
+
+/// The message when no method gives an answer: every reason once.
+fn unusable(path: &Path, entries: &[MethodEntry], warnings: &[String]) -> Failure {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for entry in entries {
+        let reason = entry.reason.as_deref().unwrap_or("no answer");
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, methods)) => methods.push(&entry.method),
+            None => reasons.push((reason, vec![&entry.method])),
+        }
+    }
+    let file = path.display();
+    let mut message = match (entries, reasons.as_slice()) {
+        ([only], _) => {
+            let reason = only.reason.as_deref().unwrap_or("no answer");
+            format!("{file}: {} cannot identify this record: {reason}", only.method)
+        }
+        (_, [(reason, _)]) => format!("{file}: no method can identify this record: {reason}"),
+        _ => {
+            let lines: Vec<String> =
+                reasons.iter().map(|(reason, methods)| format!("\n  {}: {reason}", methods.join(", "))).collect();
+            format!("{file}: no method can identify this record{}", lines.concat())
+        }
+    };
+    for warning in warnings {
+        message += &format!("\nnote: {warning}");
+    }
+    if entries.iter().any(|entry| entry.failure.as_deref() != Some("not-excited")) {
+        message += "\nhelp: give a zig-zag, or a record in which the rudder is put to both sides for as long as the ship needs to answer";
+    }
+    Failure::input(message)
+}
+
+fn headline(trials: &[Trial]) -> String {
+    let rows: usize = trials.iter().map(Trial::len).sum();
+    match trials {
+        [only] => format!("{}: {rows} rows, {:.1} s", only.name(), only.duration()),
+        several => format!("{} records together: {rows} rows", several.len()),
+    }
+}
+
+/// Which record is meant, where several have the same name.
+fn renamed(records: &[Drawn]) -> String {
+    let lines: String = records
+        .iter()
+        .filter(|record| record.name != record.trial.name())
+        .map(|record| format!("{} is {}\n", record.name, file_of(record.trial).0))
+        .collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
+}
+
+/// Why methods failed, one line each; the table has the reason in a word only.
+fn reasons(entries: &[MethodEntry]) -> String {
+    let lines: String = entries
+        .iter()
+        .filter_map(|entry| entry.reason.as_ref().map(|reason| format!("{} failed: {reason}\n", entry.method)))
+        .collect();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
+}
+
+fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
+    Validation {
+        file: file_of(other).0.to_owned(),
+        heading_rmse_deg: estimate
+            .and_then(|estimate| replay(other, &estimate.response))
+            .map(|replay| replay.heading_rmse_deg),
+    }
+}
+
+/// Most overshoots that are written on the screen.
+const MOST_LISTED: usize = 12;
+
+/// Characteristics in words, and the IMO criteria this record measures; of very many overshoots the first.
+fn characteristics(entry: &ZigZagEntry) -> String {
+    let overshoots: Vec<String> = entry
+        .overshoots_deg
+        .iter()
+        .zip(&entry.overshoots_sd_deg)
+        .take(MOST_LISTED)
+        .map(|(&angle, &sd)| with_uncertainty(angle, sd))
+        .collect();
+    let overshoots = match entry.overshoots_deg.len().saturating_sub(MOST_LISTED) {
+        0 if overshoots.is_empty() => "none".to_owned(),
+        0 => format!("{} deg", overshoots.join(", ")),
+        more => format!("{} deg, and {more} more in fit.json", overshoots.join(", ")),
+    };
+    let mut text = format!("zig-zag: initial turning time {}", seconds(entry.initial_turning_time_s, 2));
+    text += &format!(", period {}\n  overshoots {overshoots}\n", seconds(entry.period_s, 1));
+    for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
+        text += &format!(
+            "  IMO {}: {} {}, limit {}: {}\n",
+            criterion.criterion,
+            optional(criterion.measured, 2),
+            criterion.unit,
+            fixed(criterion.limit, 1),
+            criterion.verdict
+        );
+    }
+    text
+}
+
+fn seconds(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "not measured".to_owned(), |value| format!("{} s", fixed(value, decimals)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn very_many_overshoots_are_not_all_written_on_the_screen() {
+        let entry = |count: usize| ZigZagEntry {
+            initial_turning_time_s: None,
+            overshoots_deg: vec![8.25; count],
+            overshoots_sd_deg: vec![None; count],
+            period_s: None,
+            imo: Vec::new(),
+        };
+        assert!(characteristics(&entry(0)).contains("overshoots none"));
+        assert_eq!(characteristics(&entry(12)).matches("8.2").count(), 12);
+        let many = characteristics(&entry(3000));
+        assert!(many.contains("and 2988 more in fit.json") && many.len() < 400, "{many}");
+    }
+}

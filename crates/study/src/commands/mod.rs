@@ -1,0 +1,11 @@
+//! The commands, one file each: they read options, ask the crates below for work, and hand the answer to [`crate::views`].
+
+pub mod check;
+pub mod fit;
+pub mod list;
+pub mod merge;
+pub mod overview;
+mod planned;
+pub mod report;
+pub mod run;
+pub mod trace;

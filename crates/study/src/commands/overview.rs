@@ -1,0 +1,134 @@
+//! `study overview DIR`: one page over all published studies of a folder, each with its question, its answer in a sentence
+//! and the figure that stands for it. Made from the manifests, so it needs no rows.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use report::markdown;
+
+use crate::options::Common;
+use crate::screen;
+use campaign::disk;
+use campaign::files;
+use campaign::folder::ResultFolder;
+use campaign::manifest::Manifest;
+use scenario::failure::{Failure, OnPath};
+use scenario::name;
+
+/// Name of the page.
+const PAGE: &str = "README.md";
+
+/// How the page begins; one that begins otherwise belongs to somebody else.
+const MARK: &str = "<!-- Made by `study overview`, which writes it anew. -->\n";
+
+/// Largest page that is looked at, bytes.
+const LARGEST: u64 = 1 << 26;
+
+/// One published study.
+struct Study {
+    name: String,
+    question: String,
+    finding: String,
+    figure: Option<String>,
+}
+
+/// Writes `README.md` beside the folders of the studies, or to `--out`.
+pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
+    let studies = studies(folder)?;
+    let target = ResultFolder::hold(common.out.as_deref().unwrap_or(folder))?;
+    let path = target.path().join(PAGE);
+    if disk::read(&path, LARGEST).on("read", &path)?.is_some_and(|text| !text.starts_with(MARK.as_bytes())) {
+        return Err(Failure::input(format!(
+            "{}: this page was not made by `study overview`; move it away, or give another folder with --out",
+            path.display()
+        )));
+    }
+    target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&studies)))?;
+    if common.quiet { Ok(()) } else { screen::say(&format!("{} studies: {}", studies.len(), path.display())) }
+}
+
+/// The studies of a folder in the order of their names.
+fn studies(folder: &Path) -> Result<Vec<Study>, Failure> {
+    let names = disk::names(folder).map_err(|error| {
+        Failure::input(format!("{}: {error}; give the folder that holds the folders of studies", folder.display()))
+    })?;
+    let folders: Vec<PathBuf> = names.iter().map(|name| folder.join(name)).collect();
+    let studies: Vec<Study> = folders
+        .iter()
+        .filter(|folder| folder.join(files::MANIFEST).is_file())
+        .map(|folder| study(folder))
+        .collect::<Result<_, _>>()?;
+    if studies.is_empty() {
+        let problem = format!("no folder in it holds a {}", files::MANIFEST);
+        return Err(Failure::input(format!("{}: {problem}; run a scenario first", folder.display())));
+    }
+    Ok(studies)
+}
+
+fn study(folder: &Path) -> Result<Study, Failure> {
+    let path = folder.join(files::MANIFEST);
+    let missing = || Failure::input(format!("{}: there is no such file any more", path.display()));
+    let manifest = Manifest::read(&path)?.ok_or_else(missing)?;
+    let words = manifest.words();
+    let unfit = |stem: &str, unfit| {
+        Failure::input(format!("{}: `output.figure` is {}; {unfit}", path.display(), name::shown(stem)))
+    };
+    let figure = match &words.figure {
+        Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
+        None => None,
+    };
+    // A link needs the name of the folder, which --out may have made another than that of the scenario.
+    let name = folder.file_name().map_or_else(|| manifest.name.clone(), |name| name.to_string_lossy().into_owned());
+    Ok(Study { name, question: words.question.trim().to_owned(), finding: words.finding.trim().to_owned(), figure })
+}
+
+/// File of the figure that a scenario names.
+fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
+    let file = format!("{stem}.png");
+    if folder.join(&file).is_file() {
+        return Ok(file);
+    }
+    let names = disk::names(folder).on("list", folder)?;
+    let known: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
+    Err(Failure::input(format!(
+        "{}: the scenario has `output.figure = {stem:?}`, and the folder holds no {file}; figures there: {}",
+        folder.display(),
+        known.join(", ")
+    )))
+}
+
+fn page(studies: &[Study]) -> String {
+    let mut page = String::from(
+        "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
+         whole report,\nevery figure with its 95 % interval as CSV, Markdown and LaTeX, and a manifest from which \
+         `study NAME/manifest.toml --out DIR`\nruns it again.\n",
+    );
+    for Study { name, question, finding, figure } in studies {
+        write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");
+        if !finding.is_empty() {
+            write!(page, "\n{finding}\n").expect("writing to a string does not fail");
+        }
+        if let Some(figure) = figure {
+            write!(page, "\n![{question}]({name}/{figure})\n").expect("writing to a string does not fail");
+        }
+    }
+    page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_study_without_a_figure_is_listed_too() {
+        let study = |figure: Option<&str>| Study {
+            name: "noise".into(),
+            question: "How much?".into(),
+            finding: "Little.".into(),
+            figure: figure.map(str::to_owned),
+        };
+        let page = page(&[study(Some("errors.png")), study(None)]);
+        assert_eq!(page.matches("## [noise](noise/report.md)\n\n**How much?**\n\nLittle.\n").count(), 2);
+        assert_eq!(page.matches("![How much?](noise/errors.png)").count(), 1);
+    }
+}

@@ -1,0 +1,88 @@
+//! `study trace`: close the loop on measured records. The analysis is that of the crate [`trace`]; here its words, tables,
+//! figures and files are made.
+
+use std::path::PathBuf;
+
+use ::trace::Settings;
+use trial::{Channel, Trial};
+
+use crate::commands::planned;
+use crate::options::{Common, Format, TraceRequest, Withheld};
+use crate::records::{names, read, warn_of_repetition};
+use crate::views::trace_file::TraceFile;
+use crate::views::trace_report::TraceReport;
+use crate::views::{trace_figures, trace_page};
+use crate::{progress, screen};
+use campaign::folder::ResultFolder;
+use scenario::failure::{Failure, OnPath};
+
+/// What other programs read.
+const TRACE: &str = "trace.json";
+
+/// Analyses the records, prints what was found, writes `trace.json`, `report.md` and figures.
+///
+/// Fails when a record cannot be read, and when the base cannot be fitted.
+pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
+    let theme = request.style.theme()?;
+    let mut warnings = Vec::new();
+    let withheld: Vec<Channel> = request.without.iter().flat_map(|what| channels(*what)).copied().collect();
+    let mut read_all = |paths: &[PathBuf]| {
+        paths
+            .iter()
+            .map(|path| Ok(read(path, request.columns.as_deref(), &mut warnings)?.without(&withheld)))
+            .collect::<Result<Vec<Trial>, Failure>>()
+    };
+    let trials = read_all(&request.trials)?;
+    let others = read_all(&request.validate)?;
+    warn_of_repetition(&trials, &others, &mut warnings);
+    let settings = Settings { own_bias: request.own_bias, ..Settings::default() };
+    let busy = progress::busy("tracing", common.quiet);
+    let analysis = ::trace::trace(&trials, &others, &settings);
+    busy.finish_and_clear();
+    let analysis = analysis.map_err(|error| {
+        let first = request.trials[0].display();
+        Failure::input(format!("{first}: {error}; the record cannot be traced because no base model fits it"))
+    })?;
+    let folder = common.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-trace", trials[0].name())));
+    let folder = ResultFolder::hold(&folder)?;
+    let planned = planned::trials(&analysis, &trials);
+    let report = TraceReport {
+        names: names(trials.iter().chain(&others).map(Trial::name)),
+        prospects: analysis.prospects(&planned),
+        trials: &trials,
+        others: &others,
+        analysis: &analysis,
+    };
+    let path = folder.path().join(TRACE);
+    let json = serde_json::to_string_pretty(&TraceFile::of(&report)).on("describe", &path)?;
+    folder.keep(TRACE, json + "\n")?;
+    let drawn = trace_figures::draw(&report, &theme, &folder)?;
+    folder.write("report.md", trace_page::page(&report, &drawn))?;
+    if !common.quiet {
+        let table = common.format.render(&trace_page::errors(&report));
+        let words = trace_page::words(&report);
+        let notes = format!("results: {}", path.display());
+        if common.format == Format::Text {
+            screen::say(&format!("{words}\n\n{table}\n{notes}"))?;
+        } else {
+            // Another program reads the table: nothing else may stand beside it.
+            screen::say(table.trim_end())?;
+            screen::warn(&notes);
+        }
+    }
+    for warning in warnings {
+        screen::warn(&format!("warning: {warning}"));
+    }
+    Ok(())
+}
+
+fn channels(what: Withheld) -> &'static [Channel] {
+    match what {
+        Withheld::Wind => {
+            &[Channel::WindRelativeSpeed, Channel::WindRelativeFrom, Channel::WindTrueSpeed, Channel::WindTrueFrom]
+        }
+        Withheld::Speed => &[Channel::Speed, Channel::Surge],
+        Withheld::Propeller => &[Channel::PropellerRate],
+        Withheld::Sway => &[Channel::Sway],
+    }
+}

@@ -1,0 +1,172 @@
+//! What a user may ask of a command: options and arguments, each declared once. Commands read them, nothing here acts.
+
+use std::path::PathBuf;
+
+use campaign::task::Shard;
+use clap::{Args, ValueEnum};
+use report::theme::{DPI, WIDTH_MM};
+use report::{Table, Theme};
+use scenario::failure::Failure;
+
+/// How a scenario is run.
+#[derive(Debug, Clone, Args)]
+pub struct RunRequest {
+    /// Run part I of N only, into a folder of its own; `study merge` joins the parts
+    #[arg(long, value_name = "I/N")]
+    pub shard: Option<Shard>,
+    /// Discard rows of an earlier run in the folder instead of going on with them
+    #[arg(long)]
+    pub restart: bool,
+    /// How figures are drawn
+    #[command(flatten)]
+    pub style: Style,
+}
+
+/// How figures are drawn.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Style {
+    /// Draw figures for print, MM millimetres wide [default: for a screen]
+    #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
+    pub paper: Option<f64>,
+    /// Resolution of figures for print
+    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
+    pub dpi: f64,
+}
+
+/// Reads a number from `least` to `most`.
+fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+        number.ok_or_else(|| format!("expected a number from {least} to {most}"))
+    }
+}
+
+impl Style {
+    /// The theme of the figures. Fails when no page carries it.
+    pub fn theme(&self) -> Result<Theme, Failure> {
+        match self.paper {
+            None => Ok(Theme::screen()),
+            Some(width_mm) => Theme::paper(width_mm, self.dpi).map_err(Failure::input),
+        }
+    }
+}
+
+/// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
+pub const MOST_THREADS: i64 = 1024;
+
+/// Options every command understands.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Folder for results [default: `results/SCENARIO`, or `./TRIAL-fit`, `./TRIAL-trace`]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Number of threads [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    pub threads: Option<u16>,
+    /// Seed in place of the scenario's
+    #[arg(long, value_name = "S", value_parser = seed, allow_hyphen_values = true)]
+    pub seed: Option<u64>,
+    /// No progress bar and no table; errors and warnings remain
+    #[arg(long)]
+    pub quiet: bool,
+    /// Format of the table on standard output
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
+}
+
+/// Format of tables on standard output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Aligned columns
+    Text,
+    /// Markdown
+    Markdown,
+    /// Comma-separated values
+    Csv,
+    /// LaTeX with booktabs
+    Latex,
+}
+
+impl Format {
+    /// A table in this format.
+    pub fn render(self, table: &Table) -> String {
+        match self {
+            Self::Text => table.to_text(),
+            Self::Markdown => table.to_markdown(),
+            Self::Csv => table.to_csv(),
+            Self::Latex => table.to_latex(),
+        }
+    }
+}
+
+/// What `study fit` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct FitRequest {
+    /// Records of one ship, identified together
+    #[arg(required = true, value_name = "TRIAL")]
+    pub trials: Vec<PathBuf>,
+    /// Records on which the identified responses are replayed; only their initial state is fitted
+    #[arg(long, value_name = "TRIAL")]
+    pub validate: Vec<PathBuf>,
+    /// Methods to use [default: all]
+    #[arg(long = "method", value_name = "ID")]
+    pub methods: Vec<String>,
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
+    #[arg(long, value_name = "FILE.toml|DIR")]
+    pub columns: Option<PathBuf>,
+}
+
+/// What `study trace` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct TraceRequest {
+    /// Records of one ship, analysed together
+    #[arg(required = true, value_name = "TRIAL")]
+    pub trials: Vec<PathBuf>,
+    /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not kept
+    #[arg(long, value_name = "TRIAL")]
+    pub validate: Vec<PathBuf>,
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
+    #[arg(long, value_name = "FILE.toml|DIR")]
+    pub columns: Option<PathBuf>,
+    /// Give every record a rudder bias of its own
+    #[arg(long)]
+    pub own_bias: bool,
+    /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
+    #[arg(long, value_name = "CHANNEL", value_enum)]
+    pub without: Vec<Withheld>,
+    /// How figures are drawn
+    #[command(flatten)]
+    pub style: Style,
+}
+
+/// Channels that can be withheld from an analysis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Withheld {
+    /// Wind, relative and true
+    Wind,
+    /// Speed and surge velocity
+    Speed,
+    /// Propeller revolutions
+    Propeller,
+    /// Sway velocity
+    Sway,
+}
+
+/// What can be listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Listed {
+    /// Identification methods
+    Identifiers,
+    /// Effects a first-order response lacks
+    Effects,
+    /// Ships
+    Ships,
+    /// Manoeuvres
+    Manoeuvres,
+    /// Sensor keys
+    Sensors,
+}

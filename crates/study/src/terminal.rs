@@ -1,0 +1,58 @@
+//! Who watches a study at the command line: a bar, warnings on standard error, and Ctrl-C as a request to stop.
+
+use std::sync::OnceLock;
+
+use campaign::Observer;
+use indicatif::ProgressBar;
+use scenario::failure::Failure;
+
+use crate::interrupt::{self, Listener};
+use crate::{progress, screen};
+
+/// The terminal of a person who waits.
+pub struct Terminal {
+    quiet: bool,
+    bar: OnceLock<(ProgressBar, Listener)>,
+}
+
+impl Terminal {
+    /// A terminal without a bar yet.
+    pub fn new(quiet: bool) -> Self {
+        Self { quiet, bar: OnceLock::new() }
+    }
+}
+
+impl Observer for Terminal {
+    fn begin(&self, most: u64, done: u64) {
+        self.bar.get_or_init(|| (progress::bar(most, done, self.quiet), Listener::new()));
+    }
+
+    fn advance(&self) {
+        self.bar.get().iter().for_each(|(bar, _)| bar.inc(1));
+    }
+
+    fn end(&self) {
+        self.bar.get().iter().for_each(|(bar, listener)| {
+            bar.finish();
+            listener.end();
+        });
+    }
+
+    fn note(&self, line: &str) {
+        if !self.quiet {
+            screen::warn(line);
+        }
+    }
+
+    fn warn(&self, line: &str) {
+        screen::warn(&format!("warning: {line}"));
+    }
+
+    fn is_asked_to_stop(&self) -> bool {
+        self.bar.get().is_some_and(|(_, listener)| listener.is_asked())
+    }
+
+    fn give_up(&self, failure: &Failure) {
+        interrupt::give_up(failure)
+    }
+}

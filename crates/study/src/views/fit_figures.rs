@@ -1,0 +1,88 @@
+//! Figures of `study fit`: the first record with its characteristic points, and every record with the replays of all methods
+//! and with the best fit.
+
+use identify::Estimate;
+use identify::replay::replay;
+use rayon::prelude::*;
+use report::figures::{self, Fit, RecordFit, Replay, Replays};
+use report::{Figure, Origin, Theme};
+use trial::{Trial, ZigZag};
+
+use super::picture::{first_failure, write_figure};
+use campaign::answer::MethodEntry;
+use campaign::curves::{curve, zigzag_figure};
+use campaign::folder::ResultFolder;
+use scenario::failure::Failure;
+
+/// The method whose fit is drawn on its own where it has one.
+const BEST: &str = "output-error";
+
+/// A record to draw.
+pub struct Drawn<'a> {
+    /// The record.
+    pub trial: &'a Trial,
+    /// Its name; no two records have the same.
+    pub name: &'a str,
+    /// Whether it was kept for validation.
+    pub validation: bool,
+}
+
+/// Draws everything into `folder`: `trial`, `replays` and `fit` of the first record, `replays-NAME` and `fit-NAME` of the others.
+pub fn draw(
+    records: &[Drawn],
+    answers: &[(MethodEntry, Option<Estimate>)],
+    zigzag: Option<&ZigZag>,
+    folder: &ResultFolder,
+) -> Result<(), Failure> {
+    let theme = Theme::screen();
+    if let (Some(zigzag), Some(first)) = (zigzag, records.first()) {
+        let data = figures::ZigzagTrial { title: Some(first.name.to_owned()), ..zigzag_figure(first.trial, zigzag) };
+        write_figure(&figures::zigzag_trial(&data, &theme), folder, "trial")?;
+    }
+    first_failure(records.par_iter().enumerate().map(|(number, record)| {
+        let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
+        let replays = replays(record, answers);
+        write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
+        write_figure(&best_fit(record, &replays, &theme), folder, &format!("fit{suffix}"))
+    }))
+}
+
+fn title(record: &Drawn) -> Option<String> {
+    Some(if record.validation { format!("{} (validation)", record.name) } else { record.name.to_owned() })
+}
+
+fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Replays {
+    let trial = record.trial;
+    let replays = answers
+        .par_iter()
+        .filter_map(|(entry, estimate)| {
+            let replay = replay(trial, &estimate.as_ref()?.response)?;
+            Some(Replay {
+                origin: Origin::Method(entry.method.clone()),
+                heading: curve(&replay.time, &replay.heading),
+                residual: curve(&replay.residual_time, &replay.residual),
+                rms_deg: Some(replay.heading_rmse_deg),
+            })
+        })
+        .collect();
+    Replays { title: title(record), record: curve(trial.time(), trial.heading()), truth: None, replays }
+}
+
+fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {
+    let is_best = |replay: &&Replay| replay.origin == Origin::Method(BEST.to_owned());
+    let best = replays.replays.iter().find(is_best).or_else(|| replays.replays.first());
+    let fits = best.map(|replay| Fit {
+        origin: replay.origin.clone(),
+        heading: replay.heading.clone(),
+        residual: replay.residual.clone(),
+        rms_deg: replay.rms_deg,
+    });
+    let trial = record.trial;
+    let data = RecordFit {
+        title: title(record),
+        heading: curve(trial.time(), trial.heading()),
+        rudder: curve(trial.time(), trial.rudder()),
+        fits: fits.into_iter().collect(),
+    };
+    figures::record_fit(&data, theme)
+}

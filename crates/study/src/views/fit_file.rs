@@ -1,0 +1,96 @@
+//! `fit.json`: records and answers for other programs.
+
+use campaign::answer::MethodEntry;
+use serde::{Deserialize, Serialize};
+use ship::angle::to_deg;
+use trial::{Trial, ZigZag, imo};
+
+use crate::records::file_of;
+
+/// One record of `fit.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrialEntry {
+    /// The file as it was named.
+    pub file: String,
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+    /// Rows with a rudder.
+    pub samples: usize,
+    /// Length, s.
+    pub duration_s: f64,
+}
+
+/// One IMO criterion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CriterionEntry {
+    /// What is limited.
+    pub criterion: String,
+    /// Measured value.
+    pub measured: Option<f64>,
+    /// Largest value allowed.
+    pub limit: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// `pass`, `fail` or `not measured`.
+    pub verdict: String,
+}
+
+/// Zig-zag characteristics of the first record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ZigZagEntry {
+    /// Initial turning time, s.
+    pub initial_turning_time_s: Option<f64>,
+    /// Overshoot angles in order, deg.
+    pub overshoots_deg: Vec<f64>,
+    /// Standard deviations of the overshoot angles, deg.
+    pub overshoots_sd_deg: Vec<Option<f64>>,
+    /// Period, s.
+    pub period_s: Option<f64>,
+    /// IMO MSC.137(76), where length and speed are declared.
+    pub imo: Vec<CriterionEntry>,
+}
+
+/// `fit.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitFile {
+    /// `fit/1`.
+    pub schema: String,
+    /// The records.
+    pub trials: Vec<TrialEntry>,
+    /// The answers.
+    pub methods: Vec<MethodEntry>,
+    /// Characteristics of the first record; `null` when it is not a zig-zag.
+    pub zigzag: Option<ZigZagEntry>,
+}
+
+/// The entry of a record.
+pub fn trial_entry(trial: &Trial) -> TrialEntry {
+    let (file, sha256) = file_of(trial);
+    TrialEntry { file: file.into(), sha256: sha256.into(), samples: trial.len(), duration_s: trial.duration() }
+}
+
+/// The entry of a zig-zag; criteria where length and speed are declared.
+pub fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
+    let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
+    ZigZagEntry {
+        initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
+        overshoots_deg: zigzag.overshoots.iter().map(|overshoot| to_deg(overshoot.angle.value)).collect(),
+        overshoots_sd_deg: zigzag.overshoots.iter().map(|overshoot| overshoot.angle.sd.map(to_deg)).collect(),
+        period_s: zigzag.period.map(|period| period.value),
+        imo: criteria
+            .iter()
+            .map(|criterion| CriterionEntry {
+                criterion: criterion.name.into(),
+                measured: criterion.measured.map(|measured| measured.value),
+                limit: criterion.limit,
+                unit: criterion.unit.symbol().into(),
+                verdict: match criterion.verdict {
+                    imo::Verdict::Pass => "pass",
+                    imo::Verdict::Fail => "fail",
+                    imo::Verdict::NotMeasured => "not measured",
+                }
+                .into(),
+            })
+            .collect(),
+    }
+}

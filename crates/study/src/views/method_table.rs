@@ -1,0 +1,87 @@
+//! The table of the answers of all methods: as narrow as the numbers allow, every estimate beside its 95 % interval, a failed
+//! method as a row with its reason. All digits are in the stored JSON.
+
+use report::number::{self, MISSING};
+use report::{Column, Table};
+
+use campaign::answer::{MethodEntry, Status, Value};
+
+/// One row per method; `validated` names the records of the validation columns.
+pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
+    let remarks = entries.iter().any(|entry| !remark(entry).is_empty());
+    let mut columns = vec![Column::left("method")];
+    for (symbol, unit) in [("K", "1/s"), ("T", "s"), ("δ_r", "deg")] {
+        columns.push(Column::decimal(symbol).unit(unit));
+        columns.push(Column::left("95 %"));
+    }
+    columns.push(Column::decimal("rms ψ").unit("deg"));
+    columns.extend(validated.iter().map(|name| Column::decimal(format!("on {name}")).unit("deg")));
+    if remarks {
+        columns.push(Column::left("remark"));
+    }
+    let mut table = Table::new(columns);
+    for entry in entries {
+        let mut cells = vec![entry.method.clone()];
+        match &entry.parameters {
+            Some(parameters) => cells
+                .extend([&parameters.k_per_s, &parameters.t_s, &parameters.delta_r_deg].into_iter().flat_map(estimate)),
+            None => cells.extend((0..6).map(|_| MISSING.to_owned())),
+        }
+        let rmse = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), |value| number::significant(value, 3));
+        cells.push(rmse(entry.heading_rmse_deg));
+        cells.extend(entry.validation.iter().map(|validation| rmse(validation.heading_rmse_deg)));
+        cells.push(remark(entry));
+        table.push(cells);
+    }
+    table
+}
+
+/// Most significant digits shown.
+const DIGITS: i32 = 5;
+
+/// A value and its interval, with the digits the interval supports and no more than five significant ones.
+fn estimate(quantity: &Value) -> [String; 2] {
+    let Some(value) = quantity.value else { return [MISSING.to_owned(), MISSING.to_owned()] };
+    let Some([low, high]) = quantity.ci95 else {
+        return [number::significant(value, DIGITS as usize - 1), MISSING.to_owned()];
+    };
+    let magnitude = |number: f64| if number == 0.0 { 0 } else { number.abs().log10().floor() as i32 };
+    let largest = value.abs().max(low.abs()).max(high.abs());
+    let half_width = 0.5 * (high - low);
+    let supported = if half_width > 0.0 { 1 - magnitude(half_width) } else { i32::MAX };
+    let decimals = supported.min(DIGITS - 1 - magnitude(largest)).clamp(0, 9) as usize;
+    [number::fixed(value, decimals), format!("[{}, {}]", number::fixed(low, decimals), number::fixed(high, decimals))]
+}
+
+fn remark(entry: &MethodEntry) -> String {
+    match (entry.status, &entry.failure) {
+        (Status::Failed, Some(failure)) => format!("failed: {}", failure.replace('-', " ")),
+        (Status::Failed, None) => "failed".to_owned(),
+        (Status::Ok, _) if entry.course_unstable => "course-unstable".to_owned(),
+        (Status::Ok, _) => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use identify::IdentifyError;
+
+    use super::*;
+
+    #[test]
+    fn digits_follow_the_interval_and_stop_at_five() {
+        let shown = |value, ci95| estimate(&Value { value: Some(value), sd: None, ci95 });
+        assert_eq!(shown(0.18713, Some([0.166, 0.215])), ["0.187", "[0.166, 0.215]"]);
+        assert_eq!(shown(0.1748075, Some([0.1748052, 0.1748099])), ["0.17481", "[0.17481, 0.17481]"]);
+        assert_eq!(shown(-0.7, Some([-5.83, 4.42])), ["−0.7", "[−5.8, 4.4]"]);
+        assert_eq!(shown(2662.0, None), ["2662", "–"]);
+        assert_eq!(shown(148.2, Some([142.0, 154.0])), ["148.2", "[142.0, 154.0]"]);
+    }
+
+    #[test]
+    fn a_failed_method_is_a_row_with_its_reason() {
+        let failed = MethodEntry::failed("srivc", &IdentifyError::NoTrial);
+        let text = table(&[failed], &[]).to_text();
+        assert!(text.contains("srivc") && text.contains("failed: no trial"), "{text}");
+    }
+}

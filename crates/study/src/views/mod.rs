@@ -1,0 +1,17 @@
+//! What people and programs see: tables, figures, pages and JSON. Views read what was computed and compute nothing.
+
+pub mod charts;
+pub mod drawings;
+pub mod fit_figures;
+pub mod fit_file;
+pub mod method_table;
+pub mod picture;
+pub mod publish;
+pub mod study_page;
+pub mod tables;
+pub mod trace_charts;
+pub mod trace_figures;
+pub mod trace_file;
+pub mod trace_page;
+pub mod trace_report;
+pub mod tracing_table;

@@ -1,0 +1,95 @@
+//! Everything that is published of a finished study: tables, figures, the page, and what goes on the screen.
+
+use std::io::Write as _;
+
+use campaign::design::Design;
+use campaign::folder::ResultFolder;
+use campaign::store::Stored;
+use campaign::summary::Tally;
+use rayon::prelude::*;
+use report::{Table, Theme, markdown};
+use scenario::failure::{Failure, OnPath};
+
+use super::drawings::{self, write_all};
+use super::study_page::{on_screen, page};
+use super::{tables, tracing_table};
+use crate::options::{Common, Format};
+use crate::screen;
+
+/// Makes the tables, the figures and `report.md` in a folder, and prints the tables.
+pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
+    let design = &stored.design;
+    let mut tally = Tally::new(design);
+    stored.rows(|row| {
+        tally.add(&row);
+        Ok(())
+    })?;
+    let summary = tally.finish();
+    write_csv(folder, SUMMARY, &summary.methods, |lines| tables::summary(lines, design))?;
+    if design.methods.len() > 1 {
+        let reference = &design.methods[summary.reference];
+        write_csv(folder, "pairs.csv", &summary.pairs, |lines| tables::pairs(lines, reference, design))?;
+    }
+    if !summary.tracing.is_empty() {
+        write_csv(folder, "tracing.csv", &summary.tracing, |lines| {
+            tracing_table::table(lines, &summary, design, true)
+        })?;
+    }
+    let brief = is_readable(design).then(|| tables::summary_in_brief(&summary, design));
+    if let Some(brief) = &brief {
+        folder.write("summary.md", brief.to_markdown())?;
+        folder.write("summary.tex", brief.to_latex())?;
+    }
+    let drawings = drawings::of(stored, &summary);
+    write_all(&drawings, theme, folder)?;
+    // Whatever a scenario or a label holds: no HTML.
+    folder.write(REPORT, markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
+
+    match common.format {
+        _ if common.quiet => Ok(()),
+        Format::Text => {
+            let page = folder.path().join(REPORT);
+            screen::say(&format!("{}\nreport: {}", on_screen(stored, &summary), page.display()))
+        }
+        // Another program reads the table: nothing else may stand beside it.
+        Format::Csv => screen::say(tables::summary(&summary.methods, design).to_csv().trim_end()),
+        format => {
+            let brief = brief.unwrap_or_else(|| tables::summary_in_brief(&summary, design));
+            screen::say(format.render(&brief).trim_end())
+        }
+    }
+}
+
+const SUMMARY: &str = "summary.csv";
+const REPORT: &str = "report.md";
+
+/// Cells that are listed one by one for a person to read; more are in `summary.csv`.
+const LISTED_CELLS: usize = 500;
+
+fn is_readable(design: &Design) -> bool {
+    design.cells.len() <= LISTED_CELLS
+}
+
+/// Lines that are turned into text at a time.
+const PIECE: usize = 250;
+
+/// Pieces that are made in parallel.
+const PIECES: usize = 16;
+
+/// Writes a long table as CSV, some pieces at a time.
+fn write_csv<T: Sync>(
+    folder: &ResultFolder,
+    name: &str,
+    lines: &[T],
+    table: impl Fn(&[T]) -> Table + Sync,
+) -> Result<(), Failure> {
+    let mut file = folder.create(name)?;
+    let path = folder.path().join(name);
+    let head = table(&[]).to_csv();
+    file.write_all(head.as_bytes()).on("write", &path)?;
+    for pieces in lines.chunks(PIECE * PIECES) {
+        let texts: Vec<String> = pieces.par_chunks(PIECE).map(|piece| table(piece).to_csv()).collect();
+        texts.iter().try_for_each(|text| file.write_all(&text.as_bytes()[head.len()..])).on("write", &path)?;
+    }
+    file.put()
+}

@@ -1,0 +1,116 @@
+//! What is said of a finished study: `report.md`, and the lines on the screen.
+
+use std::fmt::Write as _;
+
+use campaign::store::Stored;
+use campaign::summary::Summary;
+use report::{Table, number};
+
+use super::drawings::Drawing;
+use super::{tables, tracing_table};
+
+/// Cells whose lines go on the screen; more are in the files.
+const SHOWN_CELLS: usize = 12;
+
+/// What a person sees: the first trial of every cell in detail, all trials in brief, failures with their reasons.
+pub fn on_screen(stored: &Stored, summary: &Summary) -> String {
+    let Stored { manifest, design, showcases, .. } = stored;
+    let mut text = format!("{}: {}\n\n", manifest.name, design.words.question.trim());
+    for showcase in showcases {
+        let title = if showcase.title.is_empty() { "first trial" } else { &showcase.title };
+        text += &format!("{title}\n{}\n", tables::showcase(showcase).to_text());
+    }
+    if design.cells.len() <= SHOWN_CELLS {
+        text += &tables::summary_in_brief(summary, design).to_text();
+    } else {
+        text += &format!("over all {} cells, which are in the report one by one\n", design.cells.len());
+        text += &tables::overall(summary, design).to_text();
+    }
+    if !summary.tracing.is_empty() {
+        text += &format!("\nwhat traces named\n{}", tracing_table::kinds(&summary.tracing).to_text());
+    }
+    let failures = tables::failures(summary, design);
+    failures.iter().take(SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
+    if failures.len() > SHOWN_CELLS {
+        text += &format!("\n… and {} lines more in the report", failures.len() - SHOWN_CELLS);
+    }
+    text
+}
+
+/// `report.md`.
+///
+/// `brief` holds the cells one by one, where a person may read them all.
+pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings: &[Drawing]) -> String {
+    let Stored { manifest, design, showcases, timings, .. } = stored;
+    let mut page = String::new();
+    let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
+    let figure = |drawing: &Drawing| format!("![{0}]({1}.png)\n\n*{0}*\n", drawing.caption, drawing.stem);
+    line(&format!("# {}\n\n**{}**\n", manifest.name, design.words.question.trim()));
+    for prose in [&design.words.finding, &design.words.analysis] {
+        if !prose.trim().is_empty() {
+            line(&format!("{}\n", prose.trim()));
+        }
+    }
+    for (index, showcase) in showcases.iter().enumerate() {
+        let title = if showcase.title.is_empty() { "The first trial" } else { &showcase.title };
+        line(&format!("## {title}\n\n{}", tables::showcase(showcase).to_markdown()));
+        for entry in &showcase.methods {
+            entry.warnings.iter().for_each(|warning| line(&format!("- {}: {warning}", entry.method)));
+        }
+        line("");
+        drawings.iter().filter(|drawing| drawing.showcase == Some(index)).for_each(|drawing| line(&figure(drawing)));
+    }
+    if !summary.tracing.is_empty() {
+        line(&format!("## What traces named\n\n{}", tracing_table::kinds(&summary.tracing).to_markdown()));
+        line(&format!(
+            "*all named*: every missing effect is in one of the groups named; *wrong named*: a group was named that holds no \
+             missing effect; *clear*: the one missing effect alone gains {} more in BIC than any other alone. Intervals are \
+             Wilson's, 95 %.\n",
+            campaign::summary::CLEAR
+        ));
+        drawings.iter().filter(|drawing| drawing.of_traces).for_each(|drawing| line(&figure(drawing)));
+        line(&tracing_table::table(&summary.tracing, summary, design, false).to_markdown());
+    }
+    line("## Over all trials\n");
+    drawings
+        .iter()
+        .filter(|drawing| drawing.showcase.is_none() && !drawing.of_traces)
+        .for_each(|drawing| line(&figure(drawing)));
+    if design.cells.len() > 1 {
+        line("### All cells together\n");
+        line(&tables::overall(summary, design).to_markdown());
+        line("### Cell by cell\n");
+    }
+    match brief {
+        Some(brief) => line(&brief.to_markdown()),
+        None => line(&format!("The {} cells are in `summary.csv`.\n", design.cells.len())),
+    }
+    line(
+        "Errors of K and T are relative to the truth. *median*, *rms*: median and root mean square error, with a bootstrap \
+         interval; *coverage*: share of quoted 95 % intervals that hold the truth; *sd/bound*: standard deviation over the \
+         Cramér–Rao bound; *validation*: median error of the heading on a manoeuvre no method has seen. All figures with all \
+         intervals are in `summary.csv`, comparisons on the same trials in `pairs.csv`, times in `timings.csv`.\n",
+    );
+    let times: Vec<String> = design
+        .methods
+        .iter()
+        .enumerate()
+        .filter_map(|(index, method)| Some((method, timings.mean_us(index)?)))
+        .map(|(method, (mean, error))| format!("{} {}", method.label, number::with_uncertainty(mean, Some(error))))
+        .collect();
+    if !times.is_empty() {
+        line(&format!(
+            "Mean time of an identification on this run's machine with its standard error, µs: {}.\n",
+            times.join(", ")
+        ));
+    }
+    for failure in tables::failures(summary, design) {
+        line(&format!("- {failure}"));
+    }
+    line(&format!(
+        "\nMade by `study` {} from the scenario in `manifest.toml` with seed {}; `study report` rebuilds this page from the \
+         stored rows, `study manifest.toml --out DIR` runs it again.",
+        manifest.version, manifest.seed
+    ));
+    page
+}

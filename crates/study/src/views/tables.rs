@@ -1,0 +1,219 @@
+//! Tables of what was found, for the screen, `report.md` and other programs.
+
+use report::figures::Reference;
+use report::number::{self, MISSING};
+use report::{Column, Table};
+
+use campaign::design::Design;
+use campaign::showcase::Showcase;
+use campaign::statistics::Statistic;
+use campaign::summary::{Errors, MethodSummary, PairSummary, Record, Summary};
+use scenario::MethodName;
+
+/// The table of a showcase: the methods, and below them the truth and the published values.
+pub fn showcase(showcase: &Showcase) -> Table {
+    let mut table = super::method_table::table(&showcase.methods, &[]);
+    let references = [("truth", showcase.intervals.truth), ("published", showcase.intervals.published)];
+    for (name, reference) in references {
+        if let Some(Reference { k_per_s, t_s }) = reference {
+            let (k, t) = (number::significant(k_per_s, 4), number::significant(t_s, 4));
+            table.push([name, &k, MISSING, &t]);
+        }
+    }
+    table
+}
+
+/// Every figure of methods in cells, for other programs: `summary.csv`. An interval is two columns.
+pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
+    let mut columns = head(design);
+    columns.extend(["trials", "failed"].map(Column::right));
+    for index in ["K", "T", "K/T"] {
+        columns.extend(ERRORS.iter().flat_map(|(name, unit, _)| with_ends(&format!("{index} {name}"), unit)));
+    }
+    columns.extend(
+        ["failure rate", "heading error", "validation error", "validation error 90 %"]
+            .into_iter()
+            .zip(["%", "deg", "deg", "deg"])
+            .flat_map(|(name, unit)| with_ends(name, unit)),
+    );
+    columns.push(Column::decimal("evaluations"));
+    let mut table = Table::new(columns);
+    for line in lines {
+        let record = &line.record;
+        let mut cells = place(design, line.cell, line.method);
+        cells.extend([record.trials.to_string(), record.failed().to_string()]);
+        for errors in [&record.k, &record.t, &record.k_over_t] {
+            cells.extend(ERRORS.iter().flat_map(|(.., get)| all_digits(get(errors))));
+        }
+        let percent = record.failure_rate.map(|rate| rate.times(100.0));
+        for figure in [percent, record.heading_rmse_deg, record.validation_rmse_deg, record.high_validation_rmse_deg] {
+            cells.extend(all_digits(figure));
+        }
+        cells.push(number::optional(record.evaluations, 1));
+        table.push(cells);
+    }
+    table
+}
+
+/// A figure of [`Errors`]: its name, unit, and how to get it.
+type ErrorFigure = (&'static str, &'static str, fn(&Errors) -> Option<Statistic>);
+
+const ERRORS: [ErrorFigure; 13] = [
+    ("mean error", "%", |errors| errors.mean),
+    ("median error", "%", |errors| errors.median),
+    ("sd", "%", |errors| errors.sd),
+    ("rms error", "%", |errors| errors.rms),
+    ("MAD", "%", |errors| errors.mad),
+    ("2.5 % quantile", "%", |errors| errors.quantiles[0]),
+    ("25 % quantile", "%", |errors| errors.quantiles[1]),
+    ("75 % quantile", "%", |errors| errors.quantiles[2]),
+    ("97.5 % quantile", "%", |errors| errors.quantiles[3]),
+    ("90 % of sizes", "%", |errors| errors.high_size),
+    ("coverage", "%", |errors| errors.coverage.map(|share| share.times(100.0))),
+    ("quoting intervals", "%", |errors| errors.quoting.map(|share| share.times(100.0))),
+    ("sd/bound", "", |errors| errors.sd_over_bound),
+];
+
+fn head(design: &Design) -> Vec<Column> {
+    head_of_cells(design).into_iter().chain([Column::left("method")]).collect()
+}
+
+/// One column for every axis.
+pub fn head_of_cells(design: &Design) -> Vec<Column> {
+    design.axes.iter().map(|axis| Column::left(axis.clone())).collect()
+}
+
+fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
+    let labels = design.cells[cell].labels.iter().cloned();
+    labels.chain([design.methods[method].label.clone()]).collect()
+}
+
+fn with_ends(name: &str, unit: &'static str) -> [Column; 3] {
+    ["", " lower 95", " upper 95"].map(|end| {
+        let column = Column::decimal(format!("{name}{end}"));
+        if unit.is_empty() { column } else { column.unit(unit) }
+    })
+}
+
+/// A figure and the ends of its interval with the digits of a machine.
+fn all_digits(figure: Option<Statistic>) -> [String; 3] {
+    let text = |value: Option<f64>| value.map_or_else(|| MISSING.to_owned(), |value| number::significant(value, 6));
+    let ends = figure.and_then(|figure| figure.ci95);
+    [text(figure.map(|figure| figure.value)), text(ends.map(|ends| ends[0])), text(ends.map(|ends| ends[1]))]
+}
+
+/// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over the
+/// bound, and the validation error where there is one.
+pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
+    let records = || summary.methods.iter().map(|line| &line.record);
+    let validated = records().any(|record| record.validation_rmse_deg.is_some());
+    let mut columns = head(design);
+    columns.push(Column::right("failed"));
+    for index in ["K", "T"] {
+        columns.push(Column::decimal(format!("{index} median")).unit("%"));
+        columns.push(Column::decimal(format!("{index} rms")).unit("%"));
+        columns.push(Column::left("95 %"));
+        columns.push(Column::right("coverage").unit("%"));
+        columns.push(Column::decimal("sd/bound"));
+    }
+    if validated {
+        columns.push(Column::decimal("validation").unit("deg"));
+    }
+    let mut table = Table::new(columns);
+    for line in &summary.methods {
+        let mut cells = place(design, line.cell, line.method);
+        cells.extend(brief(&line.record));
+        if validated {
+            cells.push(supported(line.record.validation_rmse_deg));
+        }
+        table.push(cells);
+    }
+    table
+}
+
+fn brief(record: &Record) -> Vec<String> {
+    let mut cells = vec![format!("{}/{}", record.failed(), record.trials)];
+    for errors in [&record.k, &record.t] {
+        cells.push(supported(errors.median));
+        cells.push(supported(errors.rms));
+        cells.push(interval(errors.rms));
+        cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
+        cells.push(fixed(errors.sd_over_bound, 2));
+    }
+    cells
+}
+
+/// One row per method over all cells.
+pub fn overall(summary: &Summary, design: &Design) -> Table {
+    let mut columns = vec![Column::left("method"), Column::right("failed")];
+    for index in ["K", "T"] {
+        columns.push(Column::decimal(format!("{index} median size")).unit("%"));
+        columns.push(Column::left("95 %"));
+        columns.push(Column::decimal("90 %").unit("%"));
+        columns.push(Column::right("coverage").unit("%"));
+    }
+    columns.push(Column::decimal("validation").unit("deg"));
+    let mut table = Table::new(columns);
+    for (method, overall) in design.methods.iter().zip(&summary.overall) {
+        let record = &overall.record;
+        let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
+        for errors in [&record.k, &record.t] {
+            cells.push(supported(errors.median_size));
+            cells.push(interval(errors.median_size));
+            cells.push(supported(errors.high_size));
+            cells.push(fixed(errors.coverage.map(|share| share.times(100.0)), 1));
+        }
+        cells.push(supported(record.validation_rmse_deg));
+        table.push(cells);
+    }
+    table
+}
+
+/// Every method against the reference on the same trials: `pairs.csv`.
+pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
+    let mut columns = head(design);
+    columns.extend([Column::left("reference"), Column::right("trials")]);
+    for index in ["K", "T"] {
+        columns.extend(with_ends(&format!("{index} rms difference"), "%"));
+        columns.extend(with_ends(&format!("{index} rms ratio"), ""));
+        columns.extend(with_ends(&format!("{index} closer"), "%"));
+    }
+    let mut table = Table::new(columns);
+    for line in lines {
+        let mut cells = place(design, line.cell, line.method);
+        cells.extend([reference.label.clone(), line.trials.to_string()]);
+        for comparison in [&line.k, &line.t] {
+            cells.extend(all_digits(comparison.rms_difference));
+            cells.extend(all_digits(comparison.rms_ratio));
+            cells.extend(all_digits(comparison.closer.map(|share| share.times(100.0))));
+        }
+        table.push(cells);
+    }
+    table
+}
+
+fn fixed(figure: Option<Statistic>, decimals: usize) -> String {
+    number::optional(figure.map(|figure| figure.value), decimals)
+}
+
+fn supported(figure: Option<Statistic>) -> String {
+    figure.map_or_else(|| MISSING.to_owned(), |figure| number::supported(figure.value, figure.ci95))
+}
+
+fn interval(figure: Option<Statistic>) -> String {
+    number::interval(figure.and_then(|figure| figure.ci95))
+}
+
+/// Reasons of failed trials with their counts, one line a cell and method.
+pub fn failures(summary: &Summary, design: &Design) -> Vec<String> {
+    let line = |cell: usize, method: usize, record: &Record| {
+        let reasons: Vec<String> =
+            record.failures.iter().map(|(reason, count)| format!("{count} × {reason}")).collect();
+        let place = design.cells[cell].labels.join(", ");
+        let place = if place.is_empty() { String::new() } else { format!("{place}: ") };
+        let method = &design.methods[method].label;
+        format!("{place}{method}: {} of {} failed ({})", record.failed(), record.trials, reasons.join(", "))
+    };
+    let failing = summary.methods.iter().filter(|line| !line.record.failures.is_empty());
+    failing.map(|summary| line(summary.cell, summary.method, &summary.record)).collect()
+}

@@ -1,0 +1,196 @@
+//! Figures of an analysis: every record with the model before and after, the residuals from several sides, and the
+//! candidates with the threshold.
+
+use ::trace::analysis::{Judged, Outcome};
+use ::trace::diagnostics::{autocorrelation, spectrum};
+use ::trace::errors::Replayed;
+use rayon::prelude::*;
+use report::figures::{self, Evidence, EvidenceBar, Fate, Fit, RecordFit, ResidualPanel, ResidualPanels};
+use report::{Curve, Figure, Origin, Theme};
+use ship::angle::to_deg;
+use trial::Trial;
+
+use super::picture::{first_failure, slug, write_figure};
+use super::trace_page;
+use super::trace_report::TraceReport;
+use crate::records::names;
+use campaign::curves::curve;
+use campaign::folder::ResultFolder;
+use scenario::failure::Failure;
+
+/// Lags of the autocorrelation.
+const LAGS: usize = 60;
+
+/// Lines of a spectrum that are averaged into one, at most this many are drawn.
+const MOST_LINES: usize = 400;
+
+/// Stem, caption and what is drawn.
+type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
+
+/// Draws everything into `folder` and returns stems and captions.
+pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
+    let analysis = report.analysis;
+    let trials: Vec<&Trial> = report.trials.iter().chain(report.others).collect();
+    let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
+    let mut drawings: Vec<Drawing> = Vec::new();
+    // Two names may make one slug.
+    let slugs = names(report.names.iter().map(|name| slug(name)));
+    for (number, (&trial, &judged)) in trials.iter().zip(&judged).enumerate() {
+        let name = &report.names[number];
+        let held_out = number >= report.trials.len();
+        let suffix = if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
+        let title = trace_page::title(judged, name, held_out);
+        let caption = format!("{title}: heading, residual and rudder.");
+        let record_title = title.clone();
+        drawings.push((
+            format!("record{suffix}"),
+            caption,
+            Box::new(move || record(trial, judged, &record_title, theme)),
+        ));
+        // Held-out records are judged, not studied.
+        if held_out {
+            continue;
+        }
+        let caption = format!(
+            "{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation."
+        );
+        let name = name.clone();
+        drawings.push((format!("residual{suffix}"), caption, Box::new(move || residual(trial, judged, &name, theme))));
+    }
+    let caption =
+        "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";
+    drawings.push((String::from("candidates"), caption.into(), Box::new(move || candidates(report, theme))));
+    first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
+    Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
+}
+
+fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {
+    let fit = |origin: Origin, replayed: &Replayed, error: f64| Fit {
+        origin,
+        heading: curve(&replayed.time, &replayed.heading),
+        residual: curve(&replayed.time, &replayed.residual),
+        rms_deg: Some(to_deg(error)),
+    };
+    let (before, after) = (&judged.before, &judged.after);
+    let data = RecordFit {
+        title: Some(title.to_owned()),
+        heading: curve(trial.time(), trial.heading()),
+        rudder: curve(trial.time(), trial.rudder()),
+        fits: vec![
+            fit(Origin::Before, &before.replayed, before.errors.heading),
+            fit(Origin::After, &after.replayed, after.errors.heading),
+        ],
+    };
+    figures::record_fit(&data, theme)
+}
+
+fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure {
+    let first = trial.observed_rows().next().unwrap_or(0);
+    let models = [(Origin::Before, &judged.before.replayed), (Origin::After, &judged.after.replayed)];
+    let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
+    let against = |x_title: &str, x: &dyn Fn(&Replayed) -> Vec<f64>| ResidualPanel {
+        x_title: x_title.to_owned(),
+        y_title: String::from("residual [°]"),
+        logarithmic: false,
+        joined: false,
+        curves: models
+            .iter()
+            .map(|(origin, replayed)| (origin.clone(), thinned_pairs(x(replayed), degrees(&replayed.residual))))
+            .collect(),
+        band: None,
+    };
+    let rudder = |replayed: &Replayed| degrees(&trial.rudder()[first..first + replayed.time.len()]);
+    let present = |replayed: &Replayed| -> Vec<f64> {
+        degrees(&replayed.residual).into_iter().filter(|e| e.is_finite()).collect()
+    };
+    let spacing = trial.sampling_period();
+    let lines = ResidualPanel {
+        x_title: String::from("frequency [Hz]"),
+        y_title: String::from("power [°²/Hz]"),
+        logarithmic: true,
+        joined: true,
+        curves: models.iter().map(|(origin, replayed)| (origin.clone(), power(&present(replayed), spacing))).collect(),
+        band: None,
+    };
+    let rows = present(models[0].1).len();
+    let band = 1.96 / (rows as f64).sqrt();
+    let correlations = ResidualPanel {
+        x_title: String::from("lag [s]"),
+        y_title: String::from("autocorrelation"),
+        logarithmic: false,
+        joined: true,
+        curves: models
+            .iter()
+            .map(|(origin, replayed)| {
+                let values = autocorrelation(&present(replayed), LAGS.min(rows / 3));
+                let lags: Vec<f64> = (1..=values.len()).map(|lag| lag as f64 * spacing).collect();
+                (origin.clone(), Curve::new(lags, values))
+            })
+            .collect(),
+        band: Some([-band, band]),
+    };
+    let data = ResidualPanels {
+        title: Some(name.to_owned()),
+        panels: vec![
+            against("time [s]", &|replayed| replayed.time.clone()),
+            against("heading [°]", &|replayed| degrees(&replayed.heading)),
+            against("yaw rate [°/s]", &|replayed| degrees(&replayed.yaw_rate)),
+            against("rudder [°]", &rudder),
+            lines,
+            correlations,
+        ],
+    };
+    figures::residual_panels(&data, theme)
+}
+
+/// Points of a cloud, not more than a figure can show.
+fn thinned_pairs(x: Vec<f64>, y: Vec<f64>) -> Curve {
+    let step = x.len().div_ceil(1500).max(1);
+    let every = |values: Vec<f64>| values.into_iter().step_by(step).collect::<Vec<f64>>();
+    Curve::new(every(x), every(y))
+}
+
+/// Power spectral density of a residual in degrees, neighbouring lines averaged.
+fn power(residual: &[f64], spacing: f64) -> Curve {
+    let square = residual.iter().map(|e| e * e).sum::<f64>() / residual.len().max(1) as f64;
+    let lines = spectrum(residual, spacing);
+    let width = 1.0 / (residual.len().max(1) as f64 * spacing);
+    let group = lines.len().div_ceil(MOST_LINES).max(3);
+    let points = lines.chunks(group).map(|lines| {
+        let count = lines.len() as f64;
+        let frequency = lines.iter().map(|line| line.frequency).sum::<f64>() / count;
+        (frequency, lines.iter().map(|line| line.share).sum::<f64>() / count * square / width)
+    });
+    let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
+    Curve::new(x, y)
+}
+
+fn candidates(report: &TraceReport, theme: &Theme) -> Figure {
+    let analysis = report.analysis;
+    let mut bars: Vec<EvidenceBar> = analysis
+        .candidates
+        .iter()
+        .filter_map(|one| {
+            let gain = one.gain_alone.or(one.evidence.map(|evidence| evidence.gain))?;
+            let only = one.only.as_ref().map_or_else(String::new, |name| format!(", {name}"));
+            Some(EvidenceBar {
+                name: format!("{} ({}){only}", one.id, one.form),
+                gain,
+                threshold: one.needed,
+                fate: match one.outcome {
+                    Outcome::Added => Fate::Added,
+                    Outcome::Alias => Fate::Alias,
+                    Outcome::Rejected => Fate::Rejected,
+                    Outcome::NotObservable => Fate::NotObservable,
+                },
+            })
+        })
+        .collect();
+    bars.sort_by(|one, other| other.gain.total_cmp(&one.gain));
+    let data = Evidence {
+        title: Some(report.names[..report.trials.len()].join(", ")),
+        x_title: String::from("fall of BIC when added to the base alone"),
+        bars,
+    };
+    figures::evidence(&data, theme)
+}

@@ -1,0 +1,345 @@
+//! `trace.json`: the analysis for other programs.
+
+use std::collections::BTreeMap;
+
+use ::trace::analysis::{Considered, Judged, Outcome, Traced, Value};
+use ::trace::errors::{Errors, HORIZONS};
+use serde::Serialize;
+use ship::angle::to_deg;
+use trial::Trial;
+
+use super::trace_page;
+use super::trace_report::TraceReport;
+use crate::records::file_of;
+use campaign::answer::{Parameters, Value as Number};
+
+/// `trace.json`.
+#[derive(Debug, Serialize)]
+pub struct TraceFile {
+    /// `trace/1`.
+    pub schema: &'static str,
+    /// `clean`, `traced` or `unexplained`.
+    pub verdict: &'static str,
+    /// K, T and δ_r of the base fitted alone.
+    pub base: Parameters,
+    /// What was found, in the order of discovery.
+    pub effects: Vec<EffectEntry>,
+    /// Every effect of the list and what became of it.
+    pub candidates: Vec<CandidateEntry>,
+    /// What is left.
+    pub unexplained: UnexplainedEntry,
+    /// Errors before and after on every record.
+    pub error: ErrorEntry,
+    /// Whiteness of the residual before and after.
+    pub residual: ResidualEntry,
+    /// The trial that would tell most.
+    pub next_trial: String,
+    /// The augmented model.
+    pub model: ModelEntry,
+    /// Terms that explained the records but made the error elsewhere worse.
+    pub refused: Vec<String>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, Serialize)]
+pub struct ParameterEntry {
+    /// Value.
+    pub value: f64,
+    /// Standard deviation.
+    pub sd: Option<f64>,
+    /// 95 % interval.
+    pub ci95: Option<[f64; 2]>,
+    /// Unit.
+    pub unit: String,
+    /// The one record it belongs to.
+    pub only: Option<String>,
+}
+
+/// An effect that was found.
+#[derive(Debug, Serialize)]
+pub struct EffectEntry {
+    id: &'static str,
+    form: &'static str,
+    equation: &'static str,
+    only: Option<String>,
+    aliases: Vec<&'static str>,
+    alias_forms: Vec<String>,
+    parameters: BTreeMap<String, ParameterEntry>,
+    delta_bic: f64,
+    p_value: f64,
+    residual_share: f64,
+    evidence: String,
+}
+
+/// An effect of the list.
+#[derive(Debug, Serialize)]
+pub struct CandidateEntry {
+    id: &'static str,
+    outcome: &'static str,
+    delta_bic: Option<f64>,
+    p_value: Option<f64>,
+    reason: Option<&'static str>,
+    forms: Vec<FormEntry>,
+}
+
+/// An effect in one form.
+#[derive(Debug, Serialize)]
+pub struct FormEntry {
+    form: &'static str,
+    only: Option<String>,
+    outcome: &'static str,
+    delta_bic: Option<f64>,
+    p_value: Option<f64>,
+    delta_bic_alone: Option<f64>,
+    visibility: Option<f64>,
+}
+
+/// What is left.
+#[derive(Debug, Serialize)]
+pub struct UnexplainedEntry {
+    present: bool,
+    signature: Option<String>,
+    empirical: Option<EmpiricalEntry>,
+}
+
+/// A monomial that would carry some of it.
+#[derive(Debug, Serialize)]
+pub struct EmpiricalEntry {
+    terms: Vec<&'static str>,
+    equation: &'static str,
+    delta_bic: f64,
+    p_value: f64,
+    heading_rmse_deg: f64,
+}
+
+/// Errors of both kinds of records.
+#[derive(Debug, Serialize)]
+pub struct ErrorEntry {
+    identification: Vec<BeforeAfter>,
+    validation: Vec<BeforeAfter>,
+}
+
+/// One record.
+#[derive(Debug, Serialize)]
+pub struct BeforeAfter {
+    file: String,
+    before: E,
+    after: E,
+}
+
+/// Errors of one model on one record.
+#[derive(Debug, Serialize)]
+pub struct E {
+    heading_rmse_deg: f64,
+    yaw_rate_rmse_deg_s: Option<f64>,
+    overshoot_error_deg: Option<f64>,
+    horizon_rmse_deg: BTreeMap<String, Option<f64>>,
+}
+
+/// Residual before and after.
+#[derive(Debug, Serialize)]
+pub struct ResidualEntry {
+    before: WhitenessEntry,
+    after: WhitenessEntry,
+}
+
+/// Whiteness of a residual.
+#[derive(Debug, Serialize)]
+pub struct WhitenessEntry {
+    lag1_autocorrelation: f64,
+    whiteness_p: f64,
+}
+
+/// The augmented model.
+#[derive(Debug, Serialize)]
+pub struct ModelEntry {
+    equations: Vec<&'static str>,
+    #[serde(flatten)]
+    indices: Parameters,
+    parameters: Vec<NamedParameter>,
+    noise: NoiseEntry,
+}
+
+/// A parameter with its symbol.
+#[derive(Debug, Serialize)]
+pub struct NamedParameter {
+    symbol: String,
+    #[serde(flatten)]
+    value: ParameterEntry,
+}
+
+/// The random part.
+#[derive(Debug, Serialize)]
+pub struct NoiseEntry {
+    heading_sd_deg: f64,
+    random_moment: Option<&'static str>,
+    random_moment_heading_sd_deg: Option<f64>,
+    waves_sd_deg: Option<f64>,
+    waves_frequency_rad_s: Option<f64>,
+}
+
+impl From<&Errors> for E {
+    fn from(errors: &Errors) -> Self {
+        let horizon =
+            HORIZONS.iter().zip(errors.horizon).map(|(length, error)| (format!("{length:.0}"), error.map(to_deg)));
+        Self {
+            heading_rmse_deg: to_deg(errors.heading),
+            yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
+            overshoot_error_deg: errors.overshoot.map(to_deg),
+            horizon_rmse_deg: horizon.collect(),
+        }
+    }
+}
+
+impl From<&Value> for ParameterEntry {
+    fn from(value: &Value) -> Self {
+        Self {
+            value: value.value,
+            sd: value.sd,
+            ci95: value.ci95(),
+            unit: value.unit.to_owned(),
+            only: value.only.clone(),
+        }
+    }
+}
+
+impl From<&Traced> for EffectEntry {
+    fn from(effect: &Traced) -> Self {
+        let mut aliases: Vec<&'static str> =
+            effect.aliases.iter().map(|(id, _)| *id).filter(|id| *id != effect.id).collect();
+        aliases.dedup();
+        Self {
+            id: effect.id,
+            form: effect.form,
+            equation: effect.equation,
+            only: effect.only.clone(),
+            aliases,
+            alias_forms: effect.aliases.iter().map(|(id, form)| format!("{id} ({form})")).collect(),
+            parameters: effect.parameters.iter().map(|value| (value.symbol.clone(), value.into())).collect(),
+            delta_bic: -effect.evidence.gain,
+            p_value: effect.evidence.p_value,
+            residual_share: effect.residual_share,
+            evidence: effect.sentence.clone(),
+        }
+    }
+}
+
+/// Outcomes from the one that says most about an effect to the one that says least.
+const RANK: [Outcome; 4] = [Outcome::Added, Outcome::Alias, Outcome::Rejected, Outcome::NotObservable];
+
+/// One entry an effect: its best form speaks for it.
+fn candidates(all: &[Considered]) -> Vec<CandidateEntry> {
+    let mut ids: Vec<&'static str> = Vec::new();
+    for one in all {
+        if !ids.contains(&one.id) {
+            ids.push(one.id);
+        }
+    }
+    ids.into_iter()
+        .map(|id| {
+            let forms = || all.iter().filter(|one| one.id == id);
+            let place = |one: &Considered| RANK.iter().position(|outcome| *outcome == one.outcome);
+            let gain = |one: &Considered| one.evidence.map_or(f64::NEG_INFINITY, |evidence| evidence.gain);
+            let best = forms()
+                .min_by(|one, other| place(one).cmp(&place(other)).then(gain(other).total_cmp(&gain(one))))
+                .expect("every identifier was taken from a form");
+            CandidateEntry {
+                id,
+                outcome: best.outcome.as_str(),
+                delta_bic: best.evidence.map(|evidence| -evidence.gain),
+                p_value: best.evidence.map(|evidence| evidence.p_value),
+                reason: best.reason,
+                forms: forms()
+                    .map(|one| FormEntry {
+                        form: one.form,
+                        only: one.only.clone(),
+                        outcome: one.outcome.as_str(),
+                        delta_bic: one.evidence.map(|evidence| -evidence.gain),
+                        p_value: one.evidence.map(|evidence| evidence.p_value),
+                        delta_bic_alone: one.gain_alone.map(|gain| -gain),
+                        visibility: one.visibility,
+                    })
+                    .collect(),
+            }
+        })
+        .collect()
+}
+
+fn entries(trials: &[Trial], judged: &[Judged]) -> Vec<BeforeAfter> {
+    trials
+        .iter()
+        .zip(judged)
+        .map(|(trial, judged)| BeforeAfter {
+            file: file_of(trial).0.to_owned(),
+            before: (&judged.before.errors).into(),
+            after: (&judged.after.errors).into(),
+        })
+        .collect()
+}
+
+impl TraceFile {
+    /// The file of one analysis.
+    pub fn of(report: &TraceReport) -> Self {
+        let analysis = report.analysis;
+        let degree = to_deg(1.0);
+        let base = &analysis.base;
+        let whiteness = |k: usize| WhitenessEntry {
+            lag1_autocorrelation: analysis.whiteness[k].lag1,
+            whiteness_p: analysis.whiteness[k].p_value,
+        };
+        let [k, t, bias] = analysis.indices;
+        let noise = &analysis.randomness;
+        Self {
+            schema: "trace/1",
+            verdict: analysis.verdict.as_str(),
+            base: Parameters {
+                k_per_s: Number::of(base.K(), 1.0),
+                t_s: Number::of(base.T(), 1.0),
+                delta_r_deg: Number::of(base.rudder_bias(), degree),
+            },
+            effects: analysis.effects.iter().map(EffectEntry::from).collect(),
+            candidates: candidates(&analysis.candidates),
+            unexplained: UnexplainedEntry {
+                present: analysis.unexplained.is_some(),
+                signature: trace_page::signature(report),
+                empirical: analysis.empirical.as_ref().map(|empirical| EmpiricalEntry {
+                    terms: empirical.group.clone(),
+                    equation: empirical.equation,
+                    delta_bic: -empirical.evidence.gain,
+                    p_value: empirical.evidence.p_value,
+                    heading_rmse_deg: to_deg(empirical.error),
+                }),
+            },
+            error: ErrorEntry {
+                identification: entries(report.trials, &analysis.identification),
+                validation: entries(report.others, &analysis.validation),
+            },
+            residual: ResidualEntry { before: whiteness(0), after: whiteness(1) },
+            next_trial: trace_page::next_trial(report),
+            model: ModelEntry {
+                equations: match analysis.effects.is_empty() {
+                    true => vec!["T r' + r = K (δ + δ_r)"],
+                    false => analysis.effects.iter().map(|effect| effect.equation).collect(),
+                },
+                indices: Parameters {
+                    k_per_s: Number::of(k, 1.0),
+                    t_s: Number::of(t, 1.0),
+                    delta_r_deg: Number::of(bias, degree),
+                },
+                parameters: analysis
+                    .parameters
+                    .iter()
+                    .map(|value| NamedParameter { symbol: value.symbol.clone(), value: value.into() })
+                    .collect(),
+                noise: NoiseEntry {
+                    heading_sd_deg: to_deg(noise.white),
+                    random_moment: noise.moment.map(trace_page::moment),
+                    random_moment_heading_sd_deg: noise.moment.map(|_| to_deg(noise.wander)),
+                    waves_sd_deg: noise.waves.map(|waves| to_deg(waves.sd)),
+                    waves_frequency_rad_s: noise.waves.map(|waves| waves.frequency),
+                },
+            },
+            refused: analysis.refused.clone(),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! What the words, tables, figures and JSON of one analysis are made from.
+
+use ::trace::Analysis;
+use trial::Trial;
+
+/// Everything that is said about one analysis.
+pub struct TraceReport<'a> {
+    /// Records that were fitted.
+    pub trials: &'a [Trial],
+    /// Records that were not.
+    pub others: &'a [Trial],
+    /// A name for every record, no two the same: first the fitted ones.
+    pub names: Vec<String>,
+    /// The analysis.
+    pub analysis: &'a Analysis,
+    /// What planned trials would tell, best first.
+    pub prospects: Vec<::trace::analysis::Prospect>,
+}

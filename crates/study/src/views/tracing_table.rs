@@ -1,0 +1,115 @@
+//! Tables of what traces said.
+
+use report::number::{self, MISSING};
+use report::{Column, Table};
+
+use super::tables::head_of_cells;
+use campaign::design::Design;
+use campaign::statistics::Statistic;
+use campaign::summary::{CLEAR, Summary, TraceSummary};
+use scenario::TRACE;
+
+/// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
+///
+/// Heading errors are medians over the trials, of the base (the reference method) and of the traced model, on the trial
+/// itself and on the validation manoeuvre.
+pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
+    let mut columns = head_of_cells(design);
+    columns.push(Column::left("missing"));
+    columns.push(Column::right("trials"));
+    let shares = ["all named", "wrong named", "named where clear"];
+    for name in shares {
+        columns.push(Column::decimal(name).unit("%"));
+        if all_digits {
+            columns.extend(["low", "high"].map(|end| Column::decimal(format!("{name} {end}")).unit("%")));
+        }
+    }
+    columns.push(Column::right(format!("clear (margin above {CLEAR:.0})")));
+    columns.extend(["clean", "traced", "unexplained"].map(Column::right));
+    for what in ["heading", "validation"] {
+        columns.extend(["before", "after"].map(|when| Column::decimal(format!("{what} {when}")).unit("deg")));
+    }
+    columns.push(Column::decimal("expected likelihood ratio"));
+    columns.push(Column::left("named"));
+    let mut table = Table::new(columns);
+    for line in lines {
+        let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
+        cells.push(if line.missing.is_empty() { MISSING.into() } else { line.missing.join(" + ") });
+        cells.push(line.trials.to_string());
+        for figure in [line.complete_share(), line.wrong_share(), line.clear_share()] {
+            cells.extend(percent(figure, all_digits));
+        }
+        cells.push(line.clear[0].to_string());
+        cells.extend(line.verdicts.map(|count| count.to_string()));
+        let traced = design.methods.iter().position(|method| method.id == TRACE);
+        let records = [Some(summary.reference), traced].map(|method| summary.record(line.cell, method?));
+        let median =
+            |figure: Option<Statistic>| figure.map_or_else(|| MISSING.into(), |f| number::significant(f.value, 3));
+        cells.extend(records.map(|record| median(record.and_then(|record| record.heading_rmse_deg))));
+        cells.extend(records.map(|record| median(record.and_then(|record| record.validation_rmse_deg))));
+        cells.push(line.expected.map_or_else(|| MISSING.into(), |expected| number::significant(expected, 3)));
+        let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
+        named.sort_by(|one, other| other.1.cmp(one.1).then(one.0.cmp(other.0)));
+        let most = if all_digits { usize::MAX } else { 4 };
+        cells.push(named.iter().take(most).map(|(id, count)| format!("{id} {count}")).collect::<Vec<_>>().join(", "));
+        table.push(cells);
+    }
+    table
+}
+
+fn percent(figure: Option<Statistic>, all_digits: bool) -> Vec<String> {
+    let value = |x: f64| number::fixed(100.0 * x, if all_digits { 3 } else { 1 });
+    let mut cells = vec![figure.map_or_else(|| MISSING.into(), |figure| value(figure.value))];
+    if all_digits {
+        let ends = figure.and_then(|figure| figure.ci95);
+        cells.extend([0, 1].map(|k| ends.map_or_else(|| MISSING.into(), |ends| value(ends[k]))));
+    }
+    cells
+}
+
+/// All cells of one kind together, a line each: nothing missing, one effect, several, a hull.
+pub fn kinds(lines: &[TraceSummary]) -> Table {
+    let mut table = Table::new([
+        Column::left("cells"),
+        Column::right("number"),
+        Column::right("trials"),
+        Column::left("all named [%]"),
+        Column::left("wrong named [%]"),
+        Column::left("named where clear [%]"),
+    ]);
+    let kind = |line: &TraceSummary| match line.missing.len() {
+        0 => "nothing missing",
+        _ if line.wrong_share().is_none() => "a hull",
+        1 => "one effect missing",
+        _ => "several effects missing",
+    };
+    for name in ["nothing missing", "one effect missing", "several effects missing", "a hull"] {
+        let own: Vec<&TraceSummary> = lines.iter().filter(|line| kind(line) == name).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let mut sum = TraceSummary { missing: own[0].missing.clone(), ..TraceSummary::default() };
+        for line in &own {
+            sum.trials += line.trials;
+            sum.complete += line.complete;
+            sum.wrong += line.wrong;
+            sum.clear = [sum.clear[0] + line.clear[0], sum.clear[1] + line.clear[1]];
+        }
+        let cell = |figure: Option<Statistic>| match figure {
+            Some(figure) => {
+                let ends = figure.ci95.map(|ends| ends.map(|end| 100.0 * end));
+                format!("{} {}", number::fixed(100.0 * figure.value, 2), number::interval(ends))
+            }
+            None => MISSING.into(),
+        };
+        table.push([
+            name.to_owned(),
+            own.len().to_string(),
+            sum.trials.to_string(),
+            cell(sum.complete_share()),
+            cell(sum.wrong_share()),
+            cell(sum.clear_share()),
+        ]);
+    }
+    table
+}
