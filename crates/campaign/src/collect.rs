@@ -95,6 +95,7 @@ fn look_again(
     let told = Manifest {
         machine: stored.machine.clone(),
         git_revision: stored.git_revision.clone(),
+        git_dirty: stored.git_dirty,
         sha256: stored.sha256.clone(),
         ..manifest
     };
@@ -119,6 +120,7 @@ fn design(scenario: &Scenario) -> Design {
         values: cell.values.clone(),
         trials: 0..0,
         missing: cell.missing(),
+        has_own_indices: cell.has_own_indices(),
         bound_percent2: None,
     };
     Design {

@@ -46,10 +46,30 @@ pub fn simulate(scenario: &Scenario, task: Task) -> Result<Simulated, String> {
     specimen.specification.simulation.run(&key).map_err(|error| error.to_string())
 }
 
+/// The responses that answers to a trial are held against.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truths {
+    /// The first-order response nearest to the ship, which is the ship itself where that is first order.
+    pub nearest: Option<FirstOrder>,
+    /// The ship's own base, where it has effects beside it.
+    pub own: Option<FirstOrder>,
+}
+
+/// The truths of one trial. Fails when its drawn values make no ship.
+pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
+    let key = key(scenario, task);
+    let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
+    let Specification { simulation, truth, base, .. } = &*specimen.specification;
+    let nearest = truth.or_else(|| Some(nearest_first_order(simulation, &key)?.response));
+    Ok(Truths { nearest, own: base.filter(|_| truth.is_none()) })
+}
+
 /// What the trials of a cell are held against.
 struct Yardstick {
-    /// K, T and δ_r that a method should find.
-    truth: Option<FirstOrder>,
+    /// The first-order response that comes nearest to the ship: the ship itself where it is exactly first order.
+    nearest: Option<FirstOrder>,
+    /// The base of a response ship with effects, where that is another one.
+    own: Option<FirstOrder>,
     /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T, %².
     bound: Option<(Bound, Matrix2<f64>)>,
     /// Undisturbed second manoeuvre, perfectly recorded.
@@ -61,14 +81,14 @@ struct Yardstick {
 impl Yardstick {
     fn of(specimen: &Specimen, simulated: &Simulated, key: &StreamKey, traces: bool) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
-        let nearest = if truth.is_none() || traces { nearest_first_order(simulation, key) } else { None };
-        // A trace is after the base itself, not after the response that imitates base and effects together.
-        let truth = truth.or_else(|| base.filter(|_| traces)).or_else(|| nearest.as_ref().map(|near| near.response));
+        let near = if truth.is_none() || traces { nearest_first_order(simulation, key) } else { None };
+        let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
+        let own = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading;
-        let bound = truth.zip(sd).and_then(|(truth, sd)| bound(simulated, &truth, sd));
+        let bound = nearest.zip(sd).and_then(|(nearest, sd)| bound(simulated, &nearest, sd));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        let expected = nearest.filter(|_| traces).zip(sd).map(|(near, sd)| near.mean_square / (sd * sd) * near.rows);
-        Self { truth, bound, validation: validation.map(|simulated| simulated.trial), expected }
+        let expected = near.filter(|_| traces).zip(sd).map(|(near, sd)| near.mean_square / (sd * sd) * near.rows);
+        Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
     }
 }
 
@@ -174,8 +194,10 @@ impl<'a> Bench<'a> {
             &own
         };
         let blank = Row {
-            true_k_per_s: yardstick.truth.map(|truth| truth.K()),
-            true_t_s: yardstick.truth.map(|truth| truth.T()),
+            true_k_per_s: yardstick.nearest.map(|nearest| nearest.K()),
+            true_t_s: yardstick.nearest.map(|nearest| nearest.T()),
+            own_k_per_s: yardstick.own.map(|own| own.K()),
+            own_t_s: yardstick.own.map(|own| own.T()),
             bound: yardstick.bound.map(|(bound, _)| bound),
             ..empty(task, drawn)
         };
@@ -213,11 +235,11 @@ impl<'a> Bench<'a> {
     /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial asks.
     fn shared(&self, cell: usize) -> Yardstick {
         let key = key(self.scenario, Task { cell, replicate: 0 });
-        let nothing = Yardstick { truth: None, bound: None, validation: None, expected: None };
+        let nothing = Yardstick { nearest: None, own: None, bound: None, validation: None, expected: None };
         let Ok(specimen) = self.scenario.cells[cell].specimen(&key) else { return nothing };
         match self.simulate(cell, &specimen, &key) {
             Ok(simulated) => Yardstick::of(&specimen, &simulated, &key, self.scenario.cells[cell].traces()),
-            Err(_) => Yardstick { truth: specimen.specification.truth, ..nothing },
+            Err(_) => Yardstick { nearest: specimen.specification.truth, ..nothing },
         }
     }
 }
@@ -325,7 +347,57 @@ pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
         values: about.values.clone(),
         trials: 0..0,
         missing: about.missing(),
+        has_own_indices: about.has_own_indices(),
         bound_percent2: bound
             .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    const TEXT: &str = r#"
+question = "?"
+seed = 8
+[ship.first-order]
+K-per-s = 0.1
+T-s = 25.0
+[[effect]]
+nonlinear_damping.n3-s2-per-deg2 = 1.0
+[manoeuvre.zig-zag]
+rudder-deg = 20.0
+heading-deg = 20.0
+[steering-gear]
+rate-deg-s = 2.5
+[recording]
+sampling-s = 1.0
+duration-s = 300.0
+[sensor]
+heading-noise-deg = 0.1
+[[identifier]]
+method.output-error = {}
+"#;
+
+    fn rows(more: &str) -> Vec<Row> {
+        let scenario = Scenario::parse(Path::new("s.toml"), "s", format!("{TEXT}{more}"), None)
+            .unwrap_or_else(|failure| panic!("{failure}"));
+        Bench::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
+    }
+
+    /// The ship is the same whoever asks: a trace beside a method changes nothing of what the method is held against.
+    #[test]
+    fn a_ship_has_one_truth_whoever_asks() {
+        let alone = &rows("")[0];
+        let [beside, traced] = &rows("[[identifier]]\ntrace = {}\n")[..] else { panic!("two methods") };
+        assert_eq!(alone, beside);
+        assert_eq!([alone.own_k_per_s, alone.own_t_s], [Some(0.1), Some(25.0)]);
+        let nearest = alone.true_t_s.expect("a response is nearest");
+        assert!(nearest < 24.0, "the damping shortens T: {nearest}");
+        assert_eq!(alone.truth()[1], Some(nearest), "output error fits a first-order response");
+        assert_eq!(traced.truth(), [Some(0.1), Some(25.0)], "a trace models the damping");
+        assert!(alone.t_error().expect("an answer").abs() < 0.01 && traced.t_error().expect("an answer").abs() < 0.2);
     }
 }

@@ -49,6 +49,14 @@ impl ResultFolder {
         }
     }
 
+    /// A folder of somebody else's, into which single files are put and out of which nobody is kept.
+    ///
+    /// Fails when there is no such folder and none can be made.
+    pub fn shared(path: &Path) -> Result<Self, Failure> {
+        disk::create_folder(path).on("make the folder", path)?;
+        Ok(Self { path: path.to_owned(), _lock: None })
+    }
+
     /// A folder inside this one, held with it; made when it is missing.
     ///
     /// Fails when its place is taken by a link: what is behind it belongs to somebody else.

@@ -30,6 +30,9 @@ pub struct Manifest {
     pub version: String,
     /// Git revision of the program's source, where it was built in a repository.
     pub git_revision: Option<String>,
+    /// Whether that source had been changed since.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub git_dirty: bool,
     /// What it ran on. Nothing in the rows depends on this.
     pub machine: Machine,
     /// Versions of the crates that decide the numbers.
@@ -53,12 +56,6 @@ pub struct Machine {
     pub wall_time_s: f64,
 }
 
-/// The lock file the program was built with.
-const LOCK: &str = include_str!("../../../Cargo.lock");
-
-/// Crates whose version is part of a result's identity.
-const NUMERIC: [&str; 5] = ["nalgebra", "rand", "rand_distr", "realfft", "statrs"];
-
 /// Largest manifest, bytes: a scenario and little beside it.
 const LARGEST: u64 = 1 << 22;
 
@@ -76,15 +73,33 @@ impl Manifest {
             design_sha256: scenario.design_sha256.clone(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             git_revision: option_env!("KEMPF_GIT_REVISION").map(str::to_owned),
+            git_dirty: option_env!("KEMPF_GIT_DIRTY").is_some(),
             machine: Machine {
                 target: format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
                 threads: rayon::current_num_threads(),
                 wall_time_s: 0.0,
             },
-            crates: NUMERIC.iter().flat_map(|name| locked(name)).collect(),
+            crates: env!("KEMPF_NUMERIC_CRATES")
+                .split(',')
+                .filter(|text| !text.is_empty())
+                .map(str::to_owned)
+                .collect(),
             sha256: BTreeMap::new(),
             scenario: scenario.text.clone(),
         }
+    }
+
+    /// Whether another manifest is of the same scenario, run by the same version: all but the machine, the revision and what came
+    /// out.
+    pub fn is_of_the_run(&self, other: &Self) -> bool {
+        let of = |manifest: &Self| Self {
+            machine: other.machine.clone(),
+            git_revision: None,
+            git_dirty: false,
+            sha256: BTreeMap::new(),
+            ..manifest.clone()
+        };
+        of(self) == of(other)
     }
 
     /// The manifest of the whole study, from that of a shard and the wall time of all of them together, s.
@@ -101,7 +116,9 @@ impl Manifest {
             let designs = design(self).zip(design(other));
             let found = designs.map_or_else(Vec::new, |(own, theirs)| identity::differences(&own, &theirs));
             match found.is_empty() {
-                true => differences.push("a record that the scenario replays has changed".to_owned()),
+                true => differences.push(
+                    "a record that the scenario replays, or a method that a program gave, has changed".to_owned(),
+                ),
                 false => differences.extend(found.iter().map(ToString::to_string)),
             }
         }
@@ -166,26 +183,13 @@ impl Manifest {
     }
 }
 
-/// "name version" of a crate, once for every version in the lock file.
-fn locked(name: &str) -> Vec<String> {
-    let wanted = format!("name = \"{name}\"");
-    let lines: Vec<&str> = LOCK.lines().collect();
-    lines
-        .windows(2)
-        .filter(|pair| pair[0] == wanted)
-        .filter_map(|pair| pair[1].strip_prefix("version = "))
-        .map(|version| format!("{name} {}", version.trim_matches('"')))
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
-    fn every_numeric_crate_is_in_the_lock_file() {
-        for name in NUMERIC {
-            assert!(!locked(name).is_empty(), "{name}");
+    fn every_crate_that_decides_the_numbers_has_its_version() {
+        let crates = env!("KEMPF_NUMERIC_CRATES");
+        for name in ["nalgebra", "rand", "rand_distr", "realfft", "statrs"] {
+            assert!(crates.split(',').any(|known| known.starts_with(&format!("{name} "))), "{name}: {crates}");
         }
     }
 }

@@ -26,8 +26,8 @@ impl Verdict {
         }
         let sums = &mut self.methods[row.method];
         let (error, truth, ends) = match self.rule.figure.index() {
-            Index::K => (row.k_error(), row.true_k_per_s, row.k_ci95_per_s),
-            Index::T => (row.t_error(), row.true_t_s, row.t_ci95_s),
+            Index::K => (row.k_error(), row.truth()[0], row.k_ci95_per_s),
+            Index::T => (row.t_error(), row.truth()[1], row.t_ci95_s),
         };
         if let Some(error) = error {
             sums.errors.add(100.0 * error);

@@ -14,8 +14,8 @@
 //! | text of others on its way into a page or a file | [`markdown`], [`printable`] |
 //!
 //! ```
-//! use report::{Curve, Theme};
-//! use report::figures::{RecordFit, record_fit};
+//! use kempf_report::{Curve, Theme};
+//! use kempf_report::figures::{RecordFit, record_fit};
 //!
 //! let record = RecordFit {
 //!     heading: Curve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]),

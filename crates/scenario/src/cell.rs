@@ -69,6 +69,12 @@ impl Cell {
         self.specification.missing.clone()
     }
 
+    /// Whether the ship is a first-order base with effects, so that its own K and T are not those of the first-order response
+    /// nearest to it.
+    pub fn has_own_indices(&self) -> bool {
+        self.specification.truth.is_none() && self.specification.base.is_some()
+    }
+
     /// Labels of the points joined, or nothing when there is no axis.
     pub fn title(&self) -> String {
         self.labels.join(", ")

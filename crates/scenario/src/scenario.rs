@@ -1,7 +1,9 @@
 //! A scenario that has been checked in every cell, and how it is read.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use identify::Identifier;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use toml::Table;
@@ -10,7 +12,7 @@ use trial::file::{self, FileError, Kind};
 use crate::cell::{self, Cell};
 use crate::failure::Failure;
 use crate::identity::{self, hex};
-use crate::method::{MethodName, methods};
+use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::Part;
 use crate::problem::{KeyPath, Problem, of_text};
 use crate::stop::StopRule;
@@ -151,6 +153,26 @@ impl Scenario {
             sha256: hex(&Sha256::digest(text.as_bytes())),
             text,
         })
+    }
+
+    /// The same scenario with a method of the caller's own behind its methods, on the same trials.
+    ///
+    /// Fails when the label cannot be one, or is that of another method.
+    pub fn with_identifier(mut self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
+        name::label(label)
+            .map_err(|unfit| Failure::input(format!("a method is called {}; {unfit}", name::shown(label))))?;
+        if self.labels().any(|known| known == label) {
+            return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));
+        }
+        self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {}", self.design_sha256, identifier.id())));
+        for cell in &mut self.cells {
+            cell.methods.push(Method {
+                label: label.to_owned(),
+                id: identifier.id(),
+                procedure: Procedure::Identify { settings: None, identifier: Arc::clone(&identifier) },
+            });
+        }
+        Ok(self)
     }
 
     /// Labels and ids of the methods, in the order of the scenario.

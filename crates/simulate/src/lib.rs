@@ -21,8 +21,8 @@
 //!
 //! ```
 //! use ship::{FirstOrder, angle::from_deg};
-//! use simulate::manoeuvre::ZigZagEnd;
-//! use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+//! use kempf_simulate::manoeuvre::ZigZagEnd;
+//! use kempf_simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 //!
 //! let vessel = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
 //! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Executes(5));
@@ -31,7 +31,7 @@
 //! simulation.sensors.heading.noise = from_deg(0.1);
 //! let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 })?;
 //! assert!((simulated.truth.executes[1].time - 24.24).abs() < 0.01);
-//! # Ok::<(), simulate::SimulateError>(())
+//! # Ok::<(), kempf_simulate::SimulateError>(())
 //! ```
 //!
 //! Time is in seconds from the beginning of the run; everything else is in SI units and radians.

@@ -1,13 +1,15 @@
 //! The command line: what a user may ask for, and which part of the study answers. It knows no hydrodynamics.
 
-use std::path::PathBuf;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::commands::{check, fit, list, merge, overview, report, run, trace};
-use crate::options::{Common, FitRequest, Listed, RunRequest, Style, TraceRequest};
+use crate::commands::{check, fit, list, merge, overview, report, run, simulate, trace};
+use crate::options::{Common, FitRequest, Listed, RunRequest, SimulateRequest, Style, TraceRequest};
 use crate::{screen, threads};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use scenario::failure::{Blame, Failure};
+use scenario::problem::suggestion;
 
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
 #[derive(Debug, Parser)]
@@ -37,6 +39,13 @@ enum Command {
     Trace {
         #[command(flatten)]
         request: TraceRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Write simulated trials in the format `study fit` reads, the truth beside them
+    Simulate {
+        #[command(flatten)]
+        request: SimulateRequest,
         #[command(flatten)]
         common: Common,
     },
@@ -85,6 +94,13 @@ enum Command {
 
 /// Runs the program and returns its exit code: 0 done, 1 the work could not be done, 2 the input is wrong.
 pub fn main() -> ExitCode {
+    if let Some(name) = mistaken_command(std::env::args_os().nth(1)) {
+        let known: Vec<String> =
+            Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
+        let advice = suggestion(&name, &known);
+        screen::warn(&format!("error: there is no command `{name}`, and no scenario file of that name; {advice}"));
+        return ExitCode::from(Blame::Input.exit_code());
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(usage) if usage.use_stderr() => {
@@ -103,6 +119,14 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// A first argument that is a single word, and neither a command nor the path of anything.
+fn mistaken_command(first: Option<OsString>) -> Option<String> {
+    let name = first?.into_string().ok()?;
+    let is_word = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '-');
+    let is_known = name.starts_with('-') || name == "help" || Cli::command().find_subcommand(&name).is_some();
+    (is_word && !is_known && !Path::new(&name).exists()).then_some(name)
+}
+
 fn answer(cli: Cli) -> Result<(), Failure> {
     match (cli.command, cli.scenario) {
         (None, Some(scenario)) => {
@@ -117,6 +141,10 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         (Some(Command::Trace { request, common }), _) => {
             threads::start(&common)?;
             trace::run(&request, &common)
+        }
+        (Some(Command::Simulate { request, common }), _) => {
+            threads::start(&common)?;
+            simulate::run(&request, &common)
         }
         (Some(Command::Check { scenarios }), _) => check::run(&scenarios),
         (Some(Command::List { what, common }), _) => list::run(what, &common),

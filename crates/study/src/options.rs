@@ -1,6 +1,7 @@
 //! What a user may ask of a command: options and arguments, each declared once. Commands read them, nothing here acts.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
@@ -118,6 +119,40 @@ pub struct FitRequest {
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
     #[arg(long, value_name = "FILE.toml|DIR")]
     pub columns: Option<PathBuf>,
+}
+
+/// What `study simulate` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct SimulateRequest {
+    /// Scenario whose trials are written
+    #[arg(value_name = "SCENARIO.toml")]
+    pub scenario: PathBuf,
+    /// Labels of the one cell to simulate, joined by commas [default: every cell]
+    #[arg(long, value_name = "LABEL")]
+    pub cell: Option<String>,
+    /// Number of the trial in its cell, from 0, or `all`
+    #[arg(long, value_name = "N|all", default_value = "0")]
+    pub replicate: Replicates,
+}
+
+/// Which trials of a cell are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Replicates {
+    /// All of them.
+    All,
+    /// One of them.
+    One(u64),
+}
+
+impl FromStr for Replicates {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self::All),
+            text => text.parse().map(Self::One).map_err(|_| "expected a whole number from 0, or `all`".to_owned()),
+        }
+    }
 }
 
 /// What `study trace` is asked to do.

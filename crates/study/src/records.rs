@@ -1,6 +1,6 @@
 //! Measured records as commands are given them: read with their warnings, told apart by name.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use trial::{Origin, Reading, Trial};
 
@@ -65,6 +65,15 @@ pub fn names(own: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
         names.push(unique.expect("one of the endless numbers is free"));
     }
     names
+}
+
+/// Where the results of a command go unless a folder is named: by the record, or by the first of several and their number.
+pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
+    let first = trials[0].name();
+    PathBuf::from(match trials.len() {
+        1 => format!("{first}-{command}"),
+        several => format!("{first}-and-{}-more-{command}", several - 1),
+    })
 }
 
 /// File and hash of a measured record.

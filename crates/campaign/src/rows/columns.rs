@@ -68,11 +68,11 @@ pub const COLUMNS: [Column; 22] = [
     },
     number(
         "true_K_per_s",
-        "K to be found: of the ship, or of the nearest first-order response where the ship is not first order",
+        "K of the first-order response nearest to the ship, its own where it is first order; null where it has none",
         |row| row.true_k_per_s,
         |row, value| row.true_k_per_s = Some(value),
     ),
-    number("true_T_s", "T to be found", |row| row.true_t_s, |row, value| row.true_t_s = Some(value)),
+    number("true_T_s", "T of that response", |row| row.true_t_s, |row, value| row.true_t_s = Some(value)),
     number(
         "bound_K_per_s",
         "Cramér–Rao bound on the standard deviation of K on this trial",
@@ -171,6 +171,17 @@ fn words(row: &mut Row) -> &mut TracedCells {
     row.traced.get_or_insert_default()
 }
 
+/// Columns that follow in a study of ships that are a first-order base with effects.
+pub const OWN_COLUMNS: [Column; 2] = [
+    number(
+        "own_K_per_s",
+        "K of the ship's own base, against which a trace is held; null where the ship is first order or a hull",
+        |row| row.own_k_per_s,
+        |row, value| row.own_k_per_s = Some(value),
+    ),
+    number("own_T_s", "T of that base", |row| row.own_t_s, |row, value| row.own_t_s = Some(value)),
+];
+
 /// Columns that follow in a study with a trace.
 pub const TRACE_COLUMNS: [Column; 5] = [
     Column {
@@ -233,6 +244,8 @@ pub struct Layout {
     methods: Vec<String>,
     axes: Vec<Axis>,
     draws: Vec<String>,
+    /// Whether a ship has a K and T of its own beside the nearest ones.
+    owns: bool,
     /// Whether one of the methods is a trace.
     traces: bool,
 }
@@ -269,13 +282,15 @@ impl Layout {
             methods: design.methods.iter().map(|method| method.label.clone()).collect(),
             axes: design.axes.iter().enumerate().map(axis).collect(),
             draws: design.draws.clone(),
+            owns: design.cells.iter().any(|cell| cell.has_own_indices),
             traces: design.methods.iter().any(|method| method.id == TRACE),
         }
     }
 
     fn fixed(&self) -> impl Iterator<Item = &'static Column> + use<> {
-        let more: &'static [Column] = if self.traces { &TRACE_COLUMNS } else { &[] };
-        COLUMNS.iter().chain(more)
+        let own: &'static [Column] = if self.owns { &OWN_COLUMNS } else { &[] };
+        let traces: &'static [Column] = if self.traces { &TRACE_COLUMNS } else { &[] };
+        COLUMNS.iter().chain(own).chain(traces)
     }
 
     /// Names of all columns, in order.
@@ -315,7 +330,7 @@ impl Layout {
     pub(super) fn repeats(name: &str) -> bool {
         let text = ["method", "failure", "stop", "trace_verdict", "trace_named", "trace_groups", "trace_expected"]
             .contains(&name);
-        text || ["true_", "bound_", "axis."].iter().any(|start| name.starts_with(start))
+        text || ["true_", "own_", "bound_", "axis."].iter().any(|start| name.starts_with(start))
     }
 
     /// All columns of several rows, in order.

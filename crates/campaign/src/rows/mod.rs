@@ -12,7 +12,7 @@ mod sequence;
 #[cfg(test)]
 mod tests;
 
-pub use columns::{COLUMNS, Column, Layout, TRACE_COLUMNS};
+pub use columns::{COLUMNS, Column, Layout, OWN_COLUMNS, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
 pub use row::{Bound, Row, TracedCells};
 pub use sequence::Sequence;

@@ -39,11 +39,15 @@ pub struct Row {
     pub method: usize,
     /// Why the method failed; `None` when it did not.
     pub failure: Option<Box<str>>,
-    /// K that a method should find, 1/s: that of the ship where it is exactly first order, else of the first-order response
-    /// that comes nearest to its undisturbed trial.
+    /// K of the first-order response that comes nearest to the undisturbed trial of the ship, 1/s: its own where it is exactly
+    /// first order. A method that fits such a response should find it.
     pub true_k_per_s: Option<f64>,
-    /// T that a method should find, s.
+    /// T of that response, s.
     pub true_t_s: Option<f64>,
+    /// K of the ship's own base, 1/s, where it has effects beside it. A trace should find it.
+    pub own_k_per_s: Option<f64>,
+    /// T of that base, s.
+    pub own_t_s: Option<f64>,
     /// Cramér–Rao bound of this trial.
     pub bound: Option<Bound>,
     /// K, 1/s.
@@ -73,19 +77,34 @@ pub struct Row {
 }
 
 impl Row {
+    /// K and T that this answer is held against, 1/s and s: the ship's own for a trace, which models its effects, else those of the
+    /// first-order response nearest to it.
+    pub fn truth(&self) -> [Option<f64>; 2] {
+        match (&self.traced, self.own_k_per_s, self.own_t_s) {
+            (Some(_), k @ Some(_), t @ Some(_)) => [k, t],
+            _ => [self.true_k_per_s, self.true_t_s],
+        }
+    }
+
+    /// The Cramér–Rao bound of this answer: there is none for a base with effects.
+    pub fn bound_of_truth(&self) -> Option<Bound> {
+        self.bound.filter(|_| self.traced.is_none() || self.own_k_per_s.is_none())
+    }
+
     /// Relative error of K, (K̂ − K)/K.
     pub fn k_error(&self) -> Option<f64> {
-        relative(self.k_per_s?, self.true_k_per_s?)
+        relative(self.k_per_s?, self.truth()[0]?)
     }
 
     /// Relative error of T.
     pub fn t_error(&self) -> Option<f64> {
-        relative(self.t_s?, self.true_t_s?)
+        relative(self.t_s?, self.truth()[1]?)
     }
 
     /// Relative error of K/T, the slope of the response to the rudder at its beginning.
     pub fn k_over_t_error(&self) -> Option<f64> {
-        relative(self.k_per_s? / self.t_s?, self.true_k_per_s? / self.true_t_s?)
+        let [k, t] = self.truth();
+        relative(self.k_per_s? / self.t_s?, k? / t?)
     }
 }
 

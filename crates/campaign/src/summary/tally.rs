@@ -233,17 +233,12 @@ impl Running {
             count_reason(&mut self.failures, reason);
         }
         let bound = |sd: Option<f64>, truth: Option<f64>| Some(100.0 * sd? / truth?.abs());
-        let (k, t) = (row.true_k_per_s, row.true_t_s);
+        let [k, t] = row.truth();
+        let best = row.bound_of_truth();
         let ratio = k.zip(t).map(|(k, t)| k / t);
-        self.k.add(
-            replicate,
-            errors[0],
-            bound(row.bound.map(|b| b.k_per_s), k),
-            holds(row.k_ci95_per_s, k),
-            row.k_per_s,
-        );
-        self.t.add(replicate, errors[1], bound(row.bound.map(|b| b.t_s), t), holds(row.t_ci95_s, t), row.t_s);
-        self.k_over_t.add(replicate, errors[2], bound(row.bound.map(|b| b.k_over_t_per_s2), ratio), None, None);
+        self.k.add(replicate, errors[0], bound(best.map(|b| b.k_per_s), k), holds(row.k_ci95_per_s, k), row.k_per_s);
+        self.t.add(replicate, errors[1], bound(best.map(|b| b.t_s), t), holds(row.t_ci95_s, t), row.t_s);
+        self.k_over_t.add(replicate, errors[2], bound(best.map(|b| b.k_over_t_per_s2), ratio), None, None);
         row.heading_rmse_deg.into_iter().for_each(|error| self.heading.add(error));
         row.validation_rmse_deg.into_iter().for_each(|error| self.validation.add(error));
         self.evaluations += row.evaluations.unwrap_or(0) as f64;

@@ -11,6 +11,7 @@ fn design(methods: &[&str], cells: usize) -> Design {
         values: vec![None],
         trials: 0..0,
         missing: Vec::new(),
+        has_own_indices: false,
         bound_percent2: None,
     };
     Design {

@@ -7,12 +7,12 @@ use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::number::{fixed, optional, with_uncertainty};
-use trial::{Trial, ZigZag};
+use trial::{Trial, ZigZag, ZigZagError};
 
 use crate::options::{Common, FitRequest, Format};
-use crate::records::{file_of, names, read, warn_of_repetition};
+use crate::records::{default_folder, file_of, names, read, warn_of_repetition};
 use crate::views::fit_figures::{self, Drawn};
-use crate::views::fit_file::{FitFile, ZigZagEntry, trial_entry, zigzag_entry};
+use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
 use crate::views::method_table;
 use crate::{progress, screen};
 use campaign::answer::{MethodEntry, Validation, entry};
@@ -53,14 +53,15 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         return Err(unusable(&request.trials[0], &entries, &warnings));
     }
 
-    let zigzag = ZigZag::of(&trials[0]);
-    let default = || PathBuf::from(format!("{}-fit", trials[0].name()));
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?;
+    let zigzags: Vec<Result<ZigZag, ZigZagError>> = trials.iter().map(ZigZag::of).collect();
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
+    let entries_of_trials: Vec<TrialEntry> =
+        trials.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
     let file = FitFile {
         schema: "fit/1".into(),
-        trials: trials.iter().map(trial_entry).collect(),
+        zigzag: entries_of_trials[0].zigzag.clone(),
+        trials: entries_of_trials,
         methods: entries,
-        zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, &trials[0])),
     };
     let path = folder.path().join(FIT);
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
@@ -73,16 +74,19 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         .enumerate()
         .map(|(number, (trial, name))| Drawn { trial, name, validation: number >= trials.len() })
         .collect();
-    fit_figures::draw(&records, &answers, zigzag.as_ref().ok(), &folder)?;
+    fit_figures::draw(&records, &answers, &zigzags, &folder)?;
 
     if !common.quiet {
         let table = method_table::table(&file.methods, &names[trials.len()..]);
         let table = common.format.render(&table);
         let mut notes = renamed(&records) + &reasons(&file.methods);
-        match (&zigzag, &file.zigzag) {
-            (_, Some(entry)) => notes += &format!("\n{}", characteristics(entry)),
-            (Err(error), None) => notes += &format!("\nno zig-zag characteristics: {error}\n"),
-            (Ok(_), None) => {}
+        for ((zigzag, entry), name) in zigzags.iter().zip(&file.trials).zip(&names) {
+            let of = if trials.len() > 1 { format!("{name}: ") } else { String::new() };
+            match (zigzag, &entry.zigzag) {
+                (_, Some(entry)) => notes += &format!("\n{of}{}", characteristics(entry)),
+                (Err(error), None) => notes += &format!("\n{of}no zig-zag characteristics: {error}\n"),
+                (Ok(_), None) => {}
+            }
         }
         notes += &format!("\nresults: {}", path.display());
         if common.format == Format::Text {

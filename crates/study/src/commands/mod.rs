@@ -8,4 +8,5 @@ pub mod overview;
 mod planned;
 pub mod report;
 pub mod run;
+pub mod simulate;
 pub mod trace;

@@ -8,7 +8,7 @@ use trial::{Channel, Trial};
 
 use crate::commands::planned;
 use crate::options::{Common, Format, TraceRequest, Withheld};
-use crate::records::{names, read, warn_of_repetition};
+use crate::records::{default_folder, names, read, warn_of_repetition};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
 use crate::views::{trace_figures, trace_page};
@@ -43,8 +43,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
         let first = request.trials[0].display();
         Failure::input(format!("{first}: {error}; the record cannot be traced because no base model fits it"))
     })?;
-    let folder = common.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}-trace", trials[0].name())));
-    let folder = ResultFolder::hold(&folder)?;
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     let planned = planned::trials(&analysis, &trials);
     let report = TraceReport {
         names: names(trials.iter().chain(&others).map(Trial::name)),

@@ -6,7 +6,7 @@ use identify::replay::replay;
 use rayon::prelude::*;
 use report::figures::{self, Fit, RecordFit, Replay, Replays};
 use report::{Figure, Origin, Theme};
-use trial::{Trial, ZigZag};
+use trial::{Trial, ZigZag, ZigZagError};
 
 use super::picture::{first_failure, write_figure};
 use campaign::answer::MethodEntry;
@@ -27,20 +27,22 @@ pub struct Drawn<'a> {
     pub validation: bool,
 }
 
-/// Draws everything into `folder`: `trial`, `replays` and `fit` of the first record, `replays-NAME` and `fit-NAME` of the others.
+/// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `replays` and `fit` of the first record, and the same with
+/// `-NAME` of the others.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
-    zigzag: Option<&ZigZag>,
+    zigzags: &[Result<ZigZag, ZigZagError>],
     folder: &ResultFolder,
 ) -> Result<(), Failure> {
     let theme = Theme::screen();
-    if let (Some(zigzag), Some(first)) = (zigzag, records.first()) {
-        let data = figures::ZigzagTrial { title: Some(first.name.to_owned()), ..zigzag_figure(first.trial, zigzag) };
-        write_figure(&figures::zigzag_trial(&data, &theme), folder, "trial")?;
-    }
     first_failure(records.par_iter().enumerate().map(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
+        if let Some(Ok(zigzag)) = zigzags.get(number) {
+            let data =
+                figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, zigzag) };
+            write_figure(&figures::zigzag_trial(&data, &theme), folder, &format!("trial{suffix}"))?;
+        }
         let replays = replays(record, answers);
         write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
         write_figure(&best_fit(record, &replays, &theme), folder, &format!("fit{suffix}"))

@@ -18,6 +18,8 @@ pub struct TrialEntry {
     pub samples: usize,
     /// Length, s.
     pub duration_s: f64,
+    /// Characteristics of this record; `null` when it is not a zig-zag.
+    pub zigzag: Option<ZigZagEntry>,
 }
 
 /// One IMO criterion.
@@ -35,7 +37,7 @@ pub struct CriterionEntry {
     pub verdict: String,
 }
 
-/// Zig-zag characteristics of the first record.
+/// Zig-zag characteristics of a record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ZigZagEntry {
     /// Initial turning time, s.
@@ -59,18 +61,24 @@ pub struct FitFile {
     pub trials: Vec<TrialEntry>,
     /// The answers.
     pub methods: Vec<MethodEntry>,
-    /// Characteristics of the first record; `null` when it is not a zig-zag.
+    /// Those of the first record, which stand in its entry too.
     pub zigzag: Option<ZigZagEntry>,
 }
 
 /// The entry of a record.
-pub fn trial_entry(trial: &Trial) -> TrialEntry {
+pub fn trial_entry(trial: &Trial, zigzag: Option<&ZigZag>) -> TrialEntry {
     let (file, sha256) = file_of(trial);
-    TrialEntry { file: file.into(), sha256: sha256.into(), samples: trial.len(), duration_s: trial.duration() }
+    TrialEntry {
+        file: file.into(),
+        sha256: sha256.into(),
+        samples: trial.len(),
+        duration_s: trial.duration(),
+        zigzag: zigzag.map(|zigzag| zigzag_entry(zigzag, trial)),
+    }
 }
 
 /// The entry of a zig-zag; criteria where length and speed are declared.
-pub fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
+fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),

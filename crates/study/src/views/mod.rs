@@ -15,3 +15,4 @@ pub mod trace_file;
 pub mod trace_page;
 pub mod trace_report;
 pub mod tracing_table;
+pub mod truth_file;

@@ -82,7 +82,7 @@ fn effect_line(effect: &Traced) -> String {
         [] => String::new(),
         aliases => {
             let names: Vec<String> = aliases.iter().map(|(id, form)| format!("{id} ({form})")).collect();
-            format!("; cannot be report from {}", names.join(", "))
+            format!("; cannot be told from {}", names.join(", "))
         }
     };
     let only = effect.only.as_ref().map_or_else(String::new, |name| format!(" in {name}"));

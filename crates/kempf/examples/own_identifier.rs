@@ -1,0 +1,69 @@
+//! A method of one's own, run in a study beside those of the project: nothing of the workspace is edited.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use kempf::prelude::*;
+
+/// K and T by the slope of the yaw rate: ψ̈ = (K/T) δ − (1/T) ψ̇ fitted to differences of the heading, without a rudder bias.
+struct Differences;
+
+impl Identifier for Differences {
+    fn id(&self) -> &'static str {
+        "differences"
+    }
+
+    fn summary(&self) -> &'static str {
+        "regression on differences of the heading"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let mut sums = [0.0; 5];
+        for trial in trials {
+            let (time, heading, rudder) = (trial.time(), trial.heading(), trial.rudder());
+            // Rows so far apart that the noise of the heading does not drown its change.
+            let step = (5.0 / trial.sampling_period()).ceil() as usize;
+            for row in step..trial.len().saturating_sub(step) {
+                let (before, after) = (row - step, row + step);
+                let half = 0.5 * (time[after] - time[before]);
+                let rate = (heading[after] - heading[before]) / (2.0 * half);
+                let acceleration = (heading[after] - 2.0 * heading[row] + heading[before]) / (half * half);
+                if acceleration.is_finite() {
+                    let x = [rudder[row], -rate];
+                    let terms = [x[0] * x[0], x[0] * x[1], x[1] * x[1], x[0] * acceleration, x[1] * acceleration];
+                    sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+                }
+            }
+        }
+        let [aa, ab, bb, ay, by] = sums;
+        let determinant = aa * bb - ab * ab;
+        if determinant <= 0.0 {
+            return Err(IdentifyError::NoTrial);
+        }
+        let slope = (ay * bb - by * ab) / determinant;
+        let inverse_time = (by * aa - ay * ab) / determinant;
+        Ok(Estimate {
+            response: FirstOrder::from_indices(slope / inverse_time, 1.0 / inverse_time, 0.0),
+            uncertainty: Uncertainty::None { reason: "differences have correlated errors" },
+            robust: None,
+            stop: StopReason::Direct,
+            evaluations: 1,
+            diagnostics: Vec::new(),
+            warnings: Vec::new(),
+        })
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let path = std::env::args_os().nth(1).unwrap_or_else(|| "scenarios/yukun.toml".into());
+    let study = Scenario::read(&PathBuf::from(path), None)?.with_identifier("differences", Arc::new(Differences))?;
+    let (design, rows) = in_memory(&study);
+    let summary = summarise(&rows, &design);
+    println!("{:28} median size of the error of T [%]", "method");
+    for (method, overall) in design.methods.iter().zip(&summary.overall) {
+        let size = overall.record.t.median_size.map_or("no answer".to_owned(), |size| format!("{:.3}", size.value));
+        println!("{:28} {size}", method.label);
+    }
+    Ok(())
+}

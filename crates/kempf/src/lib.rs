@@ -1,0 +1,52 @@
+//! Ship zig-zag trials: simulate them, identify the manoeuvrability indices K and T, trace what a first-order model lacks, and
+//! benchmark the methods against each other.
+//!
+//! One crate to depend on. It holds no code: the parts are crates of their own, and are here under their short names.
+//!
+//! | to | use |
+//! |---|---|
+//! | describe a ship, its effects, a hull | [`ship`] |
+//! | read a measured record, find its overshoots | [`trial`] |
+//! | make a record | [`simulate`] |
+//! | find K, T and δ_r with their intervals | [`identify`] |
+//! | find what a first-order model lacks | [`trace`](mod@trace) |
+//! | read a scenario file | [`scenario`] |
+//! | run one to rows and summarise them | [`campaign`] |
+//!
+//! ```
+//! use kempf::prelude::*;
+//!
+//! let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+//! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Executes(5));
+//! let mut simulation = Simulation::new(ship, zig_zag);
+//! simulation.sensors.heading.noise = from_deg(0.1);
+//! let record = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 })?.trial;
+//!
+//! let method = output_error::Settings::default().build()?;
+//! let estimate = method.identify(&[record])?;
+//! let [low, high] = estimate.T().ci95.expect("output error has an interval");
+//! assert!(low < 16.3 && 16.3 < high);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your own in a
+//! study.
+
+pub use {campaign, identify, scenario, ship, simulate, trace, trial};
+
+/// What most programs need, under one `use`.
+pub mod prelude {
+    pub use campaign::collect::{collect, in_memory};
+    pub use campaign::folder::ResultFolder;
+    pub use campaign::summary::summarise;
+    pub use campaign::{Observer, Unwatched};
+    pub use identify::{
+        Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
+    };
+    pub use scenario::Scenario;
+    pub use ship::angle::{from_deg, to_deg};
+    pub use ship::{FirstOrder, Particulars};
+    pub use simulate::manoeuvre::ZigZagEnd;
+    pub use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+    pub use trial::{Channel, Trial, ZigZag, read, write_csv};
+}
