@@ -161,6 +161,28 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
         0
     }
 
+    /// Numbers it takes from a record and holds fixed (approach speed, reference time): with its form they say which
+    /// effect it is.
+    fn constants(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether it is a moment that depends on time alone. It then belongs to one record and says nothing of another.
+    fn is_of_time(&self) -> bool {
+        false
+    }
+
+    /// Whether it depends on the heading, so that a turned record is another one.
+    fn sees_heading(&self) -> bool {
+        false
+    }
+
+    /// Whether it is random: noise on the heading that is seen, and no part of the response.
+    fn is_random(&self) -> bool {
+        let typical: Vec<f64> = self.parameters().iter().map(|parameter| parameter.typical).collect();
+        self.random_heading(&typical).is_some()
+    }
+
     /// Spectrum of a random heading that is added to the one seen; the deterministic part of the response ignores it.
     fn random_heading(&self, _p: &[f64]) -> Option<crate::narrow_band::NarrowBand> {
         None
@@ -172,7 +194,7 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// Span of time, s, in which steps have to resolve that time; outside of it nothing happens so fast.
-    fn brisk(&self, _p: &[f64]) -> [f64; 2] {
+    fn fast_span(&self, _p: &[f64]) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
 }

@@ -30,6 +30,14 @@ impl Effect for MomentDrift {
         &PARAMETERS
     }
 
+    fn constants(&self) -> Vec<f64> {
+        vec![self.reference_time]
+    }
+
+    fn is_of_time(&self) -> bool {
+        true
+    }
+
     fn places(&self) -> Places {
         Places::MOMENT
     }

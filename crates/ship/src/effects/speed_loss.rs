@@ -69,6 +69,13 @@ impl Effect for SpeedLoss {
         }
     }
 
+    fn constants(&self) -> Vec<f64> {
+        match *self {
+            Self::Modelled => Vec::new(),
+            Self::Measured { approach_speed: constant } | Self::Propeller { approach_rate: constant } => vec![constant],
+        }
+    }
+
     fn places(&self) -> Places {
         Places::SCALE
     }

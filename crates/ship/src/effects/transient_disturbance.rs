@@ -34,6 +34,10 @@ impl Effect for TransientDisturbance {
         &PARAMETERS
     }
 
+    fn is_of_time(&self) -> bool {
+        true
+    }
+
     fn places(&self) -> Places {
         Places::MOMENT
     }
@@ -43,7 +47,7 @@ impl Effect for TransientDisturbance {
     }
 
     /// Fifteen widths beyond the edges: tanh is there one to 10⁻¹³.
-    fn brisk(&self, p: &[f64]) -> [f64; 2] {
+    fn fast_span(&self, p: &[f64]) -> [f64; 2] {
         let reach = (0.5 + 15.0 * EDGE) * p[2];
         [p[1] - reach, p[1] + reach]
     }

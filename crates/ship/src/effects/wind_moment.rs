@@ -53,6 +53,10 @@ impl Effect for WindMoment {
         }
     }
 
+    fn sees_heading(&self) -> bool {
+        *self == Self::Steady
+    }
+
     fn places(&self) -> Places {
         Places::MOMENT
     }
