@@ -73,7 +73,6 @@ fn term(effect: impl Effect + 'static, scale: Vec<f64>) -> Term {
     Term {
         lowest: parameters.iter().map(|p| p.lowest).collect(),
         highest: parameters.iter().map(|p| p.highest).collect(),
-        sees_heading: false,
         only: None,
         held: &[],
         scale,
@@ -93,8 +92,7 @@ pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
     if let Some(square) = mean_square(records, Record::wind_speed) {
         list.push(simple(term(WindMoment::Measured, vec![0.02 / square]), 0.0, 2.0));
     }
-    let mut steady = term(WindMoment::Steady, vec![0.02, 0.02]);
-    steady.sees_heading = true;
+    let steady = term(WindMoment::Steady, vec![0.02, 0.02]);
     list.push(Candidate { term: steady, starts: vec![vec![0.0, 0.0]], large: vec![0.03, 0.03] });
     match mean_square(records, Record::speed) {
         Some(square) => {

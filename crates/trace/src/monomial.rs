@@ -71,6 +71,14 @@ impl Effect for Monomial {
         &PARAMETERS
     }
 
+    fn constants(&self) -> Vec<f64> {
+        self.size.into()
+    }
+
+    fn sees_heading(&self) -> bool {
+        LIBRARY[self.place].of[2] > 0
+    }
+
     fn places(&self) -> Places {
         Places::MOMENT
     }

@@ -116,22 +116,27 @@ fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix
 #[derive(Debug, Clone)]
 pub struct Grain {
     durations: Vec<f64>,
+    /// Variance of the white noise of every observed row, in units of that of a full one.
+    variances: Vec<f64>,
     longest: f64,
     white: Drift,
     walk: Drift,
 }
 
 impl Grain {
-    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest record, s.
-    pub fn new(record: &Record, inverse_time: f64, longest: f64) -> Self {
+    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest record, s,
+    /// and a full row is the mean of `full_readings`.
+    pub fn new(record: &Record, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
         let time = |seat: usize| record.time[record.observed[seat]];
         let durations: Vec<f64> =
             (0..record.observed.len()).map(|seat| if seat == 0 { 0.0 } else { time(seat) - time(seat - 1) }).collect();
         // A course-unstable ship is steered: what a random moment does is over after a rudder order.
         let damping = inverse_time.max(0.0);
+        let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
         Self {
             white: Drift::new(Moment::White, damping, &durations, longest),
             walk: Drift::new(Moment::Walk, damping, &durations, longest),
+            variances: record.observed.iter().map(variance).collect(),
             durations,
             longest,
         }
@@ -146,7 +151,11 @@ impl Grain {
     pub fn whitener(&self, colour: &Colour) -> Whitener {
         let rows = self.durations.len();
         if colour.is_white() {
-            return Whitener { states: 0, steps: Vec::new(), rows: Vec::new(), count: rows, log_variance: 0.0 };
+            let even = self.variances.iter().all(|&variance| variance == 1.0);
+            let weights = self.variances.iter().map(|variance| (0, [0.0; MOST], variance.sqrt().recip()));
+            let log_variance = if even { 0.0 } else { self.variances.iter().map(|variance| variance.ln()).sum() };
+            let rows_of = if even { Vec::new() } else { weights.collect() };
+            return Whitener { states: 0, steps: Vec::new(), rows: rows_of, count: rows, log_variance };
         }
         let drift = colour.moment.map(|(kind, level)| match kind {
             Moment::White => (&self.white, level),
@@ -176,8 +185,8 @@ impl Grain {
         let mut filter = Vec::with_capacity(rows);
         let mut log_variance = 0.0;
         let mut settled = false;
-        // Of the last row: place of its transition, gain, log S, weight.
-        let mut last: Option<(usize, [f64; N], f64, f64)> = None;
+        // Of the last row: place of its transition and variance of its noise, gain, log S, weight.
+        let mut last: Option<((usize, f64), [f64; N], f64, f64)> = None;
         for row in 0..rows {
             let h = self.durations[row];
             let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
@@ -188,20 +197,21 @@ impl Grain {
                 steps.len() - 1
             });
             // Even rows lead to a filter that no longer changes.
+            let kind = (place, self.variances[row]);
             let (gain, log, weight) = match last {
-                Some((before, gain, log, weight)) if settled && before == place => (gain, log, weight),
+                Some((before, gain, log, weight)) if settled && before == kind => (gain, log, weight),
                 _ => {
                     if row > 0 {
                         covariance = propagate(&steps[place].2, &covariance, &steps[place].3);
                     }
-                    let (gain, variance) = correct(&mut covariance, &observe);
+                    let (gain, variance) = correct(&mut covariance, &observe, kind.1);
                     settled = last.is_some_and(|(before, old, ..)| {
-                        before == place && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
+                        before == kind && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
                     });
                     (gain, variance.ln(), variance.sqrt().recip())
                 }
             };
-            last = Some((place, gain, log, weight));
+            last = Some((kind, gain, log, weight));
             log_variance += log;
             let mut all = [0.0; MOST];
             all[..N].copy_from_slice(&gain);
@@ -255,13 +265,14 @@ fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64
     result
 }
 
-/// Takes a heading into account: the gain, and the variance S that was predicted for the heading.
-fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N]) -> ([f64; N], f64) {
+/// Takes a heading with white noise of variance `own` into account: the gain, and the variance S that was predicted for the
+/// heading.
+fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N], own: f64) -> ([f64; N], f64) {
     let mut seen = [0.0; N];
     for i in 0..N {
         seen[i] = (0..N).map(|j| covariance[i][j] * observe[j]).sum();
     }
-    let variance = 1.0 + (0..N).map(|i| observe[i] * seen[i]).sum::<f64>();
+    let variance = own + (0..N).map(|i| observe[i] * seen[i]).sum::<f64>();
     let gain = seen.map(|s| s / variance);
     for i in 0..N {
         for j in 0..N {
@@ -271,7 +282,8 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N]) -
     (gain, variance)
 }
 
-/// A filter that makes columns of one record white; for white noise it leaves them as they are.
+/// A filter that makes columns of one record white; for white noise on rows of equally many readings it leaves them as they
+/// are.
 #[derive(Debug, Clone)]
 pub struct Whitener {
     states: usize,
@@ -310,7 +322,11 @@ impl Whitener {
     /// Makes columns white in place.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         match self.states {
-            0 => {}
+            0 => {
+                for (k, (_, _, weight)) in self.rows.iter().enumerate() {
+                    columns.iter_mut().for_each(|column| column[k] *= weight);
+                }
+            }
             2 => self.apply_all::<2>(columns),
             3 => self.apply_all::<3>(columns),
             4 => self.apply_all::<4>(columns),
@@ -411,7 +427,7 @@ mod tests {
             let record = record(&time);
             let longest = record.duration();
             let a = 0.08;
-            let grain = Grain::new(&record, a, longest);
+            let grain = Grain::new(&record, a, longest, 1);
             let colours = [
                 Colour { moment: Some((Moment::White, 50.0)), waves: None },
                 Colour { moment: Some((Moment::Walk, 400.0)), waves: None },
@@ -437,10 +453,27 @@ mod tests {
         }
     }
 
+    /// A row of a quarter of the readings has twice the standard deviation: it counts half, under any colour.
+    #[test]
+    fn rows_count_by_their_readings() {
+        let time: Vec<f64> = (0..20).map(f64::from).collect();
+        let mut record = record(&time);
+        record.readings.fill(4);
+        record.readings[7] = 1;
+        let grain = Grain::new(&record, 0.1, 19.0, 4);
+        for colour in [Colour::WHITE, Colour { moment: Some((Moment::White, 1e-12)), waves: None }] {
+            let whitener = grain.whitener(&colour);
+            let mut column = vec![1.0; 20];
+            whitener.apply(&mut [&mut column]);
+            assert!((column[7] - 0.5).abs() < 1e-9 && (column[8] - 1.0).abs() < 1e-9, "{colour:?}: {column:?}");
+            assert!((whitener.log_variance - 4f64.ln()).abs() < 1e-9);
+        }
+    }
+
     #[test]
     fn white_noise_is_left_alone() {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
-        let whitener = Grain::new(&record(&time), 0.1, 19.0).whitener(&Colour::WHITE);
+        let whitener = Grain::new(&record(&time), 0.1, 19.0, 1).whitener(&Colour::WHITE);
         let mut column: Vec<f64> = time.clone();
         whitener.apply(&mut [&mut column]);
         assert_eq!((column, whitener.log_variance, whitener.rows()), (time, 0.0, 20));

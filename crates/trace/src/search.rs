@@ -18,7 +18,7 @@ use crate::fit::{Column, Columns, Fit, Linear, Problem};
 use crate::noise::{Colour, Moment, Whitener};
 use crate::record::Record;
 use crate::structure::{Structure, Term};
-use crate::{held_out, transient, waves};
+use crate::{transient, waves};
 
 /// What decides whether a term is believed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,7 +109,7 @@ impl Search<'_> {
 
     /// Gain in BIC that a term needs: a trend, or a moment for a while, is also what a random moment looks like in one record.
     pub fn needed(&self, term: &Term) -> f64 {
-        if is_of_time(term) { OF_TIME * self.thresholds.gain } else { self.thresholds.gain }
+        if term.effect.is_of_time() { OF_TIME * self.thresholds.gain } else { self.thresholds.gain }
     }
 
     /// Whether the evidence for a term passes both thresholds.
@@ -126,7 +126,7 @@ impl Search<'_> {
             other.only == term.only
                 && (other.is(term)
                     || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
-                    || (is_of_time(term) && is_of_time(other)))
+                    || (term.effect.is_of_time() && other.effect.is_of_time()))
         })
     }
 
@@ -390,7 +390,7 @@ impl Search<'_> {
         let plain = Model { judged: base.plain.clone(), ..base.clone() };
         for round in 0..self.thresholds.most_terms {
             let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, &model.plain, true) };
-            let allowed = |tried: &Tried| !timeless || !is_of_time(&self.candidates[tried.place].term);
+            let allowed = |tried: &Tried| !timeless || !self.candidates[tried.place].term.effect.is_of_time();
             let Some(best) = self.best(tried.into_iter().filter(allowed)) else { break };
             let before = model.structure.terms.len();
             let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
@@ -435,7 +435,7 @@ impl Search<'_> {
         let plain = self.add_plainly(base, first, false);
         let mut model = self.confirmed(base, &plain);
         // A moment for a while is so flexible that it may come first and send the search astray.
-        if plain.structure.terms.len() > 1 && plain.structure.terms.iter().any(is_of_time) {
+        if plain.structure.terms.len() > 1 && plain.structure.terms.iter().any(|term| term.effect.is_of_time()) {
             let timeless = self.confirmed(base, &self.add_plainly(base, first, true));
             if timeless.judged.bic < model.judged.bic {
                 model = timeless;
@@ -457,9 +457,4 @@ impl Search<'_> {
 /// Whether being there at all changes the heading anywhere.
 pub(crate) fn acts(being: &Column) -> bool {
     being.iter().flatten().flatten().any(|&x| x != 0.0)
-}
-
-/// Whether a term is a moment that depends on time alone.
-fn is_of_time(term: &Term) -> bool {
-    held_out::is_of_one_record(term.effect.id())
 }

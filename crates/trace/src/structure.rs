@@ -35,8 +35,6 @@ pub struct Term {
     pub highest: Vec<f64>,
     /// Sizes against which steps are measured.
     pub scale: Vec<f64>,
-    /// Whether a heading that is turned changes the response.
-    pub sees_heading: bool,
 }
 
 /// Identifier, form and record of a term.
@@ -170,7 +168,7 @@ impl Structure {
 
     /// Whether the response depends on the direction in which the record begins.
     pub fn sees_heading(&self) -> bool {
-        self.terms.iter().any(|term| term.sees_heading)
+        self.terms.iter().any(|term| term.effect.sees_heading())
     }
 
     /// The response of one record, with these parameters.

@@ -55,7 +55,12 @@ fn blur(record: &Record, gain: f64) -> f64 {
     bends.sort_by(|one, other| other.total_cmp(one));
     let most = ((bends.len() as f64 * BENT) as usize).max(1);
     let square = bends.iter().take(most).sum::<f64>() / most as f64;
-    gain * record.spacing * square.sqrt() / 16.0
+    gain * record.rudder_spacing * square.sqrt() / 16.0
+}
+
+/// Readings behind the heading of a full row of the records with the densest ones: the unit of the noise.
+fn full_readings(records: &[Record]) -> usize {
+    records.iter().map(|record| record.full_readings).max().unwrap_or(1)
 }
 
 /// The records of one analysis with what all fits need of them.
@@ -126,7 +131,8 @@ impl Problem {
     /// Prepares records of a ship whose base response is about 1/T, K/T.
     pub fn new(records: Vec<Record>, inverse_time: f64, gain: f64) -> Self {
         let longest = records.iter().map(Record::duration).fold(0.0, f64::max);
-        let grains = records.iter().map(|record| Grain::new(record, inverse_time, longest)).collect();
+        let full = full_readings(&records);
+        let grains = records.iter().map(|record| Grain::new(record, inverse_time, longest, full)).collect();
         let inverse_time_scale = inverse_time.abs().max(1.0 / longest);
         let time = inverse_time_scale.recip().min(0.1 * longest);
         let floor = records.iter().map(|record| blur(record, gain * time)).fold(FINEST, f64::max).powi(2);
@@ -136,8 +142,8 @@ impl Problem {
 
     /// The same ship on other records.
     pub fn on(&self, records: Vec<Record>) -> Self {
-        let damping = self.inverse_time;
-        let grains = records.iter().map(|record| Grain::new(record, damping, self.longest())).collect();
+        let (damping, full) = (self.inverse_time, full_readings(&records));
+        let grains = records.iter().map(|record| Grain::new(record, damping, self.longest(), full)).collect();
         Self { records, grains, finished: Arc::default(), ..*self }
     }
 
@@ -156,6 +162,16 @@ impl Problem {
     /// Variance of one whitened heading, rad².
     pub fn variance(&self, fit: &Fit) -> f64 {
         fit.rss / self.observations() as f64 + self.floor
+    }
+
+    /// Standard deviation of the white noise of one reading, rad: rows may be means of several.
+    pub fn noise_of_reading(&self, fit: &Fit) -> f64 {
+        self.noise_of_row(fit) * (full_readings(&self.records) as f64).sqrt()
+    }
+
+    /// Standard deviation of the white noise of a full row, rad.
+    pub fn noise_of_row(&self, fit: &Fit) -> f64 {
+        (fit.rss / self.observations() as f64).sqrt()
     }
 
     /// Number of observed headings.
@@ -478,13 +494,21 @@ fn question(
     start: Option<&[f64]>,
 ) -> Question {
     let names = structure.terms.iter().map(|term| (term.name(), term.held)).collect();
+    let constants: Vec<f64> = structure.terms.iter().flat_map(|term| term.effect.constants()).collect();
     let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
     let moment = colour.moment.map_or([0.0; 3], |(kind, level)| [1.0, f64::from(kind == Moment::Walk), level]);
     let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
     let shape = [f64::from(structure.own_bias), f64::from(start.is_some())];
     let own = start.unwrap_or_default();
-    let numbers =
-        shape.iter().chain(&moment).chain(&waves).chain(bounds).chain(initial.as_flattened()).chain(theta).chain(own);
+    let numbers = shape
+        .iter()
+        .chain(&moment)
+        .chain(&waves)
+        .chain(&constants)
+        .chain(bounds)
+        .chain(initial.as_flattened())
+        .chain(theta)
+        .chain(own);
     (names, numbers.map(|x| x.to_bits()).collect())
 }
 
