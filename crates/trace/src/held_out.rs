@@ -145,12 +145,11 @@ pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&
         };
         let (one, other) = (predict(simple), predict(rich));
         for (number, record) in problem.records.iter().enumerate() {
-            let seats = record.observed.iter().enumerate().filter(|(_, row)| {
+            let numbers = record.observed.iter().enumerate().filter(|(_, row)| {
                 let share = (record.time[**row] - record.time[0]) / record.duration();
                 (part[0]..=part[1]).contains(&share)
             });
-            let part: Vec<f64> =
-                seats.map(|(seat, _)| other[number][seat].powi(2) - one[number][seat].powi(2)).collect();
+            let part: Vec<f64> = numbers.map(|(k, _)| other[number][k].powi(2) - one[number][k].powi(2)).collect();
             covariance += long_run(&part);
             differences.extend(part);
         }

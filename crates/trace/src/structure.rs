@@ -201,12 +201,12 @@ pub fn headings<R: Real>(response: &Response<R>, record: &Record, initial: [R; 2
     let mut state = vec![R::from(0.0); response.dimension()];
     let start = recorded.input(record.time[0], response.dead_time());
     response.enter(initial[0], initial[1], &start, &mut state);
-    let mut seat = 0;
+    let mut number = 0;
     let step = step(response, record.spacing);
     replay_states(response, &recorded, &record.time, step, &mut state, |row, state, _| {
-        if record.observed.get(seat) == Some(&row) {
-            visit(seat, state[0]);
-            seat += 1;
+        if record.observed.get(number) == Some(&row) {
+            visit(number, state[0]);
+            number += 1;
         }
     });
 }

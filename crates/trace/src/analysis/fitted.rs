@@ -53,3 +53,75 @@ pub(super) fn no_larger_error(
     }
     (model, after)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use ship::effects::NonlinearDamping;
+
+    use super::*;
+    use crate::candidates::{self, Sizes};
+    use crate::fit::Problem;
+    use crate::made_up::{BASE, Plan, record, ship};
+    use crate::record::Record;
+    use crate::replay_errors::{Errors, Replayed};
+    use crate::search::Thresholds;
+    use crate::structure::Structure;
+
+    fn replayed(heading: f64) -> Vec<OnRecord> {
+        let replayed = Replayed {
+            time: Vec::new(),
+            heading: Vec::new(),
+            yaw_rate: Vec::new(),
+            residual: Vec::new(),
+            initial: [0.0; 2],
+        };
+        let errors = Errors { heading, rows: 100, yaw_rate: None, overshoot: None, horizon: [None; 2] };
+        vec![OnRecord { replayed, errors }]
+    }
+
+    /// Whatever a replay says, the heading error after is not larger than before; the term that is at fault goes and is named.
+    #[test]
+    fn a_term_that_makes_the_error_larger_is_not_adopted() {
+        let truth = ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])]);
+        let problem = Problem::new(vec![Record::whole(&record(&truth, Plan::default()))], BASE[0], BASE[1]);
+        let headings = problem.replay(&Structure::base(1, false), &BASE, &[[0.0; 2]]);
+        let candidates = candidates::all(&problem.records, &Sizes::of(&problem.records, BASE[0], &headings));
+        let thresholds = Thresholds { gain: 10.0, false_discovery: 0.01, most_terms: 4 };
+        let search = Search { problem: &problem, candidates: &candidates, thresholds };
+        let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+        let damped = search.run(&base, &search.try_all(&base, &base.plain, false));
+        let place = candidates.iter().position(|one| one.term.effect.id() == "moment_drift").expect("listed");
+        let mut both = damped.clone();
+        both.structure = both.structure.with(candidates[place].term.clone());
+        both.plain.theta.push(0.0);
+
+        let before = replayed(0.003);
+        let has_drift = |model: &Model| model.structure.terms.iter().any(|term| term.effect.id() == "moment_drift");
+        let adopted = |model: &Model, error: fn(bool) -> Option<f64>| {
+            let mut refused = Vec::new();
+            let replay = |model: &Model| {
+                let failed = || TraceError::Replay { trial: String::from("made up") };
+                error(has_drift(model)).map(replayed).ok_or_else(failed)
+            };
+            let (model, after) = no_larger_error(&search, model.clone(), &before, replay, &mut refused);
+            (model.structure.terms.len(), after[0].errors.heading, refused)
+        };
+        assert_eq!(adopted(&damped, |_| Some(0.001)), (1, 0.001, Vec::new()));
+        let (terms, error, refused) = adopted(&both, |drift| Some(if drift { 0.0626 } else { 0.001 }));
+        assert_eq!((terms, error), (1, 0.001));
+        assert_eq!(
+            refused,
+            [
+                "moment_drift (linear trend) is not kept: with it the heading error on the fitted records is 3.587 deg, of the \
+              base alone 0.172 deg"
+            ]
+        );
+        let (terms, error, refused) = adopted(&both, |_| Some(0.0626));
+        assert_eq!((terms, error, refused.len()), (0, 0.003, 2));
+        let (terms, error, refused) = adopted(&damped, |_| None);
+        assert_eq!((terms, error), (0, 0.003));
+        assert!(refused[0].contains("not finite"), "{refused:?}");
+    }
+}

@@ -167,6 +167,16 @@ impl Linear {
     }
 }
 
+/// Σ log S of all records.
+pub(crate) fn log_variance(whiteners: &[Whitener]) -> f64 {
+    whiteners.iter().map(|whitener| whitener.log_variance).sum()
+}
+
+/// Whether a column changes the heading anywhere.
+pub(crate) fn acts(column: &Column) -> bool {
+    column.iter().flatten().flatten().any(|&x| x != 0.0)
+}
+
 /// Whitened copies of a column of every record.
 pub(crate) fn whiten(columns: &[Vec<f64>], whiteners: &[Whitener]) -> Vec<Vec<f64>> {
     let mut white = columns.to_vec();
