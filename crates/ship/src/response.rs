@@ -21,9 +21,36 @@ pub const BASE_PARAMETERS: usize = 3;
 
 /// The base parameters, described like those of effects.
 pub const BASE: [Parameter; BASE_PARAMETERS] = [
-    Parameter { symbol: "1/T", unit: "1/s", neutral: 0.05, typical: 0.05, lowest: -10.0, highest: 10.0, odd: false },
-    Parameter { symbol: "K/T", unit: "1/s²", neutral: 5e-3, typical: 5e-3, lowest: 0.0, highest: 100.0, odd: false },
-    Parameter { symbol: "δ_r", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -0.6, highest: 0.6, odd: true },
+    Parameter {
+        key: "inverse_T",
+        symbol: "1/T",
+        unit: "1/s",
+        neutral: 0.05,
+        typical: 0.05,
+        lowest: -10.0,
+        highest: 10.0,
+        odd: false,
+    },
+    Parameter {
+        key: "K_over_T",
+        symbol: "K/T",
+        unit: "1/s²",
+        neutral: 5e-3,
+        typical: 5e-3,
+        lowest: 0.0,
+        highest: 100.0,
+        odd: false,
+    },
+    Parameter {
+        key: "rudder_bias",
+        symbol: "δ_r",
+        unit: "rad",
+        neutral: 0.0,
+        typical: 0.02,
+        lowest: -0.6,
+        highest: 0.6,
+        odd: true,
+    },
 ];
 
 /// Where the parameters and states of one effect lie.

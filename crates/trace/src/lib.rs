@@ -35,4 +35,5 @@ pub use analysis::{Analysis, Settings, TraceError, trace};
 #[cfg(test)]
 #[cfg(test)]
 #[cfg(test)]
+#[cfg(test)]
 mod made_up;

@@ -61,8 +61,8 @@ pub fn record(ship: &Response, plan: Plan) -> Trial {
         }
         let next = if number % 2 == 0 { plan.rudder_deg } else { -plan.rudder_deg };
         let end = order + travel * (next - angle).abs() / plan.rudder_deg;
-        (corners.push(order), angles.push(from_deg(angle)));
-        (corners.push(end), angles.push(from_deg(next)));
+        corners.extend([order, end]);
+        angles.extend([angle, next].map(from_deg));
         angle = next;
     }
     let signal = Polyline::new(corners, angles).expect("orders are further apart than the rudder travels");

@@ -185,8 +185,8 @@ impl RecordNoise {
         let mut filter = Vec::with_capacity(rows);
         let mut log_variance = 0.0;
         let mut settled = false;
-        // Of the last row: place of its transition and variance of its noise, gain, log S, weight.
-        let mut last: Option<((usize, f64), [f64; N], f64, f64)> = None;
+        // Of the last row: place of its transition and variance of its noise; gain, log S, weight.
+        let mut last: Option<((usize, f64), ([f64; N], f64, f64))> = None;
         for row in 0..rows {
             let h = self.durations[row];
             let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
@@ -199,19 +199,19 @@ impl RecordNoise {
             // Even rows lead to a filter that no longer changes.
             let kind = (place, self.variances[row]);
             let (gain, log, weight) = match last {
-                Some((before, gain, log, weight)) if settled && before == kind => (gain, log, weight),
+                Some((before, known)) if settled && before == kind => known,
                 _ => {
                     if row > 0 {
                         covariance = propagate(&steps[place].2, &covariance, &steps[place].3);
                     }
                     let (gain, variance) = correct(&mut covariance, &observe, kind.1);
-                    settled = last.is_some_and(|(before, old, ..)| {
+                    settled = last.is_some_and(|(before, (old, ..))| {
                         before == kind && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
                     });
                     (gain, variance.ln(), variance.sqrt().recip())
                 }
             };
-            last = Some((kind, gain, log, weight));
+            last = Some((kind, (gain, log, weight)));
             log_variance += log;
             let mut all = [0.0; MOST];
             all[..N].copy_from_slice(&gain);

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use ship::dynamics::Dynamics;
-use ship::effects::Effect;
+use ship::effects::{Effect, Parameter};
 use ship::replay::replay_states;
 use ship::response::BASE;
 use ship::{Real, Response, ResponseModel};
@@ -71,10 +71,8 @@ pub struct Structure {
 /// What one entry of θ is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Symbol.
-    pub symbol: &'static str,
-    /// Unit.
-    pub unit: &'static str,
+    /// What it is called and measured in.
+    pub parameter: &'static Parameter,
     /// Whether it is fitted.
     pub fitted: bool,
     /// Smallest value.
@@ -138,8 +136,7 @@ impl Structure {
     /// Every entry of θ.
     pub fn entries(&self, inverse_time_scale: f64, gain_scale: f64) -> Vec<Entry> {
         let base = |k: usize, scale: f64, only| Entry {
-            symbol: BASE[k].symbol,
-            unit: BASE[k].unit,
+            parameter: &BASE[k],
             fitted: true,
             lowest: BASE[k].lowest,
             highest: BASE[k].highest,
@@ -153,8 +150,7 @@ impl Structure {
         for term in &self.terms {
             for (k, parameter) in term.effect.parameters().iter().enumerate() {
                 entries.push(Entry {
-                    symbol: parameter.symbol,
-                    unit: parameter.unit,
+                    parameter,
                     fitted: !term.held.contains(&k),
                     lowest: term.lowest[k],
                     highest: term.highest[k],

@@ -162,6 +162,7 @@ pub struct ModelEntry {
 /// A parameter with its symbol.
 #[derive(Debug, Serialize)]
 pub struct NamedParameter {
+    key: &'static str,
     symbol: String,
     #[serde(flatten)]
     value: ParameterEntry,
@@ -329,7 +330,7 @@ impl TraceFile {
                 parameters: analysis
                     .parameters
                     .iter()
-                    .map(|value| NamedParameter { symbol: value.symbol.clone(), value: value.into() })
+                    .map(|value| NamedParameter { key: value.key, symbol: value.symbol.clone(), value: value.into() })
                     .collect(),
                 noise: NoiseEntry {
                     heading_sd_deg: to_deg(noise.white),

@@ -32,7 +32,7 @@ pub(super) fn no_larger_error(
         (error, after.unwrap_or_default())
     };
     let (mut error, mut after) = judged(&model);
-    while !(error <= limit) {
+    while error.is_nan() || error > limit {
         let without = |place| {
             let less = search.dropped(&model, place, true);
             (place, judged(&less), less)

@@ -81,7 +81,7 @@ pub(super) fn parameters(
                 sd.map(|sd| [value - quantile * sd, value + quantile * sd])
             };
             let only = entry.only.map(|only| names[only].clone());
-            Value { symbol: entry.symbol.to_owned(), unit: entry.unit, value, sd, ci95, only }
+            Value { sd, ci95, only, ..Value::of(entry.parameter, value) }
         })
         .collect()
 }

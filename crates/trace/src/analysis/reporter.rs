@@ -1,8 +1,6 @@
 //! What is said of a finished search: effects with their evidence and aliases, what became of every candidate, and what
 //! is left.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
 use ship::Regressor;
 use ship::effects::{self, Effect, WaveYaw};
@@ -158,19 +156,8 @@ impl Reporter<'_> {
         let evidence = self.search.evidence(&calm.judged, &self.model.judged, 3);
         let effect = &WaveYaw;
         let values = [waves.sd * white, waves.frequency, waves.damping];
-        let parameters = effect
-            .parameters()
-            .iter()
-            .zip(values)
-            .map(|(parameter, value)| Value {
-                symbol: parameter.symbol.to_owned(),
-                unit: parameter.unit,
-                value,
-                sd: None,
-                ci95: None,
-                only: None,
-            })
-            .collect();
+        let parameters =
+            effect.parameters().iter().zip(values).map(|(parameter, value)| Value::of(parameter, value)).collect();
         Some(Traced {
             id: effect.id(),
             form: effect.form(),
@@ -329,20 +316,11 @@ impl Reporter<'_> {
         let has_speed = records.iter().all(|record| record.speed().is_some());
         let speed = rms(&mut records.iter().filter_map(Record::speed).flat_map(|s| s.values().iter().copied()));
         let size = [sizes.rate, sizes.rudder, heading, speed];
+        let about = sizes.manoeuvres(records, &records[0]);
         let library: Vec<Candidate> = (0..LIBRARY.len())
             .filter(|&place| has_speed || LIBRARY[place].of[3] == 0)
-            .map(|place| Candidate {
-                term: Term {
-                    effect: Arc::new(Monomial { place, size }),
-                    only: None,
-                    held: &[],
-                    lowest: vec![-10.0],
-                    highest: vec![10.0],
-                    scale: vec![0.02],
-                },
-                starts: vec![vec![0.0]],
-                large: vec![0.02],
-            })
+            .filter_map(|place| Monomial { place, size }.proposal(&about))
+            .map(|proposal| Candidate::new(proposal, None))
             .collect();
         let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
         let tried = search.try_all(self.model, &self.model.judged, false);

@@ -2,6 +2,7 @@
 
 use identify::Estimate;
 use identify::estimate::Quantity;
+use ship::effects::Parameter;
 use ship::narrow_band::NarrowBand;
 
 use crate::candidates::Candidate;
@@ -61,6 +62,8 @@ impl Outcome {
 /// A parameter with its error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Value {
+    /// Name in files.
+    pub key: &'static str,
     /// Symbol.
     pub symbol: String,
     /// Unit, SI and rad.
@@ -73,6 +76,14 @@ pub struct Value {
     pub ci95: Option<[f64; 2]>,
     /// Name of the one record it belongs to.
     pub only: Option<String>,
+}
+
+impl Value {
+    /// A parameter of all records whose error is not known.
+    pub(super) fn of(parameter: &Parameter, value: f64) -> Self {
+        let (key, symbol, unit) = (parameter.key, parameter.symbol.to_owned(), parameter.unit);
+        Self { key, symbol, unit, value, sd: None, ci95: None, only: None }
+    }
 }
 
 /// An effect that was found.
