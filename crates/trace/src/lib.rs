@@ -33,7 +33,4 @@ pub mod waves;
 pub use analysis::{Analysis, Settings, TraceError, trace};
 
 #[cfg(test)]
-#[cfg(test)]
-#[cfg(test)]
-#[cfg(test)]
 mod made_up;

@@ -20,6 +20,9 @@ const MOST: usize = 5;
 type Vector = [f64; MOST];
 type Matrix = [[f64; MOST]; MOST];
 
+/// What the filter does with a row: gain, log S, weight.
+type Correction<const N: usize> = ([f64; N], f64, f64);
+
 /// A random yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moment {
@@ -186,7 +189,7 @@ impl RecordNoise {
         let mut log_variance = 0.0;
         let mut settled = false;
         // Of the last row: place of its transition and variance of its noise; gain, log S, weight.
-        let mut last: Option<((usize, f64), ([f64; N], f64, f64))> = None;
+        let mut last: Option<((usize, f64), Correction<N>)> = None;
         for row in 0..rows {
             let h = self.durations[row];
             let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);

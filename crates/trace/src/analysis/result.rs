@@ -182,7 +182,7 @@ pub struct Judged {
 
 /// The result.
 pub struct Analysis {
-    /// The base, fitted alone: the best there is.
+    /// The base, fitted alone: no first-order response is nearer to the records.
     pub base: Estimate,
     /// Base indices K (1/s) and T (s) of the final model.
     pub indices: [Quantity; 2],

@@ -18,7 +18,7 @@ const NEGLIGIBLE: f64 = 0.02;
 /// Most steps.
 const MOST_STEPS: usize = 25;
 
-/// Damping of the first step: none to speak of.
+/// Damping of the first step, which leaves a Gauss–Newton step as it is.
 const SMALLEST_DAMPING: f64 = 1e-9;
 
 /// A step whose gain is further from what was promised than this share calls for new sensitivities.
