@@ -79,6 +79,7 @@ fn neutral_and_typical_values_lie_within_the_bounds() {
             // The mirror image of a value that changes sign has to be allowed as well.
             assert!(!p.odd || (p.neutral == 0.0 && p.lowest == -p.highest), "{what} is odd");
             assert!(!p.symbol.is_empty() && !p.unit.is_empty());
+            assert!(!p.key.is_empty() && p.key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'), "{what} key");
         }
         let moved = effect.parameters().iter().any(|p| p.typical != p.neutral);
         assert!(moved, "{}: typical is not absent", name(&effect));

@@ -280,7 +280,9 @@ fn what_no_candidate_carries_is_not_called_clean() {
     let analysis = analysed(&[run(&steered(vessel, 10.0), 6)], &[]);
     assert_ne!(analysis.verdict, Verdict::Clean);
     if let Some(signature) = &analysis.unexplained {
-        assert!(signature.all > 0.0 && signature.line.frequency > 0.0 && signature.span.1 > 0.0);
+        assert!(
+            signature.all > 0.0 && signature.line.is_some_and(|line| line.frequency > 0.0) && signature.span.1 > 0.0
+        );
     }
 }
 

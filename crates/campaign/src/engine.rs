@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use ::trace::analysis::Traced;
 use ::trace::record::Record;
-use ::trace::{Analysis, TraceError, errors};
+use ::trace::{Analysis, TraceError, replay_errors};
 use identify::estimate::Quantity;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
@@ -258,6 +258,7 @@ fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Durat
 /// Why there is no trace, in a word.
 fn reason(error: &TraceError) -> &'static str {
     match error {
+        TraceError::Settings(_) => "settings",
         TraceError::Base(error) => error.kind(),
         TraceError::Replay { .. } => "not-finite",
     }
@@ -274,7 +275,7 @@ fn traced(
     let elsewhere = |trial: &Trial| {
         let start = [trial.heading()[0], 0.0];
         let record = Record::whole(trial);
-        let replayed = errors::full(&analysis.ship(), &record, &[start])?;
+        let replayed = replay_errors::full(&analysis.ship(), &record, &[start])?;
         let square = replayed.residual.iter().map(|e| e * e).sum::<f64>() / replayed.residual.len() as f64;
         finite(to_deg(square.sqrt()))
     };
@@ -284,6 +285,8 @@ fn traced(
         ids.dedup();
         ids.join("|")
     };
+    let [k, t] = analysis.indices;
+    let bias = analysis.rudder_bias.expect("one record has one rudder bias");
     Row {
         heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
         validation_rmse_deg: validation.and_then(elsewhere),
@@ -295,7 +298,7 @@ fn traced(
             margin: margin(analysis, missing),
             expected,
         })),
-        ..with_indices(blank, analysis.indices)
+        ..with_indices(blank, [k, t, bias])
     }
 }
 

@@ -6,8 +6,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use report::figures::*;
-use report::{Curve, Figure, Origin, Theme, symbol};
+use kempf_report::figures::*;
+use kempf_report::{Curve, Figure, Origin, Theme, symbol};
 
 /// A zig-zag of a first-order response: time, heading, yaw rate, yaw acceleration, rudder.
 struct Run {

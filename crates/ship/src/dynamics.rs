@@ -33,6 +33,18 @@ pub enum Regressor {
     Propeller,
 }
 
+impl Regressor {
+    /// What is said of records without it.
+    pub fn lacking(self) -> &'static str {
+        match self {
+            Self::Speed => "the records have no speed",
+            Self::Sway => "the records have no sway velocity",
+            Self::Wind => "the records have no relative wind",
+            Self::Propeller => "the records have no propeller revolutions",
+        }
+    }
+}
+
 /// What acts on a ship at one instant.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Input<R = f64> {

@@ -1,12 +1,7 @@
-//! What may be missing: every effect in every form the records allow, with bounds, scales and starts in their units.
-
-use std::sync::Arc;
+//! What may be missing: every effect in every form the records allow, as it proposes itself for their manoeuvres.
 
 use ship::Polyline;
-use ship::effects::{
-    Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation, SecondOrder,
-    SpeedLoss, SteeringLag, SwayCouplingMeasured, TransientDisturbance, WindMoment,
-};
+use ship::effects::{self, Effect, Manoeuvres, Proposal};
 
 use crate::record::Record;
 use crate::structure::Term;
@@ -57,127 +52,57 @@ impl Sizes {
     }
 }
 
-/// Longest squall as a share of its record.
-const LONGEST_SQUALL: f64 = 0.2;
-
-/// Largest T₂ and T₃ of a second-order response in time constants of the base. Beyond, zero and pole are so slow that they
-/// imitate a trend.
-const SLOWEST_POLE: f64 = 1.0;
-const SLOWEST_ZERO: f64 = 2.0;
-
-/// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
-const PROPELLER_CHANGE: f64 = 0.05;
-
-fn term(effect: impl Effect + 'static, scale: Vec<f64>) -> Term {
-    let parameters = effect.parameters();
-    Term {
-        lowest: parameters.iter().map(|p| p.lowest).collect(),
-        highest: parameters.iter().map(|p| p.highest).collect(),
-        sees_heading: false,
-        only: None,
-        held: &[],
-        scale,
-        effect: Arc::new(effect),
-    }
-}
-
-/// Every candidate these records allow, waves excepted, which are a kind of noise and no response.
-pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
-    let Sizes { time, rate, rudder, duration, spacing } = *sizes;
-    let mut list = vec![
-        second_order(sizes),
-        simple(term(NonlinearDamping::Cubic, vec![1.0 / (time * rate * rate)]), 0.05, 1.0),
-        simple(term(NonlinearDamping::Quadratic, vec![1.0 / (time * rate)]), 0.05, 1.0),
-        simple(term(NonlinearDamping::Square, vec![1.0 / (time * rate)]), 0.0, 0.5),
-    ];
-    if let Some(square) = mean_square(records, Record::wind_speed) {
-        list.push(simple(term(WindMoment::Measured, vec![0.02 / square]), 0.0, 2.0));
-    }
-    let mut steady = term(WindMoment::Steady, vec![0.02, 0.02]);
-    steady.sees_heading = true;
-    list.push(Candidate { term: steady, starts: vec![vec![0.0, 0.0]], large: vec![0.03, 0.03] });
-    match mean_square(records, Record::speed) {
-        Some(square) => {
-            let measured = term(SpeedLoss::Measured { approach_speed: square.sqrt() }, vec![1.0, 1.0]);
-            list.push(Candidate { term: measured, starts: vec![vec![0.0, 0.0]], large: vec![1.0, 2.0] });
+impl Sizes {
+    /// The manoeuvres of these records, with the span of one of them.
+    pub fn manoeuvres(&self, records: &[Record], of: &Record) -> Manoeuvres {
+        let propeller = || {
+            let mean = mean_square(records, Record::propeller)?.sqrt();
+            let values = records.iter().filter_map(Record::propeller).flat_map(|rate| rate.values());
+            let (lowest, highest) = values.fold((f64::MAX, f64::MIN), |(lo, hi), &n| (lo.min(n), hi.max(n)));
+            Some([mean, lowest, highest])
+        };
+        Manoeuvres {
+            time: self.time,
+            rate: self.rate,
+            rudder: self.rudder,
+            duration: self.duration,
+            spacing: self.spacing,
+            speed_square: mean_square(records, Record::speed),
+            sway_square: mean_square(records, Record::sway),
+            wind_square: mean_square(records, Record::wind_speed),
+            propeller: propeller(),
+            span: [of.time[0], of.time[of.time.len() - 1]],
         }
-        None => list.push(modelled_speed(sizes)),
     }
-    list.extend(propeller(records));
-    let mut dead_time = term(SteeringLag::DeadTime, vec![0.1 * time]);
-    let longest = (0.5 * time).max(2.0 * spacing);
-    (dead_time.lowest[0], dead_time.highest[0]) = (-longest.min(20.0), longest.min(20.0));
-    list.push(Candidate { starts: vec![vec![0.0]], large: vec![0.3 * time], term: dead_time });
-    let mut lag = term(SteeringLag::FirstOrder, vec![0.1 * time]);
-    (lag.lowest[0], lag.highest[0]) = (0.02_f64.max(0.1 * spacing), (2.0 * time).clamp(0.1, 30.0));
-    list.push(Candidate { starts: vec![vec![0.1 * time]], large: vec![0.3 * time], term: lag });
-    list.push(Candidate {
-        large: vec![(0.2 / (rudder * rudder)).min(0.9)],
-        starts: vec![vec![0.0]],
-        term: term(RudderSaturation, vec![0.2 / (rudder * rudder)]),
-    });
-    for form in [RudderDeadband::Backlash, RudderDeadband::DeadBand] {
-        let mut play = term(form, vec![0.1 * rudder]);
-        play.highest[0] = (0.5 * rudder).min(0.15);
-        list.push(Candidate { starts: vec![vec![0.07 * rudder]], large: vec![0.15 * rudder], term: play });
-    }
-    list.push(simple(term(PortStarboardAsymmetry, vec![1.0]), 0.0, 0.2));
-    let several = records.len() > 1;
-    for (number, record) in records.iter().enumerate() {
-        let only = several.then_some(number);
-        let mut drift = term(MomentDrift { reference_time: record.time[0] }, vec![0.02 / duration]);
-        drift.only = only;
-        list.push(simple(drift, 0.0, 2.0));
-        let (start, end) = (record.time[0], record.time[record.time.len() - 1]);
-        let mut squall = term(TransientDisturbance, vec![0.02, 0.05 * duration, 0.05 * duration]);
-        squall.only = only;
-        // A squall comes and goes within the record; what lasts longer is a trend or a change of the ship.
-        let margin = LONGEST_SQUALL * 0.25 * record.duration();
-        (squall.lowest[1], squall.highest[1]) = (start + margin, end - margin);
-        (squall.lowest[2], squall.highest[2]) = ((3.0 * spacing).max(0.5), LONGEST_SQUALL * record.duration());
-        let large = vec![0.05, 0.5 * (start + end), 0.1 * record.duration()];
-        list.push(Candidate { term: squall, starts: Vec::new(), large });
-    }
-    if let Some(square) = mean_square(records, Record::sway) {
-        list.push(simple(term(SwayCouplingMeasured, vec![0.5 * rudder / square.sqrt()]), 0.0, 1.0));
-    }
-    list
 }
 
-/// A term of one parameter, its start and its large value as shares of its scale.
-fn simple(term: Term, start: f64, large: f64) -> Candidate {
-    let size = term.scale[0];
-    let bounded = |share: f64| vec![(share * size).clamp(term.lowest[0], term.highest[0])];
-    Candidate { starts: vec![bounded(start)], large: bounded(large), term }
+impl Candidate {
+    /// What an effect proposes for all records, or for one of them `only`.
+    pub fn new(proposal: Proposal, only: Option<usize>) -> Self {
+        let Proposal { effect, held, lowest, highest, scale, starts, large } = proposal;
+        Self { term: Term { effect, only, held, lowest, highest, scale }, starts, large }
+    }
 }
 
-fn second_order(sizes: &Sizes) -> Candidate {
-    let time = sizes.time;
-    let mut term = term(SecondOrder, vec![0.2 * time, 0.5 * time]);
-    (term.lowest[0], term.highest[0]) = (0.02_f64.max(0.1 * sizes.spacing), SLOWEST_POLE * time);
-    (term.lowest[1], term.highest[1]) = (-0.5 * time, SLOWEST_ZERO * time);
-    let starts = [[0.15, 0.4], [0.2, 0.02], [0.4, 1.2]].map(|[t2, t3]| vec![t2 * time, t3 * time]);
-    Candidate { starts: starts.into(), large: vec![0.15 * time, 0.5 * time], term }
-}
-
-fn modelled_speed(sizes: &Sizes) -> Candidate {
-    let Sizes { time, rate, duration, .. } = *sizes;
-    let loss = |recovery: f64| 0.2 / (recovery * rate * rate);
-    let mut term = term(SpeedLoss::Modelled, vec![loss(4.0 * time), 4.0 * time, 1.0]);
-    // The exponent of the rudder force cannot be told from one manoeuvre without a speed: the law of the free stream.
-    term.held = &[2];
-    term.highest[0] = loss(0.5 * time);
-    (term.lowest[1], term.highest[1]) = (0.5 * time, 2.0 * duration);
-    let starts = [2.0, 8.0].map(|times| vec![loss(times * time), times * time, 2.0]);
-    Candidate { starts: starts.into(), large: vec![loss(4.0 * time), 4.0 * time, 2.0], term }
-}
-
-fn propeller(records: &[Record]) -> Option<Candidate> {
-    let mean = mean_square(records, Record::propeller)?.sqrt();
-    let values = || records.iter().filter_map(Record::propeller).flat_map(|rate| rate.values());
-    let (lowest, highest) = values().fold((f64::MAX, f64::MIN), |(lo, hi), &n| (lo.min(n), hi.max(n)));
-    let changes = highest - lowest > PROPELLER_CHANGE * mean;
-    changes.then(|| simple(term(SpeedLoss::Propeller { approach_rate: mean }, vec![1.0]), 0.0, 2.0))
+/// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that depends on
+/// time alone is one of every record.
+pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
+    let effects = effects::all();
+    let of = |effect: &dyn Effect, only: Option<usize>| {
+        let about = sizes.manoeuvres(records, &records[only.unwrap_or(0)]);
+        Some(Candidate::new(effect.proposal(&about)?, only))
+    };
+    effects
+        .iter()
+        .flat_map(|effect| {
+            let places = if effect.is_of_time() && records.len() > 1 {
+                (0..records.len()).map(Some).collect()
+            } else {
+                vec![None]
+            };
+            places.into_iter().filter_map(|only| of(effect.as_ref(), only))
+        })
+        .collect()
 }
 
 /// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.

@@ -1,7 +1,47 @@
 //! What can be said of a residual alone: is it white, and if not, where does it live.
 
 use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+/// A residual with the steps of an even clock at which its values stand; steps without a value are holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Time between steps, s: the usual one between headings.
+    pub spacing: f64,
+    /// Step of every value, the first 0.
+    steps: Vec<usize>,
+    /// Values.
+    pub values: Vec<f64>,
+}
+
+impl Series {
+    /// Takes a residual, NaN where there is none, at times (s) whose rows are usually `period` seconds apart.
+    pub fn new(time: &[f64], residual: &[f64], period: f64) -> Self {
+        let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
+        let intervals = || rows.windows(2).map(|pair| (time[pair[1]] - time[pair[0]]) / period);
+        let mut sorted: Vec<f64> = intervals().collect();
+        // The lower quartile: headings may be missing at random, or recorded in every tenth row.
+        let quarter = sorted.len() / 4;
+        let usual = match sorted.len() {
+            0 => 1.0,
+            _ => sorted.select_nth_unstable_by(quarter, f64::total_cmp).1.round().max(1.0),
+        };
+        let mut step = 0_usize;
+        let mut steps = Vec::with_capacity(rows.len());
+        steps.extend(rows.first().map(|_| 0));
+        steps.extend(intervals().map(|interval| {
+            step = step.saturating_add(((interval / usual).round() as usize).max(1));
+            step
+        }));
+        Self { spacing: period * usual, steps, values: rows.iter().map(|&row| residual[row]).collect() }
+    }
+
+    /// Number of steps from the first value to the last, both included.
+    fn span(&self) -> usize {
+        self.steps.last().map_or(0, |last| last.saturating_add(1))
+    }
+}
 
 /// Whiteness of a residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,36 +55,63 @@ pub struct Whiteness {
 /// Largest lag of the whiteness test.
 const LAGS: usize = 20;
 
-/// Tests the residuals of several records together; missing values are left out.
-pub fn whiteness(residuals: &[Vec<f64>]) -> Whiteness {
+/// Tests the residuals of several records together.
+///
+/// Q = n (n + 2) Σ ρ²/(n − k); where values are missing, every ρ counts by its pairs (Stoffer and Toloi 1992).
+pub fn whiteness(residuals: &[Series]) -> Whiteness {
     let (mut square, mut cross, mut statistic, mut freedom) = (0.0, 0.0, 0.0, 0.0);
     for residual in residuals {
-        let present: Vec<f64> = residual.iter().copied().filter(|e| e.is_finite()).collect();
-        let n = present.len();
-        let lags = LAGS.min(n / 4);
-        let correlations = autocorrelation(&present, lags);
-        let own: f64 = present.iter().map(|e| e * e).sum();
+        let n = residual.values.len();
+        let correlations = autocorrelation(residual, LAGS.min(n / 4));
+        let own: f64 = residual.values.iter().map(|e| e * e).sum();
         square += own;
-        cross += correlations.first().copied().unwrap_or(0.0) * own;
-        let n = n as f64;
+        cross += correlations.iter().find(|one| one.lag == 1).map_or(0.0, |one| one.value) * own;
+        let (n, span) = (n as f64, residual.span() as f64);
         statistic += correlations
             .iter()
-            .enumerate()
-            .map(|(k, rho)| n * (n + 2.0) * rho * rho / (n - 1.0 - k as f64))
+            .map(|one| {
+                let share = (span - one.lag as f64) * n / span;
+                n * (n + 2.0) * one.value * one.value / (share * share / one.pairs as f64)
+            })
             .sum::<f64>();
-        freedom += lags as f64;
+        freedom += correlations.len() as f64;
     }
     let p_value = if freedom > 0.0 { ChiSquared::new(freedom).map_or(1.0, |chi| chi.sf(statistic)) } else { 1.0 };
     Whiteness { lag1: if square > 0.0 { cross / square } else { 0.0 }, p_value }
 }
 
-/// Autocorrelations at lags 1, 2, …, `lags` of a series about zero.
-pub fn autocorrelation(series: &[f64], lags: usize) -> Vec<f64> {
-    let square: f64 = series.iter().map(|e| e * e).sum();
-    (1..=lags)
-        .map(|lag| {
-            let cross: f64 = series.iter().zip(series.get(lag..).unwrap_or(&[])).map(|(x, y)| x * y).sum();
-            if square > 0.0 { cross / square } else { 0.0 }
+/// Autocorrelation at one lag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Correlation {
+    /// Lag in steps of the series.
+    pub lag: usize,
+    /// Autocorrelation about zero.
+    pub value: f64,
+    /// Pairs of values that are so far apart.
+    pub pairs: usize,
+}
+
+/// Autocorrelations at lags 1, 2, …, `lags` that occur: products of values at their true distance in time.
+///
+/// ρ_k = Σ x_i x_j / Σ x²; with n values on N steps and m pairs times n (N − k)/(N m), which is 1 without holes.
+pub fn autocorrelation(series: &Series, lags: usize) -> Vec<Correlation> {
+    let Series { steps, values, .. } = series;
+    let square: f64 = values.iter().map(|e| e * e).sum();
+    let (mut cross, mut pairs) = (vec![0.0; lags], vec![0_usize; lags]);
+    for (first, (&from, x)) in steps.iter().zip(values).enumerate() {
+        for (&to, y) in steps[first + 1..].iter().zip(&values[first + 1..]).take_while(|(to, _)| **to - from <= lags) {
+            cross[to - from - 1] += x * y;
+            pairs[to - from - 1] += 1;
+        }
+    }
+    let (n, span) = (values.len() as f64, series.span() as f64);
+    (0..lags)
+        .filter(|&k| pairs[k] > 0)
+        .map(|k| {
+            let lag = k + 1;
+            let holes = (n * (span - lag as f64)) / (span * pairs[k] as f64);
+            let value = if square > 0.0 { cross[k] / square * holes } else { 0.0 };
+            Correlation { lag, value, pairs: pairs[k] }
         })
         .collect()
 }
@@ -58,26 +125,62 @@ pub struct Line {
     pub share: f64,
 }
 
-/// Periodogram of a series on about evenly spaced rows, missing values taken as zero: shares of the mean square.
-pub fn spectrum(series: &[f64], spacing: f64) -> Vec<Line> {
-    let n = series.len();
-    if n < 4 {
+/// A series with more than this many steps for a value is no longer looked at.
+const SPARSEST: usize = 16;
+
+/// Periodogram: the share of the mean square that every multiple of the lowest frequency has.
+///
+/// Where values are missing it is that of Lomb (1976) and Scargle (1982), the share that a sine at the values alone explains.
+/// All its sums are Fourier transforms, of the values and of where they stand, because the clock is even. Empty for fewer than
+/// four values and when nearly all steps are holes.
+pub fn spectrum(series: &Series) -> Vec<Line> {
+    let (n, span) = (series.values.len(), series.span());
+    if n < 4 || span > SPARSEST * n {
         return Vec::new();
     }
-    let mut planner = RealFftPlanner::<f64>::new();
-    let transform = planner.plan_fft_forward(n);
-    let mut input: Vec<f64> = series.iter().map(|&e| if e.is_finite() { e } else { 0.0 }).collect();
-    let mut output = transform.make_output_vec();
-    if transform.process(&mut input, &mut output).is_err() {
-        return Vec::new();
-    }
-    let power: Vec<f64> = output.iter().skip(1).map(|z| z.norm_sqr()).collect();
-    let total: f64 = power.iter().sum();
-    let line = |(k, power): (usize, f64)| Line {
-        frequency: (k + 1) as f64 / (n as f64 * spacing),
+    let frequency = |k: usize| k as f64 / (span as f64 * series.spacing);
+    let line = |k: usize, power: f64, total: f64| Line {
+        frequency: frequency(k),
         share: if total > 0.0 { power / total } else { 0.0 },
     };
-    power.into_iter().enumerate().map(line).collect()
+    if n == span {
+        let power: Vec<f64> = transform(series.values.clone()).iter().skip(1).map(|z| z.norm_sqr()).collect();
+        let total: f64 = power.iter().sum();
+        return power.into_iter().enumerate().map(|(k, power)| line(k + 1, power, total)).collect();
+    }
+    let mean = series.values.iter().sum::<f64>() / n as f64;
+    let (mut values, mut present) = (vec![0.0; span], vec![0.0; span]);
+    for (&step, value) in series.steps.iter().zip(&series.values) {
+        (values[step], present[step]) = (value - mean, 1.0);
+    }
+    let total: f64 = values.iter().map(|x| x * x).sum();
+    let (sums, window) = (transform(values), transform(present));
+    (1..sums.len())
+        .map(|k| {
+            // Σ cos 2ωt − i Σ sin 2ωt; beyond the last frequency it is that of the mirror image.
+            let twice = if 2 * k < window.len() { window[2 * k] } else { window[span - 2 * k].conj() };
+            line(k, explained(sums[k], twice, n as f64), total)
+        })
+        .collect()
+}
+
+/// Fourier transform of real values, from frequency zero to the highest one.
+fn transform(mut values: Vec<f64>) -> Vec<Complex<f64>> {
+    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(values.len());
+    let mut output = plan.make_output_vec();
+    plan.process(&mut values, &mut output).expect("input and output have the lengths that the plan asks for");
+    output
+}
+
+/// Sum of squares that a sine explains: from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. In the phase in which its
+/// cosine and sine are orthogonal, these have the squares (n ± |Σ e^(−2iωt)|)/2.
+fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
+    let length = twice.norm();
+    let half_angle = 0.5 * (-twice.im).atan2(twice.re);
+    let (sin, cos) = half_angle.sin_cos();
+    let (by_cos, by_sin) = (sum.re, -sum.im);
+    let part = |product: f64, square: f64| if square > 1e-9 * n { product * product / square } else { 0.0 };
+    part(by_cos * cos + by_sin * sin, 0.5 * (n + length)) + part(by_sin * cos - by_cos * sin, 0.5 * (n - length))
 }
 
 /// Where a residual lives.
@@ -87,8 +190,8 @@ pub struct Signature {
     pub record: usize,
     /// Span of time, s, that holds most of it for its length, and its share of the sum of squares.
     pub span: ([f64; 2], f64),
-    /// Strongest line of its spectrum.
-    pub line: Line,
+    /// Strongest line of its spectrum; `None` where it has none.
+    pub line: Option<Line>,
     /// Band of headings, rad, in which it is largest, and the root mean square there, rad.
     pub heading: ([f64; 2], f64),
     /// Root mean square while the rudder is to port and to starboard, rad.
@@ -120,19 +223,25 @@ pub fn signature(
     let all = rms(&rows);
     let total = all * all * rows.len() as f64;
     let length = (rows.len() / PARTS).max(1);
+    // Σ e² up to every row, so that no window is added up anew.
+    let mut sums = vec![0.0];
+    sums.extend(rows.iter().scan(0.0, |sum, &row| {
+        *sum += residual[row].powi(2);
+        Some(*sum)
+    }));
     let fullest = rows
         .windows(length)
-        .map(|part| (rms(part).powi(2) * part.len() as f64, part))
-        .max_by(|one, other| one.0.total_cmp(&other.0));
+        .enumerate()
+        .max_by(|(one, _), (other, _)| {
+            (sums[one + length] - sums[*one]).total_cmp(&(sums[other + length] - sums[*other]))
+        })
+        .map(|(_, part)| (rms(part).powi(2) * part.len() as f64, part));
     let span = match fullest {
         Some((square, part)) => ([time[part[0]], time[part[part.len() - 1]]], square / total.max(f64::MIN_POSITIVE)),
         None => ([f64::NAN; 2], 0.0),
     };
-    let series: Vec<f64> = rows.iter().map(|&row| residual[row]).collect();
-    let line = spectrum(&series, spacing)
-        .into_iter()
-        .max_by(|one, other| one.share.total_cmp(&other.share))
-        .unwrap_or(Line { frequency: 0.0, share: 0.0 });
+    let series = Series::new(time, residual, spacing);
+    let line = spectrum(&series).into_iter().max_by(|one, other| one.share.total_cmp(&other.share));
     let mut by_heading = rows.clone();
     by_heading.sort_by(|&one, &other| heading[one].total_cmp(&heading[other]));
     let largest = by_heading
@@ -146,13 +255,90 @@ pub fn signature(
 
 #[cfg(test)]
 mod tests {
+    use rand::{SeedableRng, rngs::ChaCha8Rng};
+    use rand_distr::{Distribution, StandardNormal};
+
     use super::*;
 
+    use std::f64::consts::TAU;
+
+    /// A sine of 20 s on rows of 1 s, where a row is recorded.
+    fn sine(recorded: impl Fn(usize) -> bool) -> Series {
+        let time: Vec<f64> = (0..600).map(f64::from).collect();
+        let residual: Vec<f64> =
+            (0..600).map(|k| if recorded(k) { (TAU * time[k] / 20.0).sin() } else { f64::NAN }).collect();
+        Series::new(&time, &residual, 1.0)
+    }
+
+    fn strongest(series: &Series) -> Line {
+        spectrum(series).into_iter().max_by(|x, y| x.share.total_cmp(&y.share)).expect("lines")
+    }
+
+    /// Patterns of missing headings: none, every third, scattered, a third in one piece, all but every fifth.
+    fn patterns() -> [fn(usize) -> bool; 5] {
+        [|_| true, |k| k % 3 != 1, |k| (k * 7919) % 101 > 33, |k| !(200..400).contains(&k), |k| k % 5 == 0]
+    }
+
     #[test]
-    fn a_sine_is_one_line_and_far_from_white() {
-        let series: Vec<f64> = (0..200).map(|k| (std::f64::consts::TAU * 0.05 * f64::from(k)).sin()).collect();
-        let strongest = spectrum(&series, 2.0).into_iter().max_by(|x, y| x.share.total_cmp(&y.share)).expect("lines");
-        assert!((strongest.frequency - 0.025).abs() < 1e-12 && strongest.share > 0.99);
-        assert!(whiteness(&[series]).p_value < 1e-12);
+    fn a_sine_is_one_line_and_far_from_white_whatever_is_missing() {
+        for (number, pattern) in patterns().into_iter().enumerate() {
+            let series = sine(pattern);
+            let line = strongest(&series);
+            assert!((line.frequency - 0.05).abs() < 2e-4 && line.share > 0.95, "{number}: {line:?}");
+            assert!(whiteness(&[series]).p_value < 1e-12, "{number}");
+        }
+    }
+
+    /// The autocorrelation of a sine is a cosine at the true lag.
+    #[test]
+    fn lags_are_those_of_the_clock() {
+        for (number, pattern) in patterns().into_iter().enumerate() {
+            let series = sine(pattern);
+            for one in autocorrelation(&series, 40) {
+                let lag = one.lag as f64 * series.spacing;
+                let full = (600.0 - lag) / 600.0;
+                assert!((one.value - full * (TAU * lag / 20.0).cos()).abs() < 0.06, "{number}: {one:?}");
+            }
+        }
+    }
+
+    /// Without holes the transform of Lomb and Scargle is the plain one.
+    #[test]
+    fn a_sine_fitted_to_even_values_is_a_line_of_the_transform() {
+        let values: Vec<f64> = (0..50_u32).map(|k| (0.7 * f64::from(k)).sin() + f64::from(k * k % 7) - 3.0).collect();
+        let (sums, window) = (transform(values), transform(vec![1.0; 50]));
+        for k in 1..13 {
+            let plain = 2.0 * sums[k].norm_sqr() / 50.0;
+            assert!((explained(sums[k], window[2 * k], 50.0) / plain - 1.0).abs() < 1e-9);
+        }
+    }
+
+    /// White noise stays white when headings are missing: the statistic has the mean of its distribution.
+    #[test]
+    fn holes_make_no_colour() {
+        let mut generator = ChaCha8Rng::seed_from_u64(5);
+        let time: Vec<f64> = (0..300).map(f64::from).collect();
+        for pattern in patterns() {
+            let p_values: Vec<f64> = (0..40)
+                .map(|_| {
+                    let mut draw = |k| if pattern(k) { StandardNormal.sample(&mut generator) } else { f64::NAN };
+                    let residual: Vec<f64> = (0..300).map(&mut draw).collect();
+                    whiteness(&[Series::new(&time, &residual, 1.0)]).p_value
+                })
+                .collect();
+            let mean = p_values.iter().sum::<f64>() / 40.0;
+            assert!((0.35..0.65).contains(&mean), "{mean}");
+        }
+    }
+
+    /// Also in a record so long that no window could be added up anew for every row.
+    #[test]
+    fn the_fullest_part_of_a_long_record_is_found() {
+        let rows = 400_000;
+        let time: Vec<f64> = (0..rows).map(f64::from).collect();
+        let residual: Vec<f64> = (0..rows).map(|k| if (100_000..150_000).contains(&k) { 2.0 } else { 1.0 }).collect();
+        let described = signature(0, &time, &residual, &time, &time, 1.0);
+        assert_eq!(described.span.0, [100_000.0, 149_999.0]);
+        assert!((described.span.1 - 200.0 / 550.0).abs() < 1e-9);
     }
 }

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use ship::Response;
 use trial::Trial;
 
-use crate::errors::{self, Errors, Replayed};
 use crate::fit::{Fit, Problem};
 use crate::record::Record;
+use crate::replay_errors::{self, Errors, Replayed};
 use crate::structure::Structure;
 
 /// A record that is kept from the fit.
@@ -28,8 +28,8 @@ impl<'a> HeldOut<'a> {
 
     /// Replay and errors of a response; `None` when it is not finite.
     pub fn judge(&self, response: &Response) -> Option<(Replayed, Errors)> {
-        let replayed = errors::full(response, &self.record, &self.starts)?;
-        let errors = errors::errors(self.trial, &self.record, response, &replayed);
+        let replayed = replay_errors::full(response, &self.record, &self.starts)?;
+        let errors = replay_errors::errors(self.trial, &self.record, response, &replayed);
         Some((replayed, errors))
     }
 }
@@ -45,7 +45,7 @@ pub fn portable(structure: &Structure, theta: &[f64]) -> Response {
     let mut kept = structure.clone();
     let mut values = theta.to_vec();
     for place in (0..kept.terms.len()).rev() {
-        if is_of_one_record(kept.terms[place].effect.id()) {
+        if kept.terms[place].effect.is_of_time() {
             values = kept.drop_from(&values, place);
             kept = kept.without(place);
         }
@@ -56,11 +56,6 @@ pub fn portable(structure: &Structure, theta: &[f64]) -> Response {
         kept.own_bias = false;
     }
     kept.response(0, &values)
-}
-
-/// Whether an effect belongs to the time of one record and not to the ship.
-pub fn is_of_one_record(id: &str) -> bool {
-    matches!(id, "moment_drift" | "transient_disturbance")
 }
 
 /// How a model does against another one where neither was fitted.
@@ -94,7 +89,8 @@ impl Comparison {
         self.full < FULL_GAIN && self.mean < MEAN_GAIN
     }
 
-    /// Compares errors over records, pooled row by row.
+    /// Compares errors over records, pooled row by row; restarted replays count where both models have them. `None` without
+    /// a row.
     pub fn of(before: &[Errors], after: &[Errors]) -> Option<Self> {
         let pooled = |all: &[Errors], value: fn(&Errors) -> Option<f64>| {
             let mut square = 0.0;
@@ -103,15 +99,24 @@ impl Comparison {
                 square += value(errors)?.powi(2) * errors.rows as f64;
                 rows += errors.rows;
             }
-            (rows > 0 && square > 0.0).then(|| (square / rows as f64).sqrt())
+            (rows > 0).then(|| (square / rows as f64).sqrt())
         };
         let kinds: [fn(&Errors) -> Option<f64>; 3] = [|e| Some(e.heading), |e| e.horizon[0], |e| e.horizon[1]];
-        let ratios: Vec<f64> =
-            kinds.iter().filter_map(|kind| Some(pooled(after, *kind)? / pooled(before, *kind)?)).collect();
-        let full = *ratios.first()?;
-        let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();
+        let [full, short, long] = kinds.map(|kind| Some(ratio(pooled(before, kind)?, pooled(after, kind)?)));
+        let full = full?;
+        let ratios: Vec<f64> = [Some(full), short, long].into_iter().flatten().collect();
+        // One endless ratio is not made good by another that is zero.
+        let mean = match ratios.iter().any(|ratio| ratio.is_infinite()) {
+            true => f64::INFINITY,
+            false => (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp(),
+        };
         Some(Self { full, mean })
     }
+}
+
+/// After over before; two errors of zero are alike, and any error is endlessly worse than none.
+fn ratio(before: f64, after: f64) -> f64 {
+    if before == after { 1.0 } else { after / before }
 }
 
 /// Parts of the records that are kept from a fit in turn, as shares of their length.
@@ -140,12 +145,11 @@ pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&
         };
         let (one, other) = (predict(simple), predict(rich));
         for (number, record) in problem.records.iter().enumerate() {
-            let seats = record.observed.iter().enumerate().filter(|(_, row)| {
+            let numbers = record.observed.iter().enumerate().filter(|(_, row)| {
                 let share = (record.time[**row] - record.time[0]) / record.duration();
                 (part[0]..=part[1]).contains(&share)
             });
-            let part: Vec<f64> =
-                seats.map(|(seat, _)| other[number][seat].powi(2) - one[number][seat].powi(2)).collect();
+            let part: Vec<f64> = numbers.map(|(k, _)| other[number][k].powi(2) - one[number][k].powi(2)).collect();
             covariance += long_run(&part);
             differences.extend(part);
         }
@@ -170,4 +174,61 @@ fn long_run(series: &[f64]) -> f64 {
         total += window * window;
     }
     total / length as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn errors(heading: f64, restarted: f64) -> Errors {
+        Errors { heading, rows: 100, yaw_rate: None, overshoot: None, horizon: [Some(restarted), Some(restarted)] }
+    }
+
+    fn compared(before: (f64, f64), after: (f64, f64)) -> Comparison {
+        Comparison::of(&[errors(before.0, before.1)], &[errors(after.0, after.1)]).expect("rows")
+    }
+
+    #[test]
+    fn the_mean_is_that_of_full_and_restarted_replays() {
+        let one = compared((1.0, 1.0), (0.5, 2.0));
+        assert_eq!(one.full, 0.5);
+        assert!((one.mean - 2f64.cbrt()).abs() < 1e-12);
+        assert!(one.is_worse() && !one.is_much_better());
+        assert!(compared((1.0, 1.0), (0.8, 0.8)).is_much_better());
+        assert!(!compared((1.0, 1.0), (1.0, 1.0)).is_worse());
+        assert!(compared((1.0, 1.0), (1.6, 0.1)).is_worse());
+    }
+
+    /// An error of zero is an error like any other.
+    #[test]
+    fn the_full_replay_decides_even_where_its_error_is_zero() {
+        let worse = compared((0.0, 1.0), (1.0, 0.5));
+        assert!(worse.full.is_infinite() && worse.is_worse() && !worse.is_much_better());
+        assert_eq!(compared((0.0, 1.0), (0.0, 1.0)), Comparison { full: 1.0, mean: 1.0 });
+        assert_eq!(compared((1.0, 1.0), (0.0, 0.0)), Comparison { full: 0.0, mean: 0.0 });
+        assert!(compared((0.0, 1.0), (1.0, 0.0)).is_worse());
+    }
+
+    #[test]
+    fn restarted_replays_that_one_model_lacks_do_not_count() {
+        let without = Errors { horizon: [None, Some(1.0)], ..errors(1.0, 1.0) };
+        let found = Comparison::of(&[without], &[errors(0.5, 0.5)]).expect("rows");
+        assert!((found.mean - 0.5).abs() < 1e-12);
+        assert_eq!(Comparison::of(&[], &[]), None);
+    }
+
+    /// A sum of independent numbers has the sum of their variances; one of ten that are alike each has ten times that.
+    #[test]
+    fn the_long_run_variance_knows_correlation() {
+        let mut state = 1_u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / (1_u64 << 24) as f64 - 0.5
+        };
+        let independent: Vec<f64> = (0..2000).map(|_| draw()).collect();
+        let alike: Vec<f64> = (0..2000).map(|k| independent[k / 10 * 10]).collect();
+        let ratio = |series: &[f64]| long_run(series) / (2000.0 / 12.0);
+        assert!((0.5..2.0).contains(&ratio(&independent)), "{}", ratio(&independent));
+        assert!((2.5..20.0).contains(&ratio(&alike)), "{}", ratio(&alike));
+    }
 }

@@ -11,19 +11,19 @@
 //! | random explanations that compete with effects | [`noise`] and [`waves`] |
 //! | the fit itself | [`fit`], [`structure`], [`record`] |
 //! | where a squall was | [`transient`] |
-//! | errors before and after | [`errors`], [`held_out`] |
+//! | errors before and after | [`replay_errors`], [`held_out`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
 //! | what is left in the end | [`diagnostics`], [`monomial`] |
 
 pub mod analysis;
 pub mod candidates;
 pub mod diagnostics;
-pub mod errors;
 pub mod fit;
 pub mod held_out;
 pub mod monomial;
 pub mod noise;
 pub mod record;
+pub mod replay_errors;
 pub mod search;
 pub mod separation;
 pub mod structure;
@@ -31,3 +31,6 @@ pub mod transient;
 pub mod waves;
 
 pub use analysis::{Analysis, Settings, TraceError, trace};
+
+#[cfg(test)]
+mod made_up;

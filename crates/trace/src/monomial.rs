@@ -1,6 +1,6 @@
 //! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect carries.
 
-use ship::effects::{Acts, Effect, Now, Parameter, Places};
+use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use ship::{Real, Regressor};
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
@@ -51,8 +51,16 @@ pub const LIBRARY: &[Powers] = library![
     "ψU" = [0, 0, 1, 1],
 ];
 
-const PARAMETERS: [Parameter; 1] =
-    [Parameter { symbol: "c", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -10.0, highest: 10.0, odd: false }];
+const PARAMETERS: [Parameter; 1] = [Parameter {
+    key: "c",
+    symbol: "c",
+    unit: "rad",
+    neutral: 0.0,
+    typical: 0.02,
+    lowest: -10.0,
+    highest: 10.0,
+    odd: false,
+}];
 
 impl Effect for Monomial {
     fn id(&self) -> &'static str {
@@ -69,6 +77,18 @@ impl Effect for Monomial {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn constants(&self) -> Vec<f64> {
+        self.size.into()
+    }
+
+    fn sees_heading(&self) -> bool {
+        LIBRARY[self.place].of[2] > 0
+    }
+
+    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+        Some(Proposal::of_one(*self, 0.02, 0.0, 1.0))
     }
 
     fn places(&self) -> Places {

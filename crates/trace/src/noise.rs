@@ -20,6 +20,9 @@ const MOST: usize = 5;
 type Vector = [f64; MOST];
 type Matrix = [[f64; MOST]; MOST];
 
+/// What the filter does with a row: gain, log S, weight.
+type Correction<const N: usize> = ([f64; N], f64, f64);
+
 /// A random yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moment {
@@ -114,24 +117,29 @@ fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix
 
 /// What is the same for every intensity of the noise of one record.
 #[derive(Debug, Clone)]
-pub struct Grain {
+pub struct RecordNoise {
     durations: Vec<f64>,
+    /// Variance of the white noise of every observed row, in units of that of a full one.
+    variances: Vec<f64>,
     longest: f64,
     white: Drift,
     walk: Drift,
 }
 
-impl Grain {
-    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest record, s.
-    pub fn new(record: &Record, inverse_time: f64, longest: f64) -> Self {
-        let time = |seat: usize| record.time[record.observed[seat]];
+impl RecordNoise {
+    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest record, s,
+    /// and a full row is the mean of `full_readings`.
+    pub fn new(record: &Record, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
+        let time = |number: usize| record.time[record.observed[number]];
         let durations: Vec<f64> =
-            (0..record.observed.len()).map(|seat| if seat == 0 { 0.0 } else { time(seat) - time(seat - 1) }).collect();
+            (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
         // A course-unstable ship is steered: what a random moment does is over after a rudder order.
         let damping = inverse_time.max(0.0);
+        let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
         Self {
             white: Drift::new(Moment::White, damping, &durations, longest),
             walk: Drift::new(Moment::Walk, damping, &durations, longest),
+            variances: record.observed.iter().map(variance).collect(),
             durations,
             longest,
         }
@@ -146,7 +154,11 @@ impl Grain {
     pub fn whitener(&self, colour: &Colour) -> Whitener {
         let rows = self.durations.len();
         if colour.is_white() {
-            return Whitener { states: 0, steps: Vec::new(), rows: Vec::new(), count: rows, log_variance: 0.0 };
+            let even = self.variances.iter().all(|&variance| variance == 1.0);
+            let weights = self.variances.iter().map(|variance| (0, [0.0; MOST], variance.sqrt().recip()));
+            let log_variance = if even { 0.0 } else { self.variances.iter().map(|variance| variance.ln()).sum() };
+            let rows_of = if even { Vec::new() } else { weights.collect() };
+            return Whitener { states: 0, steps: Vec::new(), rows: rows_of, count: rows, log_variance };
         }
         let drift = colour.moment.map(|(kind, level)| match kind {
             Moment::White => (&self.white, level),
@@ -176,8 +188,8 @@ impl Grain {
         let mut filter = Vec::with_capacity(rows);
         let mut log_variance = 0.0;
         let mut settled = false;
-        // Of the last row: place of its transition, gain, log S, weight.
-        let mut last: Option<(usize, [f64; N], f64, f64)> = None;
+        // Of the last row: place of its transition and variance of its noise; gain, log S, weight.
+        let mut last: Option<((usize, f64), Correction<N>)> = None;
         for row in 0..rows {
             let h = self.durations[row];
             let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
@@ -188,20 +200,21 @@ impl Grain {
                 steps.len() - 1
             });
             // Even rows lead to a filter that no longer changes.
+            let kind = (place, self.variances[row]);
             let (gain, log, weight) = match last {
-                Some((before, gain, log, weight)) if settled && before == place => (gain, log, weight),
+                Some((before, known)) if settled && before == kind => known,
                 _ => {
                     if row > 0 {
                         covariance = propagate(&steps[place].2, &covariance, &steps[place].3);
                     }
-                    let (gain, variance) = correct(&mut covariance, &observe);
-                    settled = last.is_some_and(|(before, old, ..)| {
-                        before == place && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
+                    let (gain, variance) = correct(&mut covariance, &observe, kind.1);
+                    settled = last.is_some_and(|(before, (old, ..))| {
+                        before == kind && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
                     });
                     (gain, variance.ln(), variance.sqrt().recip())
                 }
             };
-            last = Some((place, gain, log, weight));
+            last = Some((kind, (gain, log, weight)));
             log_variance += log;
             let mut all = [0.0; MOST];
             all[..N].copy_from_slice(&gain);
@@ -255,13 +268,14 @@ fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64
     result
 }
 
-/// Takes a heading into account: the gain, and the variance S that was predicted for the heading.
-fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N]) -> ([f64; N], f64) {
+/// Takes a heading with white noise of variance `own` into account: the gain, and the variance S that was predicted for the
+/// heading.
+fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N], own: f64) -> ([f64; N], f64) {
     let mut seen = [0.0; N];
     for i in 0..N {
         seen[i] = (0..N).map(|j| covariance[i][j] * observe[j]).sum();
     }
-    let variance = 1.0 + (0..N).map(|i| observe[i] * seen[i]).sum::<f64>();
+    let variance = own + (0..N).map(|i| observe[i] * seen[i]).sum::<f64>();
     let gain = seen.map(|s| s / variance);
     for i in 0..N {
         for j in 0..N {
@@ -271,7 +285,8 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N]) -
     (gain, variance)
 }
 
-/// A filter that makes columns of one record white; for white noise it leaves them as they are.
+/// A filter that makes columns of one record white; for white noise on rows of equally many readings it leaves them as they
+/// are.
 #[derive(Debug, Clone)]
 pub struct Whitener {
     states: usize,
@@ -310,7 +325,11 @@ impl Whitener {
     /// Makes columns white in place.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         match self.states {
-            0 => {}
+            0 => {
+                for (k, (_, _, weight)) in self.rows.iter().enumerate() {
+                    columns.iter_mut().for_each(|column| column[k] *= weight);
+                }
+            }
             2 => self.apply_all::<2>(columns),
             3 => self.apply_all::<3>(columns),
             4 => self.apply_all::<4>(columns),
@@ -355,94 +374,4 @@ impl Whitener {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::DVector;
-    use trial::{Channel, Columns, Origin, Trial};
-
-    fn record(time: &[f64]) -> Record {
-        let wave = |scale: f64| time.iter().map(|t| scale * (0.05 * t).sin()).collect::<Vec<_>>();
-        let channels = [(Channel::Heading, wave(0.2)), (Channel::Rudder, wave(0.1))].into();
-        let origin = Origin::Simulated { scenario: "noise".into(), cell: 0, replicate: 0 };
-        let columns = Columns { time: time.to_vec(), channels, unknown: Vec::new() };
-        Record::whole(&Trial::new("noise", origin, columns).expect("a valid record"))
-    }
-
-    /// Covariance of the heading that a random moment and waves leave, added up from small steps.
-    fn covariance(time: &[f64], a: f64, colour: &Colour, longest: f64) -> DMatrix<f64> {
-        let n = time.len();
-        let mut total = DMatrix::identity(n, n);
-        if let Some((kind, level)) = colour.moment {
-            let (intensity, impulse): (f64, fn(f64, f64) -> f64) = match kind {
-                // Heading after a unit impulse of yaw acceleration, and after a unit step.
-                Moment::White => (3.0 / longest.powi(3), |a, t| (1.0 - (-a * t).exp()) / a),
-                Moment::Walk => (20.0 / longest.powi(5), |a, t| (t - (1.0 - (-a * t).exp()) / a) / a),
-            };
-            let (first, h) = (time[0], 0.02);
-            let steps = ((time[n - 1] - first) / h).round() as usize;
-            for k in 0..steps {
-                let at = first + (k as f64 + 0.5) * h;
-                let g = DVector::from_fn(n, |i, _| if time[i] > at { impulse(a, time[i] - at) } else { 0.0 });
-                total += &g * g.transpose() * (level * intensity * h);
-            }
-        }
-        if let Some(waves) = colour.waves {
-            let (w, z) = (waves.frequency, waves.damping);
-            let wd = w * (1.0 - z * z).sqrt();
-            for i in 0..n {
-                for j in 0..n {
-                    let t = (time[i] - time[j]).abs();
-                    let rho = (-z * w * t).exp() * ((wd * t).cos() + z * w / wd * (wd * t).sin());
-                    total[(i, j)] += waves.sd * waves.sd * rho;
-                }
-            }
-        }
-        total
-    }
-
-    /// The filter gives the likelihood of the dense covariance: Σ log S is its log determinant and the whitened square its
-    /// quadratic form, on even and uneven rows.
-    #[test]
-    fn whitening_is_the_inverse_root_of_the_covariance() {
-        let even: Vec<f64> = (0..40).map(f64::from).collect();
-        let uneven: Vec<f64> = (0..40).map(|k| f64::from(k) + 0.3 * f64::from(k % 3)).collect();
-        let waves = NarrowBand { sd: 2.0, frequency: 0.6, damping: 0.1 };
-        for time in [even, uneven] {
-            let record = record(&time);
-            let longest = record.duration();
-            let a = 0.08;
-            let grain = Grain::new(&record, a, longest);
-            let colours = [
-                Colour { moment: Some((Moment::White, 50.0)), waves: None },
-                Colour { moment: Some((Moment::Walk, 400.0)), waves: None },
-                Colour { moment: None, waves: Some(waves) },
-                Colour { moment: Some((Moment::Walk, 100.0)), waves: Some(waves) },
-            ];
-            for colour in colours {
-                let dense = covariance(&time, a, &colour, longest).cholesky().expect("positive definite");
-                let whitener = grain.whitener(&colour);
-                let log_determinant = 2.0 * dense.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
-                assert!(
-                    (whitener.log_variance - log_determinant).abs() < 2e-3 * log_determinant.abs().max(1.0),
-                    "{colour:?}: {} is not {log_determinant}",
-                    whitener.log_variance
-                );
-                let y = DVector::from_fn(time.len(), |i, _| (0.7 * i as f64).sin() + 0.1 * i as f64);
-                let mut white: Vec<f64> = y.iter().copied().collect();
-                whitener.apply(&mut [&mut white]);
-                let square: f64 = white.iter().map(|x| x * x).sum();
-                let quadratic = y.dot(&dense.solve(&y));
-                assert!((square / quadratic - 1.0).abs() < 2e-3, "{colour:?}: {square} is not {quadratic}");
-            }
-        }
-    }
-
-    #[test]
-    fn white_noise_is_left_alone() {
-        let time: Vec<f64> = (0..20).map(f64::from).collect();
-        let whitener = Grain::new(&record(&time), 0.1, 19.0).whitener(&Colour::WHITE);
-        let mut column: Vec<f64> = time.clone();
-        whitener.apply(&mut [&mut column]);
-        assert_eq!((column, whitener.log_variance, whitener.rows()), (time, 0.0, 20));
-    }
-}
+mod tests;

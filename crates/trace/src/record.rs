@@ -1,8 +1,10 @@
 //! A trial as tracing needs it: from its first to its last heading, every channel as a signal, and dense rows averaged.
 //!
 //! Averaging the same rows of all channels keeps the relation between rudder and heading, because a response that is
-//! linear does not care whether it is filtered before or after. It is done only where rows are far denser than the
-//! response, and only for the search; errors are always those of all rows.
+//! linear does not care whether it is filtered before or after. It is done only where headings are far denser than the
+//! response, and only for the search; errors are always those of all rows. A heading that stands alone among rows of the
+//! rudder is not averaged, and the rudder about it keeps its detail. Every heading counts: a row knows how many readings
+//! it is the mean of, and stands at their mean time.
 
 use std::f64::consts::{PI, TAU};
 
@@ -19,6 +21,9 @@ const ROWS_PER_TIME: f64 = 20.0;
 /// Rows that are kept at most.
 const MOST_ROWS: usize = 4000;
 
+/// Rows of the rudder for one of the heading that are kept at most, where the rudder was recorded more often.
+const FINER: usize = 5;
+
 /// An interval of more than this many usual ones ends a group of rows that are averaged.
 const GAP: f64 = 3.0;
 
@@ -32,12 +37,18 @@ pub struct Record {
     pub name: String,
     /// Times of the rows, s.
     pub time: Vec<f64>,
-    /// Heading of the rows, rad; NaN where it was not recorded.
+    /// Heading of the rows, rad, the mean of their readings; NaN where it was not recorded.
     pub heading: Vec<f64>,
+    /// Number of readings behind the heading of every row.
+    pub readings: Vec<usize>,
+    /// Number of readings behind the heading of a row in which none is missing.
+    pub full_readings: usize,
     /// Rows with a heading.
     pub observed: Vec<usize>,
     /// Usual time between rows, s.
     pub spacing: f64,
+    /// Usual time between values of the rudder, s.
+    pub rudder_spacing: f64,
     rudder: Polyline,
     speed: Option<Polyline>,
     sway: Option<Polyline>,
@@ -47,31 +58,52 @@ pub struct Record {
 }
 
 impl Record {
-    /// Takes a trial with its rows averaged down to twenty per `time` (s, the time constant of the base), but to no fewer
-    /// than 400 and no more than 4000.
+    /// Takes a trial with its headings averaged down to twenty per `time` (s, the time constant of the base), but to no
+    /// fewer than 400 and no more than 4000.
     pub fn averaged(trial: &Trial, time: f64) -> Self {
-        let longest = time.min(0.1 * trial.duration()) / (ROWS_PER_TIME * trial.sampling_period());
-        let group = (longest as usize).min(trial.len() / FEWEST_ROWS).max(1);
-        Self::new(trial, group.max(trial.len().div_ceil(MOST_ROWS)))
+        let rows =
+            trial.observed_rows().last().zip(trial.observed_rows().next()).map_or(0, |(last, first)| last - first + 1);
+        let per_heading = (rows / trial.observed_rows().count().max(1)).max(1);
+        let headings = trial.len() / per_heading;
+        // Rows of the trial for one that is kept.
+        let share = time.min(0.1 * trial.duration()) / (ROWS_PER_TIME * trial.sampling_period());
+        let group = ((share / per_heading as f64) as usize).min(headings / FEWEST_ROWS).max(1);
+        let group = group.max(headings.div_ceil(MOST_ROWS));
+        let rudder = if group == 1 && per_heading > 1 {
+            let fine = (share / FINER as f64) as usize;
+            fine.max(trial.len().div_ceil(FINER * MOST_ROWS)).clamp(1, per_heading)
+        } else {
+            group * per_heading
+        };
+        Self::new(trial, group, group * per_heading, rudder)
     }
 
     /// Takes a trial with all its rows.
     pub fn whole(trial: &Trial) -> Self {
-        Self::new(trial, 1)
+        Self::new(trial, 1, 1, 1)
     }
 
-    fn new(trial: &Trial, group: usize) -> Self {
+    /// Takes a trial with `of_heading` rows averaged for a heading, in which there are `full_readings` of them, and
+    /// `of_rudder` rows for a value of every other channel.
+    fn new(trial: &Trial, full_readings: usize, of_heading: usize, of_rudder: usize) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
-        let spacing = trial.sampling_period();
-        let groups = groups(&trial.time()[first..=last], group, GAP * spacing);
+        let period = trial.sampling_period();
+        let grouped = |count| groups(&trial.time()[first..=last], count, GAP * period);
+        let mut record = Rows::default();
+        for (from, to) in grouped(of_heading) {
+            record.push(&trial.time()[first + from..first + to], &trial.heading()[first + from..first + to]);
+        }
+        let Rows { time, heading, readings } = record;
+        let observed = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
+
+        let signals = grouped(of_rudder);
         let take = |values: &[f64]| -> Vec<f64> {
-            groups.iter().map(|&(from, to)| mean(&values[first + from..first + to])).collect()
+            signals.iter().map(|&(from, to)| mean(&values[first + from..first + to])).collect()
         };
-        let time = take(trial.time());
-        let heading = take(trial.heading());
+        let signal_time = take(trial.time());
         let channel = |channel| trial.channel(channel).map(&take);
-        let signal = |values: Option<Vec<f64>>| values.and_then(|values| signal(&time, &values));
+        let signal = |values: Option<Vec<f64>>| values.and_then(|values| signal(&signal_time, &values));
         let speed = channel(Channel::Speed).or_else(|| {
             let (surge, sway) = (channel(Channel::Surge)?, channel(Channel::Sway)?);
             Some(surge.iter().zip(&sway).map(|(u, v)| u.hypot(*v)).collect())
@@ -81,17 +113,19 @@ impl Record {
             _ => relative_wind(trial).map(|(speed, from)| (take(&speed), take(&unwrapped(&from)))),
         };
         let (wind_speed, wind_from) = relative.unzip();
-        let observed = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
         Self {
             name: trial.name().into(),
+            readings,
+            full_readings,
             observed,
-            spacing: spacing * group as f64,
-            rudder: Polyline::new(time.clone(), take(trial.rudder())).expect("means of increasing times increase"),
+            spacing: period * of_heading as f64,
+            rudder_spacing: period * of_rudder as f64,
             speed: signal(speed),
             sway: signal(channel(Channel::Sway)),
             wind_speed: signal(wind_speed),
             wind_from: signal(wind_from),
             propeller: signal(channel(Channel::PropellerRate)),
+            rudder: Polyline::new(signal_time, take(trial.rudder())).expect("means of increasing times increase"),
             time,
             heading,
         }
@@ -145,6 +179,25 @@ impl Record {
     /// Length in time, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
+    }
+}
+
+/// Rows of a record: means of readings.
+#[derive(Default)]
+struct Rows {
+    time: Vec<f64>,
+    heading: Vec<f64>,
+    readings: Vec<usize>,
+}
+
+impl Rows {
+    /// Adds the mean of the headings that were read, at the mean of their times; without any, a row at the mean of all times.
+    fn push(&mut self, time: &[f64], heading: &[f64]) {
+        let read: Vec<usize> = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
+        let mean_of = |values: &[f64]| read.iter().map(|&row| values[row]).sum::<f64>() / read.len() as f64;
+        self.time.push(if read.is_empty() { mean(time) } else { mean_of(time) });
+        self.heading.push(if read.is_empty() { f64::NAN } else { mean_of(heading) });
+        self.readings.push(read.len());
     }
 }
 
@@ -208,11 +261,36 @@ fn relative_wind(trial: &Trial) -> Option<(Vec<f64>, Vec<f64>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::made_up::of_columns;
 
     #[test]
     fn groups_end_at_gaps() {
         assert_eq!(groups(&[0.0, 1.0, 2.0, 9.0, 10.0], 2, 3.0), [(0, 2), (2, 3), (3, 5)]);
         assert_eq!(groups(&[0.0, 1.0], 1, 3.0), [(0, 1), (1, 2)]);
+    }
+
+    /// A mean of what was read stands at the mean of the times at which it was read, and knows how many they were.
+    #[test]
+    fn every_heading_counts() {
+        let time: Vec<f64> = (0..6000).map(|k| 0.1 * f64::from(k)).collect();
+        let heading = time.iter().enumerate().map(|(k, t)| if k % 4 == 1 { f64::NAN } else { 0.01 * t }).collect();
+        let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
+        let record = Record::averaged(&of_columns(time, heading, rudder), 10.0);
+        assert_eq!((record.full_readings, record.readings.iter().sum::<usize>()), (4, 4500));
+        for (&time, &heading) in record.time.iter().zip(&record.heading) {
+            assert!((heading - 0.01 * time).abs() < 1e-12);
+        }
+    }
+
+    /// Headings that stand alone are kept as they are, with a finer rudder between them.
+    #[test]
+    fn a_heading_among_rows_of_the_rudder_is_no_mean() {
+        let time: Vec<f64> = (0..6001).map(|k| 0.1 * f64::from(k)).collect();
+        let heading = time.iter().enumerate().map(|(k, t)| if k % 10 == 0 { 0.01 * t } else { f64::NAN }).collect();
+        let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
+        let record = Record::averaged(&of_columns(time, heading, rudder), 16.0);
+        assert_eq!((record.full_readings, record.observed.len(), record.rudder().len()), (1, 601, 6001));
+        assert!(record.observed.iter().all(|&row| record.readings[row] == 1));
     }
 
     #[test]

@@ -4,9 +4,8 @@
 //! was not run yet they say what it would reveal.
 
 use crate::candidates::Candidate;
-use crate::fit::{Columns, Fit, Linear, Problem, whiten};
+use crate::fit::{Columns, Fit, Linear, Problem, acts, whiten};
 use crate::noise::Whitener;
-use crate::search::acts;
 use crate::structure::Structure;
 
 /// A fitted model on some records.
@@ -50,9 +49,9 @@ impl<'a> Ground<'a> {
         let bare = self.problem.replay(&without, &theta, &self.fit.initial);
         let start = rival.starts.first().unwrap_or(&rival.large);
         let (with_rival, theta) = (without.with(rival.term.clone()), [theta.as_slice(), start].concat());
-        let (being, mut new) = self.problem.columns_of_last(&with_rival, &theta, &self.fit.initial, &bare);
-        if acts(&being) {
-            new.insert(0, being);
+        let (presence, mut new) = self.problem.columns_of_last(&with_rival, &theta, &self.fit.initial, &bare);
+        if acts(&presence) {
+            new.insert(0, presence);
         }
         // The base may move with the rival in the place of the term: its sensitivities are those at the fitted model.
         let mut columns = self.linear.clone().without(place_of(self.structure, place)).whitened(&self.whiteners);

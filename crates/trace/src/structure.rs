@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use ship::dynamics::Dynamics;
-use ship::effects::Effect;
+use ship::effects::{Effect, Parameter};
 use ship::replay::replay_states;
 use ship::response::BASE;
 use ship::{Real, Response, ResponseModel};
@@ -35,8 +35,6 @@ pub struct Term {
     pub highest: Vec<f64>,
     /// Sizes against which steps are measured.
     pub scale: Vec<f64>,
-    /// Whether a heading that is turned changes the response.
-    pub sees_heading: bool,
 }
 
 /// Identifier, form and record of a term.
@@ -73,10 +71,8 @@ pub struct Structure {
 /// What one entry of θ is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Symbol.
-    pub symbol: &'static str,
-    /// Unit.
-    pub unit: &'static str,
+    /// What it is called and measured in.
+    pub parameter: &'static Parameter,
     /// Whether it is fitted.
     pub fitted: bool,
     /// Smallest value.
@@ -140,8 +136,7 @@ impl Structure {
     /// Every entry of θ.
     pub fn entries(&self, inverse_time_scale: f64, gain_scale: f64) -> Vec<Entry> {
         let base = |k: usize, scale: f64, only| Entry {
-            symbol: BASE[k].symbol,
-            unit: BASE[k].unit,
+            parameter: &BASE[k],
             fitted: true,
             lowest: BASE[k].lowest,
             highest: BASE[k].highest,
@@ -155,8 +150,7 @@ impl Structure {
         for term in &self.terms {
             for (k, parameter) in term.effect.parameters().iter().enumerate() {
                 entries.push(Entry {
-                    symbol: parameter.symbol,
-                    unit: parameter.unit,
+                    parameter,
                     fitted: !term.held.contains(&k),
                     lowest: term.lowest[k],
                     highest: term.highest[k],
@@ -170,7 +164,7 @@ impl Structure {
 
     /// Whether the response depends on the direction in which the record begins.
     pub fn sees_heading(&self) -> bool {
-        self.terms.iter().any(|term| term.sees_heading)
+        self.terms.iter().any(|term| term.effect.sees_heading())
     }
 
     /// The response of one record, with these parameters.
@@ -203,12 +197,12 @@ pub fn headings<R: Real>(response: &Response<R>, record: &Record, initial: [R; 2
     let mut state = vec![R::from(0.0); response.dimension()];
     let start = recorded.input(record.time[0], response.dead_time());
     response.enter(initial[0], initial[1], &start, &mut state);
-    let mut seat = 0;
+    let mut number = 0;
     let step = step(response, record.spacing);
     replay_states(response, &recorded, &record.time, step, &mut state, |row, state, _| {
-        if record.observed.get(seat) == Some(&row) {
-            visit(seat, state[0]);
-            seat += 1;
+        if record.observed.get(number) == Some(&row) {
+            visit(number, state[0]);
+            number += 1;
         }
     });
 }

@@ -5,8 +5,7 @@ use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Problem};
-use crate::search::Known;
+use crate::fit::{Fit, Linearised, Problem};
 use crate::structure::Term;
 
 /// Lengths of the boxes as shares of the record.
@@ -18,7 +17,7 @@ const STARTS: usize = 2;
 /// Starts (m, t_c, d) for a transient on top of a fit, the most promising first.
 ///
 /// `known` are the whitened residual and sensitivities at that fit.
-pub fn starts(problem: &Problem, fit: &Fit, known: &Known, term: &Term) -> Vec<Vec<f64>> {
+pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> Vec<Vec<f64>> {
     let number = term.only.unwrap_or(0);
     let record = &problem.records[number];
     let whitener = &known.whiteners[number];

@@ -11,6 +11,7 @@
 mod moment_drift;
 mod nonlinear_damping;
 mod port_starboard_asymmetry;
+mod proposal;
 mod rudder_deadband;
 mod rudder_saturation;
 mod second_order;
@@ -24,6 +25,7 @@ mod wind_moment;
 pub use moment_drift::MomentDrift;
 pub use nonlinear_damping::NonlinearDamping;
 pub use port_starboard_asymmetry::PortStarboardAsymmetry;
+pub use proposal::{Manoeuvres, Proposal};
 pub use rudder_deadband::RudderDeadband;
 pub use rudder_saturation::RudderSaturation;
 pub use second_order::SecondOrder;
@@ -40,9 +42,11 @@ use std::sync::Arc;
 use crate::dynamics::{Measured, Regressor};
 use crate::number::{Real, Tangent};
 
-/// One parameter of an effect.
+/// One parameter of an effect or of the base.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
+    /// Name in files: letters, digits and underscores.
+    pub key: &'static str,
     /// Symbol, as in the equation.
     pub symbol: &'static str,
     /// Unit, in SI and radians.
@@ -153,12 +157,37 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
         None
     }
 
+    /// How it is looked for in records of these manoeuvres; `None` where they cannot hold it, as without its channel.
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal>;
+
     /// Where it acts.
     fn places(&self) -> Places;
 
     /// Number of own states.
     fn states(&self) -> usize {
         0
+    }
+
+    /// Numbers it takes from a record and holds fixed (approach speed, reference time): with its form they say which
+    /// effect it is.
+    fn constants(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether it is a moment that depends on time alone. It then belongs to one record and says nothing of another.
+    fn is_of_time(&self) -> bool {
+        false
+    }
+
+    /// Whether it depends on the heading, so that a turned record is another one.
+    fn sees_heading(&self) -> bool {
+        false
+    }
+
+    /// Whether it is random: noise on the heading that is seen, and no part of the response.
+    fn is_random(&self) -> bool {
+        let typical: Vec<f64> = self.parameters().iter().map(|parameter| parameter.typical).collect();
+        self.random_heading(&typical).is_some()
     }
 
     /// Spectrum of a random heading that is added to the one seen; the deterministic part of the response ignores it.
@@ -172,7 +201,7 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
     }
 
     /// Span of time, s, in which steps have to resolve that time; outside of it nothing happens so fast.
-    fn brisk(&self, _p: &[f64]) -> [f64; 2] {
+    fn fast_span(&self, _p: &[f64]) -> [f64; 2] {
         [f64::NEG_INFINITY, f64::INFINITY]
     }
 }
@@ -228,8 +257,8 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(NonlinearDamping::Cubic),
         Arc::new(NonlinearDamping::Quadratic),
         Arc::new(NonlinearDamping::Square),
-        Arc::new(WindMoment::Steady),
         Arc::new(WindMoment::Measured),
+        Arc::new(WindMoment::Steady),
         Arc::new(SpeedLoss::Modelled),
         Arc::new(SpeedLoss::Measured { approach_speed: 1.0 }),
         Arc::new(SpeedLoss::Propeller { approach_rate: 1.0 }),

@@ -1,6 +1,6 @@
 //! A slow trend of the yaw moment over the record.
 
-use super::{Acts, Effect, Now, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// m (t − t₀) as an equivalent rudder angle.
@@ -10,8 +10,16 @@ pub struct MomentDrift {
     pub reference_time: f64,
 }
 
-const PARAMETERS: [Parameter; 1] =
-    [Parameter { symbol: "m", unit: "rad/s", neutral: 0.0, typical: 7e-5, lowest: -0.01, highest: 0.01, odd: true }];
+const PARAMETERS: [Parameter; 1] = [Parameter {
+    key: "m",
+    symbol: "m",
+    unit: "rad/s",
+    neutral: 0.0,
+    typical: 7e-5,
+    lowest: -0.01,
+    highest: 0.01,
+    odd: true,
+}];
 
 impl Effect for MomentDrift {
     fn id(&self) -> &'static str {
@@ -28,6 +36,19 @@ impl Effect for MomentDrift {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn constants(&self) -> Vec<f64> {
+        vec![self.reference_time]
+    }
+
+    fn is_of_time(&self) -> bool {
+        true
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let from_start = Self { reference_time: about.span[0] };
+        Some(Proposal::of_one(from_start, 0.02 / about.duration, 0.0, 2.0))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! Damping that grows with the yaw rate: the terms of Norrbin and Bech.
 
-use super::{Acts, Effect, Now, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when
@@ -19,16 +19,36 @@ pub enum NonlinearDamping {
     Square,
 }
 
-const CUBIC: [Parameter; 1] =
-    [Parameter {
-        symbol: "n₃/T", unit: "s/rad²", neutral: 0.0, typical: 40.0, lowest: 0.0, highest: 1e7, odd: false
-    }];
-const QUADRATIC: [Parameter; 1] =
-    [Parameter { symbol: "n₂/T", unit: "1/rad", neutral: 0.0, typical: 0.7, lowest: 0.0, highest: 1e4, odd: false }];
-const SQUARE: [Parameter; 1] =
-    [Parameter {
-        symbol: "n₁₁/T", unit: "1/rad", neutral: 0.0, typical: 0.2, lowest: -1e3, highest: 1e3, odd: true
-    }];
+const CUBIC: [Parameter; 1] = [Parameter {
+    key: "n3_over_T",
+    symbol: "n₃/T",
+    unit: "s/rad²",
+    neutral: 0.0,
+    typical: 40.0,
+    lowest: 0.0,
+    highest: 1e7,
+    odd: false,
+}];
+const QUADRATIC: [Parameter; 1] = [Parameter {
+    key: "n2_over_T",
+    symbol: "n₂/T",
+    unit: "1/rad",
+    neutral: 0.0,
+    typical: 0.7,
+    lowest: 0.0,
+    highest: 1e4,
+    odd: false,
+}];
+const SQUARE: [Parameter; 1] = [Parameter {
+    key: "n11_over_T",
+    symbol: "n₁₁/T",
+    unit: "1/rad",
+    neutral: 0.0,
+    typical: 0.2,
+    lowest: -1e3,
+    highest: 1e3,
+    odd: true,
+}];
 
 impl Effect for NonlinearDamping {
     fn id(&self) -> &'static str {
@@ -57,6 +77,15 @@ impl Effect for NonlinearDamping {
             Self::Quadratic => &QUADRATIC,
             Self::Square => &SQUARE,
         }
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let Manoeuvres { time, rate, .. } = *about;
+        Some(match self {
+            Self::Cubic => Proposal::of_one(*self, 1.0 / (time * rate * rate), 0.05, 1.0),
+            Self::Quadratic => Proposal::of_one(*self, 1.0 / (time * rate), 0.05, 1.0),
+            Self::Square => Proposal::of_one(*self, 1.0 / (time * rate), 0.0, 0.5),
+        })
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! Play between the recorded and the acting rudder.
 
-use super::{Acts, Effect, Now, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// Backlash or dead band of half-width g.
@@ -12,8 +12,16 @@ pub enum RudderDeadband {
     DeadBand,
 }
 
-const PARAMETERS: [Parameter; 1] =
-    [Parameter { symbol: "g", unit: "rad", neutral: 0.0, typical: 0.012, lowest: 0.0, highest: 0.15, odd: false }];
+const PARAMETERS: [Parameter; 1] = [Parameter {
+    key: "g",
+    symbol: "g",
+    unit: "rad",
+    neutral: 0.0,
+    typical: 0.012,
+    lowest: 0.0,
+    highest: 0.15,
+    odd: false,
+}];
 
 impl Effect for RudderDeadband {
     fn id(&self) -> &'static str {
@@ -36,6 +44,12 @@ impl Effect for RudderDeadband {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let rudder = about.rudder;
+        let proposal = Proposal::new(*self, vec![0.1 * rudder], vec![vec![0.07 * rudder]], vec![0.15 * rudder]);
+        Some(proposal.within(0, [0.0, (0.5 * rudder).min(0.15)]))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! A rudder that loses lift at large angles.
 
-use super::{Acts, Effect, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
@@ -8,8 +8,16 @@ use crate::number::Real;
 pub struct RudderSaturation;
 
 // The highest value keeps δ − c₃ δ³ growing up to 35 deg: c₃ < 1/(3 δ²).
-const PARAMETERS: [Parameter; 1] =
-    [Parameter { symbol: "c₃", unit: "1/rad²", neutral: 0.0, typical: 0.5, lowest: -2.0, highest: 0.9, odd: false }];
+const PARAMETERS: [Parameter; 1] = [Parameter {
+    key: "c3",
+    symbol: "c₃",
+    unit: "1/rad²",
+    neutral: 0.0,
+    typical: 0.5,
+    lowest: -2.0,
+    highest: 0.9,
+    odd: false,
+}];
 
 impl Effect for RudderSaturation {
     fn id(&self) -> &'static str {
@@ -26,6 +34,11 @@ impl Effect for RudderSaturation {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let scale = 0.2 / (about.rudder * about.rudder);
+        Some(Proposal::new(*self, vec![scale], vec![vec![0.0]], vec![scale.min(0.9)]))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
-use super::{Acts, Effect, Now, Parameter, Places, Scale};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal, Scale};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -25,20 +25,76 @@ pub enum SpeedLoss {
 }
 
 const MODELLED: [Parameter; 3] = [
-    Parameter { symbol: "c_u", unit: "s/rad²", neutral: 0.0, typical: 15.0, lowest: 0.0, highest: 1e5, odd: false },
-    Parameter { symbol: "T_u", unit: "s", neutral: 100.0, typical: 100.0, lowest: 1.0, highest: 1e4, odd: false },
-    Parameter { symbol: "m_b", unit: "1", neutral: 2.0, typical: 2.0, lowest: 0.0, highest: 3.0, odd: false },
+    Parameter {
+        key: "c_u",
+        symbol: "c_u",
+        unit: "s/rad²",
+        neutral: 0.0,
+        typical: 15.0,
+        lowest: 0.0,
+        highest: 1e5,
+        odd: false,
+    },
+    Parameter {
+        key: "T_u",
+        symbol: "T_u",
+        unit: "s",
+        neutral: 100.0,
+        typical: 100.0,
+        lowest: 1.0,
+        highest: 1e4,
+        odd: false,
+    },
+    Parameter {
+        key: "m_b",
+        symbol: "m_b",
+        unit: "1",
+        neutral: 2.0,
+        typical: 2.0,
+        lowest: 0.0,
+        highest: 3.0,
+        odd: false,
+    },
 ];
 const MEASURED: [Parameter; 2] = [
-    Parameter { symbol: "m_a", unit: "1", neutral: 0.0, typical: 1.0, lowest: -1.0, highest: 3.0, odd: false },
-    Parameter { symbol: "m_b", unit: "1", neutral: 0.0, typical: 2.0, lowest: -1.0, highest: 4.0, odd: false },
+    Parameter {
+        key: "m_a",
+        symbol: "m_a",
+        unit: "1",
+        neutral: 0.0,
+        typical: 1.0,
+        lowest: -1.0,
+        highest: 3.0,
+        odd: false,
+    },
+    Parameter {
+        key: "m_b",
+        symbol: "m_b",
+        unit: "1",
+        neutral: 0.0,
+        typical: 2.0,
+        lowest: -1.0,
+        highest: 4.0,
+        odd: false,
+    },
 ];
 
-const PROPELLER: [Parameter; 1] =
-    [Parameter { symbol: "m_n", unit: "1", neutral: 0.0, typical: 2.0, lowest: -1.0, highest: 4.0, odd: false }];
+const PROPELLER: [Parameter; 1] = [Parameter {
+    key: "m_n",
+    symbol: "m_n",
+    unit: "1",
+    neutral: 0.0,
+    typical: 2.0,
+    lowest: -1.0,
+    highest: 4.0,
+    odd: false,
+}];
 
 /// Speed ratio below which the scaling laws mean nothing; keeps a bad trial step of a search finite.
 const SLOWEST: f64 = 0.05;
+
+/// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
+const PROPELLER_CHANGE: f64 = 0.05;
 
 impl Effect for SpeedLoss {
     fn id(&self) -> &'static str {
@@ -66,6 +122,39 @@ impl Effect for SpeedLoss {
             Self::Modelled => &MODELLED,
             Self::Measured { .. } => &MEASURED,
             Self::Propeller { .. } => &PROPELLER,
+        }
+    }
+
+    fn constants(&self) -> Vec<f64> {
+        match *self {
+            Self::Modelled => Vec::new(),
+            Self::Measured { approach_speed: constant } | Self::Propeller { approach_rate: constant } => vec![constant],
+        }
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let Manoeuvres { time, rate, duration, .. } = *about;
+        match self {
+            // A speed that was measured is not modelled.
+            Self::Modelled if about.speed_square.is_some() => None,
+            Self::Modelled => {
+                let loss = |recovery: f64| 0.2 / (recovery * rate * rate);
+                let at = |times: f64, exponent: f64| vec![loss(times * time), times * time, exponent];
+                let mut proposal = Proposal::new(*self, at(4.0, 1.0), vec![at(2.0, 2.0), at(8.0, 2.0)], at(4.0, 2.0));
+                // The exponent of the rudder force cannot be told from one manoeuvre without a speed: the law of the free
+                // stream.
+                proposal.held = &[2];
+                Some(proposal.within(0, [0.0, loss(0.5 * time)]).within(1, [0.5 * time, 2.0 * duration]))
+            }
+            Self::Measured { .. } => {
+                let measured = Self::Measured { approach_speed: about.speed_square?.sqrt() };
+                Some(Proposal::new(measured, vec![1.0, 1.0], vec![vec![0.0, 0.0]], vec![1.0, 2.0]))
+            }
+            Self::Propeller { .. } => {
+                let [mean, lowest, highest] = about.propeller?;
+                let changes = highest - lowest > PROPELLER_CHANGE * mean;
+                changes.then(|| Proposal::of_one(Self::Propeller { approach_rate: mean }, 1.0, 0.0, 2.0))
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
-use super::{Acts, Effect, Now, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// Lag between the recorded and the acting rudder.
@@ -12,10 +12,26 @@ pub enum SteeringLag {
     FirstOrder,
 }
 
-const DEAD_TIME: [Parameter; 1] =
-    [Parameter { symbol: "τ", unit: "s", neutral: 0.0, typical: 1.0, lowest: -20.0, highest: 20.0, odd: false }];
-const FIRST_ORDER: [Parameter; 1] =
-    [Parameter { symbol: "τ_E", unit: "s", neutral: 0.0, typical: 1.0, lowest: 0.0, highest: 30.0, odd: false }];
+const DEAD_TIME: [Parameter; 1] = [Parameter {
+    key: "tau",
+    symbol: "τ",
+    unit: "s",
+    neutral: 0.0,
+    typical: 1.0,
+    lowest: -20.0,
+    highest: 20.0,
+    odd: false,
+}];
+const FIRST_ORDER: [Parameter; 1] = [Parameter {
+    key: "tau_E",
+    symbol: "τ_E",
+    unit: "s",
+    neutral: 0.0,
+    typical: 1.0,
+    lowest: 0.0,
+    highest: 30.0,
+    odd: false,
+}];
 
 /// A lag shorter than this, s, is below the resolution of any record and passes the rudder through.
 const SHORTEST_LAG: f64 = 0.02;
@@ -44,6 +60,21 @@ impl Effect for SteeringLag {
             Self::DeadTime => &DEAD_TIME,
             Self::FirstOrder => &FIRST_ORDER,
         }
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        let Manoeuvres { time, spacing, .. } = *about;
+        let with_start = |start| Proposal::new(*self, vec![0.1 * time], vec![vec![start]], vec![0.3 * time]);
+        Some(match self {
+            Self::DeadTime => {
+                let longest = (0.5 * time).max(2.0 * spacing).min(20.0);
+                with_start(0.0).within(0, [-longest, longest])
+            }
+            Self::FirstOrder => {
+                let shortest = SHORTEST_LAG.max(0.1 * spacing);
+                with_start(0.1 * time).within(0, [shortest, (2.0 * time).clamp(0.1, 30.0)])
+            }
+        })
     }
 
     fn places(&self) -> Places {

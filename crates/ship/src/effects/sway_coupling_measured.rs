@@ -1,6 +1,6 @@
 //! Sway velocity as a regressor, where the record has it.
 
-use super::{Acts, Effect, Now, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -9,6 +9,7 @@ use crate::number::Real;
 pub struct SwayCouplingMeasured;
 
 const PARAMETERS: [Parameter; 1] = [Parameter {
+    key: "c_v",
     symbol: "c_v",
     unit: "rad s/m",
     neutral: 0.0,
@@ -33,6 +34,10 @@ impl Effect for SwayCouplingMeasured {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        Some(Proposal::of_one(*self, 0.5 * about.rudder / about.sway_square?.sqrt(), 0.0, 1.0))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
 
-use super::{Acts, Effect, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::narrow_band::NarrowBand;
 use crate::number::Real;
 
@@ -9,9 +9,36 @@ use crate::number::Real;
 pub struct WaveYaw;
 
 const PARAMETERS: [Parameter; 3] = [
-    Parameter { symbol: "σ_w", unit: "rad", neutral: 0.0, typical: 7e-3, lowest: 0.0, highest: 0.2, odd: false },
-    Parameter { symbol: "ω₀", unit: "rad/s", neutral: 0.6, typical: 0.6, lowest: 0.02, highest: 20.0, odd: false },
-    Parameter { symbol: "ζ", unit: "1", neutral: 0.1, typical: 0.1, lowest: 0.005, highest: 0.7, odd: false },
+    Parameter {
+        key: "sigma_w",
+        symbol: "σ_w",
+        unit: "rad",
+        neutral: 0.0,
+        typical: 7e-3,
+        lowest: 0.0,
+        highest: 0.2,
+        odd: false,
+    },
+    Parameter {
+        key: "omega0",
+        symbol: "ω₀",
+        unit: "rad/s",
+        neutral: 0.6,
+        typical: 0.6,
+        lowest: 0.02,
+        highest: 20.0,
+        odd: false,
+    },
+    Parameter {
+        key: "zeta",
+        symbol: "ζ",
+        unit: "1",
+        neutral: 0.1,
+        typical: 0.1,
+        lowest: 0.005,
+        highest: 0.7,
+        odd: false,
+    },
 ];
 
 impl Effect for WaveYaw {
@@ -29,6 +56,11 @@ impl Effect for WaveYaw {
 
     fn parameters(&self) -> &'static [Parameter] {
         &PARAMETERS
+    }
+
+    /// It is no response: it is looked for among the colours of the noise.
+    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+        None
     }
 
     fn places(&self) -> Places {

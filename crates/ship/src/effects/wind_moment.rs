@@ -1,6 +1,6 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
-use super::{Acts, Effect, Now, Parameter, Places};
+use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -14,10 +14,29 @@ pub enum WindMoment {
 }
 
 const STEADY: [Parameter; 2] = [
-    Parameter { symbol: "w_c", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -0.6, highest: 0.6, odd: true },
-    Parameter { symbol: "w_s", unit: "rad", neutral: 0.0, typical: 0.02, lowest: -0.6, highest: 0.6, odd: false },
+    Parameter {
+        key: "w_c",
+        symbol: "w_c",
+        unit: "rad",
+        neutral: 0.0,
+        typical: 0.02,
+        lowest: -0.6,
+        highest: 0.6,
+        odd: true,
+    },
+    Parameter {
+        key: "w_s",
+        symbol: "w_s",
+        unit: "rad",
+        neutral: 0.0,
+        typical: 0.02,
+        lowest: -0.6,
+        highest: 0.6,
+        odd: false,
+    },
 ];
 const MEASURED: [Parameter; 1] = [Parameter {
+    key: "c_w",
     symbol: "c_w",
     unit: "rad s²/m²",
     neutral: 0.0,
@@ -50,6 +69,17 @@ impl Effect for WindMoment {
         match self {
             Self::Steady => &STEADY,
             Self::Measured => &MEASURED,
+        }
+    }
+
+    fn sees_heading(&self) -> bool {
+        *self == Self::Steady
+    }
+
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        match self {
+            Self::Steady => Some(Proposal::new(*self, vec![0.02, 0.02], vec![vec![0.0, 0.0]], vec![0.03, 0.03])),
+            Self::Measured => Some(Proposal::of_one(*self, 0.02 / about.wind_square?, 0.0, 2.0)),
         }
     }
 

@@ -111,7 +111,7 @@ pub fn power(lines: &[TraceSummary]) -> Option<Power> {
 }
 
 fn is_of_time(id: &str) -> bool {
-    ::trace::held_out::is_of_one_record(id)
+    ship::effects::all().iter().any(|effect| effect.id() == id && effect.is_of_time())
 }
 
 /// Probability that a noncentral χ² exceeds a limit: a Poisson mixture of central ones.

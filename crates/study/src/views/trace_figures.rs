@@ -2,8 +2,8 @@
 //! candidates with the threshold.
 
 use ::trace::analysis::{Judged, Outcome};
-use ::trace::diagnostics::{autocorrelation, spectrum};
-use ::trace::errors::Replayed;
+use ::trace::diagnostics::{Series, autocorrelation, spectrum};
+use ::trace::replay_errors::Replayed;
 use rayon::prelude::*;
 use report::figures::{self, Evidence, EvidenceBar, Fate, Fit, RecordFit, ResidualPanel, ResidualPanels};
 use report::{Curve, Figure, Origin, Theme};
@@ -100,19 +100,17 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
         band: None,
     };
     let rudder = |replayed: &Replayed| degrees(&trial.rudder()[first..first + replayed.time.len()]);
-    let present = |replayed: &Replayed| -> Vec<f64> {
-        degrees(&replayed.residual).into_iter().filter(|e| e.is_finite()).collect()
-    };
-    let spacing = trial.sampling_period();
+    let series =
+        |replayed: &Replayed| Series::new(&replayed.time, &degrees(&replayed.residual), trial.sampling_period());
     let lines = ResidualPanel {
         x_title: String::from("frequency [Hz]"),
         y_title: String::from("power [°²/Hz]"),
         logarithmic: true,
         joined: true,
-        curves: models.iter().map(|(origin, replayed)| (origin.clone(), power(&present(replayed), spacing))).collect(),
+        curves: models.iter().map(|(origin, replayed)| (origin.clone(), power(&series(replayed)))).collect(),
         band: None,
     };
-    let rows = present(models[0].1).len();
+    let rows = series(models[0].1).values.len();
     let band = 1.96 / (rows as f64).sqrt();
     let correlations = ResidualPanel {
         x_title: String::from("lag [s]"),
@@ -122,8 +120,10 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
         curves: models
             .iter()
             .map(|(origin, replayed)| {
-                let values = autocorrelation(&present(replayed), LAGS.min(rows / 3));
-                let lags: Vec<f64> = (1..=values.len()).map(|lag| lag as f64 * spacing).collect();
+                let series = series(replayed);
+                let points = autocorrelation(&series, LAGS.min(rows / 3)).into_iter();
+                let (lags, values): (Vec<f64>, Vec<f64>) =
+                    points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
                 (origin.clone(), Curve::new(lags, values))
             })
             .collect(),
@@ -151,10 +151,11 @@ fn thinned_pairs(x: Vec<f64>, y: Vec<f64>) -> Curve {
 }
 
 /// Power spectral density of a residual in degrees, neighbouring lines averaged.
-fn power(residual: &[f64], spacing: f64) -> Curve {
-    let square = residual.iter().map(|e| e * e).sum::<f64>() / residual.len().max(1) as f64;
-    let lines = spectrum(residual, spacing);
-    let width = 1.0 / (residual.len().max(1) as f64 * spacing);
+fn power(residual: &Series) -> Curve {
+    let count = residual.values.len().max(1) as f64;
+    let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;
+    let lines = spectrum(residual);
+    let width = 1.0 / (count * residual.spacing);
     let group = lines.len().div_ceil(MOST_LINES).max(3);
     let points = lines.chunks(group).map(|lines| {
         let count = lines.len() as f64;

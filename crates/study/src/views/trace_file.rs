@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use ::trace::analysis::{Considered, Judged, Outcome, Traced, Value};
-use ::trace::errors::{Errors, HORIZONS};
+use ::trace::replay_errors::{Errors, HORIZONS};
 use serde::Serialize;
 use ship::angle::to_deg;
 use trial::Trial;
@@ -67,7 +67,7 @@ pub struct EffectEntry {
     parameters: BTreeMap<String, ParameterEntry>,
     delta_bic: f64,
     p_value: f64,
-    residual_share: f64,
+    residual_share: Option<f64>,
     evidence: String,
 }
 
@@ -163,6 +163,7 @@ pub struct ModelEntry {
 /// A parameter with its symbol.
 #[derive(Debug, Serialize)]
 pub struct NamedParameter {
+    key: &'static str,
     symbol: String,
     #[serde(flatten)]
     value: ParameterEntry,
@@ -196,7 +197,7 @@ impl From<&Value> for ParameterEntry {
         Self {
             value: value.value,
             sd: value.sd,
-            ci95: value.ci95(),
+            ci95: value.ci95,
             unit: value.unit.to_owned(),
             only: value.only.clone(),
         }
@@ -287,7 +288,8 @@ impl TraceFile {
             lag1_autocorrelation: analysis.whiteness[k].lag1,
             whiteness_p: analysis.whiteness[k].p_value,
         };
-        let [k, t, bias] = analysis.indices;
+        let [k, t] = analysis.indices;
+        let unknown = Number { value: None, sd: None, ci95: None };
         let noise = &analysis.randomness;
         Self {
             schema: "trace/1",
@@ -324,12 +326,12 @@ impl TraceFile {
                 indices: Parameters {
                     k_per_s: Number::of(k, 1.0),
                     t_s: Number::of(t, 1.0),
-                    delta_r_deg: Number::of(bias, degree),
+                    delta_r_deg: analysis.rudder_bias.map_or(unknown, |bias| Number::of(bias, degree)),
                 },
                 parameters: analysis
                     .parameters
                     .iter()
-                    .map(|value| NamedParameter { symbol: value.symbol.clone(), value: value.into() })
+                    .map(|value| NamedParameter { key: value.key, symbol: value.symbol.clone(), value: value.into() })
                     .collect(),
                 noise: NoiseEntry {
                     heading_sd_deg: to_deg(noise.white),

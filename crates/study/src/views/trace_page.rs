@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use ::trace::analysis::{Judged, Outcome, Prospect, Traced, Value, Verdict};
-use ::trace::errors::{HORIZONS, replayed_zigzag};
 use ::trace::noise::Moment;
+use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use report::number::{self, MISSING, optional, significant, with_uncertainty};
 use report::{Column, Table};
 use ship::angle::to_deg;
@@ -35,7 +35,7 @@ fn in_degrees(value: &Value) -> (f64, Option<f64>, Option<[f64; 2]>, String) {
         _ => (factor, value.unit.replace("rad", "deg")),
     };
     let scaled = |x: f64| x * factor;
-    (scaled(value.value), value.sd.map(scaled), value.ci95().map(|ends| ends.map(scaled)), unit)
+    (scaled(value.value), value.sd.map(scaled), value.ci95.map(|ends| ends.map(scaled)), unit)
 }
 
 /// The words of one analysis.
@@ -110,7 +110,10 @@ pub fn signature(report: &TraceReport) -> Option<String> {
     let [from, to] = signature.span.0;
     let record =
         if report.trials.len() > 1 { format!("in {}, ", report.names[signature.record]) } else { String::new() };
-    let period = signature.line.frequency.recip();
+    let strongest = signature.line.map_or_else(String::new, |line| {
+        let period = significant(line.frequency.recip(), 3);
+        format!("strongest at a period of {period} s ({:.0} %); ", 100.0 * line.share)
+    });
     let [low, high] = signature.heading.0;
     let [port, starboard] = signature.side;
     let random = report.analysis.randomness.moment.map_or("", |kind| match kind {
@@ -118,14 +121,12 @@ pub fn signature(report: &TraceReport) -> Option<String> {
         Moment::Walk => "; it looks like a yaw moment that wanders",
     });
     Some(format!(
-        "{record}{}° rms; {:.0} % of it between {:.0} and {:.0} s; strongest at a period of {} s ({:.0} %); largest at headings \
+        "{record}{}° rms; {:.0} % of it between {:.0} and {:.0} s; {strongest}largest at headings \
          from {:.0}° to {:.0}° ({}°); {}° with the rudder to port, {}° to starboard{random}",
         degrees(signature.all),
         100.0 * signature.span.1,
         from,
         to,
-        significant(period, 3),
-        100.0 * signature.line.share,
         to_deg(low),
         to_deg(high),
         degrees(signature.heading.1),
@@ -234,7 +235,7 @@ fn parameters(report: &TraceReport) -> Table {
         Column::left("unit"),
         Column::left("record"),
     ]);
-    let [k, t, _] = report.analysis.indices;
+    let [k, t] = report.analysis.indices;
     for (symbol, quantity, unit) in [("K", k, "1/s"), ("T", t, "s")] {
         table.push([symbol, &uncertain(quantity.value, quantity.sd), &number::interval(quantity.ci95), unit, MISSING]);
     }

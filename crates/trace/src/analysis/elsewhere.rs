@@ -16,7 +16,7 @@ pub(super) fn believed_elsewhere(
     while place > 0 {
         place -= 1;
         let term = &model.structure.terms[place];
-        if held_out::is_of_one_record(term.effect.id()) {
+        if term.effect.is_of_time() {
             continue;
         }
         let less = search.dropped(&model, place, true);
@@ -73,7 +73,7 @@ pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: 
         let tried = search.try_all(model, &model.plain, true);
         let next = tried.into_iter().take(LOOKED_AT).find_map(|tried| {
             let term = search.candidates[tried.place].term.clone();
-            if held_out::is_of_one_record(term.effect.id()) || !search.believes(&term, &tried.evidence) {
+            if term.effect.is_of_time() || !search.believes(&term, &tried.evidence) {
                 return None;
             }
             let after = held_out::errors(held_out, &tried.structure, &tried.fit)?;

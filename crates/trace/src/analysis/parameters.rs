@@ -1,11 +1,15 @@
 //! Parameters of the final model with their errors, and its random part.
 
-use identify::estimate::{Covariance, Quantity};
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use identify::Estimate;
+use identify::estimate::{Covariance, Quantity, StopReason, Uncertainty};
 use nalgebra::{DMatrix, Matrix3};
 use ship::FirstOrder;
 use ship::narrow_band::NarrowBand;
+use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::{Randomness, Value};
+use super::result::{Randomness, Value};
 use crate::fit::Problem;
 use crate::search::Model;
 
@@ -29,59 +33,127 @@ pub(super) fn parameter_covariance(problem: &Problem, model: &Model, lag1: f64) 
     Some(&inverse * middle * &inverse * (observations / freedom))
 }
 
+/// The first-order part of a model with rudder bias number `bias`, and what is known of its error.
+fn first_order(model: &Model, bias: usize, covariance: Option<&DMatrix<f64>>) -> Estimate {
+    let theta = &model.plain.theta;
+    let places = [0, 1, 2 + bias];
+    let [inverse_T, K_over_T, rudder_bias] = places.map(|place| theta[place]);
+    let uncertainty = match covariance {
+        Some(all) => {
+            let matrix = Matrix3::from_fn(|i, j| all[(places[i], places[j])]);
+            Uncertainty::Covariance(Covariance { matrix, degrees_of_freedom: None })
+        }
+        None => Uncertainty::None { reason: "the records do not tell the parameters apart" },
+    };
+    Estimate {
+        response: FirstOrder { inverse_T, K_over_T, rudder_bias },
+        uncertainty,
+        robust: None,
+        stop: StopReason::Converged,
+        evaluations: 0,
+        diagnostics: Vec::new(),
+        warnings: Vec::new(),
+    }
+}
+
+/// All parameters of a model, in the order of its entries.
 pub(super) fn parameters(
     problem: &Problem,
     model: &Model,
     covariance: Option<&DMatrix<f64>>,
     names: &[String],
 ) -> Vec<Value> {
-    let mut place = 0;
+    let biases = 2..model.structure.base_count();
+    let quantile = Normal::standard().inverse_cdf(0.975);
+    let mut fitted = 0..;
     problem
         .entries(&model.structure)
         .iter()
         .zip(&model.plain.theta)
-        .map(|(entry, &value)| {
-            let sd = entry.fitted.then(|| {
-                place += 1;
-                covariance.map(|covariance| covariance[(place - 1, place - 1)].max(0.0).sqrt())
-            });
-            Value {
-                symbol: entry.symbol.to_owned(),
-                unit: entry.unit,
-                value,
-                sd: sd.flatten().filter(|sd| sd.is_finite()),
-                only: entry.only.map(|only| names[only].clone()),
-            }
+        .enumerate()
+        .map(|(number, (entry, &value))| {
+            let place = entry.fitted.then(|| fitted.next()).flatten();
+            let sd = place.zip(covariance).map(|(place, all)| all[(place, place)].max(0.0).sqrt());
+            let sd = sd.filter(|sd| sd.is_finite());
+            let ci95 = if biases.contains(&number) {
+                first_order(model, number - 2, covariance).rudder_bias().ci95
+            } else {
+                sd.map(|sd| [value - quantile * sd, value + quantile * sd])
+            };
+            let only = entry.only.map(|only| names[only].clone());
+            Value { sd, ci95, only, ..Value::of(entry.parameter, value) }
         })
         .collect()
 }
 
-pub(super) fn indices(model: &Model, covariance: Option<&DMatrix<f64>>) -> [Quantity; 3] {
-    let theta = &model.plain.theta;
-    let response = FirstOrder { inverse_T: theta[0], K_over_T: theta[1], rudder_bias: theta[2] };
-    match covariance {
-        Some(all) => {
-            let matrix = Matrix3::from_fn(|i, j| all[(i, j)]);
-            let covariance = Covariance { matrix, degrees_of_freedom: None };
-            let (k, t) = covariance.indices(&response);
-            let sd = matrix[(2, 2)].max(0.0).sqrt();
-            let reach = covariance.quantile95() * sd;
-            let ci95 = Some([response.rudder_bias - reach, response.rudder_bias + reach]);
-            [k, t, Quantity { value: response.rudder_bias, sd: Some(sd), ci95 }]
-        }
-        None => {
-            [response.K(), response.T(), response.rudder_bias].map(|value| Quantity { value, sd: None, ci95: None })
-        }
-    }
+/// K and T of a model, and the rudder bias of the ship; `None` when every one of several records has its own.
+pub(super) fn indices(model: &Model, covariance: Option<&DMatrix<f64>>) -> ([Quantity; 2], Option<Quantity>) {
+    let estimate = first_order(model, 0, covariance);
+    let bias = (model.structure.base_count() == 3).then(|| estimate.rudder_bias());
+    ([estimate.K(), estimate.T()], bias)
 }
 
 pub(super) fn randomness(problem: &Problem, model: &Model) -> Randomness {
     let fit = &model.judged;
-    let white = (fit.rss / problem.observations() as f64).sqrt();
+    let of_row = problem.noise_of_row(fit);
     Randomness {
-        white,
+        white: problem.noise_of_reading(fit),
         moment: fit.colour.moment.map(|(kind, _)| kind),
-        wander: fit.colour.moment.map_or(0.0, |(_, level)| level.sqrt() * white),
-        waves: fit.colour.waves.map(|waves| NarrowBand { sd: waves.sd * white, ..waves }),
+        wander: fit.colour.moment.map_or(0.0, |(_, level)| level.sqrt() * of_row),
+        waves: fit.colour.waves.map(|waves| NarrowBand { sd: waves.sd * of_row, ..waves }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up::{BASE, Plan, record, ship};
+    use crate::noise::Colour;
+    use crate::record::Record;
+    use crate::search::Model;
+    use crate::structure::Structure;
+
+    /// Two records whose rudders are off by different angles.
+    fn with_own_biases() -> (Problem, Model) {
+        let records = [-0.02, 0.03].map(|bias| {
+            let ship = ship::ResponseModel::first_order().with(vec![BASE[0], BASE[1], bias]);
+            Record::whole(&record(&ship, Plan::default()))
+        });
+        let problem = Problem::new(records.into(), BASE[0], BASE[1]);
+        let structure = Structure::base(2, true);
+        let fit = problem.fit(&structure, &[BASE[0], BASE[1], 0.0, 0.0], &[[0.0; 2]; 2], &Colour::WHITE);
+        (problem, Model { structure, plain: fit.clone(), judged: fit })
+    }
+
+    #[test]
+    fn a_bias_of_one_record_is_not_that_of_the_ship() {
+        let (problem, model) = with_own_biases();
+        let covariance = parameter_covariance(&problem, &model, 0.0);
+        let names = ["one", "other"].map(String::from);
+        let all = parameters(&problem, &model, covariance.as_ref(), &names);
+        assert!((all[2].value + 0.02).abs() < 1e-3 && (all[3].value - 0.03).abs() < 1e-3, "{all:?}");
+        assert_eq!([all[2].only.as_deref(), all[3].only.as_deref()], [Some("one"), Some("other")]);
+        assert_eq!(indices(&model, covariance.as_ref()).1, None);
+    }
+
+    /// One estimate has one interval: that of δ_r is Fieller's wherever it is told, which is no longer symmetric when K/T is
+    /// not well known.
+    #[test]
+    fn the_rudder_bias_has_one_interval() {
+        let truth = ship(Vec::new());
+        let problem = Problem::new(vec![Record::whole(&record(&truth, Plan::default()))], BASE[0], BASE[1]);
+        let structure = Structure::base(1, false);
+        let fit = problem.fit(&structure, &BASE, &[[0.0; 2]], &Colour::WHITE);
+        let model = Model { structure, plain: fit.clone(), judged: fit };
+        let mut covariance = parameter_covariance(&problem, &model, 0.0).expect("a zig-zag tells them apart");
+        covariance[(1, 1)] = (0.3 * BASE[1]).powi(2);
+        covariance[(1, 2)] = 0.5 * (covariance[(1, 1)] * covariance[(2, 2)]).sqrt();
+        covariance[(2, 1)] = covariance[(1, 2)];
+        let (_, bias) = indices(&model, Some(&covariance));
+        let bias = bias.expect("of one record");
+        let listed = &parameters(&problem, &model, Some(&covariance), &[String::from("one")])[2];
+        assert_eq!((listed.value, listed.sd, listed.ci95), (bias.value, bias.sd, bias.ci95));
+        let [low, high] = bias.ci95.expect("bounded");
+        assert!((high - bias.value) / (bias.value - low) > 1.2 || (bias.value - low) / (high - bias.value) > 1.2);
     }
 }

@@ -4,12 +4,12 @@ use rayon::prelude::*;
 use ship::Response;
 use trial::Trial;
 
-use super::{ALIAS, Analysis, Outcome};
+use super::result::{ALIAS, Analysis, Outcome};
 use crate::candidates::Candidate;
-use crate::errors;
 use crate::fit::{Fit, Problem};
 use crate::held_out;
 use crate::record::Record;
+use crate::replay_errors;
 use crate::separation::Ground;
 use crate::structure::{Structure, Term};
 
@@ -64,13 +64,13 @@ impl Analysis {
         let record = Record::averaged(trial, self.base.response.T().abs());
         let ship = self.ship();
         let rest = vec![[record.heading[record.observed[0]], 0.0]];
-        let initial = errors::full(&ship, &record, &rest).map_or(rest[0], |replayed| replayed.initial);
+        let initial = replay_errors::full(&ship, &record, &rest).map_or(rest[0], |replayed| replayed.initial);
         records.push(record);
         let problem = self.problem.on(records);
         let mut structure = self.model.structure.clone();
         structure.records = count + 1;
         let of_first = |term: &mut Term| {
-            if held_out::is_of_one_record(term.effect.id()) && term.only.is_none() {
+            if term.effect.is_of_time() && term.only.is_none() {
                 term.only = Some(0);
             }
         };

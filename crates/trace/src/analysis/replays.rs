@@ -3,11 +3,12 @@
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use super::{Judged, OnRecord, TraceError};
-use crate::errors::{self, Replayed};
+use super::result::{Judged, OnRecord};
+use super::settings::TraceError;
 use crate::fit::Problem;
 use crate::held_out::{self, HeldOut};
 use crate::record::Record;
+use crate::replay_errors::{self, Replayed};
 use crate::search::Model;
 
 /// Initial state of a base replay of all rows.
@@ -66,10 +67,13 @@ fn on_record(
 ) -> Option<OnRecord> {
     let replayed = match first {
         Some(first) => closed_form(trial, record, first)?,
-        None => errors::full(response, record, starts)?,
+        None => replay_errors::full(response, record, starts)?,
     };
-    let errors =
-        if thorough { errors::errors(trial, record, response, &replayed) } else { errors::in_brief(&replayed) };
+    let errors = if thorough {
+        replay_errors::errors(trial, record, response, &replayed)
+    } else {
+        replay_errors::in_brief(&replayed)
+    };
     Some(OnRecord { replayed, errors })
 }
 

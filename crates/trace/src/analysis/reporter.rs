@@ -1,13 +1,14 @@
 //! What is said of a finished search: effects with their evidence and aliases, what became of every candidate, and what
 //! is left.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
+use ship::Regressor;
+use ship::effects::{self, Effect, WaveYaw};
 use trial::Trial;
 
 use super::elsewhere::Predicted;
-use super::{ALIAS, Considered, Empirical, OnRecord, Outcome, Settings, Traced, Value};
+use super::result::{ALIAS, Considered, Empirical, OnRecord, Outcome, Traced, Value};
+use super::settings::Settings;
 use crate::candidates::{Candidate, Sizes};
 use crate::diagnostics::{self, Signature};
 use crate::fit::Fit;
@@ -59,7 +60,7 @@ impl Reporter<'_> {
                     aliases,
                     parameters: parameters[structure.range(place)].to_vec(),
                     evidence,
-                    residual_share: shares[place],
+                    residual_share: Some(shares[place]),
                     sentence,
                 }
             })
@@ -153,29 +154,19 @@ impl Reporter<'_> {
         let white = self.search.problem.variance(&self.model.judged).sqrt();
         let calm = self.search.coloured(self.model, None);
         let evidence = self.search.evidence(&calm.judged, &self.model.judged, 3);
-        let effect = ship::effects::WaveYaw;
+        let effect = &WaveYaw;
         let values = [waves.sd * white, waves.frequency, waves.damping];
-        let described = ship::effects::Effect::parameters(&effect);
-        let parameters = described
-            .iter()
-            .zip(values)
-            .map(|(parameter, value)| Value {
-                symbol: parameter.symbol.to_owned(),
-                unit: parameter.unit,
-                value,
-                sd: None,
-                only: None,
-            })
-            .collect();
+        let parameters =
+            effect.parameters().iter().zip(values).map(|(parameter, value)| Value::of(parameter, value)).collect();
         Some(Traced {
-            id: ship::effects::Effect::id(&effect),
-            form: ship::effects::Effect::form(&effect),
-            equation: ship::effects::Effect::equation(&effect),
+            id: effect.id(),
+            form: effect.form(),
+            equation: effect.equation(),
             only: None,
             aliases: Vec::new(),
             parameters,
             evidence,
-            residual_share: 0.0,
+            residual_share: None,
             sentence: format!(
                 "a narrow band at {:.2} rad/s with a standard deviation of {:.2} deg lies on the heading; BIC falls by {:.0}",
                 waves.frequency,
@@ -240,45 +231,55 @@ impl Reporter<'_> {
             })
             .collect();
         list.extend(self.without_channel(&list));
-        list.push(self.waves_considered(effects));
+        list.extend(self.random_considered(effects));
         list
     }
 
-    /// Effects that need a channel the records do not have.
+    /// Effects of which no form can be a candidate, because they need a channel that the records do not have.
     fn without_channel(&self, list: &[Considered]) -> Vec<Considered> {
-        [("sway_coupling_measured", "measured sway", "the records have no sway velocity")]
+        effects::all()
             .into_iter()
-            .filter(|(id, ..)| list.iter().all(|other| other.id != *id))
-            .map(|(id, form, reason)| Considered {
-                id,
-                form,
-                only: None,
-                outcome: Outcome::NotObservable,
-                evidence: None,
-                gain_alone: None,
-                needed: self.settings.thresholds.gain,
-                visibility: None,
-                reason: Some(reason),
+            .filter(|effect| !effect.is_random() && list.iter().all(|other| other.id != effect.id()))
+            .map(|effect| {
+                let lacking = effect.needs().map(Regressor::lacking);
+                self.unfitted(effect.as_ref(), Outcome::NotObservable, None, lacking)
             })
             .collect()
     }
 
-    fn waves_considered(&self, effects: &[Traced]) -> Considered {
-        let found = effects.iter().find(|effect| effect.id == "wave_yaw");
+    /// Effects that are a colour of the noise, found or not.
+    fn random_considered(&self, traced: &[Traced]) -> Vec<Considered> {
+        effects::all()
+            .into_iter()
+            .filter(|effect| effect.is_random())
+            .map(|effect| match traced.iter().find(|traced| traced.id == effect.id()) {
+                Some(found) => self.unfitted(effect.as_ref(), Outcome::Added, Some(found.evidence), None),
+                None => {
+                    let reason = "no band above five times the frequency of the manoeuvre";
+                    self.unfitted(effect.as_ref(), Outcome::Rejected, None, Some(reason))
+                }
+            })
+            .collect()
+    }
+
+    /// An effect that was not fitted as a term.
+    fn unfitted(
+        &self,
+        effect: &dyn Effect,
+        outcome: Outcome,
+        evidence: Option<Evidence>,
+        reason: Option<&'static str>,
+    ) -> Considered {
         Considered {
-            id: "wave_yaw",
-            form: "narrow band",
+            id: effect.id(),
+            form: effect.form(),
             only: None,
-            outcome: if found.is_some() { Outcome::Added } else { Outcome::Rejected },
-            evidence: found.map(|effect| effect.evidence),
+            outcome,
+            evidence,
             gain_alone: None,
             needed: self.settings.thresholds.gain,
             visibility: None,
-            reason: if found.is_some() {
-                None
-            } else {
-                Some("no band above five times the frequency of the manoeuvre")
-            },
+            reason,
         }
     }
 
@@ -315,21 +316,11 @@ impl Reporter<'_> {
         let has_speed = records.iter().all(|record| record.speed().is_some());
         let speed = rms(&mut records.iter().filter_map(Record::speed).flat_map(|s| s.values().iter().copied()));
         let size = [sizes.rate, sizes.rudder, heading, speed];
+        let about = sizes.manoeuvres(records, &records[0]);
         let library: Vec<Candidate> = (0..LIBRARY.len())
             .filter(|&place| has_speed || LIBRARY[place].of[3] == 0)
-            .map(|place| Candidate {
-                term: Term {
-                    effect: Arc::new(Monomial { place, size }),
-                    only: None,
-                    held: &[],
-                    lowest: vec![-10.0],
-                    highest: vec![10.0],
-                    scale: vec![0.02],
-                    sees_heading: LIBRARY[place].of[2] > 0,
-                },
-                starts: vec![vec![0.0]],
-                large: vec![0.02],
-            })
+            .filter_map(|place| Monomial { place, size }.proposal(&about))
+            .map(|proposal| Candidate::new(proposal, None))
             .collect();
         let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
         let tried = search.try_all(self.model, &self.model.judged, false);

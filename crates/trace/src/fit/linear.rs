@@ -167,6 +167,16 @@ impl Linear {
     }
 }
 
+/// Σ log S of all records.
+pub(crate) fn log_variance(whiteners: &[Whitener]) -> f64 {
+    whiteners.iter().map(|whitener| whitener.log_variance).sum()
+}
+
+/// Whether a column changes the heading anywhere.
+pub(crate) fn acts(column: &Column) -> bool {
+    column.iter().flatten().flatten().any(|&x| x != 0.0)
+}
+
 /// Whitened copies of a column of every record.
 pub(crate) fn whiten(columns: &[Vec<f64>], whiteners: &[Whitener]) -> Vec<Vec<f64>> {
     let mut white = columns.to_vec();
@@ -206,7 +216,7 @@ fn scales(matrix: &DMatrix<f64>) -> Vec<f64> {
 pub(super) fn solve(matrix: &DMatrix<f64>, gradient: &DVector<f64>, damping: f64) -> Option<DVector<f64>> {
     let n = matrix.nrows();
     let scale = scales(matrix);
-    // A hair on the diagonal keeps parallel columns solvable; it moves no estimate by more than its rounding.
+    // 1e-11 on the diagonal keeps parallel columns solvable and moves no estimate by more than its rounding.
     let scaled = DMatrix::from_fn(n, n, |i, j| {
         let own = if i == j { damping + 1e-11 + if scale[i] == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
         matrix[(i, j)] * scale[i] * scale[j] + own

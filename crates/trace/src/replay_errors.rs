@@ -257,8 +257,8 @@ fn settle(
     let mut now = at(start);
     for _ in 0..STEPS {
         let [one, two] = &now.by;
-        let (cross, seats) = (dot(one, two), now.residual.len());
-        let matrix = Matrix2::new(dot(one, one), cross, cross, dot(two, two) + 1e-12 * seats as f64);
+        let (cross, count) = (dot(one, two), now.residual.len());
+        let matrix = Matrix2::new(dot(one, one), cross, cross, dot(two, two) + 1e-12 * count as f64);
         let gradient = Vector2::new(dot(one, &now.residual), dot(two, &now.residual));
         let Some(direction) = matrix.lu().solve(&gradient) else { break };
         if direction.dot(&gradient) < NEGLIGIBLE * now.square {

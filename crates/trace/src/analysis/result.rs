@@ -1,0 +1,221 @@
+//! What an analysis says.
+
+use identify::Estimate;
+use identify::estimate::Quantity;
+use ship::effects::Parameter;
+use ship::narrow_band::NarrowBand;
+
+use crate::candidates::Candidate;
+use crate::diagnostics::{Signature, Whiteness};
+use crate::fit::Problem;
+use crate::noise::Moment;
+use crate::replay_errors::{Errors, Replayed};
+use crate::search::{Evidence, Model, Thresholds};
+
+/// What the analysis says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing is missing.
+    Clean,
+    /// What is missing has a name, and what is left is noise.
+    Traced,
+    /// Structure is left that no candidate carries.
+    Unexplained,
+}
+
+impl Verdict {
+    /// The word used in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Clean => "clean",
+            Self::Traced => "traced",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// What became of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is part of the model.
+    Added,
+    /// The records cannot tell it from one that is.
+    Alias,
+    /// The records speak against it, or do not need it.
+    Rejected,
+    /// The records could not show it.
+    NotObservable,
+}
+
+impl Outcome {
+    /// The word used in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Added => "added",
+            Self::Alias => "alias",
+            Self::Rejected => "rejected",
+            Self::NotObservable => "not_observable",
+        }
+    }
+}
+
+/// A parameter with its error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Value {
+    /// Name in files.
+    pub key: &'static str,
+    /// Symbol.
+    pub symbol: String,
+    /// Unit, SI and rad.
+    pub unit: &'static str,
+    /// Value.
+    pub value: f64,
+    /// Standard deviation; `None` when it is not determined or was not fitted.
+    pub sd: Option<f64>,
+    /// 95 % interval: Fieller's for δ_r, which is the ratio of two parameters, otherwise that of a normal error.
+    pub ci95: Option<[f64; 2]>,
+    /// Name of the one record it belongs to.
+    pub only: Option<String>,
+}
+
+impl Value {
+    /// A parameter of all records whose error is not known.
+    pub(super) fn of(parameter: &Parameter, value: f64) -> Self {
+        let (key, symbol, unit) = (parameter.key, parameter.symbol.to_owned(), parameter.unit);
+        Self { key, symbol, unit, value, sd: None, ci95: None, only: None }
+    }
+}
+
+/// An effect that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Traced {
+    /// Identifier.
+    pub id: &'static str,
+    /// Form.
+    pub form: &'static str,
+    /// Equation.
+    pub equation: &'static str,
+    /// Name of the one record in which it acts.
+    pub only: Option<String>,
+    /// Effects that these records cannot tell from it: identifier and form.
+    pub aliases: Vec<(&'static str, &'static str)>,
+    /// Its parameters.
+    pub parameters: Vec<Value>,
+    /// How much it explains, against the best model without it.
+    pub evidence: Evidence,
+    /// Share of the mean square of the residual of the base that it took away when it was added; `None` for waves, which
+    /// are part of the residual.
+    pub residual_share: Option<f64>,
+    /// One sentence on it.
+    pub sentence: String,
+}
+
+/// A candidate and what became of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Considered {
+    /// Identifier.
+    pub id: &'static str,
+    /// Form.
+    pub form: &'static str,
+    /// Name of the one record in which it would act.
+    pub only: Option<String>,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Evidence on top of the final model (for an added one: of its removal). `None` when the records lack its channel.
+    pub evidence: Option<Evidence>,
+    /// Gain in BIC when it is added to the base alone, under white noise.
+    pub gain_alone: Option<f64>,
+    /// Gain in BIC it needs to be believed.
+    pub needed: f64,
+    /// Expected gain in −2 log L if it were as large as it can be expected.
+    pub visibility: Option<f64>,
+    /// Why, in words, where a number does not say it.
+    pub reason: Option<&'static str>,
+}
+
+/// A monomial that carries what no named effect does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Empirical {
+    /// The best, and those that these records cannot tell from it.
+    pub group: Vec<&'static str>,
+    /// Equation of the best.
+    pub equation: &'static str,
+    /// Its evidence.
+    pub evidence: Evidence,
+    /// Root mean square heading error with it, rad.
+    pub error: f64,
+}
+
+/// Random part of the records, as the final model sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Randomness {
+    /// Standard deviation of white heading noise, rad.
+    pub white: f64,
+    /// Random yaw moment, where one is needed.
+    pub moment: Option<Moment>,
+    /// Standard deviation of the heading that the moment alone would leave at the end of the longest record of a ship
+    /// without damping, rad.
+    pub wander: f64,
+    /// Waves; `sd` in rad.
+    pub waves: Option<NarrowBand>,
+}
+
+/// A model on one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OnRecord {
+    /// Replay.
+    pub replayed: Replayed,
+    /// Errors.
+    pub errors: Errors,
+}
+
+/// One record with the models before and after.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// Name.
+    pub name: String,
+    /// Base model.
+    pub before: OnRecord,
+    /// Final model.
+    pub after: OnRecord,
+}
+
+/// The result.
+pub struct Analysis {
+    /// The base, fitted alone: no first-order response is nearer to the records.
+    pub base: Estimate,
+    /// Base indices K (1/s) and T (s) of the final model.
+    pub indices: [Quantity; 2],
+    /// Rudder bias δ_r (rad) of the ship; `None` when several records have one each, which are among the parameters.
+    pub rudder_bias: Option<Quantity>,
+    /// All parameters of the final model.
+    pub parameters: Vec<Value>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What was found, in the order of discovery.
+    pub effects: Vec<Traced>,
+    /// All candidates.
+    pub candidates: Vec<Considered>,
+    /// What is left, where structure is.
+    pub unexplained: Option<Signature>,
+    /// A proposal for it.
+    pub empirical: Option<Empirical>,
+    /// Random part.
+    pub randomness: Randomness,
+    /// Records that were fitted.
+    pub identification: Vec<Judged>,
+    /// Records that were not.
+    pub validation: Vec<Judged>,
+    /// Whiteness of the residual before and after.
+    pub whiteness: [Whiteness; 2],
+    /// Terms that explained the records but made an error larger, there or elsewhere: a sentence each that says so.
+    pub refused: Vec<String>,
+    /// The thresholds it was judged by.
+    pub thresholds: Thresholds,
+    pub(super) problem: Problem,
+    pub(super) candidate_terms: Vec<Candidate>,
+    pub(super) model: Model,
+}
+
+/// Gain in BIC below which two rivals cannot be told apart.
+pub(super) const ALIAS: f64 = 10.0;

@@ -1,0 +1,88 @@
+//! Records with known truth, for tests of this crate only: an alternating rudder replayed through a response, with white
+//! heading noise.
+
+use std::sync::Arc;
+
+use rand::{SeedableRng, rngs::ChaCha8Rng};
+use rand_distr::{Distribution, Normal};
+use ship::angle::from_deg;
+use ship::dynamics::Dynamics;
+use ship::effects::Effect;
+use ship::replay::{Recorded, replay};
+use ship::{Polyline, Response, ResponseModel};
+use trial::{Channel, Columns, Origin, Trial};
+
+/// K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg.
+pub const BASE: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.00873];
+
+/// The base with effects.
+pub fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
+    let parameters = BASE.iter().copied().chain(effects.iter().flat_map(|(_, values)| values.clone())).collect();
+    ResponseModel::new(effects.into_iter().map(|(effect, _)| effect).collect()).with(parameters)
+}
+
+/// How a record is made.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// Rows.
+    pub rows: usize,
+    /// Time between rows, s.
+    pub period: f64,
+    /// Rudder angle, deg.
+    pub rudder_deg: f64,
+    /// Standard deviation of the heading noise, deg.
+    pub noise_deg: f64,
+    /// Rows from one heading to the next.
+    pub every: usize,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self { rows: 301, period: 1.0, rudder_deg: 10.0, noise_deg: 0.05, every: 1, seed: 1 }
+    }
+}
+
+/// Times at which the rudder is on its way to the other side, s; uneven, so that no effect repeats itself.
+const ORDERS: [f64; 9] = [4.0, 22.0, 60.0, 101.0, 139.0, 184.0, 220.0, 261.0, 300.0];
+
+/// After this time, s, they begin anew.
+const LAP: f64 = 336.0;
+
+/// A record of a ship.
+pub fn record(ship: &Response, plan: Plan) -> Trial {
+    let time: Vec<f64> = (0..plan.rows).map(|row| row as f64 * plan.period).collect();
+    let (mut corners, mut angles, mut angle) = (vec![-1.0], vec![0.0], 0.0);
+    let travel = plan.rudder_deg / 2.5;
+    for (number, order) in (0..).flat_map(|lap| ORDERS.map(|order| order + f64::from(lap) * LAP)).enumerate() {
+        if order > time[plan.rows - 1] {
+            break;
+        }
+        let next = if number % 2 == 0 { plan.rudder_deg } else { -plan.rudder_deg };
+        let end = order + travel * (next - angle).abs() / plan.rudder_deg;
+        corners.extend([order, end]);
+        angles.extend([angle, next].map(from_deg));
+        angle = next;
+    }
+    let signal = Polyline::new(corners, angles).expect("orders are further apart than the rudder travels");
+    let mut state = vec![0.0; ship.dimension()];
+    ship.approach(0.0, 0.0, &mut state);
+    let noise = Normal::new(0.0, from_deg(plan.noise_deg)).expect("a standard deviation");
+    let mut generator = ChaCha8Rng::seed_from_u64(plan.seed);
+    let mut heading = vec![f64::NAN; plan.rows];
+    replay(ship, &Recorded::rudder(&signal), &time, 0.05, &mut state, |row, motion| {
+        if row % plan.every == 0 {
+            heading[row] = motion.heading + noise.sample(&mut generator);
+        }
+    });
+    let rudder = time.iter().map(|&t| signal.at(t)).collect();
+    of_columns(time, heading, rudder)
+}
+
+/// A record of these columns, s and rad.
+pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
+    let origin = Origin::Simulated { scenario: "made up".into(), cell: 0, replicate: 0 };
+    Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
+}

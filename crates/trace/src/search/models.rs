@@ -1,0 +1,165 @@
+//! Models under the noise that suits them best, and their evidence against each other.
+
+use rayon::prelude::*;
+use ship::narrow_band::NarrowBand;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::evidence::{Evidence, Thresholds};
+use crate::candidates::Candidate;
+use crate::fit::{Fit, Linear, Problem};
+use crate::noise::{Colour, Moment};
+use crate::structure::{Structure, Term};
+use crate::waves;
+
+/// A structure with its fit under the noise that suits it best.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// Structure.
+    pub structure: Structure,
+    /// Fit under white noise (and waves): what minimises the heading error.
+    pub plain: Fit,
+    /// Fit under the noise of lowest BIC; the same as `plain` when no random moment is worth its parameter.
+    pub judged: Fit,
+}
+
+/// A moment that depends on time alone needs this many times the gain of another term.
+const OF_TIME: f64 = 2.5;
+
+/// Search over one problem.
+pub struct Search<'a> {
+    /// Records.
+    pub problem: &'a Problem,
+    /// What may be missing.
+    pub candidates: &'a [Candidate],
+    /// When to believe it.
+    pub thresholds: Thresholds,
+}
+
+impl Search<'_> {
+    fn log_n(&self) -> f64 {
+        (self.problem.observations() as f64).ln()
+    }
+
+    /// Evidence of `freedom` parameters that lead from one fit to another.
+    pub fn evidence(&self, without: &Fit, with: &Fit, freedom: usize) -> Evidence {
+        let ratio = (without.deviance - with.deviance).max(0.0);
+        let chance = ChiSquared::new(freedom as f64).map_or(1.0, |chi| chi.sf(ratio));
+        Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
+    }
+
+    /// Gain in BIC that a term needs: a trend, or a moment for a while, is also what a random moment looks like in one record.
+    pub fn needed(&self, term: &Term) -> f64 {
+        if term.effect.is_of_time() { OF_TIME * self.thresholds.gain } else { self.thresholds.gain }
+    }
+
+    /// Whether the evidence for a term passes both thresholds.
+    pub fn believes(&self, term: &Term, evidence: &Evidence) -> bool {
+        evidence.gain > self.needed(term) && evidence.p_value < self.thresholds.false_discovery
+    }
+
+    /// The base, fitted and judged.
+    pub fn base(&self, structure: Structure, theta: &[f64], initial: &[[f64; 2]]) -> Model {
+        let plain = self.problem.fit(&structure, theta, initial, &Colour::WHITE);
+        self.with_waves(self.judge(structure, plain))
+    }
+
+    /// A model with the waves that its residual shows, if they are worth their three parameters.
+    fn with_waves(&self, model: Model) -> Model {
+        // A random moment imitates waves badly but well enough to hide them: they are looked for without one, too.
+        let mut besides = vec![Colour::WHITE];
+        besides.extend(Some(Colour { waves: None, ..model.judged.colour }).filter(|moment| !moment.is_white()));
+        let best = besides
+            .iter()
+            .filter_map(|beside| waves::find(self.problem, &model.plain.residual, beside))
+            .map(|waves| self.coloured(&model, Some(waves)))
+            .min_by(|one, other| one.judged.bic.total_cmp(&other.judged.bic));
+        match best {
+            Some(with) if model.judged.bic - with.judged.bic > self.thresholds.gain => with,
+            _ => model,
+        }
+    }
+
+    /// A model fitted anew with or without waves.
+    pub fn coloured(&self, model: &Model, waves: Option<NarrowBand>) -> Model {
+        let Model { structure, plain, .. } = model;
+        let plain = self.problem.fit(structure, &plain.theta, &plain.initial, &Colour { moment: None, waves });
+        self.judge(structure.clone(), plain)
+    }
+
+    /// Asks again whether there are waves, once the terms are known.
+    pub(super) fn revise_waves(&self, model: Model) -> Model {
+        if model.judged.colour.waves.is_none() {
+            return if model.structure.terms.is_empty() { model } else { self.with_waves(model) };
+        }
+        let calm = self.coloured(&model, None);
+        if calm.judged.bic - model.judged.bic > self.thresholds.gain { model } else { calm }
+    }
+
+    fn linear(&self, structure: &Structure, fit: &Fit) -> Linear {
+        self.problem.linear(structure, &fit.theta, &fit.initial)
+    }
+
+    /// The better of the two random moments, and its deviance after a linear step.
+    fn best_moment(&self, linear: &Linear, waves: Option<NarrowBand>) -> (Colour, f64) {
+        let one = self.problem.best_moment(linear, Moment::White, waves);
+        let other = self.problem.best_moment(linear, Moment::Walk, waves);
+        if one.1 <= other.1 { one } else { other }
+    }
+
+    /// Finds the noise that suits a plainly fitted structure best.
+    pub fn judge(&self, structure: Structure, plain: Fit) -> Model {
+        let mut judged = plain.clone();
+        if plain.rss.is_finite() {
+            let waves = plain.colour.waves;
+            let (mut colour, deviance) = self.best_moment(&self.linear(&structure, &plain), waves);
+            let mut start = plain.clone();
+            let mut reached = deviance;
+            // Level and parameters are found in turn. A random moment that does not pay for its one parameter is not tried.
+            for _ in 0..2 {
+                if reached + self.log_n() >= plain.deviance {
+                    break;
+                }
+                let fit = self.problem.fit(&structure, &start.theta, &start.initial, &colour);
+                if fit.bic < judged.bic {
+                    judged = fit.clone();
+                }
+                (colour, reached) = self.best_moment(&self.linear(&structure, &fit), waves);
+                start = fit;
+            }
+        }
+        Model { structure, plain, judged }
+    }
+
+    /// A model without one of its terms, fitted anew.
+    pub fn dropped(&self, model: &Model, place: usize, under_moment: bool) -> Model {
+        let structure = model.structure.without(place);
+        let theta = model.structure.drop_from(&model.plain.theta, place);
+        let colour = Colour { moment: None, waves: model.plain.colour.waves };
+        let plain = self.problem.fit(&structure, &theta, &model.plain.initial, &colour);
+        if !under_moment {
+            return Model { structure, judged: plain.clone(), plain };
+        }
+        let mut less = self.judge(structure, plain);
+        if !model.judged.colour.is_white() {
+            let theta = model.structure.drop_from(&model.judged.theta, place);
+            let under = self.problem.fit(&less.structure, &theta, &model.judged.initial, &model.judged.colour);
+            if under.bic < less.judged.bic {
+                less.judged = under;
+            }
+        }
+        less
+    }
+
+    /// Evidence of every term of a model against the model without it, and those models.
+    pub fn tested(&self, model: &Model, under_moment: bool) -> Vec<(Evidence, Model)> {
+        (0..model.structure.terms.len())
+            .into_par_iter()
+            .map(|place| {
+                let less = self.dropped(model, place, under_moment);
+                let with = if under_moment { &model.judged } else { &model.plain };
+                let evidence = self.evidence(&less.judged, with, model.structure.terms[place].freedom());
+                (evidence, less)
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,127 @@
+//! The rounds of a search: terms are added, exchanged and dropped until none is missing and none needless.
+
+use super::evidence::Evidence;
+use super::models::{Model, Search};
+use super::trying::Tried;
+
+/// Gain in BIC for which one term takes the place of another.
+const SWAP: f64 = 2.0;
+
+impl Search<'_> {
+    /// Whether a model gains over the base what all of its terms need together: two terms that are each other's reason
+    /// explain nothing.
+    fn pays(&self, model: &Model, base: &Model) -> bool {
+        let needed: f64 = model.structure.terms.iter().map(|term| self.needed(term)).sum();
+        base.judged.bic - model.judged.bic > needed
+    }
+
+    /// Drops terms that are not believed, the weakest first.
+    fn prune(&self, mut model: Model, base: &Model, under_moment: bool) -> Model {
+        while !model.structure.terms.is_empty() {
+            let tests = self.tested(&model, under_moment);
+            let surplus =
+                |place: usize, evidence: &Evidence| evidence.gain - self.needed(&model.structure.terms[place]);
+            let weakest = tests
+                .into_iter()
+                .enumerate()
+                .min_by(|(i, one), (j, other)| surplus(*i, &one.0).total_cmp(&surplus(*j, &other.0)));
+            match weakest {
+                Some((place, (evidence, less)))
+                    if !self.believes(&model.structure.terms[place], &evidence) || !self.pays(&model, base) =>
+                {
+                    model = less;
+                }
+                _ => break,
+            }
+        }
+        model
+    }
+
+    /// Drops terms that do not lower the heading error itself: what helps only under a random moment mends no replay.
+    fn helpful(&self, mut model: Model) -> Model {
+        while !model.structure.terms.is_empty() && model.judged.colour.moment.is_some() {
+            let all = (0..model.structure.terms.len()).map(|place| (place, self.dropped(&model, place, true)));
+            let gain = |less: &Model| less.plain.bic - model.plain.bic;
+            match all.min_by(|one, other| gain(&one.1).total_cmp(&gain(&other.1))) {
+                Some((place, less)) if gain(&less) < self.needed(&model.structure.terms[place]) => model = less,
+                _ => break,
+            }
+        }
+        model
+    }
+
+    /// The believed candidate of lowest BIC.
+    fn best(&self, tried: impl IntoIterator<Item = Tried>) -> Option<Tried> {
+        tried.into_iter().find(|tried| self.believes(&self.candidates[tried.place].term, &tried.evidence))
+    }
+
+    /// Adds what is missing under white noise, one at a time, dropping what a later term made needless; `timeless` without
+    /// moments that depend on time alone.
+    fn add_plainly(&self, base: &Model, first: &[Tried], timeless: bool) -> Model {
+        let mut model = base.clone();
+        let plain = Model { judged: base.plain.clone(), ..base.clone() };
+        for round in 0..self.thresholds.most_terms {
+            let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, &model.plain, true) };
+            let allowed = |tried: &Tried| !timeless || !self.candidates[tried.place].term.effect.is_of_time();
+            let Some(best) = self.best(tried.into_iter().filter(allowed)) else { break };
+            let before = model.structure.terms.len();
+            let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
+            model = self.prune(next, &plain, false);
+            if !timeless {
+                model = self.swapped(model, &plain);
+            }
+            if model.structure.terms.len() <= before && round > 0 {
+                break;
+            }
+        }
+        model
+    }
+
+    /// Puts a better candidate in the place of a term that was added before its company was known.
+    fn swapped(&self, model: Model, base: &Model) -> Model {
+        if model.structure.terms.len() < 2 {
+            return model;
+        }
+        for place in 0..model.structure.terms.len() {
+            let less = self.dropped(&model, place, false);
+            let tried = self.try_all(&less, &less.plain, true);
+            let Some(best) = self.best(tried).filter(|best| best.fit.bic < model.plain.bic - SWAP) else { continue };
+            let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
+            return self.prune(next, base, false);
+        }
+        model
+    }
+
+    /// The terms of a plain search that stand against random moments.
+    fn confirmed(&self, base: &Model, plain: &Model) -> Model {
+        if plain.structure.terms.is_empty() {
+            return base.clone();
+        }
+        let judged = self.judge(plain.structure.clone(), plain.plain.clone());
+        let model = self.prune(judged, base, true);
+        if model.structure.terms.is_empty() { base.clone() } else { model }
+    }
+
+    /// The whole search. `first` are all candidates tried on the base.
+    pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
+        let plain = self.add_plainly(base, first, false);
+        let mut model = self.confirmed(base, &plain);
+        // A moment for a while is so flexible that it may come first and send the search astray.
+        if plain.structure.terms.len() > 1 && plain.structure.terms.iter().any(|term| term.effect.is_of_time()) {
+            let timeless = self.confirmed(base, &self.add_plainly(base, first, true));
+            if timeless.judged.bic < model.judged.bic {
+                model = timeless;
+            }
+        }
+        while model.structure.terms.len() < self.thresholds.most_terms && model.judged.colour.moment.is_some() {
+            let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };
+            let before = model.structure.terms.len();
+            let next = self.prune(self.adopted(&best), base, true);
+            if next.structure.terms.len() <= before {
+                break;
+            }
+            model = next;
+        }
+        self.revise_waves(self.helpful(model))
+    }
+}

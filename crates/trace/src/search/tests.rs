@@ -1,0 +1,92 @@
+use std::sync::Arc;
+
+use ship::effects::{Effect, NonlinearDamping};
+
+use super::*;
+use crate::candidates::{self, Candidate, Sizes};
+use crate::fit::Problem;
+use crate::held_out;
+use crate::made_up::{BASE, Plan, record, ship};
+use crate::noise::Colour;
+use crate::record::Record;
+use crate::structure::Structure;
+
+const THRESHOLDS: Thresholds = Thresholds { gain: 10.0, false_discovery: 0.01, most_terms: 4 };
+
+/// A record of a ship with these effects, and what it may lack.
+fn prepared(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> (Problem, Vec<Candidate>) {
+    let record = Record::whole(&record(&ship(effects), Plan::default()));
+    let problem = Problem::new(vec![record], BASE[0], BASE[1]);
+    let headings = problem.replay(&Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let sizes = Sizes::of(&problem.records, BASE[0], &headings);
+    let candidates = candidates::all(&problem.records, &sizes);
+    (problem, candidates)
+}
+
+fn damped() -> (Problem, Vec<Candidate>) {
+    prepared(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])])
+}
+
+#[test]
+fn what_is_missing_is_found_and_nothing_else() {
+    for (missing, (problem, candidates)) in [(true, damped()), (false, prepared(Vec::new()))] {
+        let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+        let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+        let tried = search.try_all(&base, &base.plain, false);
+        assert_eq!(tried.len(), candidates.len());
+        assert!(tried.is_sorted_by(|one, other| one.fit.bic <= other.fit.bic));
+        let found = search.run(&base, &tried);
+        let ids: Vec<_> = found.structure.terms.iter().map(|term| term.effect.id()).collect();
+        assert_eq!(ids, if missing { vec!["nonlinear_damping"] } else { Vec::new() });
+        let first = &candidates[tried[0].place].term;
+        assert_eq!(search.believes(first, &tried[0].evidence), missing, "{:?}", tried[0].evidence);
+        // The list by scores holds what the list by fits begins with.
+        let short = search.try_all(&base, &base.plain, true);
+        assert!(short.len() < tried.len() && (!missing || short[0].place == tried[0].place));
+    }
+}
+
+/// −2 log L and log n as they are defined, and the p-value of as many tests as there are candidates.
+#[test]
+fn evidence_is_a_likelihood_ratio_among_many() {
+    let (problem, candidates) = damped();
+    let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let mut better = base.plain.clone();
+    // χ²₁ exceeds 10.828 with a probability of 0.001.
+    better.deviance -= 10.828;
+    better.bic -= 4.0;
+    let evidence = search.evidence(&base.plain, &better, 1);
+    assert_eq!(evidence.gain, base.plain.bic - better.bic);
+    assert!((evidence.p_value / (0.001 * candidates.len() as f64) - 1.0).abs() < 1e-3);
+    let worse = search.evidence(&better, &base.plain, 1);
+    assert!(worse.gain < 0.0 && worse.p_value == 1.0);
+}
+
+#[test]
+fn a_moment_of_time_needs_more_and_stands_alone() {
+    let (problem, candidates) = damped();
+    let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let place = |id: &str| candidates.iter().position(|candidate| candidate.term.effect.id() == id).expect("listed");
+    let (drift, squall, damping) = (place("moment_drift"), place("transient_disturbance"), place("nonlinear_damping"));
+    assert_eq!(search.needed(&candidates[drift].term), 25.0);
+    assert_eq!(search.needed(&candidates[damping].term), 10.0);
+    let structure = base.structure.with(candidates[drift].term.clone());
+    let fit = problem.fit(&structure, &[&BASE[..], &[0.0]].concat(), &[[0.0; 2]], &Colour::WHITE);
+    let drifting = Model { structure, plain: fit.clone(), judged: fit.clone() };
+    let tried: Vec<usize> = search.try_all(&drifting, &fit, false).iter().map(|tried| tried.place).collect();
+    assert!(!tried.contains(&drift) && !tried.contains(&squall) && tried.contains(&damping));
+}
+
+/// A term that the record has predicts the part kept from the fit; a model without it does so worse.
+#[test]
+fn parts_that_were_not_fitted_speak_for_the_truth() {
+    let (problem, candidates) = damped();
+    let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let rich = search.run(&base, &search.try_all(&base, &base.plain, false));
+    let (one, other) = ((&base.structure, &base.plain), (&rich.structure, &rich.plain));
+    assert!(!held_out::is_worse_on_parts(&problem, one, other));
+    assert!(held_out::is_worse_on_parts(&problem, other, one));
+}

@@ -1,0 +1,132 @@
+//! Candidates tried on a model: all of them, or those that its sensitivities recommend.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+use ship::effects::{Effect, NonlinearDamping};
+
+use super::evidence::Evidence;
+use super::models::{Model, Search};
+use crate::candidates::Candidate;
+use crate::fit::{Fit, Linearised, acts};
+use crate::noise::Colour;
+use crate::structure::{Structure, Term};
+use crate::transient;
+
+/// How a candidate did.
+#[derive(Debug, Clone)]
+pub struct Tried {
+    /// The candidate's place in the list.
+    pub place: usize,
+    /// Structure with it.
+    pub structure: Structure,
+    /// Its fit, under the colour of the fit it is compared with.
+    pub fit: Fit,
+    /// Its evidence against that fit.
+    pub evidence: Evidence,
+}
+
+/// Later rounds fit only this many candidates, those with the largest score.
+const SHORT_LIST: usize = 6;
+
+impl Search<'_> {
+    /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands beside
+    /// any other damping), or another moment that depends on time. Several of those would be a random moment, written as
+    /// a sum.
+    fn excludes(&self, structure: &Structure, term: &Term) -> bool {
+        let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
+        structure.terms.iter().any(|other| {
+            other.only == term.only
+                && (other.is(term)
+                    || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
+                    || (term.effect.is_of_time() && other.effect.is_of_time()))
+        })
+    }
+
+    /// Fits a model with one more term from every start of a candidate, under the colour of `from`, a fit of the model.
+    fn with_term(&self, model: &Model, candidate: &Candidate, from: &Fit, known: &Linearised) -> (Structure, Fit) {
+        let structure = model.structure.with(candidate.term.clone());
+        let best = self
+            .starts(candidate, from, known)
+            .iter()
+            .map(|start| self.problem.fit_with(&structure, start, from, known))
+            .min_by(|one, other| one.deviance.total_cmp(&other.deviance));
+        match best {
+            Some(fit) => (structure, fit),
+            None => (model.structure.clone(), from.clone()),
+        }
+    }
+
+    fn starts<'b>(&self, candidate: &'b Candidate, from: &Fit, known: &Linearised) -> Cow<'b, [Vec<f64>]> {
+        if candidate.starts.is_empty() {
+            Cow::Owned(transient::starts(self.problem, from, known, &candidate.term))
+        } else {
+            Cow::Borrowed(&candidate.starts)
+        }
+    }
+
+    /// Approximate gain in −2 log L of a candidate from the sensitivities at a fit: a score test that needs no refit.
+    fn score(&self, model: &Model, fit: &Fit, known: &Linearised, candidate: &Candidate) -> f64 {
+        let structure = model.structure.with(candidate.term.clone());
+        let own = known.columns.unknowns();
+        self.starts(candidate, fit, known)
+            .iter()
+            .map(|start| {
+                let theta = [fit.theta.as_slice(), start].concat();
+                let (presence, mut new) =
+                    self.problem.columns_of_last(&structure, &theta, &fit.initial, &known.headings);
+                if acts(&presence) {
+                    new.insert(0, presence);
+                }
+                let mut columns = known.columns.clone();
+                columns.insert(own, &new, &known.whiteners);
+                let normal = columns.normal(&known.white);
+                let deviance = |unknowns| self.problem.deviance(normal.projected(unknowns), 0.0);
+                deviance(own) - deviance(columns.unknowns())
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Tries candidates on one fit of a model, all under the colour of that fit; with `short_list` only those with the
+    /// best scores are fitted. The lowest BIC comes first.
+    pub fn try_all(&self, model: &Model, fit: &Fit, short_list: bool) -> Vec<Tried> {
+        let known = Linearised::new(self.problem, &model.structure, fit);
+        let mut places: Vec<usize> = (0..self.candidates.len())
+            .filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term))
+            .collect();
+        if short_list {
+            let mut scored: Vec<(f64, usize)> = places
+                .par_iter()
+                .map(|&place| (self.score(model, fit, &known, &self.candidates[place]), place))
+                .collect();
+            scored.sort_by(|one, other| other.0.total_cmp(&one.0));
+            places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
+        }
+        let mut tried: Vec<Tried> = places
+            .into_par_iter()
+            .map(|place| {
+                let candidate = &self.candidates[place];
+                let (structure, with) = self.with_term(model, candidate, fit, &known);
+                let evidence = self.evidence(fit, &with, candidate.term.freedom());
+                Tried { place, structure, fit: with, evidence }
+            })
+            .collect();
+        tried.sort_by(|one, other| one.fit.bic.total_cmp(&other.fit.bic));
+        tried
+    }
+
+    /// The model of a candidate that was tried, with the noise that suits it best.
+    pub fn adopted(&self, tried: &Tried) -> Model {
+        let Tried { structure, fit, .. } = tried;
+        if fit.colour.moment.is_none() {
+            return self.judge(structure.clone(), fit.clone());
+        }
+        let colour = Colour { moment: None, ..fit.colour };
+        let plain = self.problem.fit(structure, &fit.theta, &fit.initial, &colour);
+        let mut model = self.judge(structure.clone(), plain);
+        if fit.bic < model.judged.bic {
+            model.judged = fit.clone();
+        }
+        model
+    }
+}
