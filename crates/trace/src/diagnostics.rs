@@ -1,6 +1,5 @@
 //! What can be said of a residual alone: is it white, and if not, where does it live.
 
-use realfft::RealFftPlanner;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Whiteness of a residual.
@@ -64,14 +63,8 @@ pub fn spectrum(series: &[f64], spacing: f64) -> Vec<Line> {
     if n < 4 {
         return Vec::new();
     }
-    let mut planner = RealFftPlanner::<f64>::new();
-    let transform = planner.plan_fft_forward(n);
     let mut input: Vec<f64> = series.iter().map(|&e| if e.is_finite() { e } else { 0.0 }).collect();
-    let mut output = transform.make_output_vec();
-    if transform.process(&mut input, &mut output).is_err() {
-        return Vec::new();
-    }
-    let power: Vec<f64> = output.iter().skip(1).map(|z| z.norm_sqr()).collect();
+    let power = lanes::transform::power(&mut input).split_off(1);
     let total: f64 = power.iter().sum();
     let line = |(k, power): (usize, f64)| Line {
         frequency: (k + 1) as f64 / (n as f64 * spacing),
