@@ -11,12 +11,13 @@
 //! | records that are identified | [`records`] |
 //! | pieces of work and their limits | [`work`], [`works`] |
 //! | identification by another library | [`rivals`] |
-//! | many nonlinear ships at once | [`norrbin`] |
+//! | many nonlinear ships at once | [`batch`], [`norrbin`] |
 //! | repeated measurements and their intervals | [`measure`] |
 //! | tables of ratios | [`verdict`] |
 //! | peak memory of a process | [`process`] |
 //! | criterion and its estimates | [`harness`] |
 
+pub mod batch;
 pub mod harness;
 pub mod measure;
 pub mod norrbin;

@@ -15,7 +15,6 @@
 //! | noise, quantisation, lag, clocks, drop-outs | [`sensor`] |
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
-//! | thousands of nonlinear ships at once | [`batch`] |
 //! | what a run may cost | [`cost`] |
 //! | what can go wrong | [`error`] |
 //!
@@ -46,7 +45,6 @@ mod tests;
 mod wave_path;
 mod weather;
 
-pub mod batch;
 pub mod cost;
 pub mod disturbance;
 pub mod error;

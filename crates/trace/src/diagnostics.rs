@@ -1,7 +1,6 @@
 //! What can be said of a residual alone: is it white, and if not, where does it live.
 
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
+use lanes::transform::{Complex, power, transform};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A residual with the steps of an even clock at which its values stand; steps without a value are holes.
@@ -144,7 +143,7 @@ pub fn spectrum(series: &Series) -> Vec<Line> {
         share: if total > 0.0 { power / total } else { 0.0 },
     };
     if n == span {
-        let power: Vec<f64> = transform(series.values.clone()).iter().skip(1).map(|z| z.norm_sqr()).collect();
+        let power = power(&mut series.values.clone()).split_off(1);
         let total: f64 = power.iter().sum();
         return power.into_iter().enumerate().map(|(k, power)| line(k + 1, power, total)).collect();
     }
@@ -154,7 +153,7 @@ pub fn spectrum(series: &Series) -> Vec<Line> {
         (values[step], present[step]) = (value - mean, 1.0);
     }
     let total: f64 = values.iter().map(|x| x * x).sum();
-    let (sums, window) = (transform(values), transform(present));
+    let (sums, window) = (transform(&mut values), transform(&mut present));
     (1..sums.len())
         .map(|k| {
             // Σ cos 2ωt − i Σ sin 2ωt; beyond the last frequency it is that of the mirror image.
@@ -162,14 +161,6 @@ pub fn spectrum(series: &Series) -> Vec<Line> {
             line(k, explained(sums[k], twice, n as f64), total)
         })
         .collect()
-}
-
-/// Fourier transform of real values, from frequency zero to the highest one.
-fn transform(mut values: Vec<f64>) -> Vec<Complex<f64>> {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(values.len());
-    let mut output = plan.make_output_vec();
-    plan.process(&mut values, &mut output).expect("input and output have the lengths that the plan asks for");
-    output
 }
 
 /// Sum of squares that a sine explains: from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. In the phase in which its
@@ -306,7 +297,7 @@ mod tests {
     #[test]
     fn a_sine_fitted_to_even_values_is_a_line_of_the_transform() {
         let values: Vec<f64> = (0..50_u32).map(|k| (0.7 * f64::from(k)).sin() + f64::from(k * k % 7) - 3.0).collect();
-        let (sums, window) = (transform(values), transform(vec![1.0; 50]));
+        let (sums, window) = (transform(&mut values.clone()), transform(&mut vec![1.0; 50]));
         for k in 1..13 {
             let plain = 2.0 * sums[k].norm_sqr() / 50.0;
             assert!((explained(sums[k], window[2 * k], 50.0) / plain - 1.0).abs() < 1e-9);

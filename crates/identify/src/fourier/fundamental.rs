@@ -3,7 +3,6 @@
 //! Reasons to prefer a rule: RSS is nearly the same in several minima while derivatives and conditioning are not, so the
 //! lowest RSS says little about which w serves best.
 
-use realfft::RealFftPlanner;
 use serde::{Deserialize, Serialize};
 use ship::Shown;
 use std::f64::consts::{PI, TAU};
@@ -313,11 +312,8 @@ pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
     }
     let mean = even.iter().sum::<f64>() / rows as f64;
     even.iter_mut().for_each(|x| *x -= mean);
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(rows);
-    let mut spectrum = transform.make_output_vec();
-    transform.process(&mut even, &mut spectrum).expect("both buffers have the lengths the plan asks for");
-    let power = |bin: usize| spectrum[bin].norm_sqr();
-    let bin = (1..spectrum.len()).max_by(|&p, &q| power(p).total_cmp(&power(q))).expect("a record has many rows");
+    let power = lanes::transform::power(&mut even);
+    let bin = (1..power.len()).max_by(|&p, &q| power[p].total_cmp(&power[q])).expect("a record has many rows");
     TAU * bin as f64 / (rows as f64 * step)
 }
 

@@ -1,0 +1,227 @@
+//! Output error on records whose answer is known.
+
+use super::*;
+use crate::estimate::Uncertainty;
+use crate::testing::{Case, Start, record};
+use approx::assert_relative_eq;
+use ship::angle::from_deg;
+use ship::first_order::Transition;
+use trial::{Channel, Columns, Origin};
+
+fn method() -> OutputError {
+    Settings::default().build().expect("default settings are valid")
+}
+
+/// A record whose heading is exactly the response to its own rudder, linear between rows.
+fn exact_record(response: &FirstOrder, initial: State, rows: usize, period: f64) -> Trial {
+    let rudder = Case { samples: rows, period_s: period, start: Start::Rest, ..Case::default() }.truth().rudder;
+    let time: Vec<f64> = (0..rows).map(|k| 5.0 + k as f64 * period).collect();
+    let mut state = initial;
+    let mut heading = vec![state.heading];
+    for k in 1..rows {
+        let h = time[k] - time[k - 1];
+        let u0 = response.K_over_T * (rudder[k - 1] + response.rudder_bias);
+        let slope = response.K_over_T * (rudder[k] - rudder[k - 1]) / h;
+        state = Transition::new(response.inverse_T, h).advance(state, u0, slope);
+        heading.push(state.heading);
+    }
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
+    let origin = Origin::Simulated { scenario: "exact".into(), cell: 0, replicate: 0 };
+    Trial::new("exact", origin, Columns { time, channels, unknown: vec![] }).expect("a valid record")
+}
+
+#[test]
+fn recovers_ships_of_either_stability_to_rounding() {
+    let initial = State { heading: 0.2, yaw_rate: -0.004 };
+    for (inverse_time, gain) in
+        [(1.0 / 16.3, 0.1 / 16.3), (0.4, 0.03), (1e-6, 6e-3), (0.0, 6e-3), (-0.01, 5e-3), (-0.03, 6e-3)]
+    {
+        let truth = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: from_deg(0.7) };
+        let trial = exact_record(&truth, initial, 271, 1.0);
+        let found = method().identify(&[trial]).expect("noise-free").response;
+        let scale = 1.0 / 271.0;
+        assert!(
+            (found.inverse_T - inverse_time).abs() < 1e-7 * (inverse_time.abs() + scale),
+            "{found:?} for {truth:?}"
+        );
+        assert_relative_eq!(found.K_over_T, gain, max_relative = 1e-6);
+        assert_relative_eq!(found.rudder_bias, truth.rudder_bias, max_relative = 1e-5);
+    }
+}
+
+/// No start of a local search over T in 2..500 s, of either sign, ends lower than the scan.
+#[test]
+fn no_start_beats_the_scan() {
+    for case in [
+        Case { noise_deg: 0.5, seed: 3, ..Case::default() },
+        Case {
+            noise_deg: 0.1,
+            seed: 4,
+            rudder_deg: 20.0,
+            heading_deg: 20.0,
+            start: Start::Rest,
+            bias_deg: 1.0,
+            ..Case::default()
+        },
+    ] {
+        let trial = case.trial();
+        let estimate = method().identify(std::slice::from_ref(&trial)).expect("excited");
+        let best = estimate.diagnostics.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("reported").1;
+        let mut profile = Profile::new(vec![Track::unchecked(&trial)]);
+        for k in 0..=60 {
+            for sign in [1.0, -1.0] {
+                let start = sign / (2.0 * 250f64.powf(k as f64 / 60.0));
+                if let Some(minimum) = method().polish(&mut profile, start, 1.0 / trial.duration(), &method().goal()) {
+                    let rmse = to_deg((minimum.rss / trial.len() as f64).sqrt());
+                    assert!(rmse >= best * (1.0 - 1e-9), "1/T = {start} leads to {rmse} deg, the scan to {best} deg");
+                }
+            }
+        }
+    }
+}
+
+/// Table 6.2 of the technical reference (Fisher information by an independent program), 0.1 deg at 271 samples of
+/// 1 s from rest: sd of K and T in per cent, sd of δ_r in deg. Printed to two digits, so 3 %.
+#[test]
+fn the_bound_is_the_published_one() {
+    for (rudder_deg, heading_deg, k_percent, t_percent, bias_deg) in [
+        (5.0, 5.0, 0.156, 0.241, 0.0010),
+        (10.0, 5.0, 0.113, 0.156, 0.0010),
+        (10.0, 10.0, 0.073, 0.113, 0.0010),
+        (10.0, 20.0, 0.042, 0.077, 0.0009),
+        (20.0, 10.0, 0.040, 0.063, 0.0010),
+        (20.0, 20.0, 0.029, 0.048, 0.0010),
+    ] {
+        let case = Case { rudder_deg, heading_deg, start: Start::Rest, ..Case::default() };
+        let bound = cramer_rao(&case.trial(), &case.ship(), State::default(), from_deg(0.1)).expect("excited");
+        let estimate = Estimate {
+            response: case.ship(),
+            uncertainty: Uncertainty::Covariance(bound),
+            robust: None,
+            stop: StopReason::Direct,
+            evaluations: 0,
+            diagnostics: vec![],
+            warnings: vec![],
+        };
+        let relative =
+            |quantity: crate::estimate::Quantity| 100.0 * quantity.sd.expect("a covariance") / quantity.value;
+        let found =
+            (relative(estimate.K()), relative(estimate.T()), to_deg(estimate.rudder_bias().sd.expect("a covariance")));
+        println!("{rudder_deg}/{heading_deg}: {found:?}");
+        assert!((found.0 / k_percent - 1.0).abs() < 0.03, "{rudder_deg}/{heading_deg}: K {} for {k_percent}", found.0);
+        assert!((found.1 / t_percent - 1.0).abs() < 0.03, "{rudder_deg}/{heading_deg}: T {} for {t_percent}", found.1);
+        assert!((found.2 - bias_deg).abs() < 1e-4, "{rudder_deg}/{heading_deg}: δ_r {} for {bias_deg}", found.2);
+    }
+}
+
+#[test]
+fn two_records_share_the_ship_and_not_the_start() {
+    let truth = FirstOrder::from_indices(0.1, 16.3, 0.01);
+    let one = exact_record(&truth, State { heading: 0.5, yaw_rate: 0.01 }, 200, 1.0);
+    let two = exact_record(&truth, State { heading: -3.0, yaw_rate: -0.01 }, 300, 0.5);
+    let estimate = method().identify(&[one, two]).expect("noise-free");
+    assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
+    assert_relative_eq!(estimate.response.rudder_bias, 0.01, max_relative = 1e-6);
+}
+
+#[test]
+fn missing_headings_cost_information_and_nothing_else() {
+    let truth = FirstOrder::from_indices(0.1, 16.3, 0.0);
+    let full = exact_record(&truth, State::default(), 271, 1.0);
+    let mut heading = full.heading().to_vec();
+    (0..271).filter(|k| k % 3 == 1 || (100..130).contains(k)).for_each(|k| heading[k] = f64::NAN);
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, full.rudder().to_vec())].into();
+    let columns = Columns { time: full.time().to_vec(), channels, unknown: vec![] };
+    let gappy = Trial::new("gappy", full.origin().clone(), columns).expect("a valid record");
+    let estimate = method().identify(&[gappy]).expect("noise-free");
+    assert_relative_eq!(estimate.response.T(), 16.3, max_relative = 1e-8);
+}
+
+/// A heading that swings by itself, at another frequency than the rudder: no K can be read off it.
+#[test]
+fn a_heading_that_does_not_answer_the_rudder_is_refused() {
+    let steered = Case { start: Start::Rest, ..Case::default() }.trial();
+    let heading = steered.time().iter().map(|t| 0.2 * (0.71 * t).sin()).collect();
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, steered.rudder().to_vec())].into();
+    let columns = Columns { time: steered.time().to_vec(), channels, unknown: vec![] };
+    let adrift = Trial::new("adrift", steered.origin().clone(), columns).expect("a valid record");
+    let error = method().identify(&[adrift]).expect_err("the rudder does nothing");
+    assert_eq!(error.kind(), "no-rudder-effect", "{error}");
+}
+
+/// Twenty seconds in much noise: the best fit may be a T of a hundredth of a second, whose information is singular to
+/// rounding. It must not come with intervals of no width.
+#[test]
+fn what_rounding_decides_is_refused() {
+    let mut refused = 0;
+    for seed in 0..300 {
+        let case = Case { samples: 20, noise_deg: 1.5, start: Start::Rest, seed, ..Case::default() };
+        match method().identify(&[case.trial()]) {
+            Ok(estimate) => {
+                let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { panic!("has a covariance") };
+                assert!(covariance.matrix.diagonal().min() > 0.0, "{}", covariance.matrix);
+            }
+            Err(error) => refused += usize::from(error.kind() == "singular"),
+        }
+    }
+    assert!(refused > 0);
+}
+
+/// A rudder of which nothing but the sign is wrong is no course-unstable ship with a T of no time at all: the refusal
+/// tells the best fit, to within a step of the scan (33 %).
+#[test]
+fn a_rudder_of_the_wrong_sign_is_refused() {
+    for case in [
+        Case::default(),
+        Case { noise_deg: 0.3, start: Start::Rest, ..Case::default() },
+        Case { heading_deg: 20.0, ..Case::default() },
+    ] {
+        let steered = case.trial();
+        let opposite = steered.rudder().iter().map(|delta| -delta).collect();
+        let trial = record("sign", steered.time().to_vec(), steered.heading().to_vec(), opposite);
+        let error = method().identify(&[trial]).expect_err("the rudder turns the ship to the other side");
+        let IdentifyError::NotAShip { inverse_time, gain } = error else { panic!("{error}") };
+        assert_relative_eq!(inverse_time, 1.0 / 16.3, max_relative = 0.33);
+        assert_relative_eq!(gain, -0.1 / 16.3, max_relative = 0.33);
+    }
+}
+
+/// Both methods have the same answer for white noise and the same sandwich: on few rows what the fit took from the
+/// residual counts.
+#[test]
+fn the_robust_covariance_is_that_of_the_instrumental_variables() {
+    let trial = [Case { samples: 15, period_s: 8.0, noise_deg: 0.2, ..Case::default() }.trial()];
+    let instruments = crate::srivc::Settings::default().build().expect("valid");
+    let [one, other] = [method().identify(&trial), instruments.identify(&trial)]
+        .map(|estimate| estimate.expect("steered").robust.expect("a robust covariance").matrix);
+    for i in 0..3 {
+        assert_relative_eq!(one[(i, i)], other[(i, i)], max_relative = 1e-5);
+    }
+}
+
+#[test]
+fn a_straight_run_is_refused() {
+    let columns = Columns {
+        time: (0..100).map(f64::from).collect(),
+        channels: [(Channel::Heading, vec![0.3; 100]), (Channel::Rudder, vec![0.0; 100])].into(),
+        unknown: vec![],
+    };
+    let origin = Origin::Simulated { scenario: "straight".into(), cell: 0, replicate: 0 };
+    let trial = Trial::new("straight", origin, columns).expect("a valid record");
+    assert_eq!(method().identify(&[trial]).expect_err("nothing to learn").kind(), "not-excited");
+}
+
+/// A ship that answers faster than the search goes: the end of the search is no answer, and must not look like one.
+#[test]
+fn a_time_constant_at_the_end_of_the_search_says_so() {
+    let bounded = |smallest| Settings { smallest_time_constant_s: Some(smallest), ..Settings::default() };
+    for case in [Case::default(), Case { noise_deg: 0.2, seed: 5, start: Start::Rest, ..Case::default() }] {
+        let trial = [case.trial()];
+        let found = |smallest| bounded(smallest).build().expect("valid").identify(&trial).expect("steered");
+        let (free, held) = (found(1.0), found(2.0 * case.T));
+        assert_eq!(free.stop, StopReason::Converged);
+        assert!(free.warnings.iter().all(|warning| !warning.contains("at its bound")));
+        assert_eq!(held.stop, StopReason::RangeLimit, "T = {} s", held.response.T());
+        assert!(held.warnings.iter().any(|warning| warning.contains("at its bound")), "{:?}", held.warnings);
+    }
+}

@@ -1,0 +1,10 @@
+//! The tests of the whole workspace, one file a subject.
+
+mod effects;
+mod golden;
+mod identifiers;
+mod invariance;
+mod measured;
+mod ships;
+mod tracing;
+mod validation;
