@@ -1,5 +1,6 @@
 //! The tests of the whole workspace, one file a subject.
 
+mod architecture;
 mod effects;
 mod golden;
 mod identifiers;

@@ -11,13 +11,17 @@
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
 //! | IMO criteria | [`imo`] |
 
+mod cells;
 pub mod channel;
+mod encoding;
 pub mod file;
 pub mod imo;
 pub mod plausibility;
 pub mod reader;
 pub mod record;
 pub mod sidecar;
+mod sidecar_error;
+mod words;
 pub mod writer;
 pub mod zigzag;
 

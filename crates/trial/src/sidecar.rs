@@ -43,119 +43,17 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use ship::Particulars;
 use ship::angle::{KNOT, from_deg};
-use thiserror::Error;
 use toml::Spanned;
 
+use crate::cells::Separator;
 use crate::channel::{Channel, Unit, column, time_column};
-use crate::file::{FileError, Kind, read_text};
-use crate::reader::{Encoding, Separator};
+use crate::encoding::Encoding;
+use crate::file::{Kind, read_text};
 use crate::record::Noise;
+pub use crate::sidecar_error::{SidecarError, SidecarProblem};
 
 /// A sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
-
-/// What is wrong with a sidecar, and where.
-#[derive(Debug, Error)]
-#[error("{}:{} {problem}", file.display(), line.map_or_else(String::new, |line| format!(" line {line}:")))]
-pub struct SidecarError {
-    /// The sidecar.
-    pub file: PathBuf,
-    /// Line, from 1, where one is known.
-    pub line: Option<usize>,
-    /// What is wrong there.
-    pub problem: SidecarProblem,
-}
-
-/// What is wrong with a sidecar.
-#[derive(Debug, Error)]
-pub enum SidecarProblem {
-    /// The file cannot be read.
-    #[error("the sidecar cannot be used: {0}")]
-    File(FileError),
-    /// Not TOML, or a key or value that is not known.
-    #[error("{message}")]
-    Syntax {
-        /// What the TOML reader says.
-        message: String,
-    },
-    /// `is` names no quantity.
-    #[error(
-        "`is = \"{found}\"` is no known column name; expected quantity_unit such as t_s, heading_deg, heading_rad, rudder_deg, \
-         yaw_rate_deg_s, speed_m_s or speed_kn"
-    )]
-    UnknownQuantity {
-        /// The value of `is`.
-        found: String,
-    },
-    /// A column that is not pointed at, or twice.
-    #[error("a [[column]] needs either `index` (from 1) or `name`, this one has {found}; keep one")]
-    Which {
-        /// What it has.
-        found: &'static str,
-    },
-    /// A column that says nothing.
-    #[error("this [[column]] says nothing; add `is`, `flip = true` or `ignore = true`")]
-    Idle,
-    /// `ignore` beside other keys.
-    #[error(
-        "`ignore = true` leaves the column out, so `is` and `flip` beside it mean nothing; remove one or the other"
-    )]
-    IgnoredAndUsed,
-    /// A name, but the table has no header.
-    #[error("`name` needs a header and [table] says `header = false`; use `index`")]
-    NameWithoutHeader,
-    /// The name is not in the header.
-    #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::reader::listed(found))]
-    NameNotFound {
-        /// The name asked for.
-        name: String,
-        /// The table.
-        table: PathBuf,
-        /// Names in the header.
-        found: Vec<String>,
-    },
-    /// The index is larger than the number of columns.
-    #[error("there is no column {index}; {} has {columns} columns", table.display())]
-    IndexBeyond {
-        /// The index asked for, from 1.
-        index: usize,
-        /// The table.
-        table: PathBuf,
-        /// Number of columns found.
-        columns: usize,
-    },
-    /// Two entries for one column.
-    #[error("the column `{name}` is described twice; keep one [[column]] for it")]
-    DescribedTwice {
-        /// Name of the column.
-        name: String,
-    },
-    /// The column keeps its own name, which says nothing.
-    #[error("the name `{name}` of this column is not a known one; add `is` to say what it holds")]
-    NameSaysNothing {
-        /// Name of the column.
-        name: String,
-    },
-    /// A number that has to be positive.
-    #[error("`{key}` is {found}, expected a finite number above zero")]
-    NotPositive {
-        /// The key.
-        key: &'static str,
-        /// Value found.
-        found: f64,
-    },
-    /// A part that ends before it begins, or whose bounds are not numbers.
-    #[error("the part from {from_s} s until {until_s} s holds nothing; expected numbers with `from-s` below `until-s`")]
-    Part {
-        /// `from-s`, s.
-        from_s: f64,
-        /// `until-s`, s.
-        until_s: f64,
-    },
-    /// Length or speed alone, or two speeds.
-    #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
-    Ship,
-}
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -414,7 +312,7 @@ fn described(column: &Spanned<WireColumn>, header: bool, text: &str) -> Result<D
     let quantity = match &wire.is {
         None => None,
         Some(is) => Some(Quantity::of(is.get_ref()).ok_or_else(|| {
-            (Some(is.span()), SidecarProblem::UnknownQuantity { found: crate::reader::shortened(is.get_ref()) })
+            (Some(is.span()), SidecarProblem::UnknownQuantity { found: crate::words::shortened(is.get_ref()) })
         })?),
     };
     Ok(Described { line: line_of(text, column.span().start), which, quantity, flip: wire.flip, ignore: wire.ignore })
@@ -485,6 +383,6 @@ mod tests {
         assert_eq!(Sidecar::beside(Path::new("a/run.1.csv")), Path::new("a/run.1.trial.toml"));
         assert_eq!(Sidecar::beside(Path::new("run")), Path::new("run.trial.toml"));
         let error = Sidecar::load(Path::new("no/such.trial.toml")).expect_err("it is not there");
-        assert!(matches!(error.problem, SidecarProblem::File(FileError::NotFound)), "{error}");
+        assert!(matches!(error.problem, SidecarProblem::File(crate::FileError::NotFound)), "{error}");
     }
 }

@@ -9,6 +9,7 @@ use crate::file::FileError;
 use crate::plausibility::Implausible;
 use crate::record::TrialError;
 use crate::sidecar::SidecarError;
+use crate::words::listed;
 
 /// Why a file did not become a record.
 #[derive(Debug, Error)]
@@ -253,26 +254,6 @@ impl Problem {
         let accepted: Vec<String> = channels.iter().map(|channel| channel.accepted_names()).collect();
         Problem::NoColumn { line, wanted, accepted: accepted.join(" or "), found: found.to_vec() }
     }
-}
-
-/// The names in backquotes, the first thirty of them.
-pub(crate) fn listed(names: &[String]) -> String {
-    const SHOWN: usize = 30;
-    let mut text = names.iter().take(SHOWN).map(|name| format!("`{}`", shortened(name))).collect::<Vec<_>>().join(", ");
-    if names.len() > SHOWN {
-        text.push_str(&format!(" and {} more", names.len() - SHOWN));
-    }
-    text
-}
-
-/// At most forty characters of a text, without control characters, for messages.
-pub(crate) fn shortened(text: &str) -> String {
-    const SHOWN: usize = 40;
-    let mut short: String = text.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(SHOWN).is_some() {
-        short.push('…');
-    }
-    short
 }
 
 fn estimated(rows: Option<u64>) -> String {

@@ -6,13 +6,14 @@ use std::ops::Range;
 
 use ship::angle::unwrap_heading;
 
-use super::error::{Problem, shortened};
+use super::error::Problem;
 use super::layout::{Layout, Meaning};
-use super::split::{Cell, Separator, cell};
-use super::{MAX_CELLS, MAX_ROWS, is_comment, no_rows, spoken};
+use super::limits::{MAX_CELLS, MAX_ROWS, is_comment, no_rows, spoken};
+use crate::cells::{Cell, Separator, cell};
 use crate::channel::Channel;
 use crate::record::{Columns, Trial};
 use crate::sidecar::Sidecar;
+use crate::words::shortened;
 
 /// What was counted on the way, for warnings.
 #[derive(Debug, Default)]

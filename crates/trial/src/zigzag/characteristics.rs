@@ -4,11 +4,11 @@
 use ship::angle::{from_deg, to_deg};
 
 use super::executes::{Movement, Rudder};
+use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
 use super::heading::Heading;
 use super::holds::{self, Hold};
 use super::local::Local;
 use super::quantity::{Quantity, median};
-use super::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
 use crate::channel::Channel;
 use crate::record::Trial;
 
@@ -24,7 +24,18 @@ const STEADY_RUDDER: f64 = 0.25;
 /// Fewest headings whose mean is a base course.
 const FEWEST_APPROACH_ROWS: usize = 3;
 
-pub(super) fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
+impl ZigZag {
+    /// Reads the characteristics off a record.
+    ///
+    /// Fails when the record is no zig-zag (see [`ZigZagError`]): the rudder is not laid at least half a degree to both
+    /// sides with two reversals, is not held there, or the heading moves against it; or when headings are missing at an
+    /// execute.
+    pub fn of(trial: &Trial) -> Result<Self, ZigZagError> {
+        read(trial)
+    }
+}
+
+fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let time = trial.time();
     let holds = holds::holds(trial.rudder())?;
     let rudder = Rudder::new(time, trial.rudder(), &holds, trial.noise().rudder);

@@ -3,7 +3,7 @@
 
 use ship::angle::{from_deg, to_deg};
 
-use super::ZigZagError;
+use super::findings::ZigZagError;
 use super::quantity::median;
 
 /// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering

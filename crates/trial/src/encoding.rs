@@ -1,0 +1,30 @@
+//! How the bytes of a file stand for characters.
+
+use serde::Deserialize;
+
+/// How bytes stand for characters.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+pub enum Encoding {
+    /// UTF-8, and so ASCII.
+    #[default]
+    #[serde(rename = "utf-8")]
+    Utf8,
+    /// Windows code page 1252, the western European default of old Windows programs.
+    #[serde(rename = "windows-1252")]
+    Windows1252,
+}
+
+/// Characters of the bytes 0x80 to 0x9F in code page 1252; all other bytes are Latin-1. The five bytes the page leaves
+/// open stand for the control character of the same number (Unicode, Inc., CP1252 table; WHATWG encoding standard).
+const WINDOWS_1252: [char; 32] = [
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}', '\u{90}', '‘', '’',
+    '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+];
+
+/// The character of a byte.
+pub(crate) fn windows_1252(byte: u8) -> char {
+    match byte {
+        0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
+        _ => char::from(byte),
+    }
+}

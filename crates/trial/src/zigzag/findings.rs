@@ -1,0 +1,230 @@
+//! What a zig-zag shows, and why a record is none.
+
+use std::fmt;
+
+use ship::angle::to_deg;
+use thiserror::Error;
+
+use super::quantity::Quantity;
+
+/// Why a record has no zig-zag characteristics.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ZigZagError {
+    /// The rudder is never laid.
+    #[error("not a zig-zag: the rudder is laid to {largest_deg:.2} deg at most, a zig-zag needs {needed_deg:.1} deg")]
+    NoRudder {
+        /// Largest angle the rudder is laid to, degrees.
+        largest_deg: f64,
+        /// Angle needed, degrees.
+        needed_deg: f64,
+    },
+    /// The rudder does not go from one side to the other often enough.
+    #[error("not a zig-zag: {found} reversals of the rudder from one side to the other, a zig-zag needs {needed}")]
+    TooFewReversals {
+        /// Reversals found.
+        found: usize,
+        /// Reversals needed.
+        needed: usize,
+    },
+    /// The rudder moves all the time, as under an autopilot or in a random manoeuvre.
+    #[error(
+        "not a zig-zag: the rudder is held for {:.0} % of the rows, a zig-zag needs {:.0} %", 100.0 * share, 100.0 * needed
+    )]
+    NotHeld {
+        /// Share of the rows between first and last execute with the rudder held.
+        share: f64,
+        /// Share needed.
+        needed: f64,
+    },
+    /// Between two reversals the heading moved against the rudder: its sign is flipped, or this is another manoeuvre.
+    #[error(
+        "not a zig-zag: from {from:.1} s to {to:.1} s the rudder is at {rudder_deg:.1} deg and the heading changes by \
+         {change_deg:.2} deg; is the rudder sign flipped?"
+    )]
+    HeadingAgainstRudder {
+        /// Time of the first of the two reversals, s.
+        from: f64,
+        /// Time of the second, s.
+        to: f64,
+        /// Rudder held between them, degrees.
+        rudder_deg: f64,
+        /// Change of heading between them, degrees.
+        change_deg: f64,
+    },
+    /// Headings are missing where the rudder was reversed.
+    #[error("no heading within {reach:.1} s of the execute at {time:.1} s")]
+    NoHeading {
+        /// Time of the execute, s.
+        time: f64,
+        /// Half-width of the widest local fit, s.
+        reach: f64,
+    },
+}
+
+/// A side of the ship.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Left; negative rudder, heading and yaw rate.
+    Port,
+    /// Right; positive rudder, heading and yaw rate.
+    Starboard,
+}
+
+impl Side {
+    /// The side of a signed angle.
+    pub(super) fn of(angle: f64) -> Self {
+        if angle < 0.0 { Self::Port } else { Self::Starboard }
+    }
+
+    /// +1 to starboard, −1 to port.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Port => -1.0,
+            Self::Starboard => 1.0,
+        }
+    }
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Port => "port",
+            Self::Starboard => "starboard",
+        })
+    }
+}
+
+/// Nominal rudder and heading angle δ/ψ of a zig-zag, rad; shown in whole degrees, as in 10/20 (rudder 10, heading 20).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// Rudder angle δ, rad.
+    pub rudder: f64,
+    /// Change of heading at which the rudder is reversed ψ, rad.
+    pub heading: f64,
+}
+
+impl Pair {
+    /// Whether this is the pair δ/ψ, given in degrees.
+    pub fn is_deg(&self, delta_deg: f64, psi_deg: f64) -> bool {
+        (to_deg(self.rudder) - delta_deg).abs() < 1e-6 && (to_deg(self.heading) - psi_deg).abs() < 1e-6
+    }
+}
+
+impl fmt::Display for Pair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.0}/{:.0}", to_deg(self.rudder), to_deg(self.heading))
+    }
+}
+
+/// What the base course was read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BaseCourseSource {
+    /// Mean heading of the approach, from the last change of rudder before the first execute.
+    Approach,
+    /// The first heading: the record begins with, or less than three headings before, the first execute.
+    FirstHeading,
+    /// Midway between the headings at the executes of either side: the record begins within the trial.
+    Executes,
+}
+
+/// The course a zig-zag is steered about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BaseCourse {
+    /// The course, rad.
+    pub heading: Quantity,
+    /// What it was read from.
+    pub source: BaseCourseSource,
+}
+
+/// A movement of the rudder from its angle, or from amidships, to the other side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Execute {
+    /// Time at which the rudder starts to move, s, on the clock of the record.
+    pub time: Quantity,
+    /// Heading then (execute heading angle, ITTC), rad, not relative to the base course.
+    pub heading: Quantity,
+    /// Yaw rate then, rad/s; `None` where the heading around it is missing.
+    pub yaw_rate: Option<Quantity>,
+    /// Rudder angle before, rad.
+    pub rudder_before: f64,
+    /// Rudder angle after, rad.
+    pub rudder_after: f64,
+}
+
+impl Execute {
+    /// The side the rudder is put to.
+    pub fn side(&self) -> Side {
+        Side::of(self.rudder_after)
+    }
+}
+
+/// How far the heading goes on after the rudder is reversed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overshoot {
+    /// Index of the execute it follows, in [`ZigZag::executes`].
+    pub execute: usize,
+    /// Time of the peak, s.
+    pub peak_time: Quantity,
+    /// Heading at the peak, rad.
+    pub peak_heading: Quantity,
+    /// Overshoot angle, rad, positive: from the heading at the execute to the peak, in the direction of the turn before.
+    ///
+    /// Source: MSC.137(76); ITTC 7.5-04-02-01.
+    pub angle: Quantity,
+    /// Time to check yaw, s: from the execute to the peak.
+    pub time_to_check_yaw: Quantity,
+}
+
+/// The characteristics of a zig-zag trial. Angles in rad, times in s; `None` and empty where a record does not show them.
+///
+/// In a record that begins within the trial there is no first execute, and what counts from it is `None`.
+///
+/// Source of the definitions: ITTC 7.5-04-02-01 (2017).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZigZag {
+    /// Nominal δ/ψ, guessed from the rudder held and the headings at the executes; `None` when those headings differ by
+    /// more than half their size.
+    pub pair: Option<Pair>,
+    /// Side of the first execute; `None` when the record begins within the trial.
+    pub side: Option<Side>,
+    /// The course the trial is steered about.
+    pub base_course: BaseCourse,
+    /// Executes in the order of time; the first one included where the record shows it.
+    pub executes: Vec<Execute>,
+    /// Initial turning time t_a, s: from the first execute to a change of heading by the nominal ψ.
+    pub initial_turning_time: Option<Quantity>,
+    /// Distance travelled in that time, m: integral of the recorded speed; `None` where the record has none.
+    pub initial_turning_distance: Option<f64>,
+    /// Overshoots in the order of time, one for every reversal whose peak the record shows.
+    pub overshoots: Vec<Overshoot>,
+    /// Period, s: mean time between executes to the same side. The cycle that begins with the second execute holds the
+    /// transient of the start and counts only where there is no other.
+    pub period: Option<Quantity>,
+    /// Reach t_A, s: from the first execute to the base course after the second execute.
+    pub reach: Option<Quantity>,
+    /// Time of a complete cycle t_B, s: from the first execute to the base course after the third execute.
+    pub complete_cycle_time: Option<Quantity>,
+    /// Largest |yaw rate| between the first execute and the end of the last hold, rad/s. As the largest of many noisy
+    /// slopes it is high by about one of its standard deviations.
+    pub largest_yaw_rate: Option<Quantity>,
+    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is about
+    /// as long as a sampling interval; `None` where it is shorter.
+    pub rudder_rate: Option<f64>,
+    /// Standard deviation of the heading noise the uncertainties are made with, rad: the declared one, or a robust
+    /// estimate from the record ([`super::noise_sd`]).
+    pub heading_noise: Option<f64>,
+}
+
+impl ZigZag {
+    /// Whether the record begins within the trial, so that its first execute is not known.
+    pub fn begins_within_trial(&self) -> bool {
+        self.side.is_none()
+    }
+
+    /// The n-th overshoot of the trial, counted from 1 at the second execute; `None` when the record begins within the
+    /// trial (nothing can be counted) or does not show that peak.
+    pub fn nth_overshoot(&self, n: usize) -> Option<&Overshoot> {
+        self.side?;
+        self.overshoots.iter().find(|overshoot| overshoot.execute == n)
+    }
+}
