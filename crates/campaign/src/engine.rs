@@ -21,7 +21,7 @@ use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simula
 use trial::Trial;
 
 use crate::design::CellFacts;
-use crate::rows::{Bound, Row, TracedCells};
+use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
 use crate::task::Task;
 use crate::timings::Timing;
 use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
@@ -279,11 +279,11 @@ fn traced(
         let square = replayed.residual.iter().map(|e| e * e).sum::<f64>() / replayed.residual.len() as f64;
         finite(to_deg(square.sqrt()))
     };
-    let group = |effect: &Traced| {
+    let named = |effect: &Traced| {
         let mut ids = vec![effect.id];
         ids.extend(effect.aliases.iter().map(|(id, _)| *id));
         ids.dedup();
-        ids.join("|")
+        NamedEffect { id: effect.id.into(), aliases: ids[1..].iter().map(|&id| id.into()).collect() }
     };
     let [k, t] = analysis.indices;
     let bias = analysis.rudder_bias.expect("one record has one rudder bias");
@@ -291,10 +291,9 @@ fn traced(
         heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
         validation_rmse_deg: validation.and_then(elsewhere),
         stop: Some(StopReason::Converged.as_str()),
-        traced: Some(Box::new(TracedCells {
-            verdict: analysis.verdict.as_str().into(),
-            named: analysis.effects.iter().map(|effect| effect.id).collect::<Vec<_>>().join("+").into(),
-            groups: analysis.effects.iter().map(group).collect::<Vec<_>>().join("+").into(),
+        traced: Some(Box::new(TraceAnswer {
+            verdict: analysis.verdict,
+            named: analysis.effects.iter().map(named).collect(),
             margin: margin(analysis, missing),
             expected,
         })),

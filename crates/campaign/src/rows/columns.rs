@@ -1,12 +1,14 @@
 //! The columns of a file of rows: names, units, meanings, and how each is taken out of a row and put back.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use ::trace::analysis::Verdict;
 use identify::StopReason;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 
-use super::row::{Bound, Row, TracedCells};
+use super::row::{Bound, NamedEffect, Row, TraceAnswer};
 use crate::design::Design;
 use scenario::TRACE;
 
@@ -24,7 +26,7 @@ pub struct Column {
 enum Access {
     Count(fn(&Row) -> u64, fn(&mut Row, u64)),
     Number(fn(&Row) -> Option<f64>, fn(&mut Row, f64)),
-    Text(fn(&Row) -> Option<&str>, fn(&mut Row, &str) -> Result<(), String>),
+    Text(fn(&Row) -> Option<Cow<'_, str>>, fn(&mut Row, &str) -> Result<(), String>),
     Method,
 }
 
@@ -59,7 +61,7 @@ pub const COLUMNS: [Column; 22] = [
         name: "failure",
         meaning: "why the method gave no answer; null when it did",
         access: Access::Text(
-            |row| row.failure.as_deref(),
+            |row| row.failure.as_deref().map(Cow::Borrowed),
             |row, text| {
                 row.failure = Some(text.into());
                 Ok(())
@@ -157,7 +159,7 @@ pub const COLUMNS: [Column; 22] = [
         name: "stop",
         meaning: "why the method stopped: direct, converged, iteration-limit, range-limit",
         access: Access::Text(
-            |row| row.stop,
+            |row| row.stop.map(Cow::Borrowed),
             |row, word| {
                 let known = StopReason::ALL.iter().map(|reason| reason.as_str()).find(|known| *known == word);
                 row.stop = Some(known.ok_or_else(|| format!("no method stops because of {word:?}"))?);
@@ -167,8 +169,65 @@ pub const COLUMNS: [Column; 22] = [
     },
 ];
 
-fn words(row: &mut Row) -> &mut TracedCells {
-    row.traced.get_or_insert_default()
+/// What a trace said, begun with the first of its columns that is read.
+fn answer(row: &mut Row) -> &mut TraceAnswer {
+    let blank = || TraceAnswer { verdict: Verdict::Clean, named: Vec::new(), margin: None, expected: None };
+    row.traced.get_or_insert_with(|| Box::new(blank()))
+}
+
+/// Effects one after the other, as their column has them.
+const BETWEEN_EFFECTS: &str = "+";
+
+/// An effect and its aliases, as their column has them.
+const BETWEEN_ALIASES: &str = "|";
+
+fn parts<'a>(text: &'a str, between: &'a str) -> impl Iterator<Item = &'a str> {
+    text.split(between).filter(|part| !part.is_empty())
+}
+
+/// The effects named, joined.
+fn named(row: &Row) -> Option<Cow<'_, str>> {
+    let ids: Vec<&str> = row.traced.as_ref()?.named.iter().map(|effect| &*effect.id).collect();
+    Some(ids.join(BETWEEN_EFFECTS).into())
+}
+
+/// The same with the aliases of each.
+fn groups(row: &Row) -> Option<Cow<'_, str>> {
+    let group = |effect: &NamedEffect| {
+        let ids = std::iter::once(&effect.id).chain(&effect.aliases).map(|id| &**id);
+        ids.collect::<Vec<_>>().join(BETWEEN_ALIASES)
+    };
+    let groups: Vec<String> = row.traced.as_ref()?.named.iter().map(group).collect();
+    Some(groups.join(BETWEEN_EFFECTS).into())
+}
+
+fn set_named(row: &mut Row, text: &str) -> Result<(), String> {
+    let effect = |id: &str| NamedEffect { id: id.into(), aliases: Vec::new() };
+    answer(row).named = parts(text, BETWEEN_EFFECTS).map(effect).collect();
+    Ok(())
+}
+
+/// The column before has named the effects: these are their aliases.
+fn set_groups(row: &mut Row, text: &str) -> Result<(), String> {
+    let refuse = || format!("the groups {text:?} are not those of the effects named");
+    let named = &mut answer(row).named;
+    if parts(text, BETWEEN_EFFECTS).count() != named.len() {
+        return Err(refuse());
+    }
+    for (effect, group) in named.iter_mut().zip(parts(text, BETWEEN_EFFECTS)) {
+        let mut ids = parts(group, BETWEEN_ALIASES);
+        if ids.next() != Some(&effect.id) {
+            return Err(refuse());
+        }
+        effect.aliases = ids.map(Box::from).collect();
+    }
+    Ok(())
+}
+
+fn set_verdict(row: &mut Row, word: &str) -> Result<(), String> {
+    let known = Verdict::ALL.into_iter().find(|verdict| verdict.as_str() == word);
+    answer(row).verdict = known.ok_or_else(|| format!("no trace ends with {word:?}"))?;
+    Ok(())
 }
 
 /// Columns that follow in a study of ships that are a first-order base with effects.
@@ -187,47 +246,29 @@ pub const TRACE_COLUMNS: [Column; 5] = [
     Column {
         name: "trace_verdict",
         meaning: "clean, traced or unexplained",
-        access: Access::Text(
-            |row| Some(&row.traced.as_ref()?.verdict),
-            |row, text| {
-                words(row).verdict = text.into();
-                Ok(())
-            },
-        ),
+        access: Access::Text(|row| Some(row.traced.as_ref()?.verdict.as_str().into()), set_verdict),
     },
     Column {
         name: "trace_named",
         meaning: "effects named, joined by +; empty where none was",
-        access: Access::Text(
-            |row| Some(&row.traced.as_ref()?.named),
-            |row, text| {
-                words(row).named = text.into();
-                Ok(())
-            },
-        ),
+        access: Access::Text(named, set_named),
     },
     Column {
         name: "trace_groups",
         meaning: "the same, each with its aliases joined by |",
-        access: Access::Text(
-            |row| Some(&row.traced.as_ref()?.groups),
-            |row, text| {
-                words(row).groups = text.into();
-                Ok(())
-            },
-        ),
+        access: Access::Text(groups, set_groups),
     },
     number(
         "trace_margin",
         "gain in BIC of the one missing effect over the best other one, each added alone; null where not one is missing",
         |row| row.traced.as_ref()?.margin,
-        |row, value| words(row).margin = Some(value),
+        |row, value| answer(row).margin = Some(value),
     ),
     number(
         "trace_expected",
         "likelihood ratio of the truth against the nearest first-order response, on average over the noise",
         |row| row.traced.as_ref()?.expected,
-        |row, value| words(row).expected = Some(value),
+        |row, value| answer(row).expected = Some(value),
     ),
 ];
 
@@ -339,7 +380,7 @@ impl Layout {
             Source::Fixed(Column { access, .. }) => match *access {
                 Access::Count(get, _) => Values::Counts(rows.iter().map(|row| get(row) as i64).collect()),
                 Access::Number(get, _) => Values::Numbers(rows.iter().map(get).collect()),
-                Access::Text(get, _) => Values::Texts(rows.iter().map(|row| get(row).map(str::to_owned)).collect()),
+                Access::Text(get, _) => Values::Texts(rows.iter().map(|row| get(row).map(Cow::into_owned)).collect()),
                 Access::Method => {
                     Values::Texts(rows.iter().map(|row| Some(self.methods[row.method].clone())).collect())
                 }

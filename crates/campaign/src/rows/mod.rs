@@ -14,5 +14,5 @@ mod tests;
 
 pub use columns::{COLUMNS, Column, Layout, OWN_COLUMNS, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
-pub use row::{Bound, Row, TracedCells};
+pub use row::{Bound, NamedEffect, Row, TraceAnswer};
 pub use sequence::Sequence;

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use ::trace::analysis::Verdict;
+
 /// Best standard deviations an unbiased method can have on a trial (Cramér–Rao), for its own noise and true K and T.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
@@ -13,15 +15,29 @@ pub struct Bound {
     pub k_over_t_per_s2: f64,
 }
 
+/// An effect that a trace named.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct NamedEffect {
+    /// Identifier of the effect.
+    pub id: Box<str>,
+    /// Identifiers of those that the trial cannot tell it from.
+    pub aliases: Vec<Box<str>>,
+}
+
+impl NamedEffect {
+    /// Whether an effect is this one, or one that cannot be told from it.
+    pub fn holds(&self, id: &str) -> bool {
+        *self.id == *id || self.aliases.iter().any(|alias| **alias == *id)
+    }
+}
+
 /// What a trace said of one trial.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct TracedCells {
-    /// `clean`, `traced` or `unexplained`.
-    pub verdict: Box<str>,
-    /// Identifiers of the effects named, joined by `+`; empty where none was.
-    pub named: Box<str>,
-    /// The same with the aliases of each, joined by `|`.
-    pub groups: Box<str>,
+#[derive(Debug, Clone, PartialEq)]
+pub struct TraceAnswer {
+    /// Whether anything is missing, and whether it has a name.
+    pub verdict: Verdict,
+    /// The effects named, in the order of discovery.
+    pub named: Vec<NamedEffect>,
     /// Gain in BIC of the one missing effect over the best other one.
     pub margin: Option<f64>,
     /// Likelihood ratio of the truth against the nearest first-order response, on average.
@@ -71,7 +87,7 @@ pub struct Row {
     /// Why the method stopped.
     pub stop: Option<&'static str>,
     /// What a trace said.
-    pub traced: Option<Box<TracedCells>>,
+    pub traced: Option<Box<TraceAnswer>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::design::{CellFacts, Design};
 use crate::folder::ResultFolder;
+use ::trace::analysis::Verdict;
 use scenario::{MethodName, Words};
 
 fn design() -> Design {
@@ -97,14 +98,16 @@ fn traces_have_columns_of_their_own() {
     let mut design = design();
     design.methods[1].id = scenario::TRACE.into();
     let layout = Layout::of(&design);
-    let cells = TracedCells {
-        verdict: "traced".into(),
-        named: "wind_moment".into(),
-        groups: "wind_moment|port_starboard_asymmetry".into(),
-        margin: Some(31.5),
-        expected: None,
+    let effect = |id: &str, aliases: &[&str]| NamedEffect {
+        id: id.into(),
+        aliases: aliases.iter().map(|&alias| alias.into()).collect(),
     };
-    let rows = vec![good(7), Row { method: 1, traced: Some(Box::new(cells)), ..good(7) }];
+    let answer = |verdict: Verdict, named: Vec<NamedEffect>| {
+        let answer = TraceAnswer { verdict, named, margin: Some(31.5), expected: None };
+        Row { method: 1, traced: Some(Box::new(answer)), ..good(7) }
+    };
+    let named = vec![effect("wind_moment", &["port_starboard_asymmetry"]), effect("speed_loss", &[])];
+    let rows = vec![good(7), answer(Verdict::Traced, named), answer(Verdict::Clean, Vec::new())];
     write(&path, &layout, [rows.clone()]);
     assert_eq!(read(&path, &layout), rows);
     assert!(layout.names().any(|name| name == "trace_margin"));

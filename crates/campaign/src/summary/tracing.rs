@@ -1,9 +1,11 @@
 //! What traces said, cell by cell: was everything named that was missing, and anything that was not.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+
+use ::trace::analysis::Verdict;
 
 use crate::design::Design;
-use crate::rows::Row;
+use crate::rows::{NamedEffect, Row};
 use crate::statistics::{Statistic, share};
 use scenario::HULL;
 
@@ -73,7 +75,7 @@ impl TraceTally {
 
     /// Takes note of a row, in the order of rows.
     pub fn add(&mut self, row: &Row) {
-        let Some(cells) = &row.traced else { return };
+        let Some(answer) = &row.traced else { return };
         let cell = row.cell as usize;
         if self.cells.last().is_none_or(|last| last.cell != cell) {
             self.expected = (0.0, 0);
@@ -81,25 +83,20 @@ impl TraceTally {
         }
         let summary = self.cells.last_mut().expect("one was pushed");
         summary.trials += 1;
-        let verdict = ["clean", "traced", "unexplained"].iter().position(|word| **word == *cells.verdict);
+        let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
-        let parts = |text: &str| text.split('+').filter(|part| !part.is_empty()).map(str::to_owned).collect::<Vec<_>>();
-        let mut named = parts(&cells.named);
-        summary.silent += u64::from(named.is_empty());
-        named.sort_unstable();
-        named.dedup();
-        named.into_iter().for_each(|id| *summary.named.entry(id).or_default() += 1);
-        let groups: Vec<Vec<String>> =
-            parts(&cells.groups).iter().map(|group| group.split('|').map(str::to_owned).collect()).collect();
-        let holds = |group: &Vec<String>| group.iter().any(|id| summary.missing.contains(id));
-        summary.wrong += u64::from(!groups.iter().all(holds));
-        let complete = summary.missing.iter().all(|id| groups.iter().any(|group| group.contains(id)));
+        summary.silent += u64::from(answer.named.is_empty());
+        let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
+        ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
+        let is_missing = |effect: &NamedEffect| summary.missing.iter().any(|id| effect.holds(id));
+        summary.wrong += u64::from(!answer.named.iter().all(is_missing));
+        let complete = summary.missing.iter().all(|id| answer.named.iter().any(|effect| effect.holds(id)));
         summary.complete += u64::from(complete && !summary.missing.is_empty());
-        if cells.margin.is_some_and(|margin| margin > CLEAR) {
+        if answer.margin.is_some_and(|margin| margin > CLEAR) {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
         }
-        if let Some(expected) = cells.expected {
+        if let Some(expected) = answer.expected {
             self.expected.0 += expected;
             self.expected.1 += 1;
             summary.expected = Some(self.expected.0 / self.expected.1 as f64);
@@ -115,27 +112,25 @@ impl TraceTally {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::TracedCells;
+    use crate::rows::TraceAnswer;
 
-    fn row(groups: &str, margin: Option<f64>) -> Row {
-        let named: Vec<&str> =
-            groups.split('+').filter(|g| !g.is_empty()).map(|g| g.split('|').next().unwrap_or(g)).collect();
-        let cells = TracedCells {
-            verdict: "traced".into(),
-            named: named.join("+").into(),
-            groups: groups.into(),
-            margin,
-            expected: Some(4.0),
+    /// A row that names effects, each with its aliases.
+    fn row(groups: &[&[&str]], margin: Option<f64>) -> Row {
+        let effect = |ids: &&[&str]| NamedEffect {
+            id: ids[0].into(),
+            aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
         };
+        let named = groups.iter().map(effect).collect();
+        let cells = TraceAnswer { verdict: Verdict::Traced, named, margin, expected: Some(4.0) };
         Row { traced: Some(Box::new(cells)), ..Row::default() }
     }
 
     #[test]
     fn groups_are_right_when_they_hold_what_is_missing() {
         let mut tally = TraceTally { missing: vec![vec!["a".into(), "b".into()]], ..TraceTally::default() };
-        for groups in ["a+b", "c|a+b", "a", "a+b+d", ""] {
-            tally.add(&row(groups, Some(30.0)));
-        }
+        let trials: [&[&[&str]]; 5] =
+            [&[&["a"], &["b"]], &[&["c", "a"], &["b"]], &[&["a"]], &[&["a"], &["b"], &["d"]], &[]];
+        trials.into_iter().for_each(|groups| tally.add(&row(groups, Some(30.0))));
         let [summary] = tally.finish().try_into().expect("one cell");
         assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
         assert_eq!(summary.clear, [5, 3]);
@@ -146,8 +141,8 @@ mod tests {
     #[test]
     fn any_name_is_wrong_where_nothing_is_missing() {
         let mut tally = TraceTally { missing: vec![vec![]], ..TraceTally::default() };
-        tally.add(&row("", None));
-        tally.add(&row("a", None));
+        tally.add(&row(&[], None));
+        tally.add(&row(&[&["a"]], None));
         let [summary] = tally.finish().try_into().expect("one cell");
         assert_eq!((summary.wrong, summary.complete_share()), (1, None));
     }

@@ -24,6 +24,9 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// All verdicts.
+    pub const ALL: [Self; 3] = [Self::Clean, Self::Traced, Self::Unexplained];
+
     /// The word used in files.
     pub fn as_str(self) -> &'static str {
         match self {
