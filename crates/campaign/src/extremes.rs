@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use simulate::cost::MOST_STEPS;
+use simulate::limits::MOST_STEPS;
 
 use crate::engine::{Bench, key};
 use crate::task::Task;

@@ -2,7 +2,7 @@
 
 use ship::Shown;
 use ship::angle::DEGREE;
-use simulate::cost::LONGEST_TIME;
+use simulate::limits::LONGEST_TIME;
 use simulate::{Expected, SpecificationError};
 
 use crate::problem::{KeyPath, Problem};

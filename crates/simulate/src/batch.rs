@@ -11,8 +11,8 @@
 
 use lanes::Kernel;
 
-use crate::cost::{MOST_ROWS, MOST_STEPS};
 use crate::error::{self, SimulateError, SpecificationError};
+use crate::limits::{MOST_ROWS, MOST_STEPS};
 
 /// Ships side by side.
 const LANES: usize = 16;

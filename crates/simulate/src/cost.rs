@@ -6,6 +6,7 @@ use ship::narrow_band::NarrowBand;
 
 use crate::error::{Checked, Expected, SpecificationError};
 use crate::helm::Watches;
+use crate::limits::MOST_STEPS;
 use crate::manoeuvre::{Manoeuvre, PullOut, TurnEnd, ZigZagEnd, length};
 use crate::propagate::{ClosedForm, exposed};
 use crate::recording::{Recording, Start};
@@ -13,19 +14,6 @@ use crate::simulation::Simulation;
 use crate::vessel::Solver;
 use crate::wave_path;
 use crate::weather::GRID;
-
-/// Longest time in a specification, s: four months. Beyond it a time of the run is no longer known to a nanosecond.
-pub const LONGEST_TIME: f64 = 1e7;
-
-/// Most steps of one run: a minute or two of computing. A zig-zag takes some thousand.
-pub const MOST_STEPS: usize = 100_000_000;
-
-/// Most rows of one record, a million periods and the first row: eleven days at one a second, and less than half a gigabyte
-/// while it is made.
-pub const MOST_ROWS: usize = 1_000_001;
-
-/// Most executes of one run: each leaves three segments of the path of the rudder in memory.
-pub const MOST_EXECUTES: usize = 100_000;
 
 /// What a run may take at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,6 +133,7 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits::MOST_EXECUTES;
     use crate::tests::{KEY, zig_zag};
     use crate::{SimulateError, Vessel};
     use ship::FirstOrder;

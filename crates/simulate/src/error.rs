@@ -7,7 +7,7 @@ use ship::Shown;
 use thiserror::Error;
 use trial::TrialError;
 
-use crate::cost::LONGEST_TIME;
+use crate::limits::LONGEST_TIME;
 
 /// What a value of a specification has to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,7 +149,7 @@ pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Checked {
     check(value <= limit, key, value, Expected::AtMost(limit))
 }
 
-/// A length of time, s: not negative, and no longer than [`LONGEST_TIME`](crate::cost::LONGEST_TIME).
+/// A length of time, s: not negative, and no longer than [`LONGEST_TIME`](crate::limits::LONGEST_TIME).
 pub(crate) fn time(key: &'static str, value: f64) -> Checked {
     not_negative(key, value)?;
     at_most(key, value, LONGEST_TIME)

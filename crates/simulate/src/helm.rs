@@ -57,6 +57,19 @@ pub enum Cue {
     Nothing,
 }
 
+/// An order of the helm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Execute {
+    /// Time the order is given, s.
+    pub time: f64,
+    /// True heading then, rad.
+    pub heading: f64,
+    /// True yaw rate then, rad/s.
+    pub yaw_rate: f64,
+    /// Rudder ordered, rad.
+    pub order: f64,
+}
+
 /// The state of one manoeuvre in one run.
 #[derive(Debug, Clone)]
 pub struct Helm<'a> {

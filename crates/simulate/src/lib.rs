@@ -16,7 +16,7 @@
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
 //! | thousands of nonlinear ships at once | [`batch`] |
-//! | what a run may cost | [`cost`] |
+//! | what a run may cost | [`cost`], [`limits`] |
 //! | what can go wrong | [`error`] |
 //!
 //! ```
@@ -41,6 +41,7 @@ mod measure;
 mod propagate;
 mod root;
 mod run;
+mod sample;
 #[cfg(test)]
 mod tests;
 mod wave_path;
@@ -52,6 +53,7 @@ pub mod disturbance;
 pub mod error;
 pub mod gear;
 pub mod helm;
+pub mod limits;
 pub mod manoeuvre;
 pub mod recording;
 pub mod sensor;
@@ -62,10 +64,10 @@ pub mod vessel;
 pub use disturbance::Disturbances;
 pub use error::{Expected, SimulateError, SpecificationError};
 pub use gear::SteeringGear;
-pub use helm::Helmsman;
+pub use helm::{Execute, Helmsman};
 pub use manoeuvre::{Manoeuvre, Side};
 pub use recording::Recording;
 pub use sensor::Sensors;
-pub use simulation::{Approach, Execute, Prepared, Simulated, Simulation, Truth};
+pub use simulation::{Approach, Prepared, Simulated, Simulation, Truth};
 pub use stream::{Purpose, StreamKey};
 pub use vessel::{Solver, Vessel};

@@ -5,8 +5,8 @@
 
 use ship::Polyline;
 
-use crate::cost::MOST_EXECUTES;
 use crate::error::{self, Checked};
+use crate::limits::MOST_EXECUTES;
 
 /// A side of the ship.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

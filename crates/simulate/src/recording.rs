@@ -2,10 +2,10 @@
 
 use rand::rngs::ChaCha8Rng;
 
-use crate::cost::{MOST_EXECUTES, MOST_ROWS};
 use crate::error::{self, Checked};
 use crate::helm::{LONGEST_PERIOD, SHORTEST_PERIOD};
-use crate::propagate::Sample;
+use crate::limits::{MOST_EXECUTES, MOST_ROWS};
+use crate::sample::Sample;
 use crate::sensor::Clock;
 use crate::stream::{Purpose, StreamKey, normal};
 

@@ -8,8 +8,8 @@
 
 use trial::Noise;
 
-use crate::cost::LONGEST_TIME;
 use crate::error::{self, Checked};
+use crate::limits::LONGEST_TIME;
 
 /// The gyrocompass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -7,17 +7,18 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::{Origin, Trial};
 
-use crate::cost::MOST_ROWS;
 use crate::display::Display;
 use crate::disturbance::Disturbances;
 use crate::error::{self, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
-use crate::helm::{Helm, Helmsman, Watches};
+use crate::helm::{Execute, Helm, Helmsman, Watches};
+use crate::limits::MOST_ROWS;
 use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
 use crate::measure::{self, Scene, View};
-use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator, Sample};
+use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator};
 use crate::recording::{Recording, RudderColumn, Start, Tap};
 use crate::run::{Progress, Run, Wake};
+use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::StreamKey;
 use crate::vessel::{Solver, Vessel};
@@ -62,19 +63,6 @@ pub struct Simulation {
     pub solver: Solver,
     /// Longest time to wait for a heading after an execute, s; a ship that does not reach it then is an error.
     pub longest_wait: f64,
-}
-
-/// An order of the helm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Execute {
-    /// Time the order is given, s.
-    pub time: f64,
-    /// True heading then, rad.
-    pub heading: f64,
-    /// True yaw rate then, rad/s.
-    pub yaw_rate: f64,
-    /// Rudder ordered, rad.
-    pub order: f64,
 }
 
 /// What really happened, at the stamps of the rows of the record. Waves are not part of it: they are a heading that is

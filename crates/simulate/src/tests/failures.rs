@@ -4,8 +4,8 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 
 use super::{KEY, zig_zag};
-use crate::cost::{MOST_EXECUTES, MOST_ROWS};
 use crate::helm::Watches;
+use crate::limits::{MOST_EXECUTES, MOST_ROWS};
 use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
 use crate::recording::Start;
 use crate::{Expected, SimulateError, Simulation, Solver, Vessel};
