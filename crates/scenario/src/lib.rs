@@ -7,7 +7,7 @@
 //! | what a file says, and how it is read | `wire`, `reader`, [`part`], [`words`] |
 //! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`] |
-//! | the checks | `resolve`, `refusal`, `checks`, `limits`, [`name`] |
+//! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
 
 pub mod cell;
@@ -23,7 +23,6 @@ pub mod name;
 pub mod part;
 pub mod problem;
 mod reader;
-mod refusal;
 mod resolve;
 mod scenario;
 mod specification;

@@ -35,9 +35,9 @@ impl Helmsman {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         if let Watches::Display { period } = self.watches {
-            error::between("helmsman.period", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
+            error::between("helmsman.reads-display-every-s", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         }
-        error::time("helmsman.reaction_time", self.reaction_time)
+        error::time("helmsman.reaction-time-s", self.reaction_time)
     }
 }
 

@@ -16,6 +16,7 @@
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
 //! | thousands of nonlinear ships at once | [`batch`] |
+//! | the same as a person writes it | [`settings`] |
 //! | what a run may cost | [`cost`], [`limits`] |
 //! | what can go wrong | [`error`] |
 //!
@@ -57,6 +58,7 @@ pub mod limits;
 pub mod manoeuvre;
 pub mod recording;
 pub mod sensor;
+pub mod settings;
 pub mod simulation;
 pub mod stream;
 pub mod vessel;

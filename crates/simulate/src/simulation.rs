@@ -9,7 +9,7 @@ use trial::{Origin, Trial};
 
 use crate::display::Display;
 use crate::disturbance::Disturbances;
-use crate::error::{self, Expected, SimulateError, SpecificationError};
+use crate::error::{self, Checked, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Execute, Helm, Helmsman, Watches};
 use crate::limits::MOST_ROWS;
@@ -36,6 +36,16 @@ pub struct Approach {
     pub rudder: f64,
     /// Time from the beginning of the run to the first execute, s.
     pub lead_in: f64,
+}
+
+impl Approach {
+    /// Checks every value; fails with the first one that makes no sense.
+    pub fn validate(&self) -> Checked {
+        error::finite("approach.heading-deg", self.heading)?;
+        error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
+        error::finite("approach.rudder-deg", self.rudder)?;
+        error::time("approach.lead-in-s", self.lead_in)
+    }
 }
 
 /// The specification of a simulated trial.
@@ -165,26 +175,24 @@ impl Simulation {
         self.disturbances.validate()?;
         self.sensors.validate()?;
         self.recording.validate()?;
-        error::finite("approach.heading", self.approach.heading)?;
-        error::finite("approach.yaw_rate", self.approach.yaw_rate)?;
-        error::finite("approach.rudder", self.approach.rudder)?;
-        error::time("approach.lead_in", self.approach.lead_in)?;
+        self.approach.validate()?;
         error::positive_time("longest_wait", self.longest_wait)?;
         if let Solver::RungeKutta(step) = self.solver {
             error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
         }
-        error::at_most("approach.rudder", self.approach.rudder.abs(), self.gear.maximum)?;
+        error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.maximum)?;
+        let [rudder, length] = self.manoeuvre.keys();
         if !matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
-            error::at_most("manoeuvre.rudder", self.manoeuvre.largest_rudder(), self.gear.maximum)?;
+            error::at_most(rudder, self.manoeuvre.largest_rudder(), self.gear.maximum)?;
         }
         // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
         error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
         let end = Helm::new(&self.manoeuvre, &self.helmsman, self.approach.lead_in).end();
         match (&self.manoeuvre, self.recording.duration) {
-            (_, None) if end.is_finite() => error::at_most("manoeuvre.duration", end, self.recording.longest())?,
-            (_, Some(duration)) => error::at_most("recording.duration", duration, self.recording.longest())?,
+            (_, None) if end.is_finite() => error::at_most(length, end, self.recording.longest())?,
+            (_, Some(duration)) => error::at_most("recording.duration-s", duration, self.recording.longest())?,
             (Manoeuvre::ZigZag(zig_zag), None) if zig_zag.end == ZigZagEnd::Record => {
-                let key = "recording.duration";
+                let key = "recording.duration-s";
                 return Err(SpecificationError { key, value: f64::NAN, expected: Expected::Duration });
             }
             _ => {}
