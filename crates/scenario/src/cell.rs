@@ -7,10 +7,10 @@ use simulate::StreamKey;
 use toml::{Table, Value};
 
 use crate::draw::Draw;
+use crate::gaps::Gaps;
 use crate::method::{Method, Procedure, methods};
 use crate::part::Part;
 use crate::problem::{KeyPath, Problem};
-use crate::reader::Gaps;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
 use crate::{limits, reader, resolve, sweep};
@@ -67,6 +67,11 @@ impl Cell {
     /// Effects a first-order base lacks in its trials.
     pub fn missing(&self) -> Vec<String> {
         self.specification.missing.clone()
+    }
+
+    /// Whether its trials make an assumption: its place in `Assumption::ALL`.
+    pub(crate) fn assumes(&self, index: usize) -> bool {
+        self.specification.assumed[index]
     }
 
     /// Labels of the points joined, or nothing when there is no axis.

@@ -4,8 +4,8 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what a file says, and how it is read | `wire`, `reader`, [`part`], [`words`] |
-//! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
+//! | what a file says, and how it is read | `wire`, `reader`, `gaps`, [`part`], [`words`] |
+//! | what is wrong with it, and where | `fault`, [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
@@ -15,6 +15,8 @@ mod checks;
 mod draw;
 mod effect;
 pub mod failure;
+mod fault;
+mod gaps;
 pub mod identity;
 mod limits;
 mod locate;
@@ -24,6 +26,7 @@ pub mod part;
 pub mod problem;
 mod reader;
 mod resolve;
+mod resolved;
 mod scenario;
 mod specification;
 pub mod stop;

@@ -90,7 +90,8 @@ fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Resul
     })
 }
 
-fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
+/// The ship that a scenario names, or describes by numbers of its own.
+pub fn ship(wire: &BTreeMap<String, toml::Table>) -> Result<Ship, Problem> {
     let known = || -> Vec<String> {
         let registry = ships::all().into_iter().map(|ship| ship.id.to_string());
         registry.chain(["first-order", "second-order"].map(str::to_owned)).collect()

@@ -3,6 +3,7 @@
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
 
+use crate::error::shown;
 use crate::gear::SteeringGear;
 use crate::helm::{Helmsman, Watches};
 use crate::settings::declare::settings;
@@ -81,8 +82,12 @@ impl GearSettings {
 
     /// The same with nothing left out: what `gear`, built from it, has.
     pub fn complete(&self, gear: &SteeringGear) -> Self {
-        let rate_deg_s = self.rate_deg_s.or(Some(to_deg(gear.rate)));
-        Self { rate_deg_s, maximum_deg: self.maximum_deg.or(Some(to_deg(gear.maximum))), ..self.clone() }
+        let in_degrees = |angle| shown(to_deg(angle)).0;
+        Self {
+            rate_deg_s: self.rate_deg_s.or(Some(in_degrees(gear.rate))),
+            maximum_deg: self.maximum_deg.or(Some(in_degrees(gear.maximum))),
+            ..self.clone()
+        }
     }
 }
 

@@ -56,7 +56,7 @@ fn a_message_says_what_was_found_and_what_was_expected() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
     simulation.recording.period = 0.0;
     let message = failure(&simulation).to_string();
-    assert_eq!(message, "recording.period is 0, expected a finite number above 0");
+    assert_eq!(message, "recording.sampling-s is 0, expected a finite number above 0");
 }
 
 #[test]
