@@ -9,6 +9,7 @@
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
+//! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
 
 pub mod cell;
 mod checks;

@@ -9,7 +9,7 @@ use crate::wire::{FirstOrderWire, ScenarioWire, SecondOrderWire};
 use crate::{effect, reader, resolve};
 
 /// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
-const ORDER: [&str; 12] = [
+const ORDER: [&str; 15] = [
     "question",
     "analysis",
     "finding",
@@ -22,6 +22,9 @@ const ORDER: [&str; 12] = [
     "helmsman",
     "approach",
     "recording",
+    "sensor",
+    "disturbance",
+    "identifier",
 ];
 
 /// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they change.
@@ -93,7 +96,9 @@ impl Lines {
                 }
                 _ => {
                     let below = value.as_table().expect("a table");
-                    if given.is_some() || !below.is_empty() {
+                    let says_nothing = given.is_none() && below.is_empty();
+                    let only_leads_on = !below.is_empty() && below.values().all(Value::is_table);
+                    if !says_nothing && !only_leads_on {
                         self.text += &format!("\n[{heading}]{}\n", if given.is_none() { "  # default" } else { "" });
                     }
                     self.table(&path, below, given.and_then(Value::as_table));
@@ -130,5 +135,86 @@ fn written(name: &str) -> String {
         name.to_owned()
     } else {
         Value::String(name.to_owned()).to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use simulate::settings::Assumption;
+
+    use crate::Scenario;
+
+    const BARE: &str = "
+question = \"One line,\\nand another?\"
+seed = 3
+[ship.first-order]
+K-per-s = 0.1
+T-s = 16.3
+[manoeuvre.zig-zag]
+rudder-deg = 10
+heading-deg = 10
+[recording]
+sampling-s = 1.0
+duration-s = 100.0
+[validation.manoeuvre.turning-circle]
+rudder-deg = 25.0
+duration-s = 100.0
+[[identifier]]
+method.srivc = {}
+[[sweep]]
+name = \"rate\"
+points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-gear.rate-deg-s\" = 2.5 } }]
+";
+
+    fn scenario(text: &str) -> Scenario {
+        Scenario::parse(Path::new("bare.toml"), "bare", text.to_owned(), None).expect("it is right")
+    }
+
+    #[test]
+    fn a_resolved_scenario_is_the_same_scenario_and_marks_its_defaults() {
+        let bare = scenario(BARE);
+        let text = bare.resolved();
+        for line in [
+            "replicates = 1  # default",
+            "rudder-bias-deg = 0.0  # default",
+            "rate-deg-s = inf  # default",
+            "maximum-deg = 90.0  # default",
+            "heading-noise-deg = 0.0  # default",
+            "label = \"srivc\"  # default",
+            "rudder-deg = 10.0",
+            "\"steering-gear.rate-deg-s\" = 2.5",
+            "[sensor.drop-out]  # default",
+            "# executes is left out: Number of the execute that ends the manoeuvre, or `duration-s`; left out, the end of the \
+             record is its end.",
+        ] {
+            assert!(text.lines().any(|own| own == line), "{line}\n{text}");
+        }
+        let again = scenario(&text);
+        for (one, other) in bare.cells.iter().zip(&again.cells) {
+            let key = simulate::StreamKey { seed: 3, cell: 0, replicate: 0 };
+            let [one, other] = [one, other].map(|cell| cell.specimen(&key).expect("nothing is drawn").specification);
+            assert_eq!(format!("{:?}", one.simulation), format!("{:?}", other.simulation));
+            assert_eq!(format!("{:?}", one.validation), format!("{:?}", other.validation));
+        }
+        assert_eq!(again.resolved().replace("  # default", ""), text.replace("  # default", ""));
+    }
+
+    #[test]
+    fn defaults_that_matter_are_told_for_the_cells_that_have_them() {
+        let told = |text: &str| scenario(text).defaults_that_matter();
+        let bare = told(BARE);
+        assert_eq!(bare.iter().map(|(assumption, _)| *assumption).collect::<Vec<_>>(), Assumption::ALL);
+        assert!(bare[0].1.starts_with("in 1 of 2 cells the rudder moves instantly, because"), "{}", bare[0].1);
+        assert!(bare[1].1.starts_with("every order is given"), "{}", bare[1].1);
+        let with = |text: &str| told(&format!("{BARE}{text}"));
+        assert_eq!(with("[steering-gear]\nrate-deg-s = inf").len(), 2, "an infinite rate is meant");
+        assert_eq!(with("[helmsman]\nreaction-time-s = 0.5\n[sensor]\nheading-quantum-deg = 0.1").len(), 1);
+        let hull = |id: &str| BARE.replace("first-order", id).replace("K-per-s = 0.1\nT-s = 16.3\n", "");
+        for ship in ship::ships::all().into_iter().filter(|ship| ship.rudder_rate.is_some()) {
+            let own = told(&hull(&ship.id));
+            assert!(own.iter().all(|(assumption, _)| *assumption != Assumption::InstantRudder), "{}", ship.id);
+        }
     }
 }

@@ -3,10 +3,10 @@
 use std::sync::LazyLock;
 
 use campaign::collect::collect;
-use campaign::folder::ResultFolder;
-use campaign::manifest::Manifest;
 use campaign::design::Design;
 use campaign::files;
+use campaign::folder::ResultFolder;
+use campaign::manifest::Manifest;
 use campaign::store::Stored;
 use campaign::task::Shard;
 use scenario::Scenario;

@@ -5,11 +5,11 @@ use std::path::{Component, Path};
 use std::sync::LazyLock;
 
 use campaign::design::Design;
+use campaign::files;
 use campaign::manifest::Manifest;
 use campaign::rows::{Layout, Reader, Sequence};
 use campaign::summary::Tally;
 use campaign::task::Shard;
-use campaign::files;
 use identify::{Identifier, registry};
 use scenario::Scenario;
 use scenario::failure::Failure;

@@ -72,11 +72,11 @@ pub struct Entry {
 
 impl Entry {
     /// The setting of this type that a field or a variant declares.
-    pub fn new<T: Written>(name: &str, comment: &[&str], attributes: &[&str]) -> Self {
+    pub fn new<T: Written>(name: &str, comment: &[&str], has_default: bool) -> Self {
         let kind = T::kind();
         let default = match &kind {
             _ if T::OPTIONAL => LeftOut::Nothing,
-            _ if attributes.is_empty() => LeftOut::Required,
+            _ if !has_default => LeftOut::Required,
             Kind::Number => LeftOut::Value("0"),
             Kind::Truth => LeftOut::Value("false"),
             Kind::Name(names) => LeftOut::Value(names[0]),
@@ -159,14 +159,14 @@ impl<T: Written> Written for Option<T> {
 
 /// Declares a table of settings, or a choice of one of several. Comments are read by users of `study list` too.
 ///
-/// A field that is no `Option` and has no `#[serde(default)]` is required; every default is that of its type.
+/// A field that is no `Option` is required, unless it or its table has `#[serde(default)]`; every default is that of the type.
 macro_rules! settings {
-    ($(#[$($about:tt)*])+ pub struct $name:ident {
+    ($(#[doc = $about:literal])+ $(#[derive($derive:ident)])? $(#[serde($all:ident)])? pub struct $name:ident {
         $($(#[doc = $meaning:literal])+ $(#[serde($default:ident)])? pub $field:ident: $type:ty,)*
     }) => {
-        $(#[$($about)*])+
-        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        $(#[doc = $about])+
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize $(, $derive)?)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case" $(, $all)?)]
         pub struct $name {
             $($(#[doc = $meaning])+ $(#[serde($default)])? pub $field: $type,)*
         }
@@ -174,8 +174,9 @@ macro_rules! settings {
         impl $crate::settings::declare::Written for $name {
             fn kind() -> $crate::settings::declare::Kind {
                 use $crate::settings::declare::{Entry, Kind};
+                let has_default = false $(|| !stringify!($all).is_empty())?;
                 Kind::Table(vec![
-                    $(Entry::new::<$type>(stringify!($field), &[$($meaning),+], &[$(stringify!($default))?]),)*
+                    $(Entry::new::<$type>(stringify!($field), &[$($meaning),+], has_default $(|| !stringify!($default).is_empty())?),)*
                 ])
             }
         }
@@ -193,7 +194,7 @@ macro_rules! settings {
         impl $crate::settings::declare::Written for $name {
             fn kind() -> $crate::settings::declare::Kind {
                 use $crate::settings::declare::{Entry, Kind};
-                Kind::Table(vec![$(Entry::new::<Option<$type>>(stringify!($variant), &[$($meaning),+], &[]),)*])
+                Kind::Table(vec![$(Entry::new::<Option<$type>>(stringify!($variant), &[$($meaning),+], false),)*])
             }
         }
     };

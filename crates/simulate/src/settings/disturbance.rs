@@ -10,18 +10,17 @@ use crate::settings::refusal::SettingError;
 settings! {
     /// Wind and sea; a calm in all that is left out.
     #[derive(Default)]
+    #[serde(default)]
     pub struct DisturbanceSettings {
         /// Steady wind, whose moment depends on the heading.
         pub wind: Option<WindSettings>,
         /// Gusts that act as a moment of their own, whatever the heading.
         pub gusts: Option<GustSettings>,
         /// Linear trend of the moment from the beginning of the run, as rudder angle.
-        #[serde(default)]
         pub drift_deg_per_s: f64,
         /// A moment that is present for a part of the run only.
         pub squall: Option<SquallSettings>,
         /// Random walk of the moment: its standard deviation after one second, as rudder angle.
-        #[serde(default)]
         pub random_walk_deg_per_root_s: f64,
         /// Narrow-band yaw from waves, seen on top of the response.
         pub waves: Option<WavesSettings>,

@@ -9,18 +9,15 @@ use crate::settings::refusal::SettingError;
 settings! {
     /// Instruments, perfect in all that is left out.
     #[derive(Default)]
+    #[serde(default)]
     pub struct SensorSettings {
         /// Standard deviation of white heading noise.
-        #[serde(default)]
         pub heading_noise_deg: f64,
         /// Step of the heading display.
-        #[serde(default)]
         pub heading_quantum_deg: f64,
         /// Follow-up lag of the gyrocompass.
-        #[serde(default)]
         pub heading_lag_s: f64,
         /// Constant heading error.
-        #[serde(default)]
         pub heading_bias_deg: f64,
         /// Standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator.
         pub yaw_rate_noise_deg_s: Option<f64>,
@@ -29,19 +26,14 @@ settings! {
         /// Scale error of the yaw rate, as a share.
         pub yaw_rate_scale_error: Option<f64>,
         /// Standard deviation of white noise of the rudder feedback.
-        #[serde(default)]
         pub rudder_noise_deg: f64,
         /// Step of the rudder feedback.
-        #[serde(default)]
         pub rudder_quantum_deg: f64,
         /// Standard deviation of the sampling instants about their stamps.
-        #[serde(default)]
         pub jitter_s: f64,
         /// Age of the heading against the rudder in the same row.
-        #[serde(default)]
         pub heading_delay_s: f64,
         /// Rows that are lost.
-        #[serde(default)]
         pub drop_out: DropOutSettings,
     }
 }
@@ -49,16 +41,15 @@ settings! {
 settings! {
     /// Rows that are lost.
     #[derive(Default)]
+    #[serde(default)]
     pub struct DropOutSettings {
         /// Probability that a row is lost, independently of the others.
-        #[serde(default)]
         pub probability: f64,
         /// Probability per row that a burst of lost rows begins with the next one; with `burst-mean-rows`.
         pub burst_probability: Option<f64>,
         /// Mean length of a burst; with `burst-probability`.
         pub burst_mean_rows: Option<f64>,
         /// Whether a lost row is lost whole, or only its heading.
-        #[serde(default)]
         pub whole_row: bool,
     }
 }

@@ -13,17 +13,15 @@ use crate::simulation::Approach;
 settings! {
     /// What moves the rudder.
     #[derive(Default)]
+    #[serde(default)]
     pub struct GearSettings {
         /// Rudder rate; that of the ship where its source gives one, and else the rudder moves instantly.
         pub rate_deg_s: Option<f64>,
         /// Time constant of the approach to the order.
-        #[serde(default)]
         pub lag_s: f64,
         /// Time from order to first movement.
-        #[serde(default)]
         pub dead_time_s: f64,
         /// Error at which the pump stops, and below which it does not start.
-        #[serde(default)]
         pub dead_band_deg: f64,
         /// Largest rudder angle to either side; that of the ship where its source gives one, and else 90°.
         pub maximum_deg: Option<f64>,
@@ -33,11 +31,11 @@ settings! {
 settings! {
     /// Who reads the compass and turns the wheel.
     #[derive(Default)]
+    #[serde(default)]
     pub struct HelmsmanSettings {
         /// Time between readings of the heading display; left out, he knows the true heading at every instant.
         pub reads_display_every_s: Option<f64>,
         /// Time from seeing the heading waited for to giving the order.
-        #[serde(default)]
         pub reaction_time_s: f64,
     }
 }
@@ -45,18 +43,15 @@ settings! {
 settings! {
     /// How the ship comes to the first execute.
     #[derive(Default)]
+    #[serde(default)]
     pub struct ApproachSettings {
         /// Heading at the beginning of the run: the base course.
-        #[serde(default)]
         pub heading_deg: f64,
         /// Yaw rate at the beginning of the run.
-        #[serde(default)]
         pub yaw_rate_deg_s: f64,
         /// Rudder until the first execute.
-        #[serde(default)]
         pub rudder_deg: f64,
         /// Straight run before the first execute.
-        #[serde(default)]
         pub lead_in_s: f64,
     }
 }

@@ -15,13 +15,13 @@ use crate::simulation::Simulation;
 /// Every key of the settings of a trial, in the order in which things happen.
 pub fn keys() -> Vec<Key> {
     [
-        Entry::new::<ManoeuvreSettings>("manoeuvre", &["What the ship is asked to do: one of these."], &[]),
-        Entry::new::<Option<GearSettings>>("steering_gear", &["What moves the rudder."], &[]),
-        Entry::new::<Option<HelmsmanSettings>>("helmsman", &["Who reads the compass and turns the wheel."], &[]),
-        Entry::new::<Option<ApproachSettings>>("approach", &["How the ship comes to the first execute."], &[]),
-        Entry::new::<RecordingSettings>("recording", &["Which part of the run is written down."], &[]),
-        Entry::new::<Option<SensorSettings>>("sensor", &["Instruments, perfect in all that is left out."], &[]),
-        Entry::new::<Option<DisturbanceSettings>>("disturbance", &["Wind and sea; a calm when left out."], &[]),
+        Entry::new::<ManoeuvreSettings>("manoeuvre", &["What the ship is asked to do: one of these."], false),
+        Entry::new::<Option<GearSettings>>("steering_gear", &["What moves the rudder."], false),
+        Entry::new::<Option<HelmsmanSettings>>("helmsman", &["Who reads the compass and turns the wheel."], false),
+        Entry::new::<Option<ApproachSettings>>("approach", &["How the ship comes to the first execute."], false),
+        Entry::new::<RecordingSettings>("recording", &["Which part of the run is written down."], false),
+        Entry::new::<Option<SensorSettings>>("sensor", &["Instruments, perfect in all that is left out."], false),
+        Entry::new::<Option<DisturbanceSettings>>("disturbance", &["Wind and sea; a calm when left out."], false),
     ]
     .iter()
     .flat_map(|part| part.keys(""))

@@ -91,7 +91,8 @@ fn keys_below(part: &str) -> Table {
         Table::new([Column::left("key"), Column::left("unit"), Column::left("default"), Column::left("meaning")]);
     for Key { key, unit, default, meaning } in settings::keys() {
         if let Some(key) = key.strip_prefix(part) {
-            table.push([key, &unit, &default.to_string(), &meaning]);
+            // A table shows the marks of code as they are.
+            table.push([key, &unit, &default.to_string(), &meaning.replace('`', "")]);
         }
     }
     table
