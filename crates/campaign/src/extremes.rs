@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use simulate::cost::MOST_STEPS;
+use simulate::limits::MOST_STEPS;
+use simulate::settings::Key;
 
 use crate::engine::{Bench, key};
 use crate::task::Task;
@@ -423,6 +424,23 @@ fn every_number_is_checked_and_found_again() {
             assert!(message.contains(&place) && message.contains(own), "{key}, expected {place}\n{message}");
             assert!(message.to_lowercase().contains("is nan"), "{key}\n{message}");
         }
+    }
+}
+
+/// No number of the settings of a trial is left out of these tests.
+#[test]
+fn every_declared_number_is_among_them() {
+    let texts = EVERYTHING.into_iter().chain([OF_STUDY]);
+    let documents: Vec<toml::Table> = texts.map(|text| text.parse().expect("it is TOML")).collect();
+    for Key { key, unit, .. } in simulate::settings::keys() {
+        if unit == "table" || unit == "text" || unit.contains(" or ") {
+            continue;
+        }
+        let (part, rest) = key.split_once('.').expect("a key of a part");
+        let is_in = |document: &toml::Table| {
+            document.get(part).and_then(|part| rest.split('.').try_fold(part, |value, name| value.get(name))).is_some()
+        };
+        assert!(documents.iter().any(is_in), "{key}");
     }
 }
 

@@ -35,6 +35,9 @@ pub struct Manifest {
     pub git_dirty: bool,
     /// What it ran on. Nothing in the rows depends on this.
     pub machine: Machine,
+    /// What the scenario leaves to be assumed and can decide what it finds.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
     /// Versions of the crates that decide the numbers.
     pub crates: Vec<String>,
     /// SHA-256 of the files a finished study is read from, by their names; of one in progress none.
@@ -79,6 +82,7 @@ impl Manifest {
                 threads: rayon::current_num_threads(),
                 wall_time_s: 0.0,
             },
+            assumptions: scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect(),
             crates: env!("KEMPF_NUMERIC_CRATES")
                 .split(',')
                 .filter(|text| !text.is_empty())

@@ -7,10 +7,10 @@ use simulate::StreamKey;
 use toml::{Table, Value};
 
 use crate::draw::Draw;
+use crate::gaps::Gaps;
 use crate::method::{Method, Procedure, methods};
 use crate::part::Part;
 use crate::problem::{KeyPath, Problem};
-use crate::reader::Gaps;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
 use crate::{limits, reader, resolve, sweep};
@@ -73,6 +73,11 @@ impl Cell {
     /// nearest to it.
     pub fn has_own_indices(&self) -> bool {
         self.specification.truth.is_none() && self.specification.base.is_some()
+    }
+
+    /// Whether its trials make an assumption: its place in `Assumption::ALL`.
+    pub(crate) fn assumes(&self, index: usize) -> bool {
+        self.specification.assumed[index]
     }
 
     /// Labels of the points joined, or nothing when there is no axis.

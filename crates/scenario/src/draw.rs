@@ -3,7 +3,7 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use ship::Shown;
 use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
@@ -13,7 +13,7 @@ use crate::part::Part;
 use crate::problem::{KeyPath, Mark, Problem};
 
 /// A draw as it is written.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DrawWire {
     /// Dotted key that is drawn.
@@ -26,14 +26,14 @@ pub struct DrawWire {
     between: Option<[f64; 2]>,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct NormalWire {
     mean: f64,
     sd: f64,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct LogNormalWire {
     median: f64,
@@ -41,7 +41,7 @@ struct LogNormalWire {
     sigma: f64,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct RangeWire {
     from: f64,

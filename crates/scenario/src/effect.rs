@@ -10,6 +10,7 @@ use ship::effects::{
 };
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, Shown};
+use simulate::settings::WavesSettings;
 
 use crate::limits;
 use crate::problem::{KeyPath, Problem};
@@ -169,7 +170,7 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
                 setting("duration-s", duration_s, 1.0),
             ],
         ),
-        EffectWire::WaveYaw(WavesWire { sd_deg, frequency_rad_s, damping }) => (
+        EffectWire::WaveYaw(WavesSettings { sd_deg, frequency_rad_s, damping }) => (
             Arc::new(WaveYaw),
             vec![
                 setting("sd-deg", sd_deg, DEGREE),

@@ -4,17 +4,20 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what a file says, and how it is read | `wire`, `reader`, [`part`], [`words`] |
-//! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
+//! | what a file says, and how it is read | `wire`, `reader`, `gaps`, [`part`], [`words`] |
+//! | what is wrong with it, and where | `fault`, [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`] |
-//! | the checks | `resolve`, `refusal`, `checks`, `limits`, [`name`] |
+//! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
+//! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
 
 pub mod cell;
 mod checks;
 mod draw;
 mod effect;
 pub mod failure;
+mod fault;
+mod gaps;
 pub mod identity;
 mod limits;
 mod locate;
@@ -23,8 +26,8 @@ pub mod name;
 pub mod part;
 pub mod problem;
 mod reader;
-mod refusal;
 mod resolve;
+mod resolved;
 mod scenario;
 mod specification;
 pub mod stop;

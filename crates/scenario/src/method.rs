@@ -57,7 +57,7 @@ pub fn identify(identifier: &dyn Identifier, trial: &Trial, key: &StreamKey) -> 
 }
 
 /// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct IdentifierWire {
     pub label: Option<String>,
@@ -66,7 +66,7 @@ pub(crate) struct IdentifierWire {
 }
 
 /// Thresholds of a trace.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct TraceWire {
     /// Smallest gain in BIC.

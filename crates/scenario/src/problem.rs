@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use simulate::settings::SettingError;
+
 use crate::name::{Unfit, shown};
 
 /// Path of a key from the root of a scenario; entries of a list are counted from 0, as a sweep addresses them.
@@ -85,6 +87,14 @@ impl Problem {
         advice: impl Into<String>,
     ) -> Self {
         Self { mark: Mark::Name, ..Self::value(key, found, expected, advice) }
+    }
+}
+
+impl From<SettingError> for Problem {
+    fn from(error: SettingError) -> Self {
+        let SettingError { key, of_value, found, expected, advice } = error;
+        let mark = if of_value { Mark::Value } else { Mark::Name };
+        Self { key: KeyPath::dotted(&key), mark, found, expected, advice }
     }
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use identify::Identifier;
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
+use simulate::settings::Assumption;
 use toml::Table;
 use trial::file::{self, FileError, Kind};
 
@@ -19,7 +20,7 @@ use crate::stop::StopRule;
 use crate::sweep::{self, Axis};
 use crate::wire::{PublishedWire, ScenarioWire};
 use crate::words::Words;
-use crate::{checks, locate, name, reader, resolve};
+use crate::{checks, locate, name, reader, resolve, resolved};
 
 /// Values of other authors, shown beside the results.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -173,6 +174,27 @@ impl Scenario {
             });
         }
         Ok(self)
+    }
+
+    /// The scenario with nothing left out, as TOML: every default that was taken is marked as one.
+    pub fn resolved(&self) -> String {
+        let document = self.text.parse().expect("it has been read");
+        resolved::text(&document, &self.cells[0].methods).expect("it has been resolved")
+    }
+
+    /// What the scenario leaves to be assumed and can decide what it finds, what does most harm first, each as a sentence
+    /// without its full stop.
+    pub fn defaults_that_matter(&self) -> Vec<(Assumption, String)> {
+        let made = |(index, assumption): (usize, Assumption)| {
+            let cells = self.cells.iter().filter(|cell| cell.assumes(index)).count();
+            let sentence = assumption.sentence();
+            match cells {
+                0 => None,
+                all if all == self.cells.len() => Some((assumption, sentence.to_owned())),
+                some => Some((assumption, format!("in {some} of {} cells {sentence}", self.cells.len()))),
+            }
+        };
+        Assumption::ALL.into_iter().enumerate().filter_map(made).collect()
     }
 
     /// Labels and ids of the methods, in the order of the scenario.

@@ -2,6 +2,7 @@
 
 use ship::FirstOrder;
 use simulate::Simulation;
+use simulate::settings::Assumption;
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
@@ -16,6 +17,8 @@ pub struct Specification {
     pub base: Option<FirstOrder>,
     /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its own.
     pub missing: Vec<String>,
+    /// Which of [`Assumption::ALL`] the settings leave to be made.
+    pub assumed: [bool; Assumption::ALL.len()],
 }
 
 /// What a hull has that no list of effects names.

@@ -1,13 +1,13 @@
 //! The stopping rule of a scenario: `[stop]`. What it sees, and when it is met, is for those who run the study.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use ship::Shown;
 
 use crate::method::Method;
 use crate::problem::{KeyPath, Problem, suggestion};
 
 /// When a cell has had enough trials; `replicates` is then the most.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct StopWire {
     pub figure: StopFigure,
@@ -33,7 +33,7 @@ pub enum Index {
 }
 
 /// The figure a rule looks at: of the relative errors, per cent, or the coverage of the quoted intervals, per cent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
 pub enum StopFigure {
     /// Mean error of K.
     #[serde(rename = "mean-K")]

@@ -5,7 +5,7 @@
 
 use std::collections::HashSet;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use ship::Shown;
 use toml::{Table, Value};
 
@@ -18,7 +18,7 @@ use crate::problem::{KeyPath, Mark, Problem, of_text};
 const MOST_CELLS: usize = 100_000;
 
 /// An axis as it is written: `[[sweep]]`.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct AxisWire {
     /// Name on plots and in tables; the key when it is left out.
@@ -36,7 +36,7 @@ pub struct AxisWire {
 }
 
 /// A range of numbers, both ends included.
-#[derive(Debug, Clone, Copy, Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct RangeWire {
     from: f64,
@@ -45,7 +45,7 @@ struct RangeWire {
 }
 
 /// A point that sets several keys.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct PointWire {
     label: String,

@@ -6,6 +6,7 @@ use ship::narrow_band::NarrowBand;
 
 use crate::error::{Checked, Expected, SpecificationError};
 use crate::helm::Watches;
+use crate::limits::MOST_STEPS;
 use crate::manoeuvre::{Manoeuvre, PullOut, TurnEnd, ZigZagEnd, length};
 use crate::propagate::{ClosedForm, exposed};
 use crate::recording::{Recording, Start};
@@ -13,19 +14,6 @@ use crate::simulation::Simulation;
 use crate::vessel::Solver;
 use crate::wave_path;
 use crate::weather::GRID;
-
-/// Longest time in a specification, s: four months. Beyond it a time of the run is no longer known to a nanosecond.
-pub const LONGEST_TIME: f64 = 1e7;
-
-/// Most steps of one run: a minute or two of computing. A zig-zag takes some thousand.
-pub const MOST_STEPS: usize = 100_000_000;
-
-/// Most rows of one record, a million periods and the first row: eleven days at one a second, and less than half a gigabyte
-/// while it is made.
-pub const MOST_ROWS: usize = 1_000_001;
-
-/// Most executes of one run: each leaves three segments of the path of the rudder in memory.
-pub const MOST_EXECUTES: usize = 100_000;
 
 /// What a run may take at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,50 +66,50 @@ impl Simulation {
     fn waits(&self, key: &'static str, number: usize) -> Part {
         let duration = number.saturating_sub(1) as f64 * (self.longest_wait + self.helmsman.reaction_time);
         match self.helmsman.reaction_time > self.longest_wait {
-            true => Part { key: "helmsman.reaction_time", value: self.helmsman.reaction_time, duration },
+            true => Part { key: "helmsman.reaction-time-s", value: self.helmsman.reaction_time, duration },
             false => Part { key, value: number as f64, duration },
         }
     }
 
     fn until_end_of_manoeuvre(&self) -> [Part; 3] {
-        let nothing = Part::time("approach.lead_in", 0.0);
+        let nothing = Part::time("approach.lead-in-s", 0.0);
         let [first, second] = match &self.manoeuvre {
             Manoeuvre::ZigZag(zig_zag) => match zig_zag.end {
-                ZigZagEnd::Executes(count) => [self.waits("zig_zag.executes", count), nothing],
-                ZigZagEnd::Duration(duration) => [Part::time("zig_zag.duration", duration), nothing],
-                ZigZagEnd::Record => [Part::time("recording.duration", f64::INFINITY), nothing],
+                ZigZagEnd::Executes(count) => [self.waits("manoeuvre.zig-zag.executes", count), nothing],
+                ZigZagEnd::Duration(duration) => [Part::time("manoeuvre.zig-zag.duration-s", duration), nothing],
+                ZigZagEnd::Record => [Part::time("recording.duration-s", f64::INFINITY), nothing],
             },
             Manoeuvre::TurningCircle(turn) => match turn.end {
-                TurnEnd::Duration(duration) => [Part::time("turning_circle.duration", duration), nothing],
+                TurnEnd::Duration(duration) => [Part::time("manoeuvre.turning-circle.duration-s", duration), nothing],
                 TurnEnd::HeadingChange(_) => [Part::time("longest_wait", self.longest_wait), nothing],
             },
             Manoeuvre::PullOut(PullOut { hold, duration, .. }) => {
-                [Part::time("pull_out.hold", *hold), Part::time("pull_out.duration", *duration)]
+                [Part::time("manoeuvre.pull-out.hold-s", *hold), Part::time("manoeuvre.pull-out.duration-s", *duration)]
             }
-            Manoeuvre::Replay(signal) => [Part::time("replay.duration", length(signal)), nothing],
+            Manoeuvre::Replay(signal) => [Part::time("manoeuvre.replay.file", length(signal)), nothing],
         };
-        [Part::time("approach.lead_in", self.approach.lead_in), first, second]
+        [Part::time("approach.lead-in-s", self.approach.lead_in), first, second]
     }
 
     fn until_end_of_record(&self) -> [Part; 5] {
         let Recording { start, duration, .. } = self.recording;
-        let lead_in = Part::time("approach.lead_in", self.approach.lead_in);
+        let lead_in = Part::time("approach.lead-in-s", self.approach.lead_in);
         let nothing = Part { duration: 0.0, ..lead_in };
         let [lead_in, reached, offset] = match start {
             Start::Run => [nothing; 3],
             Start::Execute { number, offset } => {
                 let reached = match &self.manoeuvre {
-                    Manoeuvre::ZigZag(_) => self.waits("recording.start.execute", number),
-                    Manoeuvre::PullOut(pull_out) => Part::time("pull_out.hold", pull_out.hold),
+                    Manoeuvre::ZigZag(_) => self.waits("recording.after-execute", number),
+                    Manoeuvre::PullOut(pull_out) => Part::time("manoeuvre.pull-out.hold-s", pull_out.hold),
                     Manoeuvre::TurningCircle(_) | Manoeuvre::Replay(_) => nothing,
                 };
-                [lead_in, reached, Part::time("recording.start.offset", offset)]
+                [lead_in, reached, Part::time("recording.offset-s", offset)]
             }
         };
         let delay = self.sensors.clock.heading_delay;
         // A heading that is younger than its row is read after the last row.
-        let late = Part { key: "sensors.clock.heading_delay", value: delay, duration: (-delay).max(0.0) };
-        [lead_in, reached, offset, Part::time("recording.duration", duration.unwrap_or(f64::INFINITY)), late]
+        let late = Part { key: "sensor.heading-delay-s", value: delay, duration: (-delay).max(0.0) };
+        [lead_in, reached, offset, Part::time("recording.duration-s", duration.unwrap_or(f64::INFINITY)), late]
     }
 
     fn steps_per_second(&self) -> f64 {
@@ -145,6 +133,7 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits::MOST_EXECUTES;
     use crate::tests::{KEY, zig_zag};
     use crate::{SimulateError, Vessel};
     use ship::FirstOrder;
@@ -164,23 +153,27 @@ mod tests {
             s.manoeuvre = Manoeuvre::zig_zag(0.1, 0.1, ZigZagEnd::Executes(count));
             s.recording.duration = None;
         };
-        assert_eq!(refused(&|s| executes(s, 1_000_000_000)), "zig_zag.executes");
-        assert_eq!(refused(&|s| executes(s, MOST_EXECUTES)), "zig_zag.executes", "a hundred days of zig-zags");
+        assert_eq!(refused(&|s| executes(s, 1_000_000_000)), "manoeuvre.zig-zag.executes");
+        assert_eq!(
+            refused(&|s| executes(s, MOST_EXECUTES)),
+            "manoeuvre.zig-zag.executes",
+            "a hundred days of zig-zags"
+        );
         assert_eq!(
             refused(&|s| s.recording.start = Start::Execute { number: 90_000, offset: 0.0 }),
-            "recording.start.execute"
+            "recording.after-execute"
         );
-        assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration");
-        assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead_in");
+        assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration-s");
+        assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead-in-s");
         let fast = |s: &mut Simulation| {
             s.vessel = Vessel::first_order(FirstOrder { inverse_T: 1e12, K_over_T: 1.0, rudder_bias: 0.0 });
         };
-        assert_eq!(refused(&fast), "recording.duration");
+        assert_eq!(refused(&fast), "recording.duration-s");
         let tired = |s: &mut Simulation| {
             executes(s, 9);
             s.helmsman.reaction_time = 9e6;
         };
-        assert_eq!(refused(&tired), "helmsman.reaction_time");
+        assert_eq!(refused(&tired), "helmsman.reaction-time-s");
     }
 
     #[test]

@@ -69,33 +69,33 @@ impl Disturbances {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         if let Some(wind) = &self.wind {
-            error::finite("disturbances.wind.moment", wind.moment)?;
-            error::finite("disturbances.wind.from", wind.from)?;
+            error::finite("disturbance.wind.moment-deg", wind.moment)?;
+            error::finite("disturbance.wind.from-deg", wind.from)?;
             if let Some(speed) = wind.speed {
-                error::not_negative("disturbances.wind.speed", speed)?;
+                error::not_negative("disturbance.wind.speed-m-s", speed)?;
             }
             if let Some(gusting) = &wind.gusting {
-                error::not_negative("disturbances.wind.gusting.sd", gusting.sd)?;
-                error::positive_time("disturbances.wind.gusting.correlation_time", gusting.correlation_time)?;
+                error::not_negative("disturbance.wind.gusting.sd", gusting.sd)?;
+                error::positive_time("disturbance.wind.gusting.correlation-s", gusting.correlation_time)?;
             }
         }
         if let Some(gusts) = &self.gusts {
-            error::not_negative("disturbances.gusts.sd", gusts.sd)?;
-            error::positive_time("disturbances.gusts.correlation_time", gusts.correlation_time)?;
+            error::not_negative("disturbance.gusts.sd-deg", gusts.sd)?;
+            error::positive_time("disturbance.gusts.correlation-s", gusts.correlation_time)?;
         }
-        error::finite("disturbances.drift", self.drift)?;
+        error::finite("disturbance.drift-deg-per-s", self.drift)?;
         if let Some(squall) = &self.squall {
-            error::time("disturbances.squall.start", squall.start)?;
-            error::positive_time("disturbances.squall.duration", squall.duration)?;
-            error::between("disturbances.squall.edge", squall.edge, 0.0, 0.5 * squall.duration)?;
-            error::finite("disturbances.squall.moment", squall.moment)?;
+            error::time("disturbance.squall.start-s", squall.start)?;
+            error::positive_time("disturbance.squall.duration-s", squall.duration)?;
+            error::between("disturbance.squall.edge-s", squall.edge, 0.0, 0.5 * squall.duration)?;
+            error::finite("disturbance.squall.moment-deg", squall.moment)?;
         }
-        error::not_negative("disturbances.random_walk", self.random_walk)?;
+        error::not_negative("disturbance.random-walk-deg-per-root-s", self.random_walk)?;
         if let Some(waves) = &self.waves {
-            error::not_negative("disturbances.waves.sd", waves.sd)?;
-            error::positive("disturbances.waves.frequency", waves.frequency)?;
-            error::at_most("disturbances.waves.frequency", waves.frequency, HIGHEST_FREQUENCY)?;
-            error::between("disturbances.waves.damping", waves.damping, 0.0, LARGEST_DAMPING)?;
+            error::not_negative("disturbance.waves.sd-deg", waves.sd)?;
+            error::positive("disturbance.waves.frequency-rad-s", waves.frequency)?;
+            error::at_most("disturbance.waves.frequency-rad-s", waves.frequency, HIGHEST_FREQUENCY)?;
+            error::between("disturbance.waves.damping", waves.damping, 0.0, LARGEST_DAMPING)?;
         }
         Ok(())
     }

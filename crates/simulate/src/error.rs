@@ -1,13 +1,14 @@
-//! What can go wrong: a specification that makes no sense, or a run that leads nowhere. Errors carry the numbers; the
-//! wording for a user's own file and units belongs to whoever read that file.
+//! What can go wrong: a specification that makes no sense, or a run that leads nowhere. Errors carry the numbers, under the
+//! key and in the unit in which a person writes them; the advice for a scenario is in [`crate::settings`].
 
 use std::fmt;
 
 use ship::Shown;
+use ship::angle::DEGREE;
 use thiserror::Error;
 use trial::TrialError;
 
-use crate::cost::LONGEST_TIME;
+use crate::limits::LONGEST_TIME;
 
 /// What a value of a specification has to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,8 +43,8 @@ impl fmt::Display for Expected {
             Self::Positive => write!(f, "a finite number above 0"),
             Self::NotNegative => write!(f, "a finite number, 0 or above"),
             Self::PositiveOrInfinite => write!(f, "a number above 0 (infinite is allowed)"),
-            Self::Between(low, high) => write!(f, "a number from {} to {}", Shown(*low), Shown(*high)),
-            Self::AtMost(limit) => write!(f, "at most {}", Shown(*limit)),
+            Self::Between(low, high) => write!(f, "a number from {} to {}", shown(*low), shown(*high)),
+            Self::AtMost(limit) => write!(f, "at most {}", shown(*limit)),
             Self::Duration => write!(f, "a duration, because nothing else ends the run"),
             Self::Steps { estimate, most } => {
                 write!(f, "a run of at most {most:.0e} steps, and this one may take {estimate:.1e}")
@@ -54,13 +55,13 @@ impl fmt::Display for Expected {
 
 /// A value of a specification that makes no sense.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("{key} is {}, expected {expected}", Shown(*.value))]
+#[error("{key} is {}, expected {expected}", shown(*.value))]
 pub struct SpecificationError {
-    /// Name of the value, with the part it belongs to ("gear.rate").
+    /// Key of the value in a scenario ("steering-gear.rate-deg-s"), or its name where no scenario sets it.
     pub key: &'static str,
-    /// Value found, in SI units and radians; NaN where none was given.
+    /// Value found, in the unit of its key; NaN where none was given.
     pub value: f64,
-    /// What was expected.
+    /// What was expected, in the unit of its key.
     pub expected: Expected,
 }
 
@@ -116,8 +117,28 @@ pub enum SimulateError {
 /// Shorthand for the checks below.
 pub(crate) type Checked = Result<(), SpecificationError>;
 
+/// A number as it was written: conversion to radians and back must not show.
+pub(crate) fn shown(value: f64) -> Shown {
+    Shown::rounded(value, 14)
+}
+
+/// Size in SI of the unit that the name of a key says.
+fn unit(key: &str) -> f64 {
+    if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
+}
+
+/// Refuses a value (SI, rad) that does not hold.
 fn check(holds: bool, key: &'static str, value: f64, expected: Expected) -> Checked {
-    if holds { Ok(()) } else { Err(SpecificationError { key, value, expected }) }
+    if holds {
+        return Ok(());
+    }
+    let unit = unit(key);
+    let expected = match expected {
+        Expected::Between(low, high) => Expected::Between(low / unit, high / unit),
+        Expected::AtMost(limit) => Expected::AtMost(limit / unit),
+        other => other,
+    };
+    Err(SpecificationError { key, value: value / unit, expected })
 }
 
 pub(crate) fn finite(key: &'static str, value: f64) -> Checked {
@@ -149,7 +170,7 @@ pub(crate) fn at_most(key: &'static str, value: f64, limit: f64) -> Checked {
     check(value <= limit, key, value, Expected::AtMost(limit))
 }
 
-/// A length of time, s: not negative, and no longer than [`LONGEST_TIME`](crate::cost::LONGEST_TIME).
+/// A length of time, s: not negative, and no longer than [`LONGEST_TIME`](crate::limits::LONGEST_TIME).
 pub(crate) fn time(key: &'static str, value: f64) -> Checked {
     not_negative(key, value)?;
     at_most(key, value, LONGEST_TIME)

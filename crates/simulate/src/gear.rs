@@ -84,11 +84,11 @@ impl SteeringGear {
 
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
-        error::positive_or_infinite("gear.rate", self.rate)?;
-        error::time("gear.lag", self.lag)?;
-        error::time("gear.dead_time", self.dead_time)?;
-        error::not_negative("gear.dead_band", self.dead_band)?;
-        error::positive_or_infinite("gear.maximum", self.maximum)
+        error::positive_or_infinite("steering-gear.rate-deg-s", self.rate)?;
+        error::time("steering-gear.lag-s", self.lag)?;
+        error::time("steering-gear.dead-time-s", self.dead_time)?;
+        error::not_negative("steering-gear.dead-band-deg", self.dead_band)?;
+        error::positive_or_infinite("steering-gear.maximum-deg", self.maximum)
     }
 
     /// Appends the answer to an order that arrives at `start` with the rudder at `from`; the last segment has no end.

@@ -35,9 +35,9 @@ impl Helmsman {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         if let Watches::Display { period } = self.watches {
-            error::between("helmsman.period", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
+            error::between("helmsman.reads-display-every-s", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         }
-        error::time("helmsman.reaction_time", self.reaction_time)
+        error::time("helmsman.reaction-time-s", self.reaction_time)
     }
 }
 
@@ -55,6 +55,19 @@ pub enum Cue {
     },
     /// Nothing more.
     Nothing,
+}
+
+/// An order of the helm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Execute {
+    /// Time the order is given, s.
+    pub time: f64,
+    /// True heading then, rad.
+    pub heading: f64,
+    /// True yaw rate then, rad/s.
+    pub yaw_rate: f64,
+    /// Rudder ordered, rad.
+    pub order: f64,
 }
 
 /// The state of one manoeuvre in one run.

@@ -15,7 +15,8 @@
 //! | noise, quantisation, lag, clocks, drop-outs | [`sensor`] |
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
-//! | what a run may cost | [`cost`] |
+//! | the same as a person writes it | [`settings`] |
+//! | what a run may cost | [`cost`], [`limits`] |
 //! | what can go wrong | [`error`] |
 //!
 //! ```
@@ -40,6 +41,7 @@ mod measure;
 mod propagate;
 mod root;
 mod run;
+mod sample;
 #[cfg(test)]
 mod tests;
 mod wave_path;
@@ -50,9 +52,11 @@ pub mod disturbance;
 pub mod error;
 pub mod gear;
 pub mod helm;
+pub mod limits;
 pub mod manoeuvre;
 pub mod recording;
 pub mod sensor;
+pub mod settings;
 pub mod simulation;
 pub mod stream;
 pub mod vessel;
@@ -60,10 +64,10 @@ pub mod vessel;
 pub use disturbance::Disturbances;
 pub use error::{Expected, SimulateError, SpecificationError};
 pub use gear::SteeringGear;
-pub use helm::Helmsman;
+pub use helm::{Execute, Helmsman};
 pub use manoeuvre::{Manoeuvre, Side};
 pub use recording::Recording;
 pub use sensor::Sensors;
-pub use simulation::{Approach, Execute, Prepared, Simulated, Simulation, Truth};
+pub use simulation::{Approach, Prepared, Simulated, Simulation, Truth};
 pub use stream::{Purpose, StreamKey};
 pub use vessel::{Solver, Vessel};

@@ -3,13 +3,15 @@
 //!
 //! Source of the manoeuvres and their words: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials.
 
+use serde::{Deserialize, Serialize};
 use ship::Polyline;
 
-use crate::cost::MOST_EXECUTES;
 use crate::error::{self, Checked};
+use crate::limits::MOST_EXECUTES;
 
 /// A side of the ship.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Right, seen forward: positive rudder, growing heading.
     #[default]
@@ -122,31 +124,45 @@ impl Manoeuvre {
         }
     }
 
+    /// Keys of its rudder angle and of its length in a scenario.
+    pub(crate) fn keys(&self) -> [&'static str; 2] {
+        match self {
+            Self::ZigZag(_) => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],
+            Self::TurningCircle(_) => ["manoeuvre.turning-circle.rudder-deg", "manoeuvre.turning-circle.duration-s"],
+            Self::PullOut(_) => ["manoeuvre.pull-out.rudder-deg", "manoeuvre.pull-out.duration-s"],
+            Self::Replay(_) => ["manoeuvre.replay.file"; 2],
+        }
+    }
+
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
         match self {
             Self::ZigZag(zig_zag) => {
-                error::positive("zig_zag.rudder", zig_zag.rudder)?;
-                error::positive("zig_zag.heading", zig_zag.heading)?;
+                error::positive("manoeuvre.zig-zag.rudder-deg", zig_zag.rudder)?;
+                error::positive("manoeuvre.zig-zag.heading-deg", zig_zag.heading)?;
                 match zig_zag.end {
-                    ZigZagEnd::Executes(count) => error::count("zig_zag.executes", count, MOST_EXECUTES),
-                    ZigZagEnd::Duration(duration) => error::positive_time("zig_zag.duration", duration),
+                    ZigZagEnd::Executes(count) => error::count("manoeuvre.zig-zag.executes", count, MOST_EXECUTES),
+                    ZigZagEnd::Duration(duration) => error::positive_time("manoeuvre.zig-zag.duration-s", duration),
                     ZigZagEnd::Record => Ok(()),
                 }
             }
             Self::TurningCircle(turn) => {
-                error::positive("turning_circle.rudder", turn.rudder)?;
+                error::positive("manoeuvre.turning-circle.rudder-deg", turn.rudder)?;
                 match turn.end {
-                    TurnEnd::Duration(duration) => error::positive_time("turning_circle.duration", duration),
-                    TurnEnd::HeadingChange(angle) => error::positive("turning_circle.heading_change", angle),
+                    TurnEnd::Duration(duration) => {
+                        error::positive_time("manoeuvre.turning-circle.duration-s", duration)
+                    }
+                    TurnEnd::HeadingChange(angle) => {
+                        error::positive("manoeuvre.turning-circle.heading-change-deg", angle)
+                    }
                 }
             }
             Self::PullOut(pull_out) => {
-                error::positive("pull_out.rudder", pull_out.rudder)?;
-                error::positive_time("pull_out.hold", pull_out.hold)?;
-                error::positive_time("pull_out.duration", pull_out.duration)
+                error::positive("manoeuvre.pull-out.rudder-deg", pull_out.rudder)?;
+                error::positive_time("manoeuvre.pull-out.hold-s", pull_out.hold)?;
+                error::positive_time("manoeuvre.pull-out.duration-s", pull_out.duration)
             }
-            Self::Replay(signal) => error::positive_time("replay.duration", length(signal)),
+            Self::Replay(signal) => error::positive_time("manoeuvre.replay.file", length(signal)),
         }
     }
 }

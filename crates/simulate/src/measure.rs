@@ -11,10 +11,10 @@ use trial::{Channel, Columns};
 use crate::display::Reading;
 use crate::disturbance::{Wind, gusting_speed};
 use crate::gear::RudderPath;
-use crate::propagate::Sample;
+use crate::helm::Execute;
 use crate::run::Wake;
+use crate::sample::Sample;
 use crate::sensor::{DropOut, Loses, Sensors, quantise};
-use crate::simulation::Execute;
 use crate::stream::{Purpose, StreamKey, normal, uniform};
 use crate::wave_path::Waves;
 

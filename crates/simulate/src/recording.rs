@@ -2,10 +2,10 @@
 
 use rand::rngs::ChaCha8Rng;
 
-use crate::cost::{MOST_EXECUTES, MOST_ROWS};
 use crate::error::{self, Checked};
 use crate::helm::{LONGEST_PERIOD, SHORTEST_PERIOD};
-use crate::propagate::Sample;
+use crate::limits::{MOST_EXECUTES, MOST_ROWS};
+use crate::sample::Sample;
 use crate::sensor::Clock;
 use crate::stream::{Purpose, StreamKey, normal};
 
@@ -71,17 +71,17 @@ impl Recording {
 
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
-        error::positive("recording.period", self.period)?;
-        error::between("recording.period", self.period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
+        error::positive("recording.sampling-s", self.period)?;
+        error::between("recording.sampling-s", self.period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         if let Some(duration) = self.duration {
-            error::positive("recording.duration", duration)?;
+            error::positive("recording.duration-s", duration)?;
         }
         if let Start::Execute { number, offset } = self.start {
-            error::count("recording.start.execute", number, MOST_EXECUTES)?;
-            error::time("recording.start.offset", offset)?;
+            error::count("recording.after-execute", number, MOST_EXECUTES)?;
+            error::time("recording.offset-s", offset)?;
         }
         if let RudderColumn::Orders { assumed_rate } = self.rudder {
-            error::positive_or_infinite("recording.rudder.assumed_rate", assumed_rate)?;
+            error::positive_or_infinite("recording.assumed-rudder-rate-deg-s", assumed_rate)?;
         }
         Ok(())
     }

@@ -2,14 +2,14 @@
 //! reading of the display) and never rounds one to a step. What is recorded is asked for from outside, so a run can be
 //! taken to an execute first and recorded from there.
 
-use crate::cost::{MOST_EXECUTES, MOST_STEPS};
 use crate::display::{Display, Reading};
 use crate::error::SimulateError;
 use crate::gear::{RudderPath, SteeringGear};
-use crate::helm::{Cue, Helm};
-use crate::propagate::{Crossing, Limits, Propagator, Sample, has_diverged};
+use crate::helm::{Cue, Execute, Helm};
+use crate::limits::{MOST_EXECUTES, MOST_STEPS};
+use crate::propagate::{Crossing, Limits, Propagator, has_diverged};
 use crate::recording::Tap;
-use crate::simulation::Execute;
+use crate::sample::Sample;
 
 /// Time, s, by which the end of a manoeuvre is generous, so that a row at k·period is not lost to rounding.
 const END_TOLERANCE: f64 = 1e-9;

@@ -8,8 +8,8 @@
 
 use trial::Noise;
 
-use crate::cost::LONGEST_TIME;
 use crate::error::{self, Checked};
+use crate::limits::LONGEST_TIME;
 
 /// The gyrocompass.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -113,25 +113,25 @@ const LONGEST_LAG: f64 = 100.0;
 impl Sensors {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
-        error::not_negative("sensors.heading.noise", self.heading.noise)?;
-        error::not_negative("sensors.heading.quantum", self.heading.quantum)?;
+        error::not_negative("sensor.heading-noise-deg", self.heading.noise)?;
+        error::not_negative("sensor.heading-quantum-deg", self.heading.quantum)?;
         if self.heading.lag != 0.0 {
-            error::between("sensors.heading.lag", self.heading.lag, SHORTEST_LAG, LONGEST_LAG)?;
+            error::between("sensor.heading-lag-s", self.heading.lag, SHORTEST_LAG, LONGEST_LAG)?;
         }
-        error::finite("sensors.heading.bias", self.heading.bias)?;
+        error::finite("sensor.heading-bias-deg", self.heading.bias)?;
         if let Some(yaw_rate) = &self.yaw_rate {
-            error::not_negative("sensors.yaw_rate.noise", yaw_rate.noise)?;
-            error::finite("sensors.yaw_rate.bias", yaw_rate.bias)?;
-            error::finite("sensors.yaw_rate.scale_error", yaw_rate.scale_error)?;
+            error::not_negative("sensor.yaw-rate-noise-deg-s", yaw_rate.noise)?;
+            error::finite("sensor.yaw-rate-bias-deg-s", yaw_rate.bias)?;
+            error::finite("sensor.yaw-rate-scale-error", yaw_rate.scale_error)?;
         }
-        error::not_negative("sensors.rudder.noise", self.rudder.noise)?;
-        error::not_negative("sensors.rudder.quantum", self.rudder.quantum)?;
-        error::time("sensors.clock.jitter", self.clock.jitter)?;
-        error::between("sensors.clock.heading_delay", self.clock.heading_delay, -LONGEST_TIME, LONGEST_TIME)?;
-        error::between("sensors.drop_out.probability", self.drop_out.probability, 0.0, 1.0)?;
+        error::not_negative("sensor.rudder-noise-deg", self.rudder.noise)?;
+        error::not_negative("sensor.rudder-quantum-deg", self.rudder.quantum)?;
+        error::time("sensor.jitter-s", self.clock.jitter)?;
+        error::between("sensor.heading-delay-s", self.clock.heading_delay, -LONGEST_TIME, LONGEST_TIME)?;
+        error::between("sensor.drop-out.probability", self.drop_out.probability, 0.0, 1.0)?;
         if let Some(bursts) = &self.drop_out.bursts {
-            error::between("sensors.drop_out.bursts.probability", bursts.probability, 0.0, 1.0)?;
-            error::between("sensors.drop_out.bursts.mean_rows", bursts.mean_rows, 1.0, 1e9)?;
+            error::between("sensor.drop-out.burst-probability", bursts.probability, 0.0, 1.0)?;
+            error::between("sensor.drop-out.burst-mean-rows", bursts.mean_rows, 1.0, 1e9)?;
         }
         Ok(())
     }

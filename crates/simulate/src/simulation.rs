@@ -7,17 +7,18 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::{Origin, Trial};
 
-use crate::cost::MOST_ROWS;
 use crate::display::Display;
 use crate::disturbance::Disturbances;
-use crate::error::{self, Expected, SimulateError, SpecificationError};
+use crate::error::{self, Checked, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
-use crate::helm::{Helm, Helmsman, Watches};
+use crate::helm::{Execute, Helm, Helmsman, Watches};
+use crate::limits::MOST_ROWS;
 use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
 use crate::measure::{self, Scene, View};
-use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator, Sample};
+use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator};
 use crate::recording::{Recording, RudderColumn, Start, Tap};
 use crate::run::{Progress, Run, Wake};
+use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::StreamKey;
 use crate::vessel::{Solver, Vessel};
@@ -35,6 +36,16 @@ pub struct Approach {
     pub rudder: f64,
     /// Time from the beginning of the run to the first execute, s.
     pub lead_in: f64,
+}
+
+impl Approach {
+    /// Checks every value; fails with the first one that makes no sense.
+    pub fn validate(&self) -> Checked {
+        error::finite("approach.heading-deg", self.heading)?;
+        error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
+        error::finite("approach.rudder-deg", self.rudder)?;
+        error::time("approach.lead-in-s", self.lead_in)
+    }
 }
 
 /// The specification of a simulated trial.
@@ -62,19 +73,6 @@ pub struct Simulation {
     pub solver: Solver,
     /// Longest time to wait for a heading after an execute, s; a ship that does not reach it then is an error.
     pub longest_wait: f64,
-}
-
-/// An order of the helm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Execute {
-    /// Time the order is given, s.
-    pub time: f64,
-    /// True heading then, rad.
-    pub heading: f64,
-    /// True yaw rate then, rad/s.
-    pub yaw_rate: f64,
-    /// Rudder ordered, rad.
-    pub order: f64,
 }
 
 /// What really happened, at the stamps of the rows of the record. Waves are not part of it: they are a heading that is
@@ -177,26 +175,24 @@ impl Simulation {
         self.disturbances.validate()?;
         self.sensors.validate()?;
         self.recording.validate()?;
-        error::finite("approach.heading", self.approach.heading)?;
-        error::finite("approach.yaw_rate", self.approach.yaw_rate)?;
-        error::finite("approach.rudder", self.approach.rudder)?;
-        error::time("approach.lead_in", self.approach.lead_in)?;
+        self.approach.validate()?;
         error::positive_time("longest_wait", self.longest_wait)?;
         if let Solver::RungeKutta(step) = self.solver {
             error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
         }
-        error::at_most("approach.rudder", self.approach.rudder.abs(), self.gear.maximum)?;
+        error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.maximum)?;
+        let [rudder, length] = self.manoeuvre.keys();
         if !matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
-            error::at_most("manoeuvre.rudder", self.manoeuvre.largest_rudder(), self.gear.maximum)?;
+            error::at_most(rudder, self.manoeuvre.largest_rudder(), self.gear.maximum)?;
         }
         // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
         error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
         let end = Helm::new(&self.manoeuvre, &self.helmsman, self.approach.lead_in).end();
         match (&self.manoeuvre, self.recording.duration) {
-            (_, None) if end.is_finite() => error::at_most("manoeuvre.duration", end, self.recording.longest())?,
-            (_, Some(duration)) => error::at_most("recording.duration", duration, self.recording.longest())?,
+            (_, None) if end.is_finite() => error::at_most(length, end, self.recording.longest())?,
+            (_, Some(duration)) => error::at_most("recording.duration-s", duration, self.recording.longest())?,
             (Manoeuvre::ZigZag(zig_zag), None) if zig_zag.end == ZigZagEnd::Record => {
-                let key = "recording.duration";
+                let key = "recording.duration-s";
                 return Err(SpecificationError { key, value: f64::NAN, expected: Expected::Duration });
             }
             _ => {}

@@ -54,6 +54,11 @@ enum Command {
         /// Scenario files
         #[arg(required = true, value_name = "SCENARIO.toml")]
         scenarios: Vec<PathBuf>,
+        /// Print every scenario with nothing left out, as TOML; defaults are marked
+        #[arg(long)]
+        resolved: bool,
+        #[command(flatten)]
+        common: Common,
     },
     /// List what scenario files can name
     List {
@@ -146,7 +151,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
             threads::start(&common)?;
             simulate::run(&request, &common)
         }
-        (Some(Command::Check { scenarios }), _) => check::run(&scenarios),
+        (Some(Command::Check { scenarios, resolved, common }), _) => check::run(&scenarios, resolved, &common),
         (Some(Command::List { what, common }), _) => list::run(what, &common),
         (Some(Command::Report { folder, style, common }), _) => {
             threads::start(&common)?;

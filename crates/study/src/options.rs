@@ -204,4 +204,6 @@ pub enum Listed {
     Manoeuvres,
     /// Sensor keys
     Sensors,
+    /// Every key that says how a trial is made
+    Keys,
 }

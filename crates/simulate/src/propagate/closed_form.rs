@@ -3,9 +3,10 @@
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
-use super::{Limits, Propagator, Sample, acting, has_diverged};
 use crate::gear::{RudderPath, Segment, Shape};
+use crate::propagate::propagator::{Limits, Propagator, acting, has_diverged};
 use crate::recording::Tap;
+use crate::sample::Sample;
 use crate::weather::{GRID, Weather};
 
 /// Longest step, s, and longest step in units of |T|: a course-unstable ship must be caught before it overflows.

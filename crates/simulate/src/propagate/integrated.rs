@@ -5,8 +5,9 @@ use ship::integrate::RungeKutta4;
 use ship::{Dynamics, Input};
 
 use super::exposed::Exposed;
-use super::{Propagator, Sample, acting};
 use crate::gear::{RudderPath, Segment};
+use crate::propagate::propagator::{Propagator, acting};
+use crate::sample::Sample;
 
 /// Integrated motion of any ship.
 pub(crate) struct Integrated<'a, D: ?Sized> {

@@ -4,8 +4,8 @@ use ship::FirstOrder;
 use ship::angle::from_deg;
 
 use super::{KEY, zig_zag};
-use crate::cost::{MOST_EXECUTES, MOST_ROWS};
 use crate::helm::Watches;
+use crate::limits::{MOST_EXECUTES, MOST_ROWS};
 use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
 use crate::recording::Start;
 use crate::{Expected, SimulateError, Simulation, Solver, Vessel};
@@ -25,27 +25,30 @@ fn refused(change: impl FnOnce(&mut Simulation)) -> (&'static str, Expected) {
 
 #[test]
 fn a_specification_that_makes_no_sense_is_refused_by_name() {
-    assert_eq!(refused(|s| s.gear.rate = -0.1), ("gear.rate", Expected::PositiveOrInfinite));
-    assert_eq!(refused(|s| s.gear.rate = f64::NAN), ("gear.rate", Expected::PositiveOrInfinite));
-    assert_eq!(refused(|s| s.gear.lag = f64::NAN), ("gear.lag", Expected::NotNegative));
-    assert_eq!(refused(|s| s.recording.period = 0.0), ("recording.period", Expected::Positive));
+    assert_eq!(refused(|s| s.gear.rate = -0.1), ("steering-gear.rate-deg-s", Expected::PositiveOrInfinite));
+    assert_eq!(refused(|s| s.gear.rate = f64::NAN), ("steering-gear.rate-deg-s", Expected::PositiveOrInfinite));
+    assert_eq!(refused(|s| s.gear.lag = f64::NAN), ("steering-gear.lag-s", Expected::NotNegative));
+    assert_eq!(refused(|s| s.recording.period = 0.0), ("recording.sampling-s", Expected::Positive));
     let limit = from_deg(8.0);
-    assert_eq!(refused(|s| s.gear.maximum = limit), ("manoeuvre.rudder", Expected::AtMost(limit)));
-    assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration", Expected::Duration));
+    assert_eq!(refused(|s| s.gear.maximum = limit), ("manoeuvre.zig-zag.rudder-deg", Expected::AtMost(8.0)));
+    assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration-s", Expected::Duration));
     assert_eq!(
         refused(|s| s.recording.duration = Some(1e300)),
-        ("recording.duration", Expected::AtMost((MOST_ROWS - 1) as f64))
+        ("recording.duration-s", Expected::AtMost((MOST_ROWS - 1) as f64))
     );
     assert_eq!(refused(|s| s.solver = Solver::RungeKutta(1e-300)).0, "solver.step");
-    assert_eq!(refused(|s| s.sensors.heading.lag = 1e-300).0, "sensors.heading.lag");
-    assert_eq!(refused(|s| s.helmsman.watches = Watches::Display { period: 1e-300 }).0, "helmsman.period");
-    assert_eq!(refused(|s| s.approach.heading = f64::INFINITY), ("approach.heading", Expected::Finite));
-    assert_eq!(refused(|s| s.sensors.heading.noise = -1.0), ("sensors.heading.noise", Expected::NotNegative));
+    assert_eq!(refused(|s| s.sensors.heading.lag = 1e-300).0, "sensor.heading-lag-s");
+    assert_eq!(
+        refused(|s| s.helmsman.watches = Watches::Display { period: 1e-300 }).0,
+        "helmsman.reads-display-every-s"
+    );
+    assert_eq!(refused(|s| s.approach.heading = f64::INFINITY), ("approach.heading-deg", Expected::Finite));
+    assert_eq!(refused(|s| s.sensors.heading.noise = -1.0), ("sensor.heading-noise-deg", Expected::NotNegative));
     assert_eq!(
         refused(|s| s.sensors.drop_out.probability = 1.5),
-        ("sensors.drop_out.probability", Expected::Between(0.0, 1.0))
+        ("sensor.drop-out.probability", Expected::Between(0.0, 1.0))
     );
-    assert_eq!(refused(|s| s.disturbances.random_walk = f64::NAN).0, "disturbances.random_walk");
+    assert_eq!(refused(|s| s.disturbances.random_walk = f64::NAN).0, "disturbance.random-walk-deg-per-root-s");
 }
 
 #[test]
@@ -53,7 +56,7 @@ fn a_message_says_what_was_found_and_what_was_expected() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
     simulation.recording.period = 0.0;
     let message = failure(&simulation).to_string();
-    assert_eq!(message, "recording.period is 0, expected a finite number above 0");
+    assert_eq!(message, "recording.sampling-s is 0, expected a finite number above 0");
 }
 
 #[test]

@@ -6,10 +6,11 @@ use report::{Column, Table};
 use ship::angle::KNOT;
 use ship::{effects, ships};
 
-use crate::options::{Common, Listed};
+use crate::options::{Common, Format, Listed};
 use crate::screen;
 use scenario::effect_keys;
 use scenario::failure::Failure;
+use simulate::settings::{self, Key};
 
 /// Prints the list.
 pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
@@ -17,10 +18,12 @@ pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
         Listed::Identifiers => identifiers()?,
         Listed::Effects => effects(),
         Listed::Ships => ships(),
-        Listed::Manoeuvres => pairs(&MANOEUVRES),
-        Listed::Sensors => pairs(&SENSORS),
+        Listed::Manoeuvres => keys_below("manoeuvre."),
+        Listed::Sensors => keys_below("sensor."),
+        Listed::Keys => keys_below(""),
     };
-    screen::say(common.format.render(&table).trim_end())
+    let head = if (what, common.format) == (Listed::Keys, Format::Markdown) { PAGE } else { "" };
+    screen::say(&format!("{head}{}", common.format.render(&table).trim_end()))
 }
 
 fn identifiers() -> Result<Table, Failure> {
@@ -82,35 +85,24 @@ fn ships() -> Table {
     table
 }
 
-const MANOEUVRES: [(&str, &str); 4] = [
-    ("zig-zag", "rudder-deg, heading-deg, first = \"starboard\" | \"port\", executes or duration-s"),
-    ("turning-circle", "rudder-deg, side, duration-s or heading-change-deg"),
-    ("pull-out", "rudder-deg, side, hold-s, duration-s"),
-    ("replay", "file: the rudder of a record, followed as it is"),
-];
-
-const SENSORS: [(&str, &str); 12] = [
-    ("heading-noise-deg", "standard deviation of white heading noise"),
-    ("heading-quantum-deg", "step of the heading display"),
-    ("heading-lag-s", "follow-up lag of the gyrocompass"),
-    ("heading-bias-deg", "constant heading error"),
-    (
-        "yaw-rate-noise-deg-s",
-        "standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator",
-    ),
-    ("yaw-rate-bias-deg-s", "constant yaw-rate error"),
-    ("yaw-rate-scale-error", "scale error of the yaw rate, as a share"),
-    ("rudder-noise-deg", "standard deviation of white noise of the rudder feedback"),
-    ("rudder-quantum-deg", "step of the rudder feedback"),
-    ("jitter-s", "standard deviation of the sampling instants about their stamps"),
-    ("heading-delay-s", "age of the heading against the rudder in the same row"),
-    ("drop-out", "probability, burst-probability, burst-mean-rows, whole-row"),
-];
-
-fn pairs(list: &[(&str, &str)]) -> Table {
-    let mut table = Table::new([Column::left("key"), Column::left("settings")]);
-    for &(key, text) in list {
-        table.push([key, text]);
+/// Keys of a trial whose name begins with `part`, without it.
+fn keys_below(part: &str) -> Table {
+    let mut table =
+        Table::new([Column::left("key"), Column::left("unit"), Column::left("default"), Column::left("meaning")]);
+    for Key { key, unit, default, meaning } in settings::keys() {
+        if let Some(key) = key.strip_prefix(part) {
+            // A table shows the marks of code as they are.
+            table.push([key, &unit, &default.to_string(), &meaning.replace('`', "")]);
+        }
     }
     table
 }
+
+/// What stands before the keys in Markdown, which is a page of the documentation.
+const PAGE: &str = "\
+# Keys of a trial
+
+How a trial is made, key by key. A key that is required may be left out with the whole table it stands in. `study list ships` and
+`study list effects` name the keys below `ship` and `effect`. Made by `study list keys --format markdown`.
+
+";

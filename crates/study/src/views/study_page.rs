@@ -107,6 +107,10 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings:
     for failure in tables::failures(summary, design) {
         line(&format!("- {failure}"));
     }
+    if !manifest.assumptions.is_empty() {
+        line("\nThe scenario does not say, and the trials take for granted:\n");
+        manifest.assumptions.iter().for_each(|assumption| line(&format!("- {assumption}")));
+    }
     line(&format!(
         "\nMade by `study` {} from the scenario in `manifest.toml` with seed {}; `study report` rebuilds this page from the \
          stored rows, `study manifest.toml --out DIR` runs it again.",

@@ -345,6 +345,42 @@ fn check_names_what_is_right_and_what_is_wrong() {
 }
 
 #[test]
+fn check_tells_of_a_rudder_that_moves_instantly() {
+    let desk = Desk::new();
+    desk.file("given.toml", GOOD);
+    desk.file("left-out.toml", changed("rate-deg-s = 2.5", "dead-band-deg = 0.1"));
+    let run = desk.run(&["check", "given.toml", "left-out.toml"]);
+    let lines: Vec<&str> = run.is_done().out.lines().collect();
+    assert_eq!(lines.len(), 3, "{}", run.out);
+    assert!(lines[1].starts_with("left-out.toml: "), "{}", run.out);
+    let note =
+        "  note: the rudder moves instantly, because `[steering-gear] rate-deg-s` is not given and the ship has none; ";
+    assert!(lines[2].starts_with(note), "{}", run.out);
+    desk.file("bad.toml", changed("yukun", "titanic"));
+    let quiet = desk.run(&["check", "--quiet", "left-out.toml", "bad.toml"]);
+    assert_eq!((quiet.code, quiet.out.as_str()), (Some(2), ""));
+    assert!(quiet.err.contains("titanic"), "{}", quiet.err);
+}
+
+#[test]
+fn a_resolved_scenario_is_a_scenario() {
+    let desk = Desk::new();
+    desk.file("good.toml", GOOD);
+    let run = desk.run(&["check", "good.toml", "--resolved"]);
+    assert!(run.is_done().out.starts_with("# good.toml: 1 cell, 2 methods, 2 trials each\n"), "{}", run.out);
+    assert!(run.out.contains("\nrate-deg-s = 2.5\n") && run.out.contains("\nlag-s = 0.0  # default\n"), "{}", run.out);
+    desk.run(&["check", desk.file("again.toml", &run.out)]).is_done();
+}
+
+#[test]
+fn the_page_of_keys_is_what_the_command_prints() {
+    let desk = Desk::new();
+    let page = std::fs::read_to_string(of_repository("docs/keys.md")).expect("there is a page");
+    let run = desk.run(&["list", "keys", "--format", "markdown"]);
+    assert!(run.is_done().out == page, "run `study list keys --format markdown > docs/keys.md` again");
+}
+
+#[test]
 fn every_scenario_of_the_repository_is_right() {
     let desk = Desk::new();
     let mut files: Vec<String> = std::fs::read_dir(of_repository("scenarios"))
@@ -407,6 +443,7 @@ fn lists_name_everything_in_every_format() {
         ("ships", "kvlcc2"),
         ("manoeuvres", "zig-zag"),
         ("sensors", "heading-noise-deg"),
+        ("keys", "disturbance.wind.gusting.correlation-s"),
     ] {
         for format in ["text", "markdown", "csv", "latex"] {
             let run = desk.run(&["list", what, "--format", format]);

@@ -1,0 +1,220 @@
+//! A scenario with nothing left out: what was written, and every default that was taken, each marked as one.
+
+use simulate::settings::{Key, LeftOut, RecordingSettings, RudderSource, keys};
+use toml::{Table, Value};
+
+use crate::method::Method;
+use crate::problem::{KeyPath, Problem};
+use crate::wire::{FirstOrderWire, ScenarioWire, SecondOrderWire};
+use crate::{effect, reader, resolve};
+
+/// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
+const ORDER: [&str; 15] = [
+    "question",
+    "analysis",
+    "finding",
+    "seed",
+    "replicates",
+    "ship",
+    "effect",
+    "manoeuvre",
+    "steering-gear",
+    "helmsman",
+    "approach",
+    "recording",
+    "sensor",
+    "disturbance",
+    "identifier",
+];
+
+/// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they change.
+///
+/// Fails as the scenario would.
+pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
+    let mut wire: ScenarioWire = reader::document(document)?;
+    let ship = effect::added(resolve::ship(&wire.ship)?, &wire.effect)?;
+    wire.steering_gear = wire.steering_gear.complete(&wire.steering_gear.build(&ship)?);
+    for (entry, method) in wire.identifier.iter_mut().zip(methods) {
+        entry.label.get_or_insert_with(|| method.label.clone());
+    }
+    if let Some(validation) = &mut wire.validation {
+        let RecordingSettings { sampling_s, duration_s, .. } = wire.recording;
+        validation.recording.get_or_insert(RecordingSettings {
+            sampling_s,
+            duration_s,
+            after_execute: None,
+            offset_s: None,
+            rudder: RudderSource::Feedback,
+            assumed_rudder_rate_deg_s: None,
+        });
+    }
+    for (id, table) in &mut wire.ship {
+        let key = KeyPath::dotted("ship").child(id);
+        let complete = match id.as_str() {
+            "first-order" => Table::try_from(reader::table::<FirstOrderWire>(table, &key)?),
+            "second-order" => Table::try_from(reader::table::<SecondOrderWire>(table, &key)?),
+            _ => continue,
+        };
+        *table = complete.expect("numbers can be written");
+    }
+    let complete = Table::try_from(&wire).expect("what was read can be written");
+    let mut lines = Lines { keys: keys(), text: String::new() };
+    lines.table(&[], &complete, Some(document));
+    Ok(lines.text.trim_start().to_owned())
+}
+
+struct Lines {
+    /// Settings of a trial, for those that have no value when they are left out.
+    keys: Vec<Key>,
+    text: String,
+}
+
+impl Lines {
+    /// What stands below a path, beside what was `given` there.
+    fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
+        let mut entries: Vec<(&String, &Value)> = table.iter().collect();
+        if path.is_empty() {
+            entries.sort_by_key(|(name, _)| ORDER.iter().position(|part| part == name).unwrap_or(ORDER.len()));
+        }
+        let (tables, values): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(_, value)| is_of_tables(value));
+        for (name, value) in values {
+            let mark = if given.is_some_and(|given| given.contains_key(name)) { "" } else { "  # default" };
+            self.text += &format!("{} = {value}{mark}\n", written(name));
+        }
+        self.left_out(path, table);
+        for (name, value) in tables {
+            let path = [path, &[name.as_str()]].concat();
+            let heading = path.iter().map(|name| written(name)).collect::<Vec<_>>().join(".");
+            let given = given.and_then(|given| given.get(name));
+            match value {
+                Value::Array(items) => {
+                    for (index, item) in items.iter().enumerate() {
+                        self.text += &format!("\n[[{heading}]]\n");
+                        let given = given.and_then(|given| given.get(index)).and_then(Value::as_table);
+                        self.table(&path, item.as_table().expect("a list of tables"), given);
+                    }
+                }
+                _ => {
+                    let below = value.as_table().expect("a table");
+                    let says_nothing = given.is_none() && below.is_empty();
+                    let only_leads_on = !below.is_empty() && below.values().all(Value::is_table);
+                    if !says_nothing && !only_leads_on {
+                        self.text += &format!("\n[{heading}]{}\n", if given.is_none() { "  # default" } else { "" });
+                    }
+                    self.table(&path, below, given.and_then(Value::as_table));
+                }
+            }
+        }
+    }
+
+    /// Settings that have no value here, with what that means.
+    fn left_out(&mut self, path: &[&str], table: &Table) {
+        let path = path.strip_prefix(&["validation"]).unwrap_or(path).join(".");
+        for Key { key, unit, default, meaning } in &self.keys {
+            let name = key.strip_prefix(&path).and_then(|rest| rest.strip_prefix('.'));
+            let Some(name) = name.filter(|name| !name.contains('.') && !table.contains_key(*name)) else { continue };
+            if *default == LeftOut::Nothing && unit != "table" {
+                self.text += &format!("# {name} is left out: {meaning}\n");
+            }
+        }
+    }
+}
+
+fn is_of_tables(value: &Value) -> bool {
+    match value {
+        Value::Table(_) => true,
+        Value::Array(items) => !items.is_empty() && items.iter().all(Value::is_table),
+        _ => false,
+    }
+}
+
+/// A name as TOML writes it.
+fn written(name: &str) -> String {
+    let bare = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+    if !name.is_empty() && name.chars().all(bare) {
+        name.to_owned()
+    } else {
+        Value::String(name.to_owned()).to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use simulate::settings::Assumption;
+
+    use crate::Scenario;
+
+    const BARE: &str = "
+question = \"One line,\\nand another?\"
+seed = 3
+[ship.first-order]
+K-per-s = 0.1
+T-s = 16.3
+[manoeuvre.zig-zag]
+rudder-deg = 10
+heading-deg = 10
+[recording]
+sampling-s = 1.0
+duration-s = 100.0
+[validation.manoeuvre.turning-circle]
+rudder-deg = 25.0
+duration-s = 100.0
+[[identifier]]
+method.srivc = {}
+[[sweep]]
+name = \"rate\"
+points = [{ label = \"none\", set = {} }, { label = \"2.5\", set = { \"steering-gear.rate-deg-s\" = 2.5 } }]
+";
+
+    fn scenario(text: &str) -> Scenario {
+        Scenario::parse(Path::new("bare.toml"), "bare", text.to_owned(), None).expect("it is right")
+    }
+
+    #[test]
+    fn a_resolved_scenario_is_the_same_scenario_and_marks_its_defaults() {
+        let bare = scenario(BARE);
+        let text = bare.resolved();
+        for line in [
+            "replicates = 1  # default",
+            "rudder-bias-deg = 0.0  # default",
+            "rate-deg-s = inf  # default",
+            "maximum-deg = 90.0  # default",
+            "heading-noise-deg = 0.0  # default",
+            "label = \"srivc\"  # default",
+            "rudder-deg = 10.0",
+            "\"steering-gear.rate-deg-s\" = 2.5",
+            "[sensor.drop-out]  # default",
+            "# executes is left out: Number of the execute that ends the manoeuvre, or `duration-s`; left out, the end of the \
+             record is its end.",
+        ] {
+            assert!(text.lines().any(|own| own == line), "{line}\n{text}");
+        }
+        let again = scenario(&text);
+        for (one, other) in bare.cells.iter().zip(&again.cells) {
+            let key = simulate::StreamKey { seed: 3, cell: 0, replicate: 0 };
+            let [one, other] = [one, other].map(|cell| cell.specimen(&key).expect("nothing is drawn").specification);
+            assert_eq!(format!("{:?}", one.simulation), format!("{:?}", other.simulation));
+            assert_eq!(format!("{:?}", one.validation), format!("{:?}", other.validation));
+        }
+        assert_eq!(again.resolved().replace("  # default", ""), text.replace("  # default", ""));
+    }
+
+    #[test]
+    fn defaults_that_matter_are_told_for_the_cells_that_have_them() {
+        let told = |text: &str| scenario(text).defaults_that_matter();
+        let bare = told(BARE);
+        assert_eq!(bare.iter().map(|(assumption, _)| *assumption).collect::<Vec<_>>(), Assumption::ALL);
+        assert!(bare[0].1.starts_with("in 1 of 2 cells the rudder moves instantly, because"), "{}", bare[0].1);
+        assert!(bare[1].1.starts_with("every order is given"), "{}", bare[1].1);
+        let with = |text: &str| told(&format!("{BARE}{text}"));
+        assert_eq!(with("[steering-gear]\nrate-deg-s = inf").len(), 2, "an infinite rate is meant");
+        assert_eq!(with("[helmsman]\nreaction-time-s = 0.5\n[sensor]\nheading-quantum-deg = 0.1").len(), 1);
+        let hull = |id: &str| BARE.replace("first-order", id).replace("K-per-s = 0.1\nT-s = 16.3\n", "");
+        for ship in ship::ships::all().into_iter().filter(|ship| ship.rudder_rate.is_some()) {
+            let own = told(&hull(&ship.id));
+            assert!(own.iter().all(|(assumption, _)| *assumption != Assumption::InstantRudder), "{}", ship.id);
+        }
+    }
+}
