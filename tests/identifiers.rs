@@ -2,7 +2,7 @@
 //! says otherwise. What a method promises beyond it is in [`PROMISES`], with the reason; everything else is common.
 
 use identify::estimate::{Covariance, Quantity};
-use identify::{Estimate, Identifier, IdentifierSettings, Uncertainty, registry};
+use identify::{Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
 use kempf_tests::records::{self, Begin, Case};
 use nalgebra::{Matrix3, SymmetricEigen};
 use ship::FirstOrder;
@@ -190,6 +190,28 @@ fn a_ship_that_is_not_steered_is_refused() {
         assert_eq!(kind(&[case().trial(0), records::straight_run(271)]), "not-excited", "{}", method.id());
         assert_eq!(kind(&[]), "no-trial", "{}", method.id());
     }
+}
+
+/// Ships that answer between two rows, where no record tells their T. A method that gives two of them the same T has stopped
+/// where its search ends; it says so, or it refuses.
+#[test]
+fn no_method_stops_at_the_end_of_its_search_in_silence() {
+    let mut ended = 0;
+    for method in methods() {
+        let answers = [0.02, 0.01].map(|time| {
+            let ship = FirstOrder::from_indices(0.1, time, 0.0);
+            method.identify(&[Case { ship, ..Case::default() }.trial(0)])
+        });
+        let times: Vec<f64> = answers.iter().flatten().map(|found| found.T().value).collect();
+        let same = matches!(times[..], [one, other] if (one / other - 1.0).abs() < 1e-6);
+        for found in answers.iter().flatten() {
+            let said = found.stop == StopReason::RangeLimit;
+            ended += usize::from(said);
+            assert!(said || !same, "{}: T = {times:?} s is the end of a search and nobody says so", method.id());
+            assert!(!said || !found.warnings.is_empty(), "{}: {:?} without a warning", method.id(), found.stop);
+        }
+    }
+    assert!(ended > 0, "the records reach the end of a search");
 }
 
 /// The same with every seventh row and fifteen rows in a piece lost. Smoothers and differences lose equations around a gap.
