@@ -162,20 +162,32 @@ fn variant_look(method: &str, number: usize) -> Look {
     }
 }
 
-/// A method outside the list keeps its look through all figures too: its name picks colour, marker and dash, and the
-/// hollow marker keeps it apart from the known methods.
+/// Filled shapes, the only ones that can be hollow.
+const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
+
+/// How many looks there are beside those of the known methods.
+const OTHERS: usize = METHODS.len() * OUTLINES.len() * METHODS.len();
+
+/// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow marker,
+/// which keeps them apart from the known methods.
 fn method_look(id: &str) -> Look {
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
     }
     // FNV-1a, because the standard hasher does not promise the same value in the next release.
     let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-    let filled = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
-    let pick = |shift: u32, n: usize| (hash >> shift) as usize % n;
+    other_look((hash % OTHERS as u64) as usize)
+}
+
+/// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and within
+/// a lap of 35 at least two.
+fn other_look(number: usize) -> Look {
+    let (colours, shapes) = (METHODS.len(), OUTLINES.len());
+    let (colour, shape, lap) = (number % colours, number % shapes, number / (colours * shapes));
     Look {
-        colour: METHODS[pick(0, METHODS.len())].1.colour,
-        marker: filled[pick(16, filled.len())],
-        dash: METHODS[pick(32, METHODS.len())].1.dash,
+        colour: METHODS[colour].1.colour,
+        marker: OUTLINES[shape],
+        dash: METHODS[(colour + shape + lap) % colours].1.dash,
         hollow: true,
     }
 }
@@ -206,5 +218,18 @@ mod tests {
         let look = Origin::Method("ridge".into()).look();
         assert_eq!(look, Origin::Method("ridge".into()).look());
         assert!(look.hollow);
+    }
+
+    #[test]
+    fn looks_of_other_methods_are_all_different_and_near_ones_in_two_ways() {
+        let differences = |a: Look, b: Look| {
+            usize::from(a.colour != b.colour) + usize::from(a.marker != b.marker) + usize::from(a.dash != b.dash)
+        };
+        for one in 0..OTHERS {
+            for other in one + 1..OTHERS {
+                let least = if other / 35 == one / 35 { 2 } else { 1 };
+                assert!(differences(other_look(one), other_look(other)) >= least, "{one} and {other}");
+            }
+        }
     }
 }
