@@ -1,8 +1,8 @@
 //! One contract for every registered identification method. Truth is K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg unless a test
-//! says otherwise. What a method promises beyond it is in [`PROMISES`], with the reason; everything else is common.
+//! says otherwise. What a method promises beyond it is in its own file, with the reason; everything else is common.
 
 use identify::estimate::{Covariance, Quantity};
-use identify::{Estimate, Identifier, IdentifierSettings, Uncertainty, registry};
+use identify::{Accuracy, Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
 use kempf_tests::records::{self, Begin, Case};
 use nalgebra::{Matrix3, SymmetricEigen};
 use ship::FirstOrder;
@@ -10,42 +10,11 @@ use ship::angle::{from_deg, to_deg};
 use simulate::Side;
 use trial::Trial;
 
-/// Largest error without noise, of K and T as a share and of δ_r in deg.
-struct Promise {
-    id: &'static str,
-    k: f64,
-    t: f64,
-    bias_deg: f64,
-}
-
-/// Without noise nothing but the method itself is left. Records have a rudder whose corners lie between rows, and a straight
-/// line between rows takes its place: no method can be better than 0.03 % in K.
-const PROMISES: [Promise; 7] = [
-    // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten triples
-    // scatter about that, and δ_r is the worst of their ratios.
-    Promise { id: "fourier-published", k: 0.10, t: 0.22, bias_deg: 0.7 },
-    // A residue of the same truncation: within half a percent but for the long swings of 10/20.
-    Promise { id: "fourier-projected", k: 0.004, t: 0.018, bias_deg: 0.04 },
-    // Peaks are no parabolas: +0.7 % at the default half width in an independent computation.
-    Promise { id: "characteristic-points", k: 0.008, t: 0.008, bias_deg: 0.008 },
-    // Central differences over 1 s of a response with T = 16.3 s.
-    Promise { id: "least-squares", k: 0.001, t: 0.0015, bias_deg: 0.004 },
-    // The corners of the rudder and nothing else.
-    Promise { id: "integral-least-squares", k: 4e-4, t: 1e-4, bias_deg: 4e-4 },
-    Promise { id: "output-error", k: 4e-4, t: 1e-4, bias_deg: 4e-4 },
-    Promise { id: "srivc", k: 4e-4, t: 1e-4, bias_deg: 4e-4 },
-];
-
 /// Rudder and heading of the zig-zags, deg.
 const ZIG_ZAGS: [(f64, f64); 3] = [(10.0, 10.0), (10.0, 20.0), (20.0, 20.0)];
 
 fn methods() -> Vec<Box<dyn Identifier>> {
     registry::defaults().iter().map(|settings| settings.build().expect("default settings are valid")).collect()
-}
-
-fn promise<'a>(promises: &'a [Promise], method: &dyn Identifier) -> &'a Promise {
-    let found = promises.iter().find(|promise| promise.id == method.id());
-    found.unwrap_or_else(|| panic!("{} is registered: say here what it promises", method.id()))
 }
 
 fn truth() -> FirstOrder {
@@ -68,13 +37,13 @@ fn identify(method: &dyn Identifier, trials: &[Trial]) -> Estimate {
 }
 
 /// Whether K, T and δ_r of `found` are those of the truth within what the method promises.
-fn check_promise(promises: &[Promise], method: &dyn Identifier, found: &FirstOrder, when: &str) {
-    let Promise { id, k, t, bias_deg } = promise(promises, method);
+fn check_promise(id: &str, promise: &Accuracy, found: &FirstOrder, when: &str) {
     let [k_error, t_error] = [found.K() / truth().K() - 1.0, found.T() / truth().T() - 1.0];
     let bias_error = to_deg(found.rudder_bias - truth().rudder_bias);
-    assert!(k_error.abs() <= *k, "{id}, {when}: K off by {:+.4} %", 100.0 * k_error);
-    assert!(t_error.abs() <= *t, "{id}, {when}: T off by {:+.4} %", 100.0 * t_error);
-    assert!(bias_error.abs() <= *bias_deg, "{id}, {when}: δ_r off by {bias_error:+.5} deg");
+    let why = format!("{id}, {when}: beyond what Identifier::promises() in its file allows:");
+    assert!(k_error.abs() <= promise.K, "{why} K off by {:+.4} %", 100.0 * k_error);
+    assert!(t_error.abs() <= promise.T, "{why} T off by {:+.4} %", 100.0 * t_error);
+    assert!(bias_error.abs() <= promise.rudder_bias_deg, "{why} δ_r off by {bias_error:+.5} deg");
 }
 
 /// Whether two responses are the same within a share of K and T, and of a degree of δ_r.
@@ -86,11 +55,16 @@ fn assert_same(id: &str, left: &FirstOrder, right: &FirstOrder, share: f64) {
 }
 
 #[test]
-fn every_method_of_the_contract_is_registered_once() {
-    let ids: Vec<&str> = methods().iter().map(|method| method.id()).collect();
-    let expected: Vec<&str> = PROMISES.iter().map(|promise| promise.id).collect();
-    assert_eq!(ids, expected);
-    assert!(methods().iter().all(|method| !method.summary().is_empty()));
+fn every_method_goes_by_its_key_in_a_scenario() {
+    let mut ids = Vec::new();
+    for settings in registry::defaults() {
+        let method = settings.build().expect("default settings are valid");
+        let written = serde_json::to_value(&settings).expect("settings are plain data");
+        let key = written.as_object().and_then(|object| object.keys().next()).expect("the key of the variant");
+        assert_eq!(method.id(), key);
+        assert!(!method.summary().is_empty() && !ids.contains(&method.id()), "{key}");
+        ids.push(method.id());
+    }
 }
 
 #[test]
@@ -100,7 +74,12 @@ fn without_noise_the_ship_is_recovered() {
             for begin in [Begin::Rest, Begin::Mid] {
                 let trial = Case { rudder_deg, heading_deg, begin, ..case() }.trial(0);
                 let found = identify(method.as_ref(), &[trial]).response;
-                check_promise(&PROMISES, method.as_ref(), &found, &format!("{rudder_deg}/{heading_deg} {begin:?}"));
+                check_promise(
+                    method.id(),
+                    &method.promises().whole,
+                    &found,
+                    &format!("{rudder_deg}/{heading_deg} {begin:?}"),
+                );
             }
         }
     }
@@ -111,7 +90,7 @@ fn several_trials_of_one_ship_are_taken_together() {
     for method in methods() {
         let trials = [case(), Case { rudder_deg: 20.0, heading_deg: 20.0, begin: Begin::Mid, ..case() }];
         let found = identify(method.as_ref(), &trials.map(|case| case.trial(0))).response;
-        check_promise(&PROMISES, method.as_ref(), &found, "two trials");
+        check_promise(method.id(), &method.promises().whole, &found, "two trials");
         let [one, other] = noisy();
         let alone = identify(method.as_ref(), std::slice::from_ref(&one));
         let both = identify(method.as_ref(), &[one, other]);
@@ -192,20 +171,29 @@ fn a_ship_that_is_not_steered_is_refused() {
     }
 }
 
-/// The same with every seventh row and fifteen rows in a piece lost. Smoothers and differences lose equations around a gap.
-/// Where whole rows are lost the rudder between them is a straight line as well, and an error of it grows with time in an
-/// equation that is integrated twice while it dies out in a simulation: 0.3 % of T against 0.1 %. The published Fourier method is off by twice its
-/// promise without any noise: its curve is the poorer the fewer headings hold it.
-const GAPS: [Promise; 7] = [
-    Promise { id: "fourier-published", k: 0.25, t: 0.45, bias_deg: 1.0 },
-    Promise { id: "fourier-projected", k: 0.012, t: 0.018, bias_deg: 0.1 },
-    Promise { id: "characteristic-points", k: 0.01, t: 0.01, bias_deg: 0.02 },
-    Promise { id: "least-squares", k: 0.003, t: 0.003, bias_deg: 0.02 },
-    Promise { id: "integral-least-squares", k: 0.001, t: 0.005, bias_deg: 0.012 },
-    Promise { id: "output-error", k: 0.001, t: 0.002, bias_deg: 0.012 },
-    Promise { id: "srivc", k: 0.001, t: 0.002, bias_deg: 0.012 },
-];
+/// Ships that answer between two rows, where no record tells their T. A method that gives two of them the same T has stopped
+/// where its search ends; it says so, or it refuses.
+#[test]
+fn no_method_stops_at_the_end_of_its_search_in_silence() {
+    let mut ended = 0;
+    for method in methods() {
+        let answers = [0.02, 0.01].map(|time| {
+            let ship = FirstOrder::from_indices(0.1, time, 0.0);
+            method.identify(&[Case { ship, ..Case::default() }.trial(0)])
+        });
+        let times: Vec<f64> = answers.iter().flatten().map(|found| found.T().value).collect();
+        let same = matches!(times[..], [one, other] if (one / other - 1.0).abs() < 1e-6);
+        for found in answers.iter().flatten() {
+            let said = found.stop == StopReason::RangeLimit;
+            ended += usize::from(said);
+            assert!(said || !same, "{}: T = {times:?} s is the end of a search and nobody says so", method.id());
+            assert!(!said || !found.warnings.is_empty(), "{}: {:?} without a warning", method.id(), found.stop);
+        }
+    }
+    assert!(ended > 0, "the records reach the end of a search");
+}
 
+/// The same with every seventh row and fifteen rows in a piece lost.
 #[test]
 fn gaps_are_survived() {
     let lost = |row: usize| row % 7 == 3 || (100..115).contains(&row);
@@ -216,7 +204,7 @@ fn gaps_are_survived() {
             ("rows missing", records::without_rows(&trial, lost)),
         ] {
             let found = identify(method.as_ref(), &[record]).response;
-            check_promise(&GAPS, method.as_ref(), &found, when);
+            check_promise(method.id(), &method.promises().with_gaps, &found, when);
         }
     }
 }

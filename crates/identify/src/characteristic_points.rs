@@ -18,9 +18,9 @@ use ship::angle::from_deg;
 use ship::{FirstOrder, Shown};
 use trial::Trial;
 
-use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit};
 use points::{BaseCourse, Points};
@@ -196,6 +196,14 @@ impl Identifier for CharacteristicPoints {
             diagnostics,
             warnings: warnings(trials, &analysed),
         })
+    }
+
+    fn promises(&self) -> Promises {
+        // Peaks are no parabolas: +0.7 % at the default half width in an independent computation.
+        Promises {
+            whole: Accuracy { K: 0.008, T: 0.008, rudder_bias_deg: 0.008 },
+            with_gaps: Accuracy { K: 0.01, T: 0.01, rudder_bias_deg: 0.02 },
+        }
     }
 }
 

@@ -19,11 +19,11 @@ use ship::signal::Polyline;
 use statrs::distribution::{Binomial, DiscreteCDF};
 use trial::Trial;
 
-use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
 use crate::fourier::triples::{self, Answer, Drawn, Instant, MOST_TRIPLES, Selection};
 use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS, StartPoint};
+use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
 use crate::settings::SettingsError;
 
@@ -201,6 +201,16 @@ impl Identifier for FourierPublished {
             diagnostics: diagnostics(&fits, instants.len(), &drawn),
             warnings: warnings(&fits, &drawn),
         })
+    }
+
+    fn promises(&self) -> Promises {
+        // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten triples
+        // scatter about that, and δ_r is the worst of their ratios. The curve is the poorer the fewer headings hold it: with
+        // gaps it is off by twice as much.
+        Promises {
+            whole: Accuracy { K: 0.1, T: 0.22, rudder_bias_deg: 0.7 },
+            with_gaps: Accuracy { K: 0.25, T: 0.45, rudder_bias_deg: 1.0 },
+        }
     }
 }
 

@@ -16,10 +16,10 @@ use ship::FirstOrder;
 use ship::angle::to_deg;
 use trial::Trial;
 
-use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
+use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::robust::{judge, newey_west_of_three};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
@@ -129,6 +129,12 @@ impl Identifier for IntegralLeastSquares {
             diagnostics,
             warnings: warnings(trials, pieces.len()).into_iter().chain(warning).collect(),
         })
+    }
+
+    fn promises(&self) -> Promises {
+        // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time in an
+        // equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
+        Promises { with_gaps: Accuracy { K: 0.001, T: 0.005, rudder_bias_deg: 0.012 }, ..Promises::default() }
     }
 }
 

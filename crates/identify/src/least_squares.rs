@@ -9,10 +9,10 @@ use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use trial::Trial;
 
-use crate::Identifier;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
+use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::linear::LeastSquares as Solution;
 use crate::robust::newey_west_of_three;
 use crate::samples::Samples;
@@ -191,6 +191,14 @@ impl Identifier for LeastSquares {
             diagnostics,
             warnings,
         })
+    }
+
+    fn promises(&self) -> Promises {
+        // Central differences over 1 s of a response with T = 16.3 s; around a gap equations are lost.
+        Promises {
+            whole: Accuracy { K: 0.001, T: 0.0015, rudder_bias_deg: 0.004 },
+            with_gaps: Accuracy { K: 0.003, T: 0.003, rudder_bias_deg: 0.02 },
+        }
     }
 }
 

@@ -21,6 +21,7 @@ pub mod fourier;
 pub mod fourier_projected;
 pub mod fourier_published;
 mod gaps;
+pub mod identifier;
 pub mod integral_least_squares;
 pub mod least_squares;
 pub mod linear;
@@ -40,31 +41,5 @@ mod track;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};
+pub use identifier::{Accuracy, Identifier, Promises};
 pub use registry::IdentifierSettings;
-
-use trial::Trial;
-
-/// A method that identifies a first-order response from one or several trials of the same ship.
-///
-/// A value of this type is a method with its settings. It holds no data: calling it twice with the same trials gives
-/// the same bits.
-pub trait Identifier: Send + Sync {
-    /// Identifier used in scenario files, tables and JSON.
-    fn id(&self) -> &'static str;
-
-    /// One line on what the method does, for lists.
-    fn summary(&self) -> &'static str;
-
-    /// Identifies K, T and δ_r, common to all trials; every trial keeps its own initial state.
-    ///
-    /// Fails with a typed reason when a record does not excite the ship, is too short for the method, or the
-    /// equations are singular; never panics on a valid [`Trial`].
-    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError>;
-
-    /// The same method with another seed, for methods that draw at random; `None` for all others.
-    ///
-    /// A benchmark gives every trial a seed of its own, so that the spread over trials holds the method's own chance.
-    fn with_seed(&self, _seed: u64) -> Option<Box<dyn Identifier>> {
-        None
-    }
-}

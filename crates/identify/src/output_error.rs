@@ -16,11 +16,12 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
+use crate::identifier::Identifier;
 use crate::profile::{Profile, Step, invert};
+use crate::robust;
 use crate::scan::{self, Fit};
 use crate::settings::{SettingsError, check_iterations};
 use crate::track::{Coefficients, Track};
-use crate::{Identifier, robust};
 
 /// Settings of [`OutputError`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

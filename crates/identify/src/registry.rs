@@ -1,60 +1,91 @@
 //! The methods of the project by name, with their settings as they are written in scenario files.
 //!
-//! To add a method: a file with its `Settings` and an [`Identifier`], one variant here and one line in
-//! [`IdentifierSettings::build`] and [`defaults`]. The contract suite then runs it.
+//! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below. The
+//! contract of all methods then runs it.
 
 use serde::{Deserialize, Serialize};
 
+use crate::identifier::Identifier;
 use crate::settings::SettingsError;
-use crate::{
-    Identifier, characteristic_points, fourier_projected, fourier_published, integral_least_squares, least_squares,
-    output_error, srivc,
-};
 
-/// A method and its settings; the variant is the key in a scenario file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum IdentifierSettings {
-    /// The Fourier method as printed.
-    FourierPublished(fourier_published::Settings),
-    /// The Fourier method mended.
-    FourierProjected(fourier_projected::Settings),
-    /// The traditional method.
-    CharacteristicPoints(characteristic_points::Settings),
-    /// Regression on derivatives.
-    LeastSquares(least_squares::Settings),
-    /// Regression on integrals.
-    IntegralLeastSquares(integral_least_squares::Settings),
-    /// Maximum likelihood by simulation.
-    OutputError(output_error::Settings),
-    /// Refined instrumental variables.
-    Srivc(srivc::Settings),
+macro_rules! methods {
+    ($($Method:ident($file:ident)),+ $(,)?) => {
+        /// A method and its settings; the variant is the key in a scenario file.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum IdentifierSettings {
+            $(
+                #[doc = concat!("Settings of [`", stringify!($file), "`](crate::", stringify!($file), ").")]
+                $Method(crate::$file::Settings),
+            )+
+        }
+
+        impl IdentifierSettings {
+            /// Checks the settings and makes the method.
+            pub fn build(&self) -> Result<Box<dyn Identifier>, SettingsError> {
+                Ok(match self.clone() {
+                    $(Self::$Method(settings) => Box::new(settings.build()?),)+
+                })
+            }
+        }
+
+        /// Every method with its default settings, in the order of reports.
+        pub fn defaults() -> Vec<IdentifierSettings> {
+            vec![$(IdentifierSettings::$Method(crate::$file::Settings::default())),+]
+        }
+    };
 }
 
-impl IdentifierSettings {
-    /// Checks the settings and makes the method.
-    pub fn build(&self) -> Result<Box<dyn Identifier>, SettingsError> {
-        Ok(match self.clone() {
-            Self::FourierPublished(settings) => Box::new(settings.build()?),
-            Self::FourierProjected(settings) => Box::new(settings.build()?),
-            Self::CharacteristicPoints(settings) => Box::new(settings.build()?),
-            Self::LeastSquares(settings) => Box::new(settings.build()?),
-            Self::IntegralLeastSquares(settings) => Box::new(settings.build()?),
-            Self::OutputError(settings) => Box::new(settings.build()?),
-            Self::Srivc(settings) => Box::new(settings.build()?),
-        })
+// The key in a scenario is the name in kebab-case; in brackets is the file. The order is that of reports.
+methods! {
+    FourierPublished(fourier_published),
+    FourierProjected(fourier_projected),
+    CharacteristicPoints(characteristic_points),
+    LeastSquares(least_squares),
+    IntegralLeastSquares(integral_least_squares),
+    OutputError(output_error),
+    Srivc(srivc),
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fourier::Fundamental;
+    use crate::fourier::fundamental::StartPoint::FftPeak;
+    use crate::savitzky_golay::SavitzkyGolay;
+    use crate::{fourier_published, least_squares, output_error, srivc};
+
+    use super::IdentifierSettings as Of;
+
+    /// Counts that would take all memory or all time, and numbers whose size has to be seen.
+    #[test]
+    fn settings_that_cannot_end_are_refused() {
+        let published = |settings: fourier_published::Settings| Of::FourierPublished(settings);
+        let series = |fundamental| published(fourier_published::Settings { fundamental, ..Default::default() });
+        let triples = |triples| published(fourier_published::Settings { triples, ..Default::default() });
+        let error = |settings| Of::OutputError(settings);
+        let default = output_error::Settings::default;
+        let smoothing = Some(SavitzkyGolay { window_samples: 1_000_000_001, order: 3 });
+        for (settings, key, found) in [
+            (triples(usize::MAX), "triples", "18446744073709551615"),
+            (triples(10_001), "triples", "10001"),
+            (series(Fundamental::FixedRadS(1e300)), "fundamental.fixed-rad-s", "1e300"),
+            (series(Fundamental::Starts(vec![FftPeak; 4])), "fundamental.starts", "a list of 4 starts"),
+            (
+                Of::LeastSquares(least_squares::Settings { smoothing, ..Default::default() }),
+                "window-samples",
+                "1000000001",
+            ),
+            (error(output_error::Settings { iterations: 1001, ..default() }), "iterations", "1001"),
+            (error(output_error::Settings { grid_per_decade: 1001, ..default() }), "grid-per-decade", "1001"),
+            (
+                error(output_error::Settings { smallest_time_constant_s: Some(1e-300), ..default() }),
+                "smallest-time-constant-s",
+                "1e-300",
+            ),
+            (Of::Srivc(srivc::Settings { max_iterations: 1001, ..Default::default() }), "max-iterations", "1001"),
+        ] {
+            let error = settings.build().err().expect("it cannot end");
+            assert_eq!((error.key, error.found.as_str()), (key, found), "{error}");
+        }
     }
-}
-
-/// Every method with its default settings, in the order of reports.
-pub fn defaults() -> Vec<IdentifierSettings> {
-    vec![
-        IdentifierSettings::FourierPublished(fourier_published::Settings::default()),
-        IdentifierSettings::FourierProjected(fourier_projected::Settings::default()),
-        IdentifierSettings::CharacteristicPoints(characteristic_points::Settings::default()),
-        IdentifierSettings::LeastSquares(least_squares::Settings::default()),
-        IdentifierSettings::IntegralLeastSquares(integral_least_squares::Settings::default()),
-        IdentifierSettings::OutputError(output_error::Settings::default()),
-        IdentifierSettings::Srivc(srivc::Settings::default()),
-    ]
 }

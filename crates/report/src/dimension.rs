@@ -1,10 +1,10 @@
 //! Dimension lines as on a technical drawing: a line with an arrow at either end and the quantity beside it.
 
-use plotters::style::RGBColor;
-
+use crate::canvas::Anchor;
 use crate::clip::Place;
+use crate::colour::Colour;
 use crate::palette::DIMENSION;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 
 /// Length of an arrow head, in small-font sizes.
@@ -22,7 +22,7 @@ impl Dimensions<'_> {
     }
 
     /// An arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
-    pub(crate) fn head(scene: &mut Scene, (x, y): Place, (dx, dy): Place, size: f64, colour: RGBColor) {
+    pub(crate) fn head(scene: &mut Scene, (x, y): Place, (dx, dy): Place, size: f64, colour: Colour) {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
         scene.fill(

@@ -3,12 +3,13 @@
 //! are drawn here, the data by the figures.
 
 use crate::axis::{Axis, Ticks};
+use crate::canvas::{Anchor, text_width};
 use crate::clip::Rect;
 use crate::figure::Figure;
 use crate::legend::{self, Entry};
 use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
+use crate::scene::{Layer, Scene, Stroke, Text};
 use crate::svg;
 use crate::theme::Theme;
 
@@ -369,7 +370,7 @@ pub(crate) fn wrap(text: &str, size: f64, bold: bool, width: f64) -> Vec<String>
     // Not at every white space: a no-break space keeps a symbol and its value together.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         let longer = lines.last().map(|line| format!("{line} {word}"));
-        match longer.filter(|line| crate::fonts::width(line, size, bold) <= width) {
+        match longer.filter(|line| text_width(line, size, bold) <= width) {
             Some(line) => *lines.last_mut().expect("a longer line extends one that is there") = line,
             None => lines.push(word.to_owned()),
         }

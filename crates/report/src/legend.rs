@@ -1,8 +1,7 @@
 //! The key of a figure: samples with their names in aligned columns, always outside the data.
 
-use plotters::style::RGBColor;
-
 use crate::clip::Place;
+use crate::colour::Colour;
 use crate::palette::{Look, Origin};
 use crate::scene::{Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
@@ -12,7 +11,7 @@ use crate::theme::Theme;
 pub(crate) enum Sample {
     Nothing,
     Line(Stroke),
-    Dots(RGBColor),
+    Dots(Colour),
     Marker(Look),
     LineAndMarker(Stroke, Look),
 }

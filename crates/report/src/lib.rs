@@ -28,6 +28,7 @@
 //!
 //! A figure never fails for its data: an undefined number is left out, and a figure without any data is an empty frame.
 
+pub mod colour;
 pub mod curve;
 pub mod error;
 pub mod figure;
@@ -40,11 +41,13 @@ pub mod table;
 pub mod theme;
 
 mod axis;
+mod canvas;
 mod clip;
 mod dimension;
 mod fonts;
 mod layout;
 mod legend;
+mod markup;
 mod panel;
 mod scene;
 mod svg;
@@ -53,7 +56,7 @@ mod ticks;
 pub use curve::Curve;
 pub use error::ReportError;
 pub use figure::Figure;
+pub use markup::symbol;
 pub use palette::Origin;
-pub use scene::symbol;
 pub use table::{Alignment, Column, Table};
 pub use theme::Theme;

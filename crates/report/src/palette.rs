@@ -3,8 +3,9 @@
 //! common colour blindness; their yellow, too pale on paper, is replaced by a wine red. Marker and dash repeat the
 //! distinction for prints in grey.
 
-use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
+
+use crate::colour::Colour;
 
 /// Whom a curve or a value comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,21 +81,21 @@ const DASH_DOT_DOT: Dash = &[6.0, 1.8, 1.4, 1.8, 1.4, 1.8];
 const SHORT_DASH: Dash = &[3.0, 1.6];
 
 /// Text, frames and the truth.
-pub const INK: RGBColor = RGBColor(0x11, 0x11, 0x11);
+pub const INK: Colour = Colour(0x11, 0x11, 0x11);
 /// The record.
-pub const RECORD: RGBColor = RGBColor(0x77, 0x77, 0x77);
+pub const RECORD: Colour = Colour(0x77, 0x77, 0x77);
 /// Grid lines.
-pub const GRID: RGBColor = RGBColor(0xE2, 0xE2, 0xE2);
+pub const GRID: Colour = Colour(0xE2, 0xE2, 0xE2);
 /// Background.
-pub const PAPER: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
+pub const PAPER: Colour = Colour(0xFF, 0xFF, 0xFF);
 /// The heading in a figure without methods.
-pub const HEADING: RGBColor = RGBColor(0x00, 0x72, 0xB2);
+pub const HEADING: Colour = Colour(0x00, 0x72, 0xB2);
 /// The rudder.
-pub const RUDDER: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
+pub const RUDDER: Colour = Colour(0xD5, 0x5E, 0x00);
 /// A model before something was added to it.
-pub const BEFORE: RGBColor = RGBColor(0x88, 0x22, 0x55);
+pub const BEFORE: Colour = Colour(0x88, 0x22, 0x55);
 /// Dimension lines and their numbers.
-pub const DIMENSION: RGBColor = RGBColor(0x00, 0x7A, 0x5A);
+pub const DIMENSION: Colour = Colour(0x00, 0x7A, 0x5A);
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,7 +120,7 @@ pub enum Marker {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Colour of line and marker.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// Shape at the data points.
     pub marker: Marker,
     /// Pattern of the line.
@@ -129,19 +130,19 @@ pub struct Look {
 }
 
 impl Look {
-    const fn new(colour: RGBColor, marker: Marker, dash: Dash) -> Self {
+    const fn new(colour: Colour, marker: Marker, dash: Dash) -> Self {
         Self { colour, marker, dash, hollow: false }
     }
 }
 
 const METHODS: [(&str, Look); 7] = [
-    ("fourier-published", Look::new(RGBColor(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
-    ("fourier-projected", Look::new(RGBColor(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
-    ("characteristic-points", Look::new(RGBColor(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
-    ("least-squares", Look::new(RGBColor(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
-    ("integral-least-squares", Look::new(RGBColor(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
-    ("output-error", Look::new(RGBColor(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
-    ("srivc", Look::new(RGBColor(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
+    ("fourier-published", Look::new(Colour(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
+    ("fourier-projected", Look::new(Colour(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
+    ("characteristic-points", Look::new(Colour(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
+    ("least-squares", Look::new(Colour(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
+    ("integral-least-squares", Look::new(Colour(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
+    ("output-error", Look::new(Colour(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
+    ("srivc", Look::new(Colour(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
 ];
 
 /// The ids that have a look of their own, in the order figures list them.
@@ -161,20 +162,32 @@ fn variant_look(method: &str, number: usize) -> Look {
     }
 }
 
-/// A method outside the list keeps its look through all figures too: its name picks colour, marker and dash, and the
-/// hollow marker keeps it apart from the known methods.
+/// Filled shapes, the only ones that can be hollow.
+const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
+
+/// How many looks there are beside those of the known methods.
+const OTHERS: usize = METHODS.len() * OUTLINES.len() * METHODS.len();
+
+/// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow marker,
+/// which keeps them apart from the known methods.
 fn method_look(id: &str) -> Look {
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
     }
     // FNV-1a, because the standard hasher does not promise the same value in the next release.
     let hash = id.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
-    let filled = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
-    let pick = |shift: u32, n: usize| (hash >> shift) as usize % n;
+    other_look((hash % OTHERS as u64) as usize)
+}
+
+/// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and within
+/// a lap of 35 at least two.
+fn other_look(number: usize) -> Look {
+    let (colours, shapes) = (METHODS.len(), OUTLINES.len());
+    let (colour, shape, lap) = (number % colours, number % shapes, number / (colours * shapes));
     Look {
-        colour: METHODS[pick(0, METHODS.len())].1.colour,
-        marker: filled[pick(16, filled.len())],
-        dash: METHODS[pick(32, METHODS.len())].1.dash,
+        colour: METHODS[colour].1.colour,
+        marker: OUTLINES[shape],
+        dash: METHODS[(colour + shape + lap) % colours].1.dash,
         hollow: true,
     }
 }
@@ -205,5 +218,18 @@ mod tests {
         let look = Origin::Method("ridge".into()).look();
         assert_eq!(look, Origin::Method("ridge".into()).look());
         assert!(look.hollow);
+    }
+
+    #[test]
+    fn looks_of_other_methods_are_all_different_and_near_ones_in_two_ways() {
+        let differences = |a: Look, b: Look| {
+            usize::from(a.colour != b.colour) + usize::from(a.marker != b.marker) + usize::from(a.dash != b.dash)
+        };
+        for one in 0..OTHERS {
+            for other in one + 1..OTHERS {
+                let least = if other / 35 == one / 35 { 2 } else { 1 };
+                assert!(differences(other_look(one), other_look(other)) >= least, "{one} and {other}");
+            }
+        }
     }
 }

@@ -1,10 +1,9 @@
 //! One pair of axes on the page: where a value lies, and the things every figure draws there. Everything is cut at the
 //! frame; undefined values are left out.
 
-use plotters::style::RGBColor;
-
 use crate::axis::Axis;
 use crate::clip::{self, Place, Rect};
+use crate::colour::Colour;
 use crate::palette::Look;
 use crate::scene::{Layer, Scene, Stroke};
 
@@ -53,7 +52,7 @@ impl Panel {
         scene: &mut Scene,
         pairs: impl IntoIterator<Item = (f64, f64)>,
         radius: f64,
-        colour: RGBColor,
+        colour: Colour,
     ) {
         let mut last: Option<Place> = None;
         for place in pairs.into_iter().filter_map(|pair| self.inside(pair)) {

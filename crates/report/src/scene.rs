@@ -1,45 +1,15 @@
 //! A drawing as a list of shapes in points on the page. Figures fill a scene; [`crate::svg`] writes it out. The list in
 //! between is what lets a frame be drawn after the data it encloses, and what keeps undefined coordinates out.
 
-use plotters::style::RGBColor;
-
+use crate::canvas::{self, Anchor};
 use crate::clip::{Place, Rect};
-use crate::fonts;
+use crate::colour::Colour;
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
-
-/// Opens italic type inside a text (a character of the private-use area; [`crate::svg`] turns it into markup).
-const ITALIC_ON: char = '\u{e000}';
-/// Ends italic type.
-const ITALIC_OFF: char = '\u{e001}';
-
-/// Whether a character is one of the two marks around italic type.
-pub(crate) fn is_markup(c: char) -> bool {
-    c == ITALIC_ON || c == ITALIC_OFF
-}
-
-/// A quantity symbol, set in italic as ISO 80000-1 wants it: for titles and labels of figures, not for tables.
-pub fn symbol(text: &str) -> String {
-    format!("{ITALIC_ON}{text}{ITALIC_OFF}")
-}
-
-/// Splits a text into runs of upright and italic type.
-pub(crate) fn runs(text: &str) -> Vec<(bool, &str)> {
-    let mut italic = false;
-    let mut runs = Vec::new();
-    for piece in text.split_inclusive(is_markup) {
-        let visible = piece.trim_end_matches(is_markup);
-        if !visible.is_empty() {
-            runs.push((italic, visible));
-        }
-        italic = piece.ends_with(ITALIC_ON);
-    }
-    runs
-}
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stroke {
-    pub colour: RGBColor,
+    pub colour: Colour,
     pub opacity: f64,
     /// Points.
     pub width: f64,
@@ -48,7 +18,7 @@ pub(crate) struct Stroke {
 }
 
 impl Stroke {
-    pub(crate) fn solid(colour: RGBColor, width: f64) -> Self {
+    pub(crate) fn solid(colour: Colour, width: f64) -> Self {
         Self { colour, opacity: 1.0, width, dash: SOLID }
     }
 
@@ -57,20 +27,12 @@ impl Stroke {
     }
 }
 
-/// Which end of a text stands at its place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
 /// A line of text; `place` is on the base line.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Text {
     pub text: String,
     pub size: f64,
-    pub colour: RGBColor,
+    pub colour: Colour,
     pub bold: bool,
     pub anchor: Anchor,
     /// Turned a quarter to the left, as the title of a vertical axis.
@@ -86,12 +48,12 @@ impl Text {
         Self { anchor, ..self }
     }
 
-    pub(crate) fn colour(self, colour: RGBColor) -> Self {
+    pub(crate) fn colour(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 
     pub(crate) fn width(&self) -> f64 {
-        fonts::width(&self.text, self.size, self.bold)
+        canvas::text_width(&self.text, self.size, self.bold)
     }
 
     /// From the middle of a capital letter down to the base line.
@@ -124,8 +86,8 @@ pub(crate) enum Layer {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Shape {
     Line { points: Vec<Place>, stroke: Stroke },
-    Fill { points: Vec<Place>, colour: RGBColor, opacity: f64 },
-    Disc { centre: Place, radius: f64, colour: RGBColor, opacity: f64 },
+    Fill { points: Vec<Place>, colour: Colour, opacity: f64 },
+    Disc { centre: Place, radius: f64, colour: Colour, opacity: f64 },
     Text { place: Place, text: Text },
 }
 
@@ -150,14 +112,14 @@ impl Scene {
         }
     }
 
-    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: RGBColor, opacity: f64) {
+    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: Colour, opacity: f64) {
         let points = points.into();
         if points.len() > 2 && finite(&points) {
             self.shapes.push((layer, Shape::Fill { points, colour, opacity }));
         }
     }
 
-    pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: RGBColor, opacity: f64) {
+    pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: Colour, opacity: f64) {
         if finite(&[centre]) {
             self.shapes.push((layer, Shape::Disc { centre, radius, colour, opacity }));
         }
@@ -236,12 +198,10 @@ mod tests {
     }
 
     #[test]
-    fn layers_are_sorted_and_italics_split() {
+    fn layers_are_sorted() {
         let mut scene = Scene::default();
         scene.text(Layer::Note, (0.0, 0.0), Text::new("b", 8.0));
         scene.disc(Layer::Grid, (0.0, 0.0), 1.0, INK, 1.0);
         assert!(matches!(scene.shapes()[0], Shape::Disc { .. }));
-        assert_eq!(runs(&format!("rate {} [°/s]", symbol("r"))), [(false, "rate "), (true, "r"), (false, " [°/s]")]);
-        assert_eq!(runs("\u{e001}a\u{e000}"), [(false, "a")]);
     }
 }

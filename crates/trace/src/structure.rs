@@ -85,6 +85,17 @@ pub struct Entry {
     pub only: Option<usize>,
 }
 
+/// A value counts as the end of a range within this share of its size: a step that ends there adds a rounding.
+const AT_END: f64 = 1e-9;
+
+impl Entry {
+    /// Whether a value was fitted and lies at an end of the range.
+    pub fn ends_at(&self, value: f64) -> bool {
+        let near = |end: f64| (value - end).abs() <= AT_END * end.abs().max(self.scale);
+        self.fitted && (near(self.lowest) || near(self.highest))
+    }
+}
+
 impl Structure {
     /// The base alone.
     pub fn base(records: usize, own_bias: bool) -> Self {

@@ -33,10 +33,11 @@ use ship::first_order::State;
 use ship::{FirstOrder, Shown};
 use trial::Trial;
 
+use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
+use crate::identifier::Identifier;
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_iterations};
-use crate::{Identifier, IdentifyError};
 use covariance::Residuals;
 use filter::{Left, NormalEquations, Point, Shared};
 use record::Record;

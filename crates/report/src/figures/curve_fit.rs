@@ -8,9 +8,10 @@ use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet};
 use crate::legend::{Entry, Sample};
+use crate::markup::symbol;
 use crate::number;
 use crate::palette::{HEADING, INK, RECORD};
-use crate::scene::{Stroke, symbol};
+use crate::scene::Stroke;
 use crate::theme::Theme;
 
 /// What [`curve_fit`] draws.

@@ -8,8 +8,8 @@ use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, stroke_of};
+use crate::markup::symbol;
 use crate::palette::Origin;
-use crate::scene::symbol;
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

@@ -1,9 +1,9 @@
 //! How much every candidate explains: a bar each on a logarithmic axis, with the threshold it has to pass.
 
-use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
+use crate::colour::Colour;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample};
@@ -57,12 +57,12 @@ const FATES: [(Fate, &str); 4] = [
     (Fate::NotObservable, "not observable in this record"),
 ];
 
-fn colour(fate: Fate) -> RGBColor {
+fn colour(fate: Fate) -> Colour {
     match fate {
         Fate::Added => HEADING,
         Fate::Alias => RUDDER,
         Fate::Rejected => RECORD,
-        Fate::NotObservable => RGBColor(0xC4, 0xC4, 0xC4),
+        Fate::NotObservable => Colour(0xC4, 0xC4, 0xC4),
     }
 }
 

@@ -1,18 +1,19 @@
 //! A value over two axes: one panel a method, cells coloured by the value and the value written in them. The colours are those
 //! of viridis (Smith and van der Walt 2015): even steps look even, also in grey and with any common colour blindness.
 
-use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 
 use super::error_curves::Scale;
 use crate::axis::Axis;
+use crate::canvas::Anchor;
+use crate::colour::Colour;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::number;
 use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Text};
+use crate::scene::{Layer, Scene, Text};
 use crate::theme::Theme;
 
 /// One panel.
@@ -131,7 +132,7 @@ impl Colours {
     }
 
     /// Colour of a value; the lowest for a zero on a logarithmic scale.
-    fn colour(&self, value: f64) -> RGBColor {
+    fn colour(&self, value: f64) -> Colour {
         let along = self.along(value).unwrap_or(self.low);
         let range = self.high - self.low;
         let share = if range > 0.0 { ((along - self.low) / range).clamp(0.0, 1.0) } else { 0.5 };
@@ -139,7 +140,7 @@ impl Colours {
         let below = (place.floor() as usize).min(VIRIDIS.len() - 2);
         let (one, other) = (VIRIDIS[below], VIRIDIS[below + 1]);
         let mix = |a: u8, b: u8| (f64::from(a) + (place - below as f64) * (f64::from(b) - f64::from(a))).round() as u8;
-        RGBColor(mix(one.0, other.0), mix(one.1, other.1), mix(one.2, other.2))
+        Colour(mix(one.0, other.0), mix(one.1, other.1), mix(one.2, other.2))
     }
 }
 
@@ -155,7 +156,7 @@ fn cell(
     let (Some((left, top)), Some((right, bottom))) = (corner(-0.5, -0.5), corner(0.5, 0.5)) else { return };
     let colour = value.map_or(GRID, |value| colours.colour(value));
     scene.fill(Layer::Grid, [(left, top), (right, top), (right, bottom), (left, bottom)], colour, 1.0);
-    let RGBColor(r, g, b) = colour;
+    let Colour(r, g, b) = colour;
     // Relative luminance (ITU-R BT.709) decides whether black or white can be read.
     let luminance = (0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)) / 255.0;
     let ink = if luminance > 0.5 { INK } else { PAPER };

@@ -1,18 +1,20 @@
 //! Estimates of K and T with their 95 % intervals, one row per method, against the truth and the published value.
 
-use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 
 use super::median;
 use crate::axis::Axis;
+use crate::canvas::Anchor;
+use crate::colour::Colour;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
 use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample, stroke_of};
+use crate::markup::symbol;
 use crate::number;
 use crate::palette::{INK, Look, Origin, RECORD};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text, symbol};
+use crate::scene::{Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 
@@ -160,7 +162,7 @@ fn draw_row(
 ) -> bool {
     let Some(y) = panel.up(row as f64) else { return false };
     let rect = panel.rect;
-    let text = |label: &str, colour: RGBColor| Text::new(label, theme.small_font).colour(colour);
+    let text = |label: &str, colour: Colour| Text::new(label, theme.small_font).colour(colour);
     let Some((estimate, x)) = estimate.and_then(|e| Some((e, panel.across(e.value)?))) else {
         let label = text("no estimate", RECORD).anchor(Anchor::Middle);
         let place = (rect.x + rect.w / 2.0, y + label.centring());
@@ -186,7 +188,7 @@ fn draw_row(
 }
 
 /// The interval as a bar with caps; an end beyond the axis is an arrow head. Tells whether one was.
-fn bar(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, interval: Option<[f64; 2]>, colour: RGBColor) -> bool {
+fn bar(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, interval: Option<[f64; 2]>, colour: Colour) -> bool {
     let rect = panel.rect;
     let Some((lo, hi)) = interval.and_then(|[lo, hi]| Some((panel.across(lo)?, panel.across(hi)?))) else {
         return false;

@@ -40,9 +40,10 @@ use crate::clip::Rect;
 use crate::curve::Curve;
 use crate::layout::Side;
 use crate::legend::{Entry, Sample};
+use crate::markup::symbol;
 use crate::palette::{INK, Origin, RECORD};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, symbol};
+use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

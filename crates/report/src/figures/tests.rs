@@ -2,8 +2,8 @@
 //! scaled, the same data give the same bytes.
 
 use super::*;
+use crate::canvas::UNITS;
 use crate::palette::{self, Origin};
-use crate::svg::UNITS;
 use crate::{Figure, Theme};
 
 /// A sine of `n` points; every `gap`-th is undefined.

@@ -6,16 +6,18 @@ use serde::{Deserialize, Serialize};
 
 use super::{heading_title, rudder_title, time_side};
 use crate::axis::{self, Axis};
+use crate::canvas::Anchor;
 use crate::clip::Rect;
 use crate::curve::Curve;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample, stroke_of};
+use crate::markup::symbol;
 use crate::number;
 use crate::palette::{DIMENSION, DOTTED, HEADING, INK, Look, Marker, Origin, RECORD, RUDDER, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Anchor, Layer, Scene, Stroke, Text, symbol};
+use crate::scene::{Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

@@ -1,6 +1,7 @@
 //! The table of the answers of all methods: as narrow as the numbers allow, every estimate beside its 95 % interval, a failed
 //! method as a row with its reason. All digits are in the stored JSON.
 
+use identify::StopReason;
 use report::number::{self, MISSING};
 use report::{Column, Table};
 
@@ -57,14 +58,19 @@ fn remark(entry: &MethodEntry) -> String {
     match (entry.status, &entry.failure) {
         (Status::Failed, Some(failure)) => format!("failed: {}", failure.replace('-', " ")),
         (Status::Failed, None) => "failed".to_owned(),
-        (Status::Ok, _) if entry.course_unstable => "course-unstable".to_owned(),
-        (Status::Ok, _) => String::new(),
+        (Status::Ok, _) => {
+            let at_bound = entry.stop.as_deref() == Some(StopReason::RangeLimit.as_str());
+            let remarks = [(entry.course_unstable, "course-unstable"), (at_bound, "at a bound")];
+            let holding: Vec<&str> = remarks.iter().filter(|(holds, _)| *holds).map(|(_, remark)| *remark).collect();
+            holding.join(", ")
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use identify::IdentifyError;
+    use identify::{Estimate, IdentifyError, Uncertainty};
+    use ship::FirstOrder;
 
     use super::*;
 
@@ -83,5 +89,22 @@ mod tests {
         let failed = MethodEntry::failed("srivc", &IdentifyError::NoTrial);
         let text = table(&[failed], &[]).to_text();
         assert!(text.contains("srivc") && text.contains("failed: no trial"), "{text}");
+    }
+
+    #[test]
+    fn an_answer_at_the_end_of_a_search_has_a_remark() {
+        let estimate = |stop, inverse_time| Estimate {
+            response: FirstOrder { inverse_T: inverse_time, K_over_T: 0.01, rudder_bias: 0.0 },
+            uncertainty: Uncertainty::None { reason: "not asked for" },
+            robust: None,
+            stop,
+            evaluations: 1,
+            diagnostics: Vec::new(),
+            warnings: Vec::new(),
+        };
+        let said = |stop, inverse_time| remark(&MethodEntry::of("one", &estimate(stop, inverse_time), None));
+        assert_eq!(said(StopReason::Converged, 0.1), "");
+        assert_eq!(said(StopReason::RangeLimit, 0.1), "at a bound");
+        assert_eq!(said(StopReason::RangeLimit, -0.1), "course-unstable, at a bound");
     }
 }

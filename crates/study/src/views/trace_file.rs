@@ -53,6 +53,13 @@ pub struct ParameterEntry {
     pub unit: String,
     /// The one record it belongs to.
     pub only: Option<String>,
+    /// Whether it ends at an end of its range; left out where it does not.
+    #[serde(skip_serializing_if = "is_false")]
+    pub at_bound: bool,
+}
+
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// An effect that was found.
@@ -155,9 +162,28 @@ pub struct WhitenessEntry {
 pub struct ModelEntry {
     equations: Vec<&'static str>,
     #[serde(flatten)]
-    indices: Parameters,
+    indices: Indices,
     parameters: Vec<NamedParameter>,
     noise: NoiseEntry,
+}
+
+/// K, T and δ_r of the augmented model.
+#[derive(Debug, Serialize)]
+struct Indices {
+    #[serde(rename = "K_per_s")]
+    k_per_s: Index,
+    #[serde(rename = "T_s")]
+    t_s: Index,
+    delta_r_deg: Index,
+}
+
+/// An index, and whether it rests on a parameter at an end of its range.
+#[derive(Debug, Serialize)]
+struct Index {
+    #[serde(flatten)]
+    number: Number,
+    #[serde(skip_serializing_if = "is_false")]
+    at_bound: bool,
 }
 
 /// A parameter with its symbol.
@@ -200,6 +226,7 @@ impl From<&Value> for ParameterEntry {
             ci95: value.ci95,
             unit: value.unit.to_owned(),
             only: value.only.clone(),
+            at_bound: value.at_bound,
         }
     }
 }
@@ -323,10 +350,14 @@ impl TraceFile {
                     true => vec!["T r' + r = K (δ + δ_r)"],
                     false => analysis.effects.iter().map(|effect| effect.equation).collect(),
                 },
-                indices: Parameters {
-                    k_per_s: Number::of(k, 1.0),
-                    t_s: Number::of(t, 1.0),
-                    delta_r_deg: analysis.rudder_bias.map_or(unknown, |bias| Number::of(bias, degree)),
+                indices: {
+                    let bias = analysis.rudder_bias.map_or(unknown, |bias| Number::of(bias, degree));
+                    let [k_ends, t_ends, bias_ends] = analysis.indices_at_bound();
+                    Indices {
+                        k_per_s: Index { number: Number::of(k, 1.0), at_bound: k_ends },
+                        t_s: Index { number: Number::of(t, 1.0), at_bound: t_ends },
+                        delta_r_deg: Index { number: bias, at_bound: bias_ends },
+                    }
                 },
                 parameters: analysis
                     .parameters

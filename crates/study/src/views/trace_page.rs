@@ -64,8 +64,29 @@ pub fn words(report: &TraceReport) -> String {
     if let Some(signature) = signature(report) {
         let _ = write!(text, "\n  left: {signature}");
     }
+    for warning in bounds(&analysis.parameters) {
+        let _ = write!(text, "\nwarning: {warning}");
+    }
     let _ = write!(text, "\nnext trial: {}", next_trial(report));
     text
+}
+
+/// A sentence for every parameter at an end of its range.
+fn bounds(parameters: &[Value]) -> Vec<String> {
+    let ends = parameters.iter().filter(|value| value.at_bound);
+    ends.map(|value| {
+        let (number, _, _, unit) = in_degrees(value);
+        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+        let only = value.only.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        let follows = match value.key {
+            "inverse_T" => ", and K and T follow from it",
+            "K_over_T" => ", and K follows from it",
+            _ => "",
+        };
+        let number = significant(number, 3);
+        format!("{} = {number}{unit}{only} is at its bound: the search ends there{follows}", value.symbol)
+    })
+    .collect()
 }
 
 fn effect_line(effect: &Traced) -> String {
@@ -228,21 +249,24 @@ fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
 }
 
 fn parameters(report: &TraceReport) -> Table {
-    let mut table = Table::new([
-        Column::left("parameter"),
-        Column::left("value"),
-        Column::left("95 % interval"),
-        Column::left("unit"),
-        Column::left("record"),
-    ]);
-    let [k, t] = report.analysis.indices;
-    for (symbol, quantity, unit) in [("K", k, "1/s"), ("T", t, "s")] {
-        table.push([symbol, &uncertain(quantity.value, quantity.sd), &number::interval(quantity.ci95), unit, MISSING]);
+    let analysis = report.analysis;
+    let remarks = analysis.parameters.iter().any(|value| value.at_bound);
+    let mut columns = ["parameter", "value", "95 % interval", "unit", "record"].map(Column::left).to_vec();
+    columns.extend(remarks.then(|| Column::left("remark")));
+    let mut table = Table::new(columns);
+    let mut push = |cells: [String; 5], at_bound: bool| {
+        let remark = remarks.then(|| if at_bound { "at its bound".to_owned() } else { String::new() });
+        table.push(cells.into_iter().chain(remark));
+    };
+    let ([k, t], [k_ends, t_ends, _]) = (analysis.indices, analysis.indices_at_bound());
+    for (symbol, quantity, unit, ends) in [("K", k, "1/s", k_ends), ("T", t, "s", t_ends)] {
+        let [value, interval] = [uncertain(quantity.value, quantity.sd), number::interval(quantity.ci95)];
+        push([symbol.into(), value, interval, unit.into(), MISSING.into()], ends);
     }
-    for value in &report.analysis.parameters {
+    for value in &analysis.parameters {
         let (value_deg, sd, ci95, unit) = in_degrees(value);
         let only = value.only.clone().unwrap_or_else(|| MISSING.into());
-        table.push([value.symbol.clone(), uncertain(value_deg, sd), interval(ci95), unit, only]);
+        push([value.symbol.clone(), uncertain(value_deg, sd), interval(ci95), unit, only], value.at_bound);
     }
     table
 }

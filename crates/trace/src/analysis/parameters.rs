@@ -81,7 +81,7 @@ pub(super) fn parameters(
                 sd.map(|sd| [value - quantile * sd, value + quantile * sd])
             };
             let only = entry.only.map(|only| names[only].clone());
-            Value { sd, ci95, only, ..Value::of(entry.parameter, value) }
+            Value { sd, ci95, only, at_bound: entry.ends_at(value), ..Value::of(entry.parameter, value) }
         })
         .collect()
 }
@@ -134,6 +134,24 @@ mod tests {
         assert!((all[2].value + 0.02).abs() < 1e-3 && (all[3].value - 0.03).abs() < 1e-3, "{all:?}");
         assert_eq!([all[2].only.as_deref(), all[3].only.as_deref()], [Some("one"), Some("other")]);
         assert_eq!(indices(&model, covariance.as_ref()).1, None);
+    }
+
+    /// A ship that answers faster than the base can: its 1/T stops where the range of the base does.
+    #[test]
+    fn a_parameter_at_the_end_of_its_range_says_so() {
+        let ends = |inverse_time: f64| {
+            let theta = vec![inverse_time, 0.1 * inverse_time, 0.0];
+            let ship = ship::ResponseModel::first_order().with(theta.clone());
+            let plan = Plan { rows: 2001, period: 0.1, ..Plan::default() };
+            let problem = Problem::new(vec![Record::whole(&record(&ship, plan))], theta[0], theta[1]);
+            let structure = Structure::base(1, false);
+            let fit = problem.fit(&structure, &theta, &[[0.0; 2]], &Colour::WHITE);
+            let model = Model { structure, plain: fit.clone(), judged: fit };
+            let all = parameters(&problem, &model, None, &[String::from("one")]);
+            (all[0].value, all.iter().map(|value| value.at_bound).collect::<Vec<_>>())
+        };
+        assert_eq!(ends(30.0), (ship::response::BASE[0].highest, vec![true, false, false]));
+        assert_eq!(ends(0.1).1, [false; 3]);
     }
 
     /// One estimate has one interval: that of δ_r is Fieller's wherever it is told, which is no longer symmetric when K/T is

@@ -79,13 +79,15 @@ pub struct Value {
     pub ci95: Option<[f64; 2]>,
     /// Name of the one record it belongs to.
     pub only: Option<String>,
+    /// Whether it ends at an end of its range: the search stopped there, not at the best value.
+    pub at_bound: bool,
 }
 
 impl Value {
     /// A parameter of all records whose error is not known.
     pub(super) fn of(parameter: &Parameter, value: f64) -> Self {
         let (key, symbol, unit) = (parameter.key, parameter.symbol.to_owned(), parameter.unit);
-        Self { key, symbol, unit, value, sd: None, ci95: None, only: None }
+        Self { key, symbol, unit, value, sd: None, ci95: None, only: None, at_bound: false }
     }
 }
 
@@ -218,6 +220,15 @@ pub struct Analysis {
     pub(super) problem: Problem,
     pub(super) candidate_terms: Vec<Candidate>,
     pub(super) model: Model,
+}
+
+impl Analysis {
+    /// Whether K, T and δ_r of the final model rest on a parameter at an end of its range: K = (K/T)/(1/T), T = 1/(1/T).
+    pub fn indices_at_bound(&self) -> [bool; 3] {
+        let ends = |key: &str| self.parameters.iter().any(|value| value.key == key && value.at_bound);
+        let [inverse, ratio] = ["inverse_T", "K_over_T"].map(ends);
+        [inverse || ratio, inverse, self.rudder_bias.is_some() && ends("rudder_bias")]
+    }
 }
 
 /// Gain in BIC below which two rivals cannot be told apart.

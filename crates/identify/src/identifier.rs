@@ -1,0 +1,69 @@
+//! What all methods have in common: the trait, and what a method promises beyond it.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use trial::Trial;
+
+use crate::error::IdentifyError;
+use crate::estimate::Estimate;
+
+/// A method that identifies a first-order response from one or several trials of the same ship.
+///
+/// A value of this type is a method with its settings. It holds no data: calling it twice with the same trials gives
+/// the same bits.
+pub trait Identifier: Send + Sync {
+    /// Identifier used in scenario files, tables and JSON.
+    fn id(&self) -> &'static str;
+
+    /// One line on what the method does, for lists.
+    fn summary(&self) -> &'static str;
+
+    /// Identifies K, T and δ_r, common to all trials; every trial keeps its own initial state.
+    ///
+    /// Fails with a typed reason when a record does not excite the ship, is too short for the method, or the
+    /// equations are singular; never panics on a valid [`Trial`].
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError>;
+
+    /// The same method with another seed, for methods that draw at random; `None` for all others.
+    ///
+    /// A benchmark gives every trial a seed of its own, so that the spread over trials holds the method's own chance.
+    fn with_seed(&self, _seed: u64) -> Option<Box<dyn Identifier>> {
+        None
+    }
+
+    /// How near the method comes without noise; what the contract of all methods holds it to.
+    fn promises(&self) -> Promises {
+        Promises::default()
+    }
+}
+
+/// Largest errors without noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Of K, as a share.
+    pub K: f64,
+    /// Of T, as a share.
+    pub T: f64,
+    /// Of δ_r, deg.
+    pub rudder_bias_deg: f64,
+}
+
+/// Largest errors that the method itself makes in zig-zags of a ship with K = 0.1 1/s and T = 16.3 s, read every second.
+///
+/// The default is that of a method without any error of its own: the corners of the rudder lie between rows, where a straight
+/// line takes their place, and no method can be better than 0.03 % in K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Promises {
+    /// From every row.
+    pub whole: Accuracy,
+    /// With every seventh row and fifteen rows in a piece lost.
+    pub with_gaps: Accuracy,
+}
+
+impl Default for Promises {
+    fn default() -> Self {
+        Self {
+            whole: Accuracy { K: 4e-4, T: 1e-4, rudder_bias_deg: 4e-4 },
+            with_gaps: Accuracy { K: 0.001, T: 0.002, rudder_bias_deg: 0.012 },
+        }
+    }
+}
