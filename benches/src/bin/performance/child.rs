@@ -41,7 +41,8 @@ pub fn answer(arguments: &[&str]) -> Outcome<()> {
         }
         ["check", scenarios @ ..] => {
             let scenarios: Vec<PathBuf> = scenarios.iter().map(PathBuf::from).collect();
-            study::commands::check::run(&scenarios).map_err(text)?;
+            let common = Common { quiet: false, ..quiet("") };
+            study::commands::check::run(&scenarios, false, &common).map_err(text)?;
         }
         _ => return Err("this is not a command".into()),
     }
