@@ -7,7 +7,7 @@
 
 use thiserror::Error;
 
-use crate::ships::Particulars;
+use crate::particulars::Particulars;
 
 /// Why linear equations have no indices K, T1, T2, T3.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]

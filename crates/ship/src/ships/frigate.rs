@@ -6,8 +6,9 @@
 use std::sync::Arc;
 
 use super::zeefakkel::n3_from_degrees;
-use super::{Model, Particulars, Ship};
+use super::{Model, Ship};
 use crate::effects::NonlinearDamping;
+use crate::particulars::Particulars;
 use crate::response::ResponseModel;
 
 /// The frigate at 9 m/s: T r' + r + n₃ r³ = K δ with K = 0.18 1/s, T = 27 s; rudder to 30° at 10 deg/s.

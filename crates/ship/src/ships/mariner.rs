@@ -6,8 +6,9 @@
 use std::sync::Arc;
 
 use super::user::second_order_response;
-use super::{Model, Particulars, Ship};
+use super::{Model, Ship};
 use crate::linear::SecondOrderIndices;
+use crate::particulars::Particulars;
 use crate::vessel::abkowitz::{Abkowitz, Derivatives, Lateral};
 
 const PARTICULARS: Particulars = Particulars { length: 160.93, speed: 7.7175 };

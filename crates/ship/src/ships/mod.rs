@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use crate::dynamics::Dynamics;
 use crate::first_order::FirstOrder;
+use crate::particulars::Particulars;
 use crate::response::Response;
 
 pub mod frigate;
@@ -20,15 +21,6 @@ pub mod seiun_like;
 pub mod user;
 pub mod yukun;
 pub mod zeefakkel;
-
-/// Length and speed, the two numbers every nondimensional index needs.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Particulars {
-    /// Length between perpendiculars L, m.
-    pub length: f64,
-    /// Approach speed V, m/s.
-    pub speed: f64,
-}
 
 /// The equations of a ship.
 #[derive(Clone)]

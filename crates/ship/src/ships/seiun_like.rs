@@ -7,7 +7,8 @@
 
 use std::sync::Arc;
 
-use super::{KNOT, Model, Particulars, Ship};
+use super::{KNOT, Model, Ship};
+use crate::particulars::Particulars;
 use crate::vessel::Hull;
 use crate::vessel::mmg::{BySign, HullDerivatives, Mmg, Parameters, Propeller, Rudder, Wake};
 

@@ -5,10 +5,11 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::{Model, Particulars, Ship};
+use super::{Model, Ship};
 use crate::effects::{Effect, Parameter, SecondOrder};
 use crate::first_order::FirstOrder;
 use crate::linear::SecondOrderIndices;
+use crate::particulars::Particulars;
 use crate::response::{Response, ResponseModel};
 use crate::shown::Shown;
 

@@ -5,8 +5,9 @@
 //! nominal values, good for nondimensional figures (K' = 1.22, T' = 1.33) and for nothing else. Neither rudder rate nor
 //! rudder bias is given.
 
-use super::{KNOT, Model, Particulars, Ship};
+use super::{KNOT, Model, Ship};
 use crate::first_order::FirstOrder;
+use crate::particulars::Particulars;
 use crate::response::Response;
 
 /// YUKUN with K = 0.1 1/s and T = 16.3 s.

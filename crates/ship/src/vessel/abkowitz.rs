@@ -11,7 +11,7 @@
 use super::{Acceleration, Hull, SLOWEST, Velocity};
 use crate::dynamics::Input;
 use crate::linear::PrimeSwayYaw;
-use crate::ships::Particulars;
+use crate::particulars::Particulars;
 
 /// Derivatives as printed by the source: prime, rudder positive to port, radians.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,101 @@
+//! Optima, periods and refusals known from an independent computation.
+
+use super::super::fit;
+use super::*;
+use crate::testing::{Case, Start, Truth};
+use approx::assert_abs_diff_eq;
+
+fn curve(case: &Case, fundamental: &Fundamental) -> super::super::FourierFit {
+    let Truth { time, heading, .. } = case.truth();
+    fit(&time, &heading, 8, fundamental).expect("a zig-zag has a series").curve
+}
+
+fn ten_twenty() -> Case {
+    Case { heading_deg: 20.0, ..Case::default() }
+}
+
+/// Global optima of noise-free records of K = 0.1, T = 16.3, from an independent computation: w ± 0.0003 rad/s,
+/// R² ± 2e-5, condition number within a factor 1.5.
+#[test]
+fn global_optima_are_the_known_ones() {
+    let twenty = Case { rudder_deg: 20.0, ..ten_twenty() };
+    for (case, w, r_squared, condition) in [
+        (Case::default(), 0.02039, 0.99989, 10.0),
+        (ten_twenty(), 0.01620, 0.99987, 1.2e3),
+        (twenty, 0.01807, 0.99996, 1.3e2),
+        (Case { start: Start::Rest, ..ten_twenty() }, 0.01109, 0.99984, 1.4e6),
+    ] {
+        let fit = curve(&case, &Fundamental::Global);
+        assert_abs_diff_eq!(fit.fundamental, w, epsilon = 3e-4);
+        assert_abs_diff_eq!(fit.r_squared, r_squared, epsilon = 2e-5);
+        assert!((fit.condition / condition).ln().abs() < 1.5f64.ln(), "{} for {condition}", fit.condition);
+    }
+}
+
+/// Local optima from the peak of the transform, same source and tolerances.
+#[test]
+fn a_search_from_the_peak_stays_at_the_zig_zag_period() {
+    let from_peak = Fundamental::Starts(vec![StartPoint::FftPeak]);
+    for (case, w, r_squared, condition) in [
+        (Case::default(), 0.05395, 0.99828, 1.6),
+        (Case { start: Start::Rest, ..Case::default() }, 0.05377, 0.99274, 1.6),
+        (ten_twenty(), 0.03929, 0.99981, 1.9),
+    ] {
+        let fit = curve(&case, &from_peak);
+        assert_abs_diff_eq!(fit.fundamental, w, epsilon = 3e-4);
+        assert_abs_diff_eq!(fit.r_squared, r_squared, epsilon = 2e-5);
+        assert!((fit.condition / condition).ln().abs() < 1.5f64.ln(), "{} for {condition}", fit.condition);
+    }
+}
+
+/// From 2π/T_rec and π/T_rec the local search ends in the global optimum of 10/10 and 10/20; from 2π/T_rec 20/20
+/// stops at 0.0239 rad/s (independent computation).
+#[test]
+fn long_starts_end_at_a_period_beyond_the_record() {
+    for start in [StartPoint::RecordLength, StartPoint::TwiceRecordLength] {
+        let local = Fundamental::Starts(vec![start]);
+        assert_abs_diff_eq!(curve(&ten_twenty(), &local).fundamental, 0.0162, epsilon = 3e-4);
+        assert_abs_diff_eq!(curve(&Case::default(), &local).fundamental, 0.0204, epsilon = 3e-4);
+    }
+    let twenty = Case { rudder_deg: 20.0, ..ten_twenty() };
+    let local = Fundamental::Starts(vec![StartPoint::RecordLength]);
+    assert_abs_diff_eq!(curve(&twenty, &local).fundamental, 0.0239, epsilon = 3e-4);
+}
+
+/// Limit-cycle periods 116.63 s (10/10) and 159.13 s (10/20) from an independent simulation.
+#[test]
+fn zero_crossings_give_the_limit_cycle_under_noise() {
+    for (case, period) in [(Case::default(), 116.63), (ten_twenty(), 159.13)] {
+        let trial = Case { noise_deg: 0.5, ..case }.trial();
+        let found = zero_crossing_period(trial.time(), trial.heading()).expect("a zig-zag crosses");
+        assert_abs_diff_eq!(found, period, epsilon = 2.0);
+    }
+}
+
+#[test]
+fn the_best_conditioned_minimum_gives_up_little() {
+    let global = curve(&ten_twenty(), &Fundamental::Global);
+    let rule = curve(&ten_twenty(), &Fundamental::BestConditioned { r_squared_loss: 1e-3 });
+    assert!(rule.condition < 3.0 && rule.r_squared > global.r_squared - 1e-3);
+    assert_abs_diff_eq!(rule.fundamental, 0.0393, epsilon = 3e-4);
+}
+
+#[test]
+fn a_record_without_a_crossing_has_no_period() {
+    let time: Vec<f64> = (0..40).map(f64::from).collect();
+    let error = zero_crossing_period(&time, &time).expect_err("a line crosses its mean once");
+    assert_eq!(error.kind(), "too-few-points");
+}
+
+#[test]
+fn meaningless_settings_are_refused() {
+    for bad in [
+        Fundamental::Starts(vec![]),
+        Fundamental::FixedRadS(-0.1),
+        Fundamental::FixedRadS(f64::NAN),
+        Fundamental::RecordLengths(5.0),
+        Fundamental::BestConditioned { r_squared_loss: 1.0 },
+    ] {
+        assert!(bad.check().is_err(), "{bad:?}");
+    }
+}
