@@ -7,8 +7,6 @@
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::effects::{Acts, Effect};
-
 /// A number that an equation can be written in. Comparisons are those of the values.
 pub trait Real:
     Copy
@@ -42,9 +40,6 @@ pub trait Real:
 
     /// A whole power.
     fn powi(self, exponent: i32) -> Self;
-
-    /// What an effect does, in this kind of number.
-    fn acts(effect: &dyn Effect) -> &dyn Acts<Self>;
 
     /// Magnitude.
     fn abs(self) -> Self {
@@ -92,11 +87,6 @@ impl Real for f64 {
     #[inline]
     fn powi(self, exponent: i32) -> Self {
         f64::powi(self, exponent)
-    }
-
-    #[inline]
-    fn acts(effect: &dyn Effect) -> &dyn Acts<Self> {
-        effect
     }
 
     #[inline]
@@ -259,11 +249,6 @@ impl Real for Tangent {
             return Self::from(1.0);
         }
         self.chained(self.value.powi(exponent), f64::from(exponent) * self.value.powi(exponent - 1))
-    }
-
-    #[inline]
-    fn acts(effect: &dyn Effect) -> &dyn Acts<Self> {
-        effect
     }
 }
 

@@ -12,9 +12,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::dynamics::{Dynamics, Input, Motion, Regressor};
-use crate::effects::{Effect, Now, Parameter, Places, Scale, SwayCoupling};
+use crate::effects::{Effect, EffectReal, Now, Parameter, Places, Scale, SwayCoupling};
 use crate::first_order::FirstOrder;
-use crate::number::Real;
 
 /// Number of base parameters: a = 1/T, b = K/T, δ_r.
 pub const BASE_PARAMETERS: usize = 3;
@@ -135,7 +134,7 @@ impl ResponseModel {
     ///
     /// # Panics
     /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a user.
-    pub fn with<R: Real>(self, parameters: Vec<R>) -> Response<R> {
+    pub fn with<R: EffectReal>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         let coupling = self.second_order.and_then(|index| {
             let place = self.places[index];
@@ -189,12 +188,12 @@ impl Response {
     }
 
     /// The same ship with parameters that carry derivatives, none as yet.
-    pub fn constant<R: Real>(&self) -> Response<R> {
+    pub fn constant<R: EffectReal>(&self) -> Response<R> {
         self.model.clone().with(self.parameters.iter().map(|&value| R::from(value)).collect())
     }
 }
 
-impl<R: Real> Response<R> {
+impl<R: EffectReal> Response<R> {
     /// The structure.
     pub fn model(&self) -> &ResponseModel {
         &self.model
@@ -320,7 +319,7 @@ impl<R: Real> Response<R> {
     }
 }
 
-impl<R: Real> Dynamics<R> for Response<R> {
+impl<R: EffectReal> Dynamics<R> for Response<R> {
     fn dimension(&self) -> usize {
         self.model.states
     }

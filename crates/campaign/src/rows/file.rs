@@ -13,8 +13,8 @@ use parquet::file::reader::{ChunkReader, FileReader, Length, SerializedFileReade
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::ColumnPath;
 
-use super::columns::{Layout, Values};
 use super::decoding;
+use super::layout::{Layout, Values};
 use super::row::Row;
 use crate::disk;
 use crate::folder::{Beside, ResultFolder};

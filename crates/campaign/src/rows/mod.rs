@@ -7,12 +7,14 @@
 mod columns;
 mod decoding;
 mod file;
+mod layout;
 mod row;
 mod sequence;
 #[cfg(test)]
 mod tests;
 
-pub use columns::{COLUMNS, Column, Layout, OWN_COLUMNS, TRACE_COLUMNS};
+pub use columns::{COLUMNS, Column, OWN_COLUMNS, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
+pub use layout::Layout;
 pub use row::{Bound, NamedEffect, Row, TraceAnswer};
 pub use sequence::Sequence;

@@ -1,6 +1,6 @@
 //! A slow trend of the yaw moment over the record.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// m (t − t₀) as an equivalent rudder angle.

@@ -1,6 +1,6 @@
 //! Damping that grows with the yaw rate: the terms of Norrbin and Bech.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when

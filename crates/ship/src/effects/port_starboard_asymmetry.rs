@@ -1,6 +1,6 @@
 //! A rudder gain that differs by side.
 
-use super::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// K (δ + a |δ| + δ_r): gain 1 + a to starboard, 1 − a to port.

@@ -1,6 +1,6 @@
 //! Play between the recorded and the acting rudder.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// Backlash or dead band of half-width g.

@@ -1,6 +1,6 @@
 //! A rudder that loses lift at large angles.
 
-use super::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).

@@ -1,6 +1,6 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal, Scale};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal, Scale};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 

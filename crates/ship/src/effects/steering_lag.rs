@@ -1,6 +1,6 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// Lag between the recorded and the acting rudder.

@@ -1,6 +1,6 @@
 //! Sway velocity as a regressor, where the record has it.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 

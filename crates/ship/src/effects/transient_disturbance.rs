@@ -1,6 +1,6 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
 /// m over a span of time with smooth edges, as an equivalent rudder angle:

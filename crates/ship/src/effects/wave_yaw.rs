@@ -1,6 +1,6 @@
 //! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
 
-use super::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::narrow_band::NarrowBand;
 use crate::number::Real;
 

@@ -1,6 +1,6 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
-use super::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 

@@ -130,13 +130,13 @@ pub struct ErrorEntry {
 #[derive(Debug, Serialize)]
 pub struct BeforeAfter {
     file: String,
-    before: E,
-    after: E,
+    before: ErrorsEntry,
+    after: ErrorsEntry,
 }
 
 /// Errors of one model on one record.
 #[derive(Debug, Serialize)]
-pub struct E {
+pub struct ErrorsEntry {
     heading_rmse_deg: f64,
     yaw_rate_rmse_deg_s: Option<f64>,
     overshoot_error_deg: Option<f64>,
@@ -205,7 +205,7 @@ pub struct NoiseEntry {
     waves_frequency_rad_s: Option<f64>,
 }
 
-impl From<&Errors> for E {
+impl From<&Errors> for ErrorsEntry {
     fn from(errors: &Errors) -> Self {
         let horizon =
             HORIZONS.iter().zip(errors.horizon).map(|(length, error)| (format!("{length:.0}"), error.map(to_deg)));

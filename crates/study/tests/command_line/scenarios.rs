@@ -2,7 +2,7 @@
 
 use crate::desk::{Desk, of_repository, zig_zag_csv};
 
-const GOOD: &str = "\
+pub const GOOD: &str = "\
 question = \"Does it run?\"
 seed = 1
 replicates = 2
@@ -393,81 +393,6 @@ fn every_scenario_of_the_repository_is_right() {
     assert!(!files.is_empty());
     let arguments: Vec<&str> = ["check"].into_iter().chain(files.iter().map(String::as_str)).collect();
     assert_eq!(desk.run(&arguments).is_done().out.lines().count(), files.len());
-}
-
-#[test]
-fn a_scenario_runs_and_its_report_is_made_again() {
-    let desk = Desk::new();
-    desk.file("small.toml", GOOD);
-    let run = desk.run(&["small.toml"]);
-    assert!(run.is_done().out.contains("output-error"), "{}", run.out);
-    let page = std::fs::read(desk.path("results/small/report.md")).expect("the report is there");
-    std::fs::remove_file(desk.path("results/small/report.md")).expect("it was there");
-    desk.run(&["report", "results/small"]).is_done();
-    assert_eq!(std::fs::read(desk.path("results/small/report.md")).expect("it is there again"), page);
-    desk.run(&["report", "results/small", "--out", "elsewhere", "--quiet"]).is_done();
-    assert_eq!(std::fs::read(desk.path("elsewhere/report.md")).expect("it is where it was asked for"), page);
-    for file in ["rows.parquet", "summary.csv", "manifest.toml"] {
-        assert!(desk.path("results/small").join(file).is_file(), "{file}");
-    }
-    let other = desk.run(&["small.toml", "--out", "one", "--threads", "1", "--quiet"]);
-    assert_eq!(other.is_done().out, "");
-    let rows = |folder: &str| std::fs::read(desk.path(folder).join("rows.parquet")).expect("rows");
-    assert_eq!(rows("results/small"), rows("one"), "the same rows whatever the number of threads");
-    desk.run(&["small.toml", "--out", "two", "--seed", "2", "--quiet"]).is_done();
-    assert_ne!(rows("one"), rows("two"));
-}
-
-#[test]
-fn a_folder_that_is_no_study_cannot_be_reported() {
-    let desk = Desk::new();
-    desk.file("folder/x", "");
-    desk.run(&["report", "folder"]).is_refused(2, &["folder", "finished study"]);
-    desk.run(&["report", "missing"]).is_refused(2, &["missing", "finished study"]);
-}
-
-#[test]
-fn a_result_folder_that_cannot_be_made_is_a_failure_of_the_work() {
-    let desk = Desk::new();
-    desk.file("small.toml", GOOD);
-    desk.file("in-the-way", "");
-    desk.run(&["small.toml", "--out", "in-the-way"]).is_refused(1, &["in-the-way"]);
-}
-
-#[test]
-fn lists_name_everything_in_every_format() {
-    let desk = Desk::new();
-    for (what, name) in [
-        ("identifiers", "output-error"),
-        ("effects", "backlash-deg"),
-        ("ships", "kvlcc2"),
-        ("manoeuvres", "zig-zag"),
-        ("sensors", "heading-noise-deg"),
-        ("keys", "disturbance.wind.gusting.correlation-s"),
-    ] {
-        for format in ["text", "markdown", "csv", "latex"] {
-            let run = desk.run(&["list", what, "--format", format]);
-            assert!(run.is_done().out.contains(name), "{what} {format}\n{}", run.out);
-            assert_eq!(run.err, "");
-        }
-    }
-}
-
-#[test]
-fn wrong_usage_is_exit_code_2() {
-    let desk = Desk::new();
-    desk.file("small.toml", GOOD);
-    assert_eq!(desk.run(&[]).code, Some(2));
-    for (arguments, part) in [
-        (&["list", "fish"][..], "identifiers"),
-        (&["small.toml", "--threads", "0"][..], "--threads"),
-        (&["small.toml", "--seed", "-1"][..], "whole number from 0"),
-        (&["small.toml", "--out", ""][..], "--out"),
-        (&["small.toml", "--format", "pdf"][..], "latex"),
-        (&["fit"][..], "TRIAL"),
-    ] {
-        desk.run(arguments).is_refused(2, &[part]);
-    }
 }
 
 /// The scenario that the README shows, as a reader would copy it.
