@@ -10,6 +10,7 @@
 
 mod classic;
 mod equation_8;
+mod found;
 mod points;
 
 use nalgebra::Matrix3;
@@ -23,6 +24,7 @@ use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit};
+use found::Analysed;
 use points::{BaseCourse, Points};
 
 /// Which points are used, and how.
@@ -119,23 +121,6 @@ impl CharacteristicPoints {
             Variant::Equation8 | Variant::Equation8Vertices => 0.14,
         }
     }
-}
-
-/// One trial with its points.
-#[derive(Debug)]
-struct Analysed {
-    samples: Samples,
-    points: Points,
-}
-
-/// What a variant finds, in the parameters of the integrated equation.
-#[derive(Debug)]
-struct Found {
-    /// K (1/s), K δ_r (rad/s), T (s).
-    parameters: [f64; 3],
-    /// Their covariance and degrees of freedom, or why there is none.
-    covariance: Result<(Matrix3<f64>, f64), &'static str>,
-    diagnostics: Vec<(&'static str, f64)>,
 }
 
 impl Identifier for CharacteristicPoints {

@@ -5,12 +5,12 @@
 //! nearly as good as output error for white heading noise; a yaw disturbance is outside it. For the iteration that
 //! removes the rest of the loss see the output-error and instrumental-variable methods.
 
+mod equations;
 mod noise;
 
 use std::ops::Range;
 
-use lanes::column::{dot, gram, project, sum};
-use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use ship::angle::to_deg;
@@ -23,16 +23,11 @@ use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::robust::{judge, newey_west_of_three};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
+use equations::{Piece, SHARED, Solution};
 use noise::Noise;
 
 /// Fewest headings in a stretch between gaps that can say more than its own initial state.
 const FEWEST_IN_PIECE: usize = 4;
-
-/// Shared parameters a, b, b δ_r.
-const SHARED: usize = 3;
-
-/// Their columns and the heading.
-const WIDTH: usize = SHARED + 1;
 
 /// Settings of [`IntegralLeastSquares`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -175,109 +170,6 @@ fn warnings(trials: &[Trial], pieces: usize) -> Vec<String> {
         ));
     }
     warnings
-}
-
-/// One stretch without a gap: its times and the columns of its equations.
-#[derive(Debug)]
-struct Piece<'a> {
-    time: &'a [f64],
-    /// The columns of a, b, b δ_r (rad s, rad s², s²) and the heading (rad).
-    columns: [Vec<f64>; WIDTH],
-}
-
-impl<'a> Piece<'a> {
-    /// Takes the rows of a stretch with origins of its own: what is linear in time belongs to the initial state, so
-    /// that nothing but lost digits depends on them.
-    fn new(samples: &'a Samples, range: Range<usize>) -> Self {
-        let (time, heading) = (&samples.time[range.clone()], &samples.heading[range.clone()]);
-        let once = samples.rudder_integral[range.start];
-        let twice = &samples.rudder_double_integral[range];
-        let (start, middle) = (time[0], 0.5 * (time[0] + time[time.len() - 1]));
-        let half_square = |t: &f64| 0.5 * (t - middle) * (t - middle);
-        let columns = [
-            // The integral is that of the heading less its first value.
-            minus_integral(time, heading),
-            time.iter().zip(twice).map(|(t, integral)| integral - twice[0] - once * (t - start)).collect(),
-            time.iter().map(half_square).collect(),
-            heading.iter().map(|psi| psi - heading[0]).collect(),
-        ];
-        Self { time, columns }
-    }
-
-    /// Projects c₀ and c₁ out of all columns; adds the squared lengths that the columns had before to `lengths` and
-    /// the cross products they have after to `products`.
-    fn project(&mut self, lengths: &mut Vector3<f64>, products: &mut Matrix4<f64>) {
-        let count = self.time.len() as f64;
-        let middle = sum(self.time) / count;
-        let mut unit: Vec<f64> = self.time.iter().map(|t| t - middle).collect();
-        let length = dot(&unit, &unit).sqrt();
-        let scale = 1.0 / length;
-        unit.iter_mut().for_each(|s| *s *= scale);
-        let removed = self.columns.each_mut().map(|column| project(&unit, column));
-        let [x0, x1, x2, y] = &self.columns;
-        let sums = Matrix4::from(gram([x0, x1, x2, y]));
-        for i in 0..SHARED {
-            lengths[i] += sums[(i, i)] + count * removed[i].mean.powi(2) + removed[i].share.powi(2);
-        }
-        *products += sums;
-    }
-}
-
-/// −∫(value − value₀) at every row: cubic Hermite interpolation, the slope of a row being that of the chord between its
-/// neighbours.
-///
-/// The trapezoid rule would bias T by −(h/T)²/12; with equal steps this is the rule of weights (−1, 13, 13, −1)/24. On
-/// unequal ones a parabola through three rows would give a smoother slope, but it leans on the shorter interval: where
-/// two rows nearly coincide, the noise of their difference over next to nothing would be integrated over the long one.
-/// `time` and `value` have the same length, at least 3.
-fn minus_integral(time: &[f64], value: &[f64]) -> Vec<f64> {
-    let last = time.len() - 1;
-    let chord = |from: usize, to: usize| (value[to] - value[from]) / (time[to] - time[from]);
-    // At the ends a parabola: its chord is the mean of its slopes.
-    let beyond = |chord: f64, slope: f64| 2.0 * chord - slope;
-    let mut slope = beyond(chord(0, 1), chord(0, 2));
-    let mut total = 0.0;
-    let mut integral = Vec::with_capacity(time.len());
-    integral.push(total);
-    for k in 0..last {
-        let h = time[k + 1] - time[k];
-        let next = if k + 1 < last { chord(k, k + 2) } else { beyond(chord(k, last), slope) };
-        total -= h * (0.5 * (value[k] + value[k + 1]) - value[0] + h / 12.0 * (slope - next));
-        integral.push(total);
-        slope = next;
-    }
-    integral
-}
-
-/// The least-squares solution and what the noise needs of it.
-#[derive(Debug)]
-struct Solution {
-    /// a, b, b δ_r.
-    parameters: Vector3<f64>,
-    /// (XᵀX)⁻¹ of the projected columns.
-    inverse: Matrix3<f64>,
-    condition: f64,
-}
-
-impl Solution {
-    /// Solves, and leaves the rows of the pieces projected.
-    fn of(pieces: &mut [Piece], condition_limit: f64) -> Result<Self, IdentifyError> {
-        let (mut lengths, mut products) = (Vector3::zeros(), Matrix4::zeros());
-        for piece in pieces {
-            piece.project(&mut lengths, &mut products);
-        }
-        let scale = lengths.map(|squares: f64| 1.0 / squares.sqrt());
-        let scaled = Matrix3::from_fn(|i, j| products[(i, j)] * scale[i] * scale[j]);
-        let smallest: f64 = SymmetricEigen::new(scaled).eigenvalues.min();
-        let condition = if smallest > 0.0 { 1.0 / smallest.sqrt() } else { f64::INFINITY };
-        let singular = || IdentifyError::Singular { condition, limit: condition_limit };
-        if condition.is_nan() || condition > condition_limit {
-            return Err(singular());
-        }
-        let scaled_inverse = scaled.cholesky().ok_or_else(singular)?.inverse();
-        let inverse = Matrix3::from_fn(|i, j| scaled_inverse[(i, j)] * scale[i] * scale[j]);
-        Ok(Self { parameters: inverse * products.fixed_view::<SHARED, 1>(0, SHARED), inverse, condition })
-    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 
+use super::found::{Analysed, Found};
 use super::points::{Point, Points};
-use super::{Analysed, Found};
 use crate::error::IdentifyError;
 use crate::linear::LeastSquares;
 

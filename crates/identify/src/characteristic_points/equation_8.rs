@@ -4,8 +4,8 @@
 
 use nalgebra::Matrix3;
 
+use super::found::{Analysed, Found};
 use super::points::rudder_integral;
-use super::{Analysed, Found};
 use crate::error::IdentifyError;
 use crate::linear::LeastSquares;
 use crate::savitzky_golay::local_polynomial;

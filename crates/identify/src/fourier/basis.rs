@@ -4,7 +4,7 @@
 use nalgebra::{DMatrix, DVector, Dyn, QR, SVD};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use super::FourierFit;
+use super::curve::FourierFit;
 use super::nodes::{dot, has_even_steps};
 use crate::error::IdentifyError;
 

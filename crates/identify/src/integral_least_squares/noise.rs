@@ -3,7 +3,7 @@
 use lanes::column::{dot, gram};
 use nalgebra::Matrix3;
 
-use super::{Piece, SHARED, Solution};
+use super::equations::{Piece, SHARED, Solution};
 
 /// Heading noise found in the residual and its way into the parameters.
 #[derive(Debug)]

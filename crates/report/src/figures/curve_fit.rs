@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{angle_side, heading_title, time_side, zero_line};
+use super::shared::{angle_side, heading_title, time_side, zero_line};
 use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet};

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PAD, heading_title, time_side};
+use super::shared::{PAD, heading_title, time_side};
 use crate::axis::Axis;
 use crate::curve::Curve;
 use crate::figure::Figure;

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::error_curves::Scale;
-use super::{Reference95, distinct};
+use super::shared::{Reference95, distinct};
 use crate::axis::Axis;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::distinct;
+use super::shared::distinct;
 use crate::axis::Axis;
 use crate::figure::Figure;
 use crate::layout::{Sheet, Side};

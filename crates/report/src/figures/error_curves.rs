@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PAD, Reference95, distinct};
+use super::shared::{PAD, Reference95, distinct};
 use crate::axis::Axis;
 use crate::clip::{self, Place};
 use crate::figure::Figure;

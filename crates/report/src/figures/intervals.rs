@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::median;
+use super::shared::median;
 use crate::axis::Axis;
 use crate::canvas::Anchor;
 use crate::colour::Colour;

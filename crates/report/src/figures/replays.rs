@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PAD, heading_title, record, record_entry, time_side, zero_line};
+use super::shared::{PAD, heading_title, record, record_entry, time_side, zero_line};
 use crate::axis::{self, Axis};
 use crate::canvas::Anchor;
 use crate::curve::Curve;

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{PAD, zero_line};
+use super::shared::{PAD, distinct, zero_line};
 use crate::axis::Axis;
 use crate::curve::Curve;
 use crate::figure::Figure;
@@ -43,7 +43,7 @@ pub struct ResidualPanels {
 /// Draws all panels in two columns, in one where the figure is narrow.
 pub fn residual_panels(data: &ResidualPanels, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let origins = super::distinct(data.panels.iter().flat_map(|panel| &panel.curves).map(|(origin, _)| origin));
+    let origins = distinct(data.panels.iter().flat_map(|panel| &panel.curves).map(|(origin, _)| origin));
     let entry =
         |origin: &&Origin| Entry::new(Sample::Line(Stroke::solid(origin.look().colour, theme.line)), origin.label());
     sheet.legend(&origins.iter().map(entry).collect::<Vec<_>>());

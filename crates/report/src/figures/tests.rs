@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::canvas::UNITS;
+use crate::curve::Curve;
 use crate::palette::{self, Origin};
 use crate::{Figure, Theme};
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{median, zero_upright};
+use super::shared::{median, zero_upright};
 use crate::axis::Axis;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;

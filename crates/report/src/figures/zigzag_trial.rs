@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{heading_title, rudder_title, time_side};
+use super::shared::{heading_title, rudder_title, time_side};
 use crate::axis::{self, Axis};
 use crate::canvas::Anchor;
 use crate::clip::Rect;

@@ -1,9 +1,18 @@
 //! A table as CSV, after RFC 4180.
 
-use super::Table;
+use super::content::Table;
 use crate::printable::escaped;
 
-pub(super) fn render(table: &Table) -> String {
+impl Table {
+    /// As CSV (RFC 4180, but with plain line breaks): headings with units in the first line, missing cells empty, and
+    /// ASCII minus signs, so that numbers can be read back. A text that a spreadsheet would take for a formula stands behind
+    /// an apostrophe. The title is not part of it.
+    pub fn to_csv(&self) -> String {
+        render(self)
+    }
+}
+
+fn render(table: &Table) -> String {
     let mut out = String::new();
     let heads: Vec<String> = table.columns.iter().map(|column| quote(&column.head())).collect();
     out.push_str(&heads.join(","));

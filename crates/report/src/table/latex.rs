@@ -1,10 +1,18 @@
 //! A table in LaTeX with the rules of `booktabs`. The characters this program writes (Greek, signs, sub- and
 //! superscripts) become mathematics, so the result compiles without a Unicode engine.
 
-use super::{Alignment, Table};
+use super::content::Table;
+use super::width::Alignment;
 use crate::printable::escaped;
 
-pub(super) fn render(table: &Table) -> String {
+impl Table {
+    /// As LaTeX for the `booktabs` package, every character escaped or translated to mathematics.
+    pub fn to_latex(&self) -> String {
+        render(self)
+    }
+}
+
+fn render(table: &Table) -> String {
     let mut out = String::from("\\begin{table}\n  \\centering\n");
     if let Some(title) = &table.title {
         out.push_str(&format!("  \\caption{{{}}}\n", escape(title)));

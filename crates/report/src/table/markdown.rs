@@ -1,16 +1,24 @@
 //! A table in Markdown (the GitHub flavour).
 
-use super::{Alignment, Table, width};
+use super::content::{Column, Table};
+use super::width::{self, Alignment};
 use crate::markdown::text as escape;
 
-pub(super) fn render(table: &Table) -> String {
+impl Table {
+    /// As a Markdown table, padded so that the source can be read too. Ends with a line break.
+    pub fn to_markdown(&self) -> String {
+        render(self)
+    }
+}
+
+fn render(table: &Table) -> String {
     // Escaping comes before padding, so that the columns of the source line up too.
     let escaped = Table {
         title: None,
         columns: table
             .columns
             .iter()
-            .map(|c| super::Column { heading: escape(&c.heading), unit: c.unit.as_deref().map(escape), ..c.clone() })
+            .map(|c| Column { heading: escape(&c.heading), unit: c.unit.as_deref().map(escape), ..c.clone() })
             .collect(),
         rows: table.rows.iter().map(|r| r.iter().map(|c| c.as_deref().map(escape)).collect()).collect(),
     };

@@ -1,9 +1,17 @@
 //! A table for the terminal.
 
-use super::{Table, width};
+use super::content::Table;
+use super::width;
 use crate::printable::escaped;
 
-pub(super) fn render(table: &Table) -> String {
+impl Table {
+    /// For a terminal: columns separated by two spaces, a rule under the headings. Ends with a line break.
+    pub fn to_text(&self) -> String {
+        render(self)
+    }
+}
+
+fn render(table: &Table) -> String {
     let mut out = String::new();
     if let Some(title) = &table.title {
         out.push_str(&escaped(title));

@@ -1,8 +1,22 @@
 //! How wide a text is in a terminal, and padding by it. Combining accents take no column, wide East Asian characters
 //! take two; Greek and mathematical symbols take one.
 
-use super::Alignment;
+use serde::{Deserialize, Serialize};
+
 use crate::number::MISSING;
+
+/// Which side the cells of a column are pushed to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Alignment {
+    /// Words.
+    #[default]
+    Left,
+    /// Whole numbers.
+    Right,
+    /// Numbers with decimals: the decimal points of a column stand below each other.
+    Decimal,
+}
 
 /// Columns a text takes.
 pub(super) fn columns(text: &str) -> usize {

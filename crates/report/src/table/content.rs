@@ -1,0 +1,99 @@
+//! What a table holds, and its cells padded to columns.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use super::width::{Alignment, align};
+use crate::printable::escaped;
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Column {
+    /// What the column holds.
+    pub heading: String,
+    /// Its unit, without brackets.
+    pub unit: Option<String>,
+    /// How its cells are aligned.
+    pub alignment: Alignment,
+}
+
+impl Column {
+    /// A column of words.
+    pub fn left(heading: impl Into<String>) -> Self {
+        Self { heading: heading.into(), unit: None, alignment: Alignment::Left }
+    }
+
+    /// A column of whole numbers.
+    pub fn right(heading: impl Into<String>) -> Self {
+        Self { alignment: Alignment::Right, ..Self::left(heading) }
+    }
+
+    /// A column of numbers with decimals.
+    pub fn decimal(heading: impl Into<String>) -> Self {
+        Self { alignment: Alignment::Decimal, ..Self::left(heading) }
+    }
+
+    /// The same column with a unit.
+    pub fn unit(self, unit: impl Into<String>) -> Self {
+        Self { unit: Some(unit.into()), ..self }
+    }
+
+    /// Heading and unit, as in `K [1/s]`.
+    pub(super) fn head(&self) -> String {
+        self.unit.as_ref().map_or_else(|| self.heading.clone(), |unit| format!("{} [{unit}]", self.heading))
+    }
+}
+
+/// A table: columns, and rows of cells. `None` is a missing cell; a row shorter than the columns is filled up with
+/// missing cells and what is beyond the last column is not shown.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Table {
+    /// Title or caption.
+    pub title: Option<String>,
+    /// The columns from left to right.
+    pub columns: Vec<Column>,
+    /// The rows from top to bottom.
+    pub rows: Vec<Vec<Option<String>>>,
+}
+
+impl Table {
+    /// An empty table.
+    pub fn new(columns: impl Into<Vec<Column>>) -> Self {
+        Self { title: None, columns: columns.into(), rows: Vec::new() }
+    }
+
+    /// The same table with a title.
+    pub fn titled(self, title: impl Into<String>) -> Self {
+        Self { title: Some(title.into()), ..self }
+    }
+
+    /// Adds a row; [`crate::number::MISSING`] counts as a missing cell.
+    pub fn push<C: Into<String>>(&mut self, cells: impl IntoIterator<Item = C>) {
+        let cell = |c: C| Some(c.into()).filter(|text: &String| text != crate::number::MISSING);
+        self.rows.push(cells.into_iter().map(cell).collect());
+    }
+
+    /// The cells of a row under the columns.
+    pub(super) fn cells<'a>(&'a self, row: &'a [Option<String>]) -> impl Iterator<Item = Option<&'a str>> {
+        (0..self.columns.len()).map(|i| row.get(i).and_then(Option::as_deref))
+    }
+
+    /// Every cell padded within its column so that decimal points stand below each other; columns of width of their
+    /// widest cell or heading. The first line is the headings.
+    pub(super) fn padded(&self) -> Vec<Vec<String>> {
+        let mut lines = vec![Vec::new(); self.rows.len() + 1];
+        for (i, column) in self.columns.iter().enumerate() {
+            let cells: Vec<Cow<str>> = self
+                .rows
+                .iter()
+                .map(|row| escaped(row.get(i).and_then(Option::as_deref).unwrap_or(crate::number::MISSING)))
+                .collect();
+            let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
+            for (line, cell) in lines.iter_mut().zip(align(&escaped(&column.head()), &cells, column.alignment)) {
+                line.push(cell);
+            }
+        }
+        lines
+    }
+}
