@@ -1,4 +1,5 @@
-//! The house: arrows between crates and between the files of a crate point down, no file is too long to read, no line too wide.
+//! The house: arrows between crates and between the files of a crate point down, no file is too long to read, no line
+//! too wide.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -165,6 +166,8 @@ fn named(module: &Module, text: &str, modules: &BTreeMap<Module, String>) -> BTr
     }
     let known =
         |path: Module| (0..=path.len()).rev().map(|end| path[..end].to_vec()).find(|head| modules.contains_key(head));
+    // Nothing stands where a macro will put a name.
+    found.retain(|path: &Module| path.last().is_some_and(|last| !last.is_empty()) || path.is_empty());
     found.into_iter().filter_map(known).filter(|other| other != module).collect()
 }
 
@@ -230,9 +233,9 @@ fn files_and_lines_can_be_read() {
             if lines > LONGEST_FILE && !text.lines().next().is_some_and(|first| first.contains(EXCUSE)) {
                 wrong.push(format!("{}: {lines} lines, and no \"{EXCUSE}\" in the first", path.display()));
             }
-            // A text that cannot be broken may be wider.
-            let is_wide =
-                |line: &str| line.chars().count() > WIDEST_LINE && !line.contains('"') && !line.contains("http");
+            // `cargo fmt` sees to the code, and nobody to comments. Rows of a table and addresses cannot be broken.
+            let is_prose = |line: &str| line.starts_with("//") && !line.contains(" | ") && !line.contains("http");
+            let is_wide = |line: &str| line.chars().count() > WIDEST_LINE && is_prose(line.trim_start());
             if let Some(number) = text.lines().position(is_wide) {
                 wrong.push(format!("{}:{}: wider than {WIDEST_LINE} characters", path.display(), number + 1));
             }

@@ -1,5 +1,5 @@
-//! Damaged files: every reader gives a reading that makes sense or one message, in bounded time and memory, and never panics.
-//! `KEMPF_FUZZ_CASES` sets the number of cases; `-- --nocapture` shows what was run.
+//! Damaged files: every reader gives a reading that makes sense or one message, in bounded time and memory, and never
+//! panics. `KEMPF_FUZZ_CASES` sets the number of cases; `-- --nocapture` shows what was run.
 
 use kempf_tests::fuzz::{TARGETS, Target, runner};
 

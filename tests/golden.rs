@@ -1,6 +1,6 @@
-//! Numbers that may only change on purpose. The first draws of every stream of random numbers are held in the crate that
-//! simulates; here are the work of every method on one record, so that a search that still converges but got worse is seen,
-//! and the summary of one small study.
+//! Numbers that may only change on purpose. The first draws of every stream of random numbers are held in the crate
+//! that simulates; here are the work of every method on one record, so that a search that still converges but got worse
+//! is seen, and the summary of one small study.
 
 use std::path::Path;
 
@@ -9,9 +9,9 @@ use identify::registry;
 use kempf_tests::records::Case;
 use scenario::Scenario;
 
-/// Method, evaluations, share by which they may differ on another machine, why it stopped. Counts of methods without a search
-/// are exact. The search for the Fourier fundamental and the polish of output error end where steps drown in rounding, and
-/// another mathematical library rounds otherwise.
+/// Method, evaluations, share by which they may differ on another machine, why it stopped. Counts of methods without a
+/// search are exact. The search for the Fourier fundamental and the polish of output error end where steps drown in
+/// rounding, and another mathematical library rounds otherwise.
 const WORK: &[(&str, usize, f64, &str)] = &[
     ("fourier-published", 181, 0.1, "converged"),
     ("fourier-projected", 2, 0.0, "direct"),
@@ -83,8 +83,8 @@ const TABLE: [(&str, [f64; 5]); 5] = [
     ("srivc", [0.04416358165426626, 0.15235916433231757, 0.12415601988670089, 0.1496346666219447, 0.19294530465508103]),
 ];
 
-/// One in 1e9 of K, T and heading, which in per cent of an error is 1e-7; other mathematical libraries stay far below it. The
-/// two methods with a Fourier series are left out: theirs can turn a rounding into another minimum or order.
+/// One in 1e9 of K, T and heading, which in per cent of an error is 1e-7; other mathematical libraries stay far below
+/// it. The two methods with a Fourier series are left out: theirs can turn a rounding into another minimum or order.
 #[test]
 fn a_small_study_has_the_table_it_had() {
     let scenario = Scenario::parse(Path::new("golden.toml"), "golden", SCENARIO.to_owned(), None)

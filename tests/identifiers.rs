@@ -1,5 +1,6 @@
-//! One contract for every registered identification method. Truth is K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg unless a test
-//! says otherwise. What a method promises beyond it is in its own file, with the reason; everything else is common.
+//! One contract for every registered identification method. Truth is K = 0.1 1/s, T = 16.3 s, δ_r = 0.5 deg unless a
+//! test says otherwise. What a method promises beyond it is in its own file, with the reason; everything else is
+//! common.
 
 use identify::estimate::{Covariance, Quantity};
 use identify::{Accuracy, Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
@@ -146,8 +147,8 @@ fn the_clock_of_the_record_does_not_matter() {
     }
 }
 
-/// A record that begins within the trial does not tell its base course, and passages of a wrong one give the characteristic
-/// points another slope: 0.2 % in T here, 0.5 % allowed. The others know no base course.
+/// A record that begins within the trial does not tell its base course, and passages of a wrong one give the
+/// characteristic points another slope: 0.2 % in T here, 0.5 % allowed. The others know no base course.
 #[test]
 fn the_zero_of_the_compass_does_not_matter() {
     for method in methods() {
@@ -171,8 +172,8 @@ fn a_ship_that_is_not_steered_is_refused() {
     }
 }
 
-/// Whether a method gave ships of different T the same one, which is where its search ends, and does not say so; or says so
-/// without a word to the reader.
+/// Whether a method gave ships of different T the same one, which is where its search ends, and does not say so; or
+/// says so without a word to the reader.
 fn ends_in_silence(answers: &[Estimate]) -> bool {
     let said = |found: &Estimate| found.stop == StopReason::RangeLimit;
     let same = matches!(answers, [one, other] if (one.T().value / other.T().value - 1.0).abs() < 1e-6);
@@ -219,8 +220,8 @@ fn gaps_are_survived() {
     }
 }
 
-/// Rows that gaps leave alone, one, two or three at a time: at either end, between dense parts and all over. What a piece between
-/// gaps cannot say it does not say; what is left gives a finite ship or a typed error, never a panic.
+/// Rows that gaps leave alone, one, two or three at a time: at either end, between dense parts and all over. What a
+/// piece between gaps cannot say it does not say; what is left gives a finite ship or a typed error, never a panic.
 #[test]
 fn rows_that_gaps_leave_alone_are_survived() {
     let whole = [case().trial(0), Case { noise_deg: 0.3, begin: Begin::Mid, ..case() }.trial(3)];
@@ -358,9 +359,9 @@ fn covariances_are_positive_definite_and_intervals_hold_the_estimate() {
     assert!(with_covariance >= 12, "at least six methods have a covariance");
 }
 
-/// What a method says of a course-unstable ship is 1/T < 0 (K and T negative) or a typed error, never a stable ship. The swings
-/// of such a ship grow in a zig-zag; with 1/T = −0.005 1/s the record shows enough of them for every method, with −0.01 and
-/// −0.02 1/s too few for those that need extrema or a period.
+/// What a method says of a course-unstable ship is 1/T < 0 (K and T negative) or a typed error, never a stable ship.
+/// The swings of such a ship grow in a zig-zag; with 1/T = −0.005 1/s the record shows enough of them for every method,
+/// with −0.01 and −0.02 1/s too few for those that need extrema or a period.
 #[test]
 fn a_course_unstable_ship_is_never_called_stable() {
     for method in methods() {

@@ -54,7 +54,8 @@ fn a_first_order_ship_turns_alike_on_any_clock() {
     }
 }
 
-/// The published Fourier method keeps instants two seconds away from a moving rudder, whatever the ship: it has no scale.
+/// The published Fourier method keeps instants two seconds away from a moving rudder, whatever the ship: it has no
+/// scale.
 #[test]
 fn methods_find_the_same_ship_on_any_clock() {
     for settings in registry::defaults() {
@@ -93,8 +94,8 @@ fn hull_zig_zag(parameters: Parameters, scale: f64) -> Arc<Truth> {
     simulation.run(&StreamKey::default()).expect("KVLCC2 reaches its executes").truth
 }
 
-/// Froude's law: a model of a hull in the same water turns as the ship does, √λ times faster, and keeps the same share of its
-/// speed. Steps scale with the hull, so only rounding is left.
+/// Froude's law: a model of a hull in the same water turns as the ship does, √λ times faster, and keeps the same share
+/// of its speed. Steps scale with the hull, so only rounding is left.
 #[test]
 fn a_geometric_model_of_a_hull_turns_as_the_ship() {
     let ship = hull_zig_zag(kvlcc2::FULL_SCALE, 1.0);

@@ -1,4 +1,5 @@
-//! Measured records, which are not part of the project: every test says in one line that it was skipped where they are not.
+//! Measured records, which are not part of the project: every test says in one line that it was skipped where they are
+//! not.
 
 use identify::{Identifier, output_error, registry};
 use kempf_tests::measured;
@@ -51,8 +52,9 @@ fn response(time: &[f64], input: &[f64], a: f64) -> Vec<f64> {
     headings
 }
 
-/// Least heading rms, deg, of all first-order responses with this 1/T: linear least squares on the initial state, K/T and
-/// K δ_r/T. A negative 1/T is a positive one in reversed time. `None` where the rudder would turn the ship the wrong way.
+/// Least heading rms, deg, of all first-order responses with this 1/T: linear least squares on the initial state, K/T
+/// and K δ_r/T. A negative 1/T is a positive one in reversed time. `None` where the rudder would turn the ship the
+/// wrong way.
 fn least_rms_deg(trial: &Trial, inverse_time: f64) -> Option<f64> {
     let rows = trial.len();
     let take = |row: usize| if inverse_time < 0.0 { rows - 1 - row } else { row };

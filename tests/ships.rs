@@ -22,7 +22,8 @@ const USUAL_RATE_DEG_S: f64 = 2.5;
 /// Executes every zig-zag has to make.
 const EXECUTES: usize = 5;
 
-/// A zig-zag δ = ψ = `angle_deg` of a ship with its own gear, to its fifth execute, in rows of a hundredth of a typical time.
+/// A zig-zag δ = ψ = `angle_deg` of a ship with its own gear, to its fifth execute, in rows of a hundredth of a typical
+/// time.
 fn own_zig_zag(vessel: Vessel, rate: f64, unit: f64, angle_deg: f64, first: Side) -> Simulation {
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, rate, 1.0);
     if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
@@ -96,8 +97,8 @@ fn evened(mut parameters: Parameters) -> Parameters {
     parameters
 }
 
-/// Response ships have no side; hulls are evened first: the propeller force of the Mariner, wake and flow straightening of
-/// the MMG hulls differ by side.
+/// Response ships have no side; hulls are evened first: the propeller force of the Mariner, wake and flow straightening
+/// of the MMG hulls differ by side.
 #[test]
 fn a_ship_without_built_in_asymmetry_is_its_own_mirror() {
     let mut vessels: Vec<(String, Vessel, f64, f64)> = ships::all()

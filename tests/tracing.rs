@@ -1,6 +1,6 @@
 //! Tracing, with the simulator in the loop: every effect that is put into a ship and not declared is named from the CSV
-//! alone, and nothing is named where there is none. How often is a matter of `scenarios/undeclared.toml`; here single trials
-//! are held to it.
+//! alone, and nothing is named where there is none. How often is a matter of `scenarios/undeclared.toml`; here single
+//! trials are held to it.
 
 use std::io::Write as _;
 use std::sync::Arc;

@@ -1,10 +1,10 @@
-//! Zig-zags of many Norrbin ships at once, in lanes: what a sweep over thousands of nonlinear ships could cost, where one ship after
-//! the other through [`Simulation`](simulate::Simulation) would take an hour.
+//! Zig-zags of many Norrbin ships at once, in lanes: what a sweep over thousands of nonlinear ships could cost, where
+//! one ship after the other through [`Simulation`](simulate::Simulation) would take an hour.
 //!
-//! T r' + r + n₃ r³ = K (δ + δ_r) from rest, by Runge–Kutta of order four with one fixed step for all. It is less than a simulation: the
-//! helmsman looks at the compass once a step, so that an execute falls on the first step at or beyond its heading (as with
-//! [`Watches::Display`](simulate::helm::Watches) of that period), the rudder moves in a straight line within a step, and there is neither weather nor
-//! instrument.
+//! T r' + r + n₃ r³ = K (δ + δ_r) from rest, by Runge–Kutta of order four with one fixed step for all. It is less than
+//! a simulation: the helmsman looks at the compass once a step, so that an execute falls on the first step at or beyond
+//! its heading (as with [`Watches::Display`](simulate::helm::Watches) of that period), the rudder moves in a straight
+//! line within a step, and there is neither weather nor instrument.
 //!
 //! Source of the ship: Norrbin (1963).
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]

@@ -1,5 +1,6 @@
-//! Criterion measures, and what it found is put into one table: every work beside its rival. Filters, `--test` and the other
-//! options of criterion work as usual; the table holds what was measured by this run, so there is none with `--test`.
+//! Criterion measures, and what it found is put into one table: every work beside its rival. Filters, `--test` and the
+//! other options of criterion work as usual; the table holds what was measured by this run, so there is none with
+//! `--test`.
 
 use std::env;
 use std::fs;

@@ -1,10 +1,10 @@
 //! What the work of this project costs, beside rivals and beside what is to be reached.
 //!
-//! Every piece of work is defined once, in [`works`], with what stands beside it and the limit it is held to. The benches
-//! (`cargo bench -p kempf-benches`) measure all of it with criterion and print one table of ratios each; the program
-//! `performance` (`cargo run --release -p kempf-benches --bin performance -- results/performance`) measures it again with
-//! work and rival in turn, adds how times grow with samples and trials, and writes a report with figures. The program `shards`
-//! measures the bookkeeping of a study in thousands of shards.
+//! Every piece of work is defined once, in [`works`], with what stands beside it and the limit it is held to. The
+//! benches (`cargo bench -p kempf-benches`) measure all of it with criterion and print one table of ratios each; the
+//! program `performance` (`cargo run --release -p kempf-benches --bin performance -- results/performance`) measures it
+//! again with work and rival in turn, adds how times grow with samples and trials, and writes a report with figures.
+//! The program `shards` measures the bookkeeping of a study in thousands of shards.
 //!
 //! | to learn about | read |
 //! |---|---|

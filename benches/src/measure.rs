@@ -1,5 +1,5 @@
-//! Times measured again and again, work and rival in turn, so that whatever else the machine does slows both alike; and the
-//! median with an interval that assumes nothing about how times are distributed.
+//! Times measured again and again, work and rival in turn, so that whatever else the machine does slows both alike; and
+//! the median with an interval that assumes nothing about how times are distributed.
 
 use std::time::Duration;
 
@@ -22,8 +22,8 @@ pub struct Measured {
 const NORMAL95: f64 = 1.96;
 
 impl Measured {
-    /// Median of samples; its interval between order statistics (binomial, normal approximation), which is the whole range
-    /// below six samples. `None` without samples.
+    /// Median of samples; its interval between order statistics (binomial, normal approximation), which is the whole
+    /// range below six samples. `None` without samples.
     pub fn median(samples: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = samples.into_iter().filter(|sample| sample.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);

@@ -1,5 +1,5 @@
-//! Zig-zags of many nonlinear ships, T r' + r + n₃ r³ = K δ (Norrbin), by Runge–Kutta of order four with a fixed step and a
-//! rudder of limited rate: one ship after the other, the plainest way to do it, which batches are held against.
+//! Zig-zags of many nonlinear ships, T r' + r + n₃ r³ = K δ (Norrbin), by Runge–Kutta of order four with a fixed step
+//! and a rudder of limited rate: one ship after the other, the plainest way to do it, which batches are held against.
 #![expect(non_snake_case, reason = "K_over_T is a ratio of two indices")]
 
 use ship::angle::from_deg;

@@ -41,7 +41,8 @@ pub struct Cost {
 /// What stands before the memory in the last line of a process.
 const MEMORY: &str = "peak memory, MB: ";
 
-/// Runs this program with other arguments, which have to make it end with [`tell`]. Fails with what it said on standard error.
+/// Runs this program with other arguments, which have to make it end with [`tell`]. Fails with what it said on standard
+/// error.
 pub fn again<A: AsRef<OsStr>>(arguments: impl IntoIterator<Item = A>) -> Outcome<Cost> {
     let program = std::env::current_exe()?;
     let start = Instant::now();

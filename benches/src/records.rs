@@ -25,8 +25,8 @@ pub const ROWS: usize = 1201;
 /// The key of the one trial that is identified.
 pub const KEY: StreamKey = StreamKey { seed: 1957, cell: 0, replicate: 0 };
 
-/// A 10/10 zig-zag of a first-order ship with K = 0.08 1/s and T = 25 s; rudder 2.5 deg/s, heading noise 0.1 deg, gyro noise
-/// 0.02 deg/s; `rows` rows half a second apart.
+/// A 10/10 zig-zag of a first-order ship with K = 0.08 1/s and T = 25 s; rudder 2.5 deg/s, heading noise 0.1 deg, gyro
+/// noise 0.02 deg/s; `rows` rows half a second apart.
 pub fn first_order_zig_zag(rows: usize) -> Simulation {
     let mut sensors = Sensors::default();
     sensors.heading.noise = from_deg(0.1);

@@ -1,6 +1,6 @@
-//! K and T by methods of the crate `dsmc`, the only other Rust library known to us that identifies continuous-time models from
-//! samples. Orders are fixed as a user who knows the ship would fix them; none of its methods gives a rudder bias or an
-//! interval of K and T, which ours do in the time that is compared.
+//! K and T by methods of the crate `dsmc`, the only other Rust library known to us that identifies continuous-time
+//! models from samples. Orders are fixed as a user who knows the ship would fix them; none of its methods gives a
+//! rudder bias or an interval of K and T, which ours do in the time that is compared.
 
 use dsmc::system_identification::arx::Arx;
 use dsmc::system_identification::iv::srivc::{
@@ -11,8 +11,8 @@ use trial::Trial;
 
 use crate::work::Indices;
 
-/// Bandwidth that a search starts from when the ship is unknown, rad/s: between that of a tanker and that of a boat. It takes
-/// three iterations from here and from most other starts, two from close to 1/T.
+/// Bandwidth that a search starts from when the ship is unknown, rad/s: between that of a tanker and that of a boat. It
+/// takes three iterations from here and from most other starts, two from close to 1/T.
 pub const BANDWIDTH: f64 = 0.1;
 
 /// Cut-off of the prefilter, rad/s: a third of the frequency of the zig-zag, as the documentation of the crate advises.
@@ -30,8 +30,8 @@ fn indices(theta: &[f64]) -> Indices {
     [theta[1] / theta[0], 1.0 / theta[0]]
 }
 
-/// SRIVC of K/(s (1 + T s)) from heading and rudder, `period` s apart: order one and one integrator, rudder linear between
-/// samples; the search starts from `bandwidth`, rad/s. `None` when it gives no answer.
+/// SRIVC of K/(s (1 + T s)) from heading and rudder, `period` s apart: order one and one integrator, rudder linear
+/// between samples; the search starts from `bandwidth`, rad/s. `None` when it gives no answer.
 pub fn srivc_heading(rudder: &[f64], heading: &[f64], period: f64, bandwidth: f64) -> Option<Indices> {
     let prefilter = Prefilter::new(1, CUTOFF).ok()?;
     let start = Initialization::StateVariableFilter(bandwidth);

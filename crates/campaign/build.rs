@@ -1,5 +1,5 @@
-//! What a manifest says of the program, known when it is built: the revision of its source, whether that had been changed since,
-//! and the versions of the crates that decide the numbers.
+//! What a manifest says of the program, known when it is built: the revision of its source, whether that had been
+//! changed since, and the versions of the crates that decide the numbers.
 
 use std::fs;
 use std::path::{Path, PathBuf};

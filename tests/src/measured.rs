@@ -1,13 +1,13 @@
-//! Where measured records are looked for. They are not part of the project, because their licences do not allow it; a test
-//! that needs one says in one line that it was skipped.
+//! Where measured records are looked for. They are not part of the project, because their licences do not allow it; a
+//! test that needs one says in one line that it was skipped.
 
 use std::path::PathBuf;
 
 use trial::Trial;
 
 /// The measured record `relative` ("kvlcc2_hsva/zigzag_20_10_s.csv"), from the folder named by the environment variable
-/// `TRIAL_DATA` or else from the shared folder beside the project; `None`, and one line on standard error, when it is not
-/// there.
+/// `TRIAL_DATA` or else from the shared folder beside the project; `None`, and one line on standard error, when it is
+/// not there.
 ///
 /// # Panics
 /// When the record is there and cannot be read: that is a failure of the reader, not a missing file.

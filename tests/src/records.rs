@@ -1,5 +1,5 @@
-//! Simulated zig-zag records of a first-order ship, and what can be done to a record: exchange its sides, shift its clock or
-//! its compass, lose rows. A record made here is what a method sees; nothing here identifies.
+//! Simulated zig-zag records of a first-order ship, and what can be done to a record: exchange its sides, shift its
+//! clock or its compass, lose rows. A record made here is what a method sees; nothing here identifies.
 
 use ship::FirstOrder;
 use ship::angle::from_deg;

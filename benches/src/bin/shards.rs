@@ -1,6 +1,7 @@
-//! `shards [SHARDS TRIALS]...` measures the bookkeeping of a study in many shards, without computing its trials: it writes
-//! finished shards full of made-up rows, joins them as `study merge` does, and prints what that took. Each pair of arguments is
-//! a number of shards and of trials in each. The folders are made beside other temporary files (`TMPDIR`) and removed.
+//! `shards [SHARDS TRIALS]...` measures the bookkeeping of a study in many shards, without computing its trials: it
+//! writes finished shards full of made-up rows, joins them as `study merge` does, and prints what that took. Each pair
+//! of arguments is a number of shards and of trials in each. The folders are made beside other temporary files
+//! (`TMPDIR`) and removed.
 
 use std::fs;
 use std::io::{Read, Seek, SeekFrom};

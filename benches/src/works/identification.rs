@@ -16,7 +16,8 @@ pub const RIVAL: &str = "dsmc SRIVC, heading";
 const TRIPLES: usize = 200;
 const MANY_TRIPLES: &str = "fourier-published, 200 triples";
 
-/// Largest error of K and T, as a share, that is let pass. The published Fourier method is 14 to 20 % low in T by itself.
+/// Largest error of K and T, as a share, that is let pass. The published Fourier method is 14 to 20 % low in T by
+/// itself.
 fn tolerance(method: &str) -> f64 {
     match method {
         "fourier-published" => 0.6,

@@ -1,5 +1,5 @@
-//! Running the trials of a study into its folder: what is there already is checked and kept, the rest is run in parallel and
-//! stored as it comes, and in the end everything is where [`crate::store`] expects it.
+//! Running the trials of a study into its folder: what is there already is checked and kept, the rest is run in
+//! parallel and stored as it comes, and in the end everything is where [`crate::store`] expects it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,8 +36,8 @@ const SPOT_CHECKS: usize = 32;
 
 /// Runs a shard of a scenario into a folder, or what is missing of it; returns what is stored.
 ///
-/// Fails when the folder holds another study, when its rows are not what this program computes, and when it is interrupted;
-/// what was stored stays.
+/// Fails when the folder holds another study, when its rows are not what this program computes, and when it is
+/// interrupted; what was stored stays.
 pub fn collect(
     scenario: &Scenario,
     shard: Shard,
@@ -233,8 +233,8 @@ fn bench<'a>(scenario: &'a Scenario, tasks: &[Task]) -> Bench<'a> {
     Bench::new(scenario, tasks[0].cell..=tasks[tasks.len() - 1].cell)
 }
 
-/// Runs a batch on a thread of its own, so that an interruption need not wait for a trial that does not end. Returns the
-/// outcomes up to the first that is missing.
+/// Runs a batch on a thread of its own, so that an interruption need not wait for a trial that does not end. Returns
+/// the outcomes up to the first that is missing.
 fn watched<'scope>(
     scope: &'scope Scope<'scope, '_>,
     scenario: &'scope Scenario,
@@ -317,7 +317,8 @@ fn finish(scenario: &Scenario, plan: &Plan, unfinished: Unfinished, folder: &Res
     Ok(stored)
 }
 
-/// Runs some of the stored trials again: rows of a program that computes something else must not be mixed with new ones.
+/// Runs some of the stored trials again: rows of a program that computes something else must not be mixed with new
+/// ones.
 struct SpotCheck<'a> {
     scenario: &'a Scenario,
     folder: &'a Path,

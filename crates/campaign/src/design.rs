@@ -35,12 +35,12 @@ pub struct CellFacts {
     pub trials: Range<u64>,
     /// Identifiers of the effects that a first-order base lacks in its trials.
     pub missing: Vec<String>,
-    /// Whether the ship has a K and T of its own beside those of the first-order response nearest to it: a response ship with
-    /// effects.
+    /// Whether the ship has a K and T of its own beside those of the first-order response nearest to it: a response
+    /// ship with effects.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub has_own_indices: bool,
-    /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a bound
-    /// of its own, and where there is none.
+    /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a
+    /// bound of its own, and where there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,
 }
 

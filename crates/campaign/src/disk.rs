@@ -1,5 +1,5 @@
-//! The file operations of result folders, in one place, so that a test can make any one of them fail. Everything else in
-//! this crate that writes, goes through [`crate::folder`].
+//! The file operations of result folders, in one place, so that a test can make any one of them fail. Everything else
+//! in this crate that writes, goes through [`crate::folder`].
 
 use std::fs;
 use std::io::{self, Read, Seek, SeekFrom, Write};

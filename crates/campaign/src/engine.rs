@@ -70,7 +70,8 @@ struct Yardstick {
     nearest: Option<FirstOrder>,
     /// The base of a response ship with effects, where that is another one.
     own: Option<FirstOrder>,
-    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T, %².
+    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T,
+    /// %².
     bound: Option<(Bound, Matrix2<f64>)>,
     /// Undisturbed second manoeuvre, perfectly recorded.
     validation: Option<Trial>,
@@ -142,7 +143,8 @@ pub struct Bench<'a> {
     prepared: Vec<OnceLock<Result<Prepared, SimulateError>>>,
 }
 
-/// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a tenth of a megabyte.
+/// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a
+/// tenth of a megabyte.
 const MOST_PREPARED: usize = 64;
 
 impl<'a> Bench<'a> {
@@ -232,7 +234,8 @@ impl<'a> Bench<'a> {
         Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
     }
 
-    /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial asks.
+    /// The yardstick of a cell whose trials all have one specification: made with its first trial, whichever trial
+    /// asks.
     fn shared(&self, cell: usize) -> Yardstick {
         let key = key(self.scenario, Task { cell, replicate: 0 });
         let nothing = Yardstick { nearest: None, own: None, bound: None, validation: None, expected: None };

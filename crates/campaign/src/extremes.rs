@@ -1,5 +1,5 @@
-//! Every number of a scenario is checked: put to NaN it is refused, and the message shows its own key at its own line. Put to any
-//! other extreme it is refused, or its trials end.
+//! Every number of a scenario is checked: put to NaN it is refused, and the message shows its own key at its own line.
+//! Put to any other extreme it is refused, or its trials end.
 
 mod texts;
 
@@ -90,8 +90,8 @@ fn with_each_number(text: &str, value: &str, mut see: impl FnMut(&str)) {
     }
 }
 
-/// Every extreme at every number is refused with a message, or the first trial is made and identified by every method: that
-/// this test ends is what it is about.
+/// Every extreme at every number is refused with a message, or the first trial is made and identified by every method:
+/// that this test ends is what it is about.
 fn is_refused_or_ends(text: &str) {
     parse(text).unwrap_or_else(|message| panic!("{message}"));
     for value in EXTREMES {
@@ -154,8 +154,8 @@ fn no_number_of_a_trace_is_taken_for_another() {
     }
 }
 
-/// A distribution without ends reaches what no check can see beforehand: such a trial is a row with its reason, and the others
-/// are made.
+/// A distribution without ends reaches what no check can see beforehand: such a trial is a row with its reason, and the
+/// others are made.
 #[test]
 fn a_drawn_trial_without_end_is_a_failed_row() {
     let head = EVERYTHING[4].split("[stop]").next().expect("the trial");

@@ -1,6 +1,6 @@
-//! A folder of results: who holds it, and how files get into it. Every file is written beside its place and renamed when it
-//! is whole, so a reader finds the old one or the new one and a link in the folder is replaced, not followed. While one
-//! program writes in a folder all others are kept out.
+//! A folder of results: who holds it, and how files get into it. Every file is written beside its place and renamed
+//! when it is whole, so a reader finds the old one or the new one and a link in the folder is replaced, not followed.
+//! While one program writes in a folder all others are kept out.
 
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Component, Path, PathBuf};
@@ -120,8 +120,8 @@ impl ResultFolder {
 }
 
 impl Reading {
-    /// Keeps those out who want to write in a folder. A folder that nobody ever wrote in with a lock, or in which none can
-    /// be made, is read without one.
+    /// Keeps those out who want to write in a folder. A folder that nobody ever wrote in with a lock, or in which none
+    /// can be made, is read without one.
     ///
     /// Fails when somebody is writing there.
     pub fn begin(path: &Path) -> Result<Self, Failure> {

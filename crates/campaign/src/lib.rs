@@ -1,7 +1,7 @@
 //! A campaign: the trials of a scenario, run to rows that are stored, joined and summarised.
 //!
-//! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. Nothing here draws, prints or reads
-//! the command line; who wants to see how far a campaign is implements [`Observer`].
+//! [`collect::collect`] runs a scenario into a folder, [`collect::in_memory`] without one. Nothing here draws, prints
+//! or reads the command line; who wants to see how far a campaign is implements [`Observer`].
 //!
 //! | to learn about | read |
 //! |---|---|

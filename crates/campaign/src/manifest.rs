@@ -93,8 +93,8 @@ impl Manifest {
         }
     }
 
-    /// Whether another manifest is of the same scenario, run by the same version: all but the machine, the revision and what came
-    /// out.
+    /// Whether another manifest is of the same scenario, run by the same version: all but the machine, the revision and
+    /// what came out.
     pub fn is_of_the_run(&self, other: &Self) -> bool {
         let of = |manifest: &Self| Self {
             machine: other.machine.clone(),

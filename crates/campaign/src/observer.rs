@@ -24,8 +24,8 @@ pub trait Observer: Sync {
         false
     }
 
-    /// A trial does not end although the study was asked to stop. All trials before it are stored: a program may end itself
-    /// here, with this failure. Where it returns, the trial is waited for.
+    /// A trial does not end although the study was asked to stop. All trials before it are stored: a program may end
+    /// itself here, with this failure. Where it returns, the trial is waited for.
     fn give_up(&self, _failure: &Failure) {}
 }
 

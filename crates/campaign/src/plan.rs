@@ -1,8 +1,9 @@
 //! Which trials a study runs, in what order, which of them belong to a shard, and when a cell has had enough of them.
 //!
-//! The order is cell by cell and replicate by replicate. Without a stopping rule a shard is a run of consecutive trials,
-//! with one it is a run of whole cells, because a rule looks at all the trials of a cell so far. What a rule sees is fixed
-//! by the rows alone, so the same trials are run whatever the number of threads, interruptions and shards.
+//! The order is cell by cell and replicate by replicate. Without a stopping rule a shard is a run of consecutive
+//! trials, with one it is a run of whole cells, because a rule looks at all the trials of a cell so far. What a rule
+//! sees is fixed by the rows alone, so the same trials are run whatever the number of threads, interruptions and
+//! shards.
 
 use scenario::Scenario;
 
@@ -55,8 +56,8 @@ impl<'a> Plan<'a> {
         self.number(self.end) - self.number(self.first)
     }
 
-    /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have to
-    /// have been shown to [`Plan::saw`].
+    /// The next trials, at most `most` of them; none when the part is done. Rows of all trials handed out before have
+    /// to have been shown to [`Plan::saw`].
     pub fn next(&mut self, most: u64) -> Vec<Task> {
         if let (Some(verdict), Some(rule)) = (&self.verdict, &self.scenario.stop) {
             let looked = self.next.replicate > 0 && self.next.replicate.is_multiple_of(rule.every);
@@ -128,8 +129,8 @@ mod tests {
         (1..=of).map(move |number| Plan::new(scenario, Shard { number, of }))
     }
 
-    /// Every trial belongs to one shard: shards begin where the one before ended, the first at the first trial, the last
-    /// ends with the last. Bookkeeping only, nothing is run.
+    /// Every trial belongs to one shard: shards begin where the one before ended, the first at the first trial, the
+    /// last ends with the last. Bookkeeping only, nothing is run.
     #[test]
     fn a_thousand_million_trials_belong_to_one_of_ten_thousand_shards_each() {
         for cells in [2, 7, 1000] {

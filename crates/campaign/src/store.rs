@@ -1,5 +1,6 @@
-//! The files of a result folder that everything else is made from: rows, design, showcases, times and manifest. The manifest
-//! is written last and carries the SHA-256 of the others, and who reads them looks first whether they are still the same.
+//! The files of a result folder that everything else is made from: rows, design, showcases, times and manifest. The
+//! manifest is written last and carries the SHA-256 of the others, and who reads them looks first whether they are
+//! still the same.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -138,8 +139,8 @@ fn expected_in(folder: &Path) -> Result<Manifest, Failure> {
     })
 }
 
-/// Manifest and times of what was published in a folder without its rows, where those that have been run now are the same bytes:
-/// then a run on another machine changes nothing of what is published.
+/// Manifest and times of what was published in a folder without its rows, where those that have been run now are the
+/// same bytes: then a run on another machine changes nothing of what is published.
 fn reproduced(
     folder: &Path,
     own: &Manifest,

@@ -1,9 +1,9 @@
-//! The folder `unfinished` inside a result folder: rows as they come, in numbered parts that each appear whole or not at
-//! all. Whatever kills a run, the parts stay, and the next run goes on after the last of them. When all trials are done the
-//! parts are joined to `rows.parquet`, whose bytes do not depend on where the parts were cut.
+//! The folder `unfinished` inside a result folder: rows as they come, in numbered parts that each appear whole or not
+//! at all. Whatever kills a run, the parts stay, and the next run goes on after the last of them. When all trials are
+//! done the parts are joined to `rows.parquet`, whose bytes do not depend on where the parts were cut.
 //!
-//! Beside its rows every part has a description: first and last trial, their number, the SHA-256 of the rows, and times. Only
-//! a part that was read and is wrong is thrown away, with those after it, the last one first.
+//! Beside its rows every part has a description: first and last trial, their number, the SHA-256 of the rows, and
+//! times. Only a part that was read and is wrong is thrown away, with those after it, the last one first.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -68,7 +68,8 @@ struct Part {
     timings: Vec<timings::Line>,
 }
 
-/// Whether a result folder holds a study in progress. What else may be in its folder `unfinished` is left of one that ended.
+/// Whether a result folder holds a study in progress. What else may be in its folder `unfinished` is left of one that
+/// ended.
 pub fn is_in(results: &Path) -> Result<bool, Failure> {
     let manifest = results.join(NAME).join(MANIFEST);
     Ok(is_ours(&results.join(NAME))? && disk::is_there(&manifest).on("look for", &manifest)?)
@@ -103,8 +104,8 @@ pub fn discard(results: &ResultFolder, observer: &dyn Observer) -> Result<(), Fa
     if is_ours(&folder)? { clear(&folder, observer) } else { Ok(()) }
 }
 
-/// Removes what a study wrote into its folder, the manifest first, so that a kill leaves none in progress, and the folder,
-/// unless it holds something else.
+/// Removes what a study wrote into its folder, the manifest first, so that a kill leaves none in progress, and the
+/// folder, unless it holds something else.
 fn clear(folder: &Path, observer: &dyn Observer) -> Result<(), Failure> {
     remove(&folder.join(MANIFEST))?;
     let names = disk::names(folder).on("list", folder)?;
@@ -181,8 +182,8 @@ impl<'a> Unfinished<'a> {
         self.folder.path().join(name)
     }
 
-    /// Reads what is stored, shows every row to the plan and to `check`, and moves the plan behind it. A part that is wrong is
-    /// thrown away with all after it: their trials are run again.
+    /// Reads what is stored, shows every row to the plan and to `check`, and moves the plan behind it. A part that is
+    /// wrong is thrown away with all after it: their trials are run again.
     ///
     /// Fails when a part cannot be read; then nothing is thrown away.
     pub fn resume(

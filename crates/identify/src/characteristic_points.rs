@@ -34,7 +34,8 @@ pub enum Variant {
     /// All extrema, a start at rest and all passages, by least squares.
     #[default]
     LeastSquares,
-    /// Three successive extrema and the two passages between them, as in an analysis by hand. Says nothing of its error.
+    /// Three successive extrema and the two passages between them, as in an analysis by hand. Says nothing of its
+    /// error.
     ThreePeaks,
     /// The integrated equation at instants one window apart, with heading and yaw rate from local cubics.
     #[serde(rename = "equation-8")]

@@ -8,11 +8,12 @@
 //! attenuation of a regression on a noisy yaw rate. The reported covariance takes all that the series leaves of the
 //! heading for white noise, truncation included, so that it is not too sure of a quiet record.
 //!
-//! Of a record of more than 50 000 rows neighbours are averaged, rudder and heading alike, down to as many: the equation is
-//! linear and does not notice, and the shortest harmonic there may be still has some 800 rows. Its noise is then that of the means.
+//! Of a record of more than 50 000 rows neighbours are averaged, rudder and heading alike, down to as many: the
+//! equation is linear and does not notice, and the shortest harmonic there may be still has some 800 rows. Its noise is
+//! then that of the means.
 //!
-//! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series by
-//! generalised cross-validation (Golub, Heath and Wahba 1979) or AICc (Hurvich and Tsai 1989).
+//! Extends: Ge, Hu, Yin and Sun, Identification of Ship Maneuverability Indexes by Fourier Method. Order of the series
+//! by generalised cross-validation (Golub, Heath and Wahba 1979) or AICc (Hurvich and Tsai 1989).
 
 use serde::{Deserialize, Serialize};
 use ship::Shown;
@@ -38,8 +39,8 @@ const FEWEST_ROWS: usize = 20;
 /// Rows of a trial beyond which neighbours are averaged.
 const MOST_ROWS: usize = 50_000;
 
-/// Frequency, in units of the zig-zag frequency, that the series has to reach: a zig-zag has no harmonic between the first and
-/// the third.
+/// Frequency, in units of the zig-zag frequency, that the series has to reach: a zig-zag has no harmonic between the
+/// first and the third.
 const LEAST_REACH: f64 = 3.0;
 
 /// Harmonics with which w is searched where the order follows later.
@@ -151,9 +152,9 @@ impl Settings {
 
 /// The mended Fourier method.
 ///
-/// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the highest series can follow, some
-/// twenty, with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is not
-/// positive.
+/// Fails with [`IdentifyError::TooFewPoints`] when a record holds more zig-zags than the highest series can follow,
+/// some twenty, with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when
+/// K/T is not positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FourierProjected {
     settings: Settings,

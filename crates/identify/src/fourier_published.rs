@@ -204,9 +204,9 @@ impl Identifier for FourierPublished {
     }
 
     fn promises(&self) -> Promises {
-        // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten triples
-        // scatter about that, and δ_r is the worst of their ratios. The curve is the poorer the fewer headings hold it: with
-        // gaps it is off by twice as much.
+        // Eight harmonics truncate r': an independent computation finds a few per cent in K and 11 to 17 % in T. Ten
+        // triples scatter about that, and δ_r is the worst of their ratios. The curve is the poorer the fewer headings
+        // hold it: with gaps it is off by twice as much.
         Promises {
             whole: Accuracy { K: 0.1, T: 0.22, rudder_bias_deg: 0.7 },
             with_gaps: Accuracy { K: 0.25, T: 0.45, rudder_bias_deg: 1.0 },

@@ -1,5 +1,5 @@
-//! Cutting a record at its gaps. A method that differentiates, integrates or averages the heading must not do so across a long
-//! stretch in which it was not recorded; here it is told where the stretches without a gap are.
+//! Cutting a record at its gaps. A method that differentiates, integrates or averages the heading must not do so across
+//! a long stretch in which it was not recorded; here it is told where the stretches without a gap are.
 
 use std::ops::Range;
 

@@ -47,10 +47,11 @@ pub struct Accuracy {
     pub rudder_bias_deg: f64,
 }
 
-/// Largest errors that the method itself makes in zig-zags of a ship with K = 0.1 1/s and T = 16.3 s, read every second.
+/// Largest errors that the method itself makes in zig-zags of a ship with K = 0.1 1/s and T = 16.3 s, read every
+/// second.
 ///
-/// The default is that of a method without any error of its own: the corners of the rudder lie between rows, where a straight
-/// line takes their place, and no method can be better than 0.03 % in K.
+/// The default is that of a method without any error of its own: the corners of the rudder lie between rows, where a
+/// straight line takes their place, and no method can be better than 0.03 % in K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Promises {
     /// From every row.

@@ -65,9 +65,9 @@ impl Settings {
 ///
 /// The covariance is that of white heading noise n seen through the equation, e = n + a ∫n, with the variance of n
 /// estimated from the residual. The robust covariance (Newey and West 1987) takes the noise that was found, row by row,
-/// so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts. Nor does either count the
-/// bias by the noise of ∫ψ, a regressor, which pulls 1/T towards zero where headings come too rarely: with an interval
-/// beyond T / 2 the interval of T holds the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
+/// so it also holds for coloured heading noise; neither holds for a yaw disturbance that lasts. Nor does either count
+/// the bias by the noise of ∫ψ, a regressor, which pulls 1/T towards zero where headings come too rarely: with an
+/// interval beyond T / 2 the interval of T holds the truth in 85 of 100 records instead of 95, beyond 2 T in 65.
 ///
 /// Fails with [`IdentifyError::Singular`] above the condition limit, and with [`IdentifyError::NotAShip`] when K/T is
 /// not positive. A negative 1/T is an answer: the ship is course-unstable.
@@ -127,8 +127,8 @@ impl Identifier for IntegralLeastSquares {
     }
 
     fn promises(&self) -> Promises {
-        // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time in an
-        // equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
+        // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time
+        // in an equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
         Promises { with_gaps: Accuracy { K: 0.001, T: 0.005, rudder_bias_deg: 0.012 }, ..Promises::default() }
     }
 }

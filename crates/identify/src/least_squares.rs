@@ -81,11 +81,11 @@ impl Settings {
 /// Least squares on r' = −a r + b δ + c.
 ///
 /// The covariance is that of white noise in the signal, led through the differentiating filters; its variance is
-/// estimated from the residual. The robust covariance (Newey and West 1987) takes the residual as it
-/// is, of any colour. Where noise dominates the differentiated signal (`r_squared` far below 1) both are several times too
-/// large, because errors of r and r' cancel in a way they do not count.
-/// **Neither contains the bias that noise in r causes** (errors in variables); to first order it is the diagnostic
-/// `noise_bias_of_inverse_T_percent`. Smoothing adds a bias of its own, which nothing here shows.
+/// estimated from the residual. The robust covariance (Newey and West 1987) takes the residual as it is, of any colour.
+/// Where noise dominates the differentiated signal (`r_squared` far below 1) both are several times too large, because
+/// errors of r and r' cancel in a way they do not count. **Neither contains the bias that noise in r causes** (errors
+/// in variables); to first order it is the diagnostic `noise_bias_of_inverse_T_percent`. Smoothing adds a bias of its
+/// own, which nothing here shows.
 ///
 /// Fails with [`IdentifyError::NoChannel`] when the yaw rate is asked for and not recorded, with
 /// [`IdentifyError::TooFewPoints`] when no window fits between gaps, and with [`IdentifyError::NotAShip`] when K/T is

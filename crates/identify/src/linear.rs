@@ -23,7 +23,8 @@ impl LeastSquares {
     /// Solves by singular values of the scaled columns.
     ///
     /// `columns` have equal length, that of `y`. Fails with [`IdentifyError::Singular`] when the condition number of
-    /// the scaled columns exceeds `condition_limit`, and with [`IdentifyError::TooFewPoints`] when there are fewer rows than columns.
+    /// the scaled columns exceeds `condition_limit`, and with [`IdentifyError::TooFewPoints`] when there are fewer rows
+    /// than columns.
     pub fn solve(columns: &[&[f64]], y: &[f64], condition_limit: f64) -> Result<Self, IdentifyError> {
         let (rows, width) = (y.len(), columns.len());
         if rows < width {

@@ -1,11 +1,11 @@
 //! `output-error`: maximum likelihood for white heading noise, by simulation with the recorded rudder.
 //!
 //! Unknown are K, T and δ_r, common to all trials, and heading and yaw rate at one end of every trial. Once 1/T is
-//! given the heading is linear in all the others, so the whole problem is a search over one number:
-//! the profiled sum of squares is scanned over both signs of 1/T, every local minimum of the scan is polished by
-//! variable projection with exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), on some of the rows and then, where it
-//! is not hopeless, on all, and the lowest wins. A local
-//! minimum therefore cannot be mistaken for the answer unless it is narrower than the scan.
+//! given the heading is linear in all the others, so the whole problem is a search over one number: the profiled sum of
+//! squares is scanned over both signs of 1/T, every local minimum of the scan is polished by variable projection with
+//! exact sensitivities (Golub and Pereyra 1973; Kaufman 1975), on some of the rows and then, where it is not hopeless,
+//! on all, and the lowest wins. A local minimum therefore cannot be mistaken for the answer unless it is narrower than
+//! the scan.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
@@ -89,8 +89,8 @@ const AT_BOUND: f64 = 1e-6;
 /// Relative step at which the polish stops.
 const TOLERANCE: f64 = 1e-10;
 
-/// The goal on some of the rows: their minimum is another one by a share of its standard deviation, and where more steps are
-/// needed the residual is large and little is left to gain.
+/// The goal on some of the rows: their minimum is another one by a share of its standard deviation, and where more
+/// steps are needed the residual is large and little is left to gain.
 const COARSE: Goal = Goal { tolerance: 1e-3, iterations: 8, bar: f64::INFINITY };
 
 /// A valley whose sum of squares over some of the rows is this many times the lowest is left there.
@@ -155,8 +155,8 @@ impl OutputError {
 
     /// Variable projection from a start, with step halving; never leaves a lower point for a higher one.
     ///
-    /// Ends when a step is below the tolerance, promises less than the sum of squares can tell, or leaves no hope to get below
-    /// the bar.
+    /// Ends when a step is below the tolerance, promises less than the sum of squares can tell, or leaves no hope to
+    /// get below the bar.
     fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<Minimum> {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
@@ -204,7 +204,8 @@ impl Identifier for OutputError {
             trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let grid = self.grid(&tracks, trials);
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
-        // The scan only has to find the valleys, and the first polish their place, for which some rows do; the last takes all.
+        // The scan only has to find the valleys, and the first polish their place, for which some rows do; the last
+        // takes all.
         let thinned: Vec<Track> = tracks.iter().map(|track| track.thinned(SCANNED_ROWS)).collect();
         let scan = scan::fits(&thinned, &grid);
         let mut coarse = Profile::new(thinned);
@@ -320,8 +321,8 @@ fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) ->
 /// Cramér–Rao bound of (1/T, K/T, δ_r) for one trial of known truth and white heading noise of sd `heading_sd` (rad):
 /// the smallest covariance an unbiased method can have when the initial state is unknown as well.
 ///
-/// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the record does not determine the parameters.
-/// Source: Cramér (1946), Rao (1945).
+/// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the record does not
+/// determine the parameters. Source: Cramér (1946), Rao (1945).
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd: f64) -> Option<Covariance> {
     let track = Track::unchecked(trial);
     let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };

@@ -136,7 +136,8 @@ impl Profile {
         information.iter().all(|value| value.is_finite()).then_some(information)
     }
 
-    /// Residual times projected Jacobian, column by column and trial by trial; after [`information`](Self::information).
+    /// Residual times projected Jacobian, column by column and trial by trial; after
+    /// [`information`](Self::information).
     pub fn scores(&self) -> Vec<[Vec<f64>; 3]> {
         let of_part = |part: &Part| {
             let times_residual = |column: &[f64]| column.iter().zip(&part.residual).map(|(x, e)| x * e).collect();

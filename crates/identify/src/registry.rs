@@ -1,7 +1,7 @@
 //! The methods of the project by name, with their settings as they are written in scenario files.
 //!
-//! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below. The
-//! contract of all methods then runs it.
+//! To add a method: a file with its `Settings` and an [`Identifier`], a `mod` for it, and one line in the table below.
+//! The contract of all methods then runs it.
 
 use serde::{Deserialize, Serialize};
 

@@ -29,9 +29,9 @@ pub(crate) fn lag1_autocorrelation<'a>(residuals: impl Iterator<Item = &'a [f64]
 
 /// Long-run covariance Σ_k w_k Γ_k of scores with Bartlett weights, summed over trials.
 ///
-/// `scores[trial][unknown]` is the column of residual times Jacobian. The lag grows with the first-order autocorrelation of the
-/// scores (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square of sums over all windows of one
-/// length, which needs one pass.
+/// `scores[trial][unknown]` is the column of residual times Jacobian. The lag grows with the first-order
+/// autocorrelation of the scores (Andrews 1991) up to a quarter of the record. The Bartlett sum equals the mean square
+/// of sums over all windows of one length, which needs one pass.
 ///
 /// Sources: Newey and West (1987); Andrews (1991).
 pub fn newey_west(scores: &[Vec<Vec<f64>>]) -> DMatrix<f64> {
@@ -78,7 +78,8 @@ fn bandwidth(scores: &[Vec<f64>]) -> usize {
     scores.iter().map(of_column).max().unwrap_or(1).min(longest)
 }
 
-/// Sums of a column over all windows of `length` rows, those that overlap an end only partly included; an empty column has none.
+/// Sums of a column over all windows of `length` rows, those that overlap an end only partly included; an empty column
+/// has none.
 fn window_sums(column: &[f64], length: usize) -> Vec<f64> {
     let mut sums = Vec::with_capacity(column.len() + length);
     let mut window = 0.0;

@@ -11,8 +11,8 @@ use crate::error::IdentifyError;
 /// Smallest range of rudder and heading, deg, that counts as steering.
 const SMALLEST_RANGE_DEG: f64 = 0.5;
 
-/// Shortest and longest record, s: from a tank model to thirty years. Methods use powers of the time up to the eighth and
-/// number frequencies by its ratio to the interval, which have to stay in the range of floating point.
+/// Shortest and longest record, s: from a tank model to thirty years. Methods use powers of the time up to the eighth
+/// and number frequencies by its ratio to the interval, which have to stay in the range of floating point.
 const DURATION_S: RangeInclusive<f64> = 1e-6..=1e9;
 
 /// Largest angle, rad: a heading that has turned 160 000 times.

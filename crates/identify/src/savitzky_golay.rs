@@ -37,8 +37,8 @@ impl SavitzkyGolay {
     /// Three rows and a parabola: central differences.
     pub const CENTRAL_DIFFERENCES: Self = Self { window_samples: 3, order: 2 };
 
-    /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or holds so many that
-    /// nothing of a manoeuvre is left.
+    /// Fails when the window is even, the order is outside 2..=5, the window does not hold order + 1 rows, or holds so
+    /// many that nothing of a manoeuvre is left.
     pub fn check(&self) -> Result<(), SettingsError> {
         if !(2..=HIGHEST_ORDER).contains(&self.order) {
             return Err(SettingsError { key: "order", found: self.order.to_string(), expected: "2, 3, 4 or 5" });

@@ -1,7 +1,8 @@
 //! The profiled sum of squares of a first-order fit at many values of 1/T at once.
 //!
-//! What [`crate::profile`] computes by projection, to the last digit and for one 1/T, is computed here by normal equations for
-//! several side by side: half the digits, which is enough to see where the valleys are, in a small part of the time.
+//! What [`crate::profile`] computes by projection, to the last digit and for one 1/T, is computed here by normal
+//! equations for several side by side: half the digits, which is enough to see where the valleys are, in a small part
+//! of the time.
 
 use lanes::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};

@@ -1,9 +1,9 @@
 //! The first-order heading of one trial as a linear combination of four columns, once 1/T is given.
 //!
-//! ψ = ψ₁ · 1 + r₁ · φ₁(t − t₁) + b · G(t; a) + b δ_r · H(t; a), where G is the response to the recorded rudder and H the one
-//! to a constant, both from rest at the anchor t₁. For a ≥ 0 the anchor is the first row; for a < 0 it is the last one and
-//! the columns are stepped backwards in time, so that nothing grows exponentially for either sign of T and the
-//! columns stay as independent as the record allows. This module knows how to fill the columns and how the heading
+//! ψ = ψ₁ · 1 + r₁ · φ₁(t − t₁) + b · G(t; a) + b δ_r · H(t; a), where G is the response to the recorded rudder and H
+//! the one to a constant, both from rest at the anchor t₁. For a ≥ 0 the anchor is the first row; for a < 0 it is the
+//! last one and the columns are stepped backwards in time, so that nothing grows exponentially for either sign of T and
+//! the columns stay as independent as the record allows. This module knows how to fill the columns and how the heading
 //! changes with a; it does not choose parameters.
 
 use ship::FirstOrder;

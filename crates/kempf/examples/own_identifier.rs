@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use kempf::prelude::*;
 
-/// K and T by the slope of the yaw rate: ψ̈ = (K/T) δ − (1/T) ψ̇ fitted to differences of the heading, without a rudder bias.
+/// K and T by the slope of the yaw rate: ψ̈ = (K/T) δ − (1/T) ψ̇ fitted to differences of the heading, without a rudder
+/// bias.
 struct Differences;
 
 impl Identifier for Differences {

@@ -1,5 +1,5 @@
-//! Ship zig-zag trials: simulate them, identify the manoeuvrability indices K and T, trace what a first-order model lacks, and
-//! benchmark the methods against each other.
+//! Ship zig-zag trials: simulate them, identify the manoeuvrability indices K and T, trace what a first-order model
+//! lacks, and benchmark the methods against each other.
 //!
 //! One crate to depend on. It holds no code: the parts are crates of their own, and are here under their short names.
 //!
@@ -29,8 +29,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your own in a
-//! study.
+//! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
+//! own in a study.
 
 pub use {campaign, identify, scenario, ship, simulate, trace, trial};
 

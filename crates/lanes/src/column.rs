@@ -1,5 +1,5 @@
-//! Sums over columns of numbers. Every sum runs in eight lanes that are added up pairwise at the end: the lanes are independent, so
-//! a processor can work on them side by side.
+//! Sums over columns of numbers. Every sum runs in eight lanes that are added up pairwise at the end: the lanes are
+//! independent, so a processor can work on them side by side.
 
 use crate::{Kernel, run};
 

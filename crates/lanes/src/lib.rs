@@ -1,9 +1,9 @@
-//! Arithmetic side by side. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] has it compiled for every instruction set
-//! of the family of processors and picks the widest that the machine has when the program runs.
+//! Arithmetic side by side. A [`Kernel`] is a loop over arrays of independent numbers; [`run`] has it compiled for
+//! every instruction set of the family of processors and picks the widest that the machine has when the program runs.
 //!
-//! The bits do not depend on the choice: every lane does the operations of the source in their order, additions across lanes are
-//! written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide registers takes the
-//! same steps with narrow ones. [`on_every_set`] is for the tests that prove it.
+//! The bits do not depend on the choice: every lane does the operations of the source in their order, additions across
+//! lanes are written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide
+//! registers takes the same steps with narrow ones. [`on_every_set`] is for the tests that prove it.
 //!
 //! Nothing here knows of ships; [`mod@column`] has the sums and [`transform`] the spectrum that methods of
 //! identification need.

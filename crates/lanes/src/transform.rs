@@ -1,5 +1,5 @@
-//! The Fourier transform of a row of numbers, compiled here once: the library behind it is generic, and every crate that asked it
-//! would compile all its algorithms again.
+//! The Fourier transform of a row of numbers, compiled here once: the library behind it is generic, and every crate
+//! that asked it would compile all its algorithms again.
 
 use realfft::RealFftPlanner;
 pub use realfft::num_complex::Complex;
@@ -9,8 +9,8 @@ pub fn power(x: &mut [f64]) -> Vec<f64> {
     transform(x).into_iter().map(|z| z.norm_sqr()).collect()
 }
 
-/// The transform of `x`, from the mean to the highest frequency that the spacing can show: bin k is k periods over the length of
-/// `x`. Spoils `x`.
+/// The transform of `x`, from the mean to the highest frequency that the spacing can show: bin k is k periods over the
+/// length of `x`. Spoils `x`.
 pub fn transform(x: &mut [f64]) -> Vec<Complex<f64>> {
     if x.is_empty() {
         return Vec::new();

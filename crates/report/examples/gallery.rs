@@ -1,6 +1,6 @@
 //! Draws the figures of trials and records with made-up but realistic data, once for the screen and once for a journal
-//! column: `cargo run -p report --example gallery -- DIR`; those of whole studies are seen in `results/`. The data come from a first-order response stepped with Euler's method,
-//! which is enough to look right; nothing here is a result.
+//! column: `cargo run -p report --example gallery -- DIR`; those of whole studies are seen in `results/`. The data come
+//! from a first-order response stepped with Euler's method, which is enough to look right; nothing here is a result.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -136,8 +136,8 @@ impl Axis {
             (step, ticks::multiples(self.lo, self.hi, step))
         };
         let count = count.max(1);
-        // One interval more can still give no more ticks than allowed, because the ends of the axis are not round. And a
-        // single label says nothing about the scale, so the step shrinks until there are two.
+        // One interval more can still give no more ticks than allowed, because the ends of the axis are not round. And
+        // a single label says nothing about the scale, so the step shrinks until there are two.
         let (step, values) = std::iter::once(divide(count + 1))
             .filter(|(_, values)| values.len() <= count + 1)
             .chain((count..).map(divide))

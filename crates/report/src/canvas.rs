@@ -1,7 +1,8 @@
 //! The canvas that plotters draws on, and the repairs of its SVG: nothing else knows plotters.
 //!
-//! Its SVG backend works in whole pixels, so a canvas has many units to the point; it knows no mixed type, so that is added
-//! here. Text stays text (it can be searched and edited), with a list of fall-back families for viewers without DejaVu Sans.
+//! Its SVG backend works in whole pixels, so a canvas has many units to the point; it knows no mixed type, so that is
+//! added here. Text stays text (it can be searched and edited), with a list of fall-back families for viewers without
+//! DejaVu Sans.
 
 use std::sync::OnceLock;
 
@@ -24,8 +25,8 @@ pub(crate) const UNITS: f64 = 20.0;
 const BACKEND_FONT_FACTOR: f64 = 1.24;
 /// The SVG backend shifts the base line by this; removed, because viewers disagree on the size of an ex.
 const BACKEND_SHIFT: &str = " dy=\"-0.5ex\"";
-/// The SVG backend writes the opacity of a whole element, which a rasteriser answers with a layer of its own, slow for a
-/// cloud of points.
+/// The SVG backend writes the opacity of a whole element, which a rasteriser answers with a layer of its own, slow for
+/// a cloud of points.
 const BACKEND_OPACITY: &str = " opacity=\"";
 const INFALLIBLE: &str = "writing into a string cannot fail";
 
@@ -127,8 +128,8 @@ impl Canvas<'_> {
     }
 }
 
-/// Gives the document its size on the page and round joins, makes the opacity that of the ink, and turns the marks around
-/// italic type into markup.
+/// Gives the document its size on the page and round joins, makes the opacity that of the ink, and turns the marks
+/// around italic type into markup.
 fn finish(drawn: &str, canvas: (u32, u32), width: f64, height: f64) -> String {
     let body = drawn.split_once('>').map_or("", |(_, body)| body).replace(BACKEND_SHIFT, "");
     let mut svg = format!(

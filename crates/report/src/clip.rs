@@ -115,8 +115,8 @@ pub(crate) fn thin(line: Vec<Place>, column: f64) -> Vec<Place> {
     kept
 }
 
-/// Most times the pattern of a dashed line is repeated. A line as long as that goes to and fro until it is a band, in which nobody
-/// sees dashes.
+/// Most times the pattern of a dashed line is repeated. A line as long as that goes to and fro until it is a band, in
+/// which nobody sees dashes.
 const MOST_REPEATS: f64 = 5000.0;
 
 /// Chops a polyline into dashes; `pattern` holds the lengths of dash and gap in points.

@@ -5,8 +5,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// A curve or a cloud of points: `y[i]` at `x[i]`, in the units the figure states.
 ///
 /// A pair with an undefined (NaN or infinite) number is a gap: it is skipped, and a line is broken there. When the
-/// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`Curve::new`] has no more pairs than a
-/// figure can show.
+/// lengths differ the surplus is ignored. In JSON a gap is `null`. What is made by [`Curve::new`] has no more pairs
+/// than a figure can show.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Curve {
     /// Abscissae.
@@ -26,8 +26,8 @@ impl Curve {
 
     /// A curve from its two columns.
     ///
-    /// One with more than [`Self::MOST_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours, all as long,
-    /// the first, the lowest, the highest and the last, and a gap where there is one.
+    /// One with more than [`Self::MOST_PAIRS`] pairs is thinned to what can be seen of it: of every run of neighbours,
+    /// all as long, the first, the lowest, the highest and the last, and a gap where there is one.
     pub fn new(x: impl Into<Vec<f64>>, y: impl Into<Vec<f64>>) -> Self {
         let curve = Self { x: x.into(), y: y.into() };
         if curve.x.len().min(curve.y.len()) > Self::MOST_PAIRS { curve.thinned() } else { curve }

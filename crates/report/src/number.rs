@@ -41,8 +41,8 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}×{}", mantissa.replace('-', "−"), power_of_ten(exponent))
 }
 
-/// `0.1003 ± 0.0007`: the uncertainty with one significant digit (two when it starts with 1 or 2 or would round up to 10,
-/// where a single digit says too little), the value to the same decimal.
+/// `0.1003 ± 0.0007`: the uncertainty with one significant digit (two when it starts with 1 or 2 or would round up to
+/// 10, where a single digit says too little), the value to the same decimal.
 ///
 /// Without a usable uncertainty the value stands alone with five significant digits.
 pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {

@@ -168,8 +168,8 @@ const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marke
 /// How many looks there are beside those of the known methods.
 const OTHERS: usize = METHODS.len() * OUTLINES.len() * METHODS.len();
 
-/// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow marker,
-/// which keeps them apart from the known methods.
+/// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow
+/// marker, which keeps them apart from the known methods.
 fn method_look(id: &str) -> Look {
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
@@ -179,8 +179,8 @@ fn method_look(id: &str) -> Look {
     other_look((hash % OTHERS as u64) as usize)
 }
 
-/// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and within
-/// a lap of 35 at least two.
+/// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and
+/// within a lap of 35 at least two.
 fn other_look(number: usize) -> Look {
     let (colours, shapes) = (METHODS.len(), OUTLINES.len());
     let (colour, shape, lap) = (number % colours, number % shapes, number / (colours * shapes));

@@ -1,5 +1,5 @@
-//! Characters that can be shown. All others (control characters, marks that turn the direction of writing, characters without
-//! a meaning) are written as escapes, so that no text from outside can act on a terminal or spoil a file.
+//! Characters that can be shown. All others (control characters, marks that turn the direction of writing, characters
+//! without a meaning) are written as escapes, so that no text from outside can act on a terminal or spoil a file.
 
 use std::borrow::Cow;
 

@@ -69,8 +69,8 @@ impl Cell {
         self.specification.missing.clone()
     }
 
-    /// Whether the ship is a first-order base with effects, so that its own K and T are not those of the first-order response
-    /// nearest to it.
+    /// Whether the ship is a first-order base with effects, so that its own K and T are not those of the first-order
+    /// response nearest to it.
     pub fn has_own_indices(&self) -> bool {
         self.specification.truth.is_none() && self.specification.base.is_some()
     }
@@ -105,8 +105,8 @@ impl Cell {
 }
 
 impl Drawn {
-    /// Draws for a cell, each tried in the middle and at the ends of its range, and the specification in the middle of all;
-    /// `None` where nothing is drawn.
+    /// Draws for a cell, each tried in the middle and at the ends of its range, and the specification in the middle of
+    /// all; `None` where nothing is drawn.
     ///
     /// Fails with the draw at fault and what is wrong with the trial.
     fn new(draws: &[Draw], document: &Table, folder: &Path) -> Result<Option<(Self, Specification)>, (usize, Problem)> {
@@ -155,8 +155,8 @@ pub(crate) fn only(document: &Table, parts: &[Part]) -> Table {
     some
 }
 
-/// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved like
-/// any scenario.
+/// One cell of the design: what the document says of trials and methods, with the keys of its points changed, resolved
+/// like any scenario.
 pub(crate) fn swept(
     document: &Table,
     points: &[&sweep::Point],
@@ -166,7 +166,8 @@ pub(crate) fn swept(
     let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     let settings = || points.iter().flat_map(|point| &point.set);
     let cell = (labels.len() > 1).then(|| labels.join(", "));
-    // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of several.
+    // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
+    // several.
     let blame = |problem: Problem| {
         let of_key = settings().rfind(|setting| setting.key.meets(&problem.key));
         match of_key.or_else(|| settings().next_back()) {

@@ -1,5 +1,6 @@
-//! Values drawn anew for every trial: `[[draw]]`. A draw has a stream of its own, keyed by the replicate and its place in the
-//! list and not by the cell, so a replicate has the same drawn ship in every cell and another draw changes nothing of it.
+//! Values drawn anew for every trial: `[[draw]]`. A draw has a stream of its own, keyed by the replicate and its place
+//! in the list and not by the cell, so a replicate has the same drawn ship in every cell and another draw changes
+//! nothing of it.
 
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal, Uniform};
@@ -190,8 +191,8 @@ impl Draw {
         self.between.into_iter().filter(|end| end.is_finite() && self.shape.of_value(*end).is_finite())
     }
 
-    /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution; `cell`
-    /// names the cell where it helps.
+    /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution;
+    /// `cell` names the cell where it helps.
     pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {

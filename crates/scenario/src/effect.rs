@@ -1,5 +1,5 @@
-//! Effects of a scenario: from degrees and seconds to the parameters of [`ship::effects`], each checked against the range
-//! its effect declares.
+//! Effects of a scenario: from degrees and seconds to the parameters of [`ship::effects`], each checked against the
+//! range its effect declares.
 
 use std::sync::Arc;
 
@@ -40,8 +40,8 @@ pub fn keys(effect: &dyn Effect) -> Option<&'static str> {
 
 /// The ship with effects added to its response.
 ///
-/// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and for
-/// a parameter outside its range.
+/// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and
+/// for a parameter outside its range.
 pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
     if wire.is_empty() {
         return Ok(ship);

@@ -1,5 +1,5 @@
-//! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one give
-//! the same rows; where they differ, the keys say how.
+//! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one
+//! give the same rows; where they differ, the keys say how.
 
 use std::path::Path;
 use std::{fmt, io};

@@ -1,6 +1,6 @@
-//! How much one scenario may hold, so that it is read, checked and begun at once, whatever stands in it. A person writes a few of
-//! each; more is a slip or comes from a program, and is several studies. What one trial may cost is estimated in
-//! [`simulate::cost`].
+//! How much one scenario may hold, so that it is read, checked and begun at once, whatever stands in it. A person
+//! writes a few of each; more is a slip or comes from a program, and is several studies. What one trial may cost is
+//! estimated in [`simulate::cost`].
 
 use crate::problem::{KeyPath, Problem};
 

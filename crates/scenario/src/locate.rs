@@ -6,8 +6,8 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::problem::{KeyPath, Mark};
 
-/// Byte range of the name or value at a path, or of the name of the nearest key above it that exists; the first line that
-/// says anything when there is none.
+/// Byte range of the name or value at a path, or of the name of the nearest key above it that exists; the first line
+/// that says anything when there is none.
 ///
 /// A table or list is shown by its name, since its own range may be pages long.
 pub fn span(text: &str, path: &KeyPath, mark: Mark) -> Range<usize> {

@@ -1,5 +1,5 @@
-//! Names and labels as users give them: what may stand in a figure, a table, a page or the name of a file. They are checked
-//! where they enter, so that nothing behind has to look again.
+//! Names and labels as users give them: what may stand in a figure, a table, a page or the name of a file. They are
+//! checked where they enter, so that nothing behind has to look again.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ use crate::failure::Failure;
 /// Most characters of a label.
 pub const LONGEST_LABEL: usize = 80;
 
-/// Most characters of the labels of a cell together, and most bytes of a name. Names of files are made from them; with what
-/// comes before and behind they have to stay within the 255 bytes of a file system.
+/// Most characters of the labels of a cell together, and most bytes of a name. Names of files are made from them; with
+/// what comes before and behind they have to stay within the 255 bytes of a file system.
 pub const LONGEST_NAME: usize = 180;
 
 /// Why a text cannot be used, as what was expected in its place.

@@ -1,5 +1,6 @@
-//! Reads typed values out of a TOML document that is already in memory, and knows for every fault which key it belongs to.
-//! So a scenario as it is written and a scenario that a sweep has changed, which stands in no file, give the same messages.
+//! Reads typed values out of a TOML document that is already in memory, and knows for every fault which key it belongs
+//! to. So a scenario as it is written and a scenario that a sweep has changed, which stands in no file, give the same
+//! messages.
 
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor};

@@ -65,8 +65,8 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     missing
 }
 
-/// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so that
-/// the error of a replay is that of the response.
+/// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so
+/// that the error of a replay is that of the response.
 fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
     let resolved = || {
         let recording = match &wire.recording {

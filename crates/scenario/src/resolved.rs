@@ -27,7 +27,8 @@ const ORDER: [&str; 15] = [
     "identifier",
 ];
 
-/// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they change.
+/// The text of a scenario with nothing left out, as TOML. Sweeps and draws stay as they are: it is the scenario they
+/// change.
 ///
 /// Fails as the scenario would.
 pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {

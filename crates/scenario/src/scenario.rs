@@ -72,8 +72,8 @@ struct Stored {
 impl Scenario {
     /// Reads and resolves a file; of a manifest the scenario in it, with the seed it was run with.
     ///
-    /// Fails with a message that names the file, the line and the key, what was found and what was expected. The name of
-    /// the study, which its folder is called by, has to be one ([`name::file`]).
+    /// Fails with a message that names the file, the line and the key, what was found and what was expected. The name
+    /// of the study, which its folder is called by, has to be one ([`name::file`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
         if let Ok(manifest) = toml::from_str::<Stored>(&text) {
@@ -182,8 +182,8 @@ impl Scenario {
         resolved::text(&document, &self.cells[0].methods).expect("it has been resolved")
     }
 
-    /// What the scenario leaves to be assumed and can decide what it finds, what does most harm first, each as a sentence
-    /// without its full stop.
+    /// What the scenario leaves to be assumed and can decide what it finds, what does most harm first, each as a
+    /// sentence without its full stop.
     pub fn defaults_that_matter(&self) -> Vec<(Assumption, String)> {
         let made = |(index, assumption): (usize, Assumption)| {
             let cells = self.cells.iter().filter(|cell| cell.assumes(index)).count();

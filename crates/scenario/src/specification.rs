@@ -15,7 +15,8 @@ pub struct Specification {
     pub truth: Option<FirstOrder>,
     /// The base of a response ship, whatever effects it has.
     pub base: Option<FirstOrder>,
-    /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its own.
+    /// Identifiers of the effects that a first-order base lacks in a trial; [`HULL`] for a ship with equations of its
+    /// own.
     pub missing: Vec<String>,
     /// Which of [`Assumption::ALL`] the settings leave to be made.
     pub assumed: [bool; Assumption::ALL.len()],

@@ -37,6 +37,7 @@ pub mod signal;
 pub mod vessel;
 
 pub use dynamics::{Dynamics, Input, Measured, Motion, Regressor};
+pub use effects::EffectReal;
 pub use first_order::FirstOrder;
 pub use number::{Real, Tangent};
 pub use particulars::Particulars;

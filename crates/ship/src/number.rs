@@ -1,8 +1,8 @@
 //! The numbers that equations are written in: plain values, and values that carry their derivatives, so that one replay
 //! gives a heading and how it changes with several parameters, exactly (forward differentiation; Wengert 1964).
 //!
-//! Equations of effects and responses are written once, for any [`Real`]; a value alone takes the same path through them
-//! as a value with derivatives.
+//! Equations of effects and responses are written once, for any [`Real`]; a value alone takes the same path through
+//! them as a value with derivatives.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -95,8 +95,8 @@ impl Real for f64 {
     }
 }
 
-/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with two
-/// parameters.
+/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with
+/// two parameters.
 pub const DIRECTIONS: usize = 6;
 
 /// A value and its derivatives in some directions.

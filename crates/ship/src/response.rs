@@ -3,10 +3,9 @@
 //! ψ' = r,  r' = −a s_a r + b s_b (δ_e + δ_r + disturbance) + Σ accelerations of effects,
 //!
 //! where δ_e is the recorded rudder after dead time and every transformation, and s_a, s_b are the products of the
-//! scales of the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and
-//! T₂ r' = s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is
-//! T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a (Liénard form: no derivative of the rudder
-//! is needed, and a Bech polynomial in r keeps its place).
+//! scales of the effects. With [`SwayCoupling`] the right-hand side f becomes the rate of an extra state s and T₂ r' =
+//! s − (1 + T₂ a s_a) r + b s_b T₃ δ_e, which is T₁T₂ r'' + (T₁+T₂) r' + r + n(r) = K (δ + δ_r) + K T₃ δ' with T₁ = 1/a
+//! (Liénard form: no derivative of the rudder is needed, and a Bech polynomial in r keeps its place).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -133,7 +132,8 @@ impl ResponseModel {
     /// The model with a value for every parameter.
     ///
     /// # Panics
-    /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a user.
+    /// When `parameters` has not [`parameter_count`](Self::parameter_count) values: a mistake of the caller, not of a
+    /// user.
     pub fn with<R: EffectReal>(self, parameters: Vec<R>) -> Response<R> {
         assert_eq!(parameters.len(), self.parameters, "one value per parameter");
         let coupling = self.second_order.and_then(|index| {
@@ -248,8 +248,8 @@ impl<R: EffectReal> Response<R> {
         }
     }
 
-    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the state s
-    /// of a second-order response follows so that the yaw acceleration stays what it is.
+    /// Puts heading (rad) and yaw rate (rad/s) of a state to other values and keeps the memory of all effects; the
+    /// state s of a second-order response follows so that the yaw acceleration stays what it is.
     pub fn restart(&self, heading: R, yaw_rate: R, state: &mut [R]) {
         let change = yaw_rate - state[1];
         (state[0], state[1]) = (heading, yaw_rate);

@@ -1,6 +1,6 @@
-//! What a run may cost, known before it is made, and the limits of it: so that no specification, drawn by chance or slipped from
-//! a pen, computes for ever or takes all memory. The estimate is refused in [`Simulation::validate`]; what it misses stops in
-//! the run itself, with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
+//! What a run may cost, known before it is made, and the limits of it: so that no specification, drawn by chance or
+//! slipped from a pen, computes for ever or takes all memory. The estimate is refused in [`Simulation::validate`]; what
+//! it misses stops in the run itself, with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
 
 use ship::narrow_band::NarrowBand;
 

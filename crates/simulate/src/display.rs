@@ -53,7 +53,8 @@ impl Display {
         self.next as f64 * self.period
     }
 
-    /// Reads the display at its next time, when the compass stands at `gyro` (rad): whether `side` · deviation ≥ `angle`.
+    /// Reads the display at its next time, when the compass stands at `gyro` (rad): whether `side` · deviation ≥
+    /// `angle`.
     pub fn read(&mut self, gyro: f64, side: f64, angle: f64) -> bool {
         let time = self.next_time();
         self.next += 1;

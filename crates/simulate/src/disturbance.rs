@@ -1,6 +1,6 @@
 //! What the sea does to the ship, as a specification. Every moment is given as the rudder angle (rad) that has the same
-//! yaw moment at approach speed; waves are a heading that is seen on top of the response. The paths of one run are drawn
-//! in `weather` and `wave_path`, on grids that depend on nothing but this specification.
+//! yaw moment at approach speed; waves are a heading that is seen on top of the response. The paths of one run are
+//! drawn in `weather` and `wave_path`, on grids that depend on nothing but this specification.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
 use ship::narrow_band::NarrowBand;
@@ -128,8 +128,8 @@ impl Wind {
         self.moment * gust * (2.0 * (self.from - heading)).sin()
     }
 
-    /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed` (m/s)
-    /// on a ship that makes `U` (m/s) ahead; its drift angle is left out.
+    /// Relative wind speed (m/s) and direction it comes from (rad from the bow, −π to π), for a true wind of `speed`
+    /// (m/s) on a ship that makes `U` (m/s) ahead; its drift angle is left out.
     pub fn relative(&self, speed: f64, U: f64, heading: f64) -> (f64, f64) {
         let (side, ahead) = (self.from - heading).sin_cos();
         let (ahead, side) = (speed * ahead + U, speed * side);

@@ -1,5 +1,5 @@
-//! What can go wrong: a specification that makes no sense, or a run that leads nowhere. Errors carry the numbers, under the
-//! key and in the unit in which a person writes them; the advice for a scenario is in [`crate::settings`].
+//! What can go wrong: a specification that makes no sense, or a run that leads nowhere. Errors carry the numbers, under
+//! the key and in the unit in which a person writes them; the advice for a scenario is in [`crate::settings`].
 
 use std::fmt;
 

@@ -1,6 +1,6 @@
 //! The steering gear: how the rudder follows an order. For a constant order the path of the rudder is known in closed
-//! form, so it is kept as a list of segments with exact ends, never integrated. What the gear is ordered to do is decided
-//! in [`crate::helm`].
+//! form, so it is kept as a list of segments with exact ends, never integrated. What the gear is ordered to do is
+//! decided in [`crate::helm`].
 
 use ship::Polyline;
 
@@ -8,9 +8,9 @@ use crate::error::{self, Checked};
 
 /// A steering gear with optional rate limit, lag, dead time, dead band and stops.
 ///
-/// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, where δ_c is the order one dead time ago, held within the
-/// stops; the pump stands still as soon as the error is inside the dead band. Rate in rad/s (infinite: the rudder jumps),
-/// lag and dead time in s, angles in rad.
+/// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, where δ_c is the order one dead time ago, held within
+/// the stops; the pump stands still as soon as the error is inside the dead band. Rate in rad/s (infinite: the rudder
+/// jumps), lag and dead time in s, angles in rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteeringGear {
     /// Largest rudder rate, rad/s; infinite for none.
@@ -138,7 +138,8 @@ impl RudderPath {
         Self { segments }
     }
 
-    /// A rudder that stands at `angle` (rad) until `start` (s) and then follows `signal`, whose first point is put there.
+    /// A rudder that stands at `angle` (rad) until `start` (s) and then follows `signal`, whose first point is put
+    /// there.
     pub fn following(angle: f64, start: f64, signal: &Polyline) -> Self {
         let (times, values) = (signal.times(), signal.values());
         let shift = start - times[0];

@@ -1,5 +1,5 @@
-//! Who reads the compass and turns the wheel: the specification of the helmsman, and the [`Helm`], which is the state of
-//! one manoeuvre in one run. It decides; it neither moves the rudder ([`crate::gear`]) nor the ship.
+//! Who reads the compass and turns the wheel: the specification of the helmsman, and the [`Helm`], which is the state
+//! of one manoeuvre in one run. It decides; it neither moves the rudder ([`crate::gear`]) nor the ship.
 
 use crate::error::{self, Checked};
 use crate::manoeuvre::{Manoeuvre, TurnEnd, ZigZag, ZigZagEnd, length};
@@ -27,7 +27,8 @@ pub struct Helmsman {
     pub reaction_time: f64,
 }
 
-/// Times between two readings of an instrument, s, that make sense: none is read more often, and a manoeuvre is over in less.
+/// Times between two readings of an instrument, s, that make sense: none is read more often, and a manoeuvre is over in
+/// less.
 pub(crate) const SHORTEST_PERIOD: f64 = 1e-3;
 pub(crate) const LONGEST_PERIOD: f64 = 1e3;
 

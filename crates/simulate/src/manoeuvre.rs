@@ -98,7 +98,8 @@ pub enum Manoeuvre {
     TurningCircle(TurningCircle),
     /// Pull-out.
     PullOut(PullOut),
-    /// A recorded rudder, followed as it is: no helmsman, no steering gear. Its first point is put at the first execute.
+    /// A recorded rudder, followed as it is: no helmsman, no steering gear. Its first point is put at the first
+    /// execute.
     Replay(Polyline),
 }
 

@@ -1,5 +1,5 @@
-//! From what happened to what was written down: instruments, clocks and drop-outs. A [`Scene`] is what perfect instruments would
-//! have read; [`write`] adds what chance does to one record of it.
+//! From what happened to what was written down: instruments, clocks and drop-outs. A [`Scene`] is what perfect
+//! instruments would have read; [`write`] adds what chance does to one record of it.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
 use std::collections::BTreeMap;

@@ -2,8 +2,8 @@
 
 /// Root of `f` between `a` and `b`, whose values `fa` and `fb` have different signs (or one is zero).
 ///
-/// Hybrid of inverse quadratic interpolation and bisection; the bracket is never left. Stops when the bracket is shorter
-/// than `tolerance` or f is zero, and returns its end with the smaller |f|.
+/// Hybrid of inverse quadratic interpolation and bisection; the bracket is never left. Stops when the bracket is
+/// shorter than `tolerance` or f is zero, and returns its end with the smaller |f|.
 ///
 /// Source: Chandrupatla (1997), Advances in Engineering Software 28:145-149.
 pub(crate) fn bracketed(mut f: impl FnMut(f64) -> f64, a: (f64, f64), b: (f64, f64), tolerance: f64) -> f64 {

@@ -82,8 +82,8 @@ impl<'a, P: Propagator> Run<'a, P> {
 
     /// Goes on to `until` (s), to the next execute or to the end of the manoeuvre, whichever is first.
     ///
-    /// At the time of an execute the order has been given. Fails when the motion diverges, a heading is never reached, or the
-    /// run takes more than any manoeuvre does.
+    /// At the time of an execute the order has been given. Fails when the motion diverges, a heading is never reached,
+    /// or the run takes more than any manoeuvre does.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulateError> {
         loop {
             let end = self.helm.end() + END_TOLERANCE;

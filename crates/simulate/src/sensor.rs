@@ -1,10 +1,10 @@
-//! Instruments as a specification: what the record gets wrong. The default is perfect in everything. How a specification
-//! turns truth into a record is in `measure`; what the helmsman sees is in `display`.
+//! Instruments as a specification: what the record gets wrong. The default is perfect in everything. How a
+//! specification turns truth into a record is in `measure`; what the helmsman sees is in `display`.
 //!
-//! Order of events in the heading channel: lag of the gyrocompass, waves, bias, white noise, quantisation. Clocks: row k
-//! carries the nominal stamp t_k; the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything else
-//! that moves) at t_k + j_k − `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact instant
-//! differs only in the sign of j.
+//! Order of events in the heading channel: lag of the gyrocompass, waves, bias, white noise, quantisation. Clocks: row
+//! k carries the nominal stamp t_k; the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything
+//! else that moves) at t_k + j_k − `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact
+//! instant differs only in the sign of j.
 
 use trial::Noise;
 
@@ -47,10 +47,11 @@ pub struct RudderSensor {
 /// The clock of the recorder.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Clock {
-    /// Standard deviation of the true sampling instant about its stamp, s; cut at 0.45 periods, so rows keep their order.
+    /// Standard deviation of the true sampling instant about its stamp, s; cut at 0.45 periods, so rows keep their
+    /// order.
     pub jitter: f64,
-    /// Time by which the heading (and yaw rate, speed, wind) in a row is older than the rudder in it, s; negative when it
-    /// is the rudder that is late.
+    /// Time by which the heading (and yaw rate, speed, wind) in a row is older than the rudder in it, s; negative when
+    /// it is the rudder that is late.
     pub heading_delay: f64,
 }
 
@@ -136,7 +137,8 @@ impl Sensors {
         Ok(())
     }
 
-    /// The noise such instruments declare: white noise and quantisation (q/√12) together; `None` where there is neither.
+    /// The noise such instruments declare: white noise and quantisation (q/√12) together; `None` where there is
+    /// neither.
     pub fn declared_noise(&self) -> Noise {
         let total = |noise: f64, quantum: f64| {
             let sd = noise.hypot(quantum / 12.0_f64.sqrt());

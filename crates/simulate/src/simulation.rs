@@ -113,8 +113,8 @@ struct Passage {
     truth: Arc<Truth>,
 }
 
-/// A simulation that is run for many keys. Where nothing random moves ship or helmsman the run is made once, and every key only
-/// draws what the instruments add; the records are those of [`Simulation::run`], bit for bit.
+/// A simulation that is run for many keys. Where nothing random moves ship or helmsman the run is made once, and every
+/// key only draws what the instruments add; the records are those of [`Simulation::run`], bit for bit.
 #[derive(Debug, Clone)]
 pub struct Prepared {
     simulation: Simulation,
@@ -202,8 +202,9 @@ impl Simulation {
 
     /// Makes the one trial that belongs to `key`.
     ///
-    /// Fails when the specification makes no sense or costs too much, the motion diverges, a heading is never reached, the
-    /// record would start at an execute that is never made, the run does not end, or its rows are too few for a [`Trial`].
+    /// Fails when the specification makes no sense or costs too much, the motion diverges, a heading is never reached,
+    /// the record would start at an execute that is never made, the run does not end, or its rows are too few for a
+    /// [`Trial`].
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
         self.validate()?;
         self.record(&self.sail(key)?, key)

@@ -35,7 +35,8 @@ enum Command {
         #[command(flatten)]
         common: Common,
     },
-    /// Close the loop on records: fit, look at what is left, name the effect the model lacks, add it: trace.json, report, plots
+    /// Close the loop on records: fit, look at what is left, name the effect the model lacks, add it: trace.json,
+    /// report, plots
     Trace {
         #[command(flatten)]
         request: TraceRequest,

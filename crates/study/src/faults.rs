@@ -1,5 +1,5 @@
-//! Every file operation of a study, a merge, a report and a rerun fails once: afterwards the same commands end with the same
-//! bytes, or say what is missing.
+//! Every file operation of a study, a merge, a report and a rerun fails once: afterwards the same commands end with the
+//! same bytes, or say what is missing.
 
 use std::fs;
 use std::ops::Range;
@@ -73,8 +73,8 @@ fn copy(from: &Path, to: &Path) {
 /// Threads that try faults.
 const THREADS: u64 = 4;
 
-/// Lets every operation of `work` fail once, alone and with all that follow, each time in a folder that begins as `before`.
-/// Done once more it has to end with the bytes of the work without a fault.
+/// Lets every operation of `work` fail once, alone and with all that follow, each time in a folder that begins as
+/// `before`. Done once more it has to end with the bytes of the work without a fault.
 fn fail_each(before: Option<&Path>, work: impl Fn(&Path) -> Result<(), Failure> + Sync) -> u64 {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let place = |name: &str| -> PathBuf {

@@ -1,5 +1,5 @@
-//! Ctrl-C and termination by a scheduler: while trials are run, the first one asks to stop between two trials, so that all
-//! rows so far are kept; a second one, or one at any other time, ends the program at once.
+//! Ctrl-C and termination by a scheduler: while trials are run, the first one asks to stop between two trials, so that
+//! all rows so far are kept; a second one, or one at any other time, ends the program at once.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};

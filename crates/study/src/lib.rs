@@ -1,5 +1,5 @@
-//! The command line `study`: what a user may ask for, which of the crates below answers, and how the answer looks. It knows no
-//! hydrodynamics.
+//! The command line `study`: what a user may ask for, which of the crates below answers, and how the answer looks. It
+//! knows no hydrodynamics.
 //!
 //! | to learn about | read |
 //! |---|---|

@@ -161,7 +161,8 @@ pub struct TraceRequest {
     /// Records of one ship, analysed together
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
-    /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not kept
+    /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not
+    /// kept
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
     /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each

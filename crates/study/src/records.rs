@@ -7,8 +7,8 @@ use trial::{Origin, Reading, Trial};
 use scenario::failure::Failure;
 use scenario::name;
 
-/// Reads a record; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder that
-/// holds one for it.
+/// Reads a record; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder
+/// that holds one for it.
 pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
@@ -35,8 +35,8 @@ pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> 
     Ok(trial)
 }
 
-/// The same record counts only once: given twice for identification its errors come out too small, and on a record that was
-/// fitted there is nothing to validate.
+/// The same record counts only once: given twice for identification its errors come out too small, and on a record that
+/// was fitted there is nothing to validate.
 pub fn warn_of_repetition(trials: &[Trial], others: &[Trial], warnings: &mut Vec<String>) {
     for (number, trial) in trials.iter().enumerate() {
         if trials[..number].iter().any(|before| file_of(before).1 == file_of(trial).1) {
@@ -67,7 +67,8 @@ pub fn names(own: impl Iterator<Item = impl AsRef<str>>) -> Vec<String> {
     names
 }
 
-/// Where the results of a command go unless a folder is named: by the record, or by the first of several and their number.
+/// Where the results of a command go unless a folder is named: by the record, or by the first of several and their
+/// number.
 pub fn default_folder(trials: &[Trial], command: &str) -> PathBuf {
     let first = trials[0].name();
     PathBuf::from(match trials.len() {

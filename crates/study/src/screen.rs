@@ -1,6 +1,6 @@
-//! Writing to the terminal: results on standard output, warnings and errors on standard error. A reader that has gone away
-//! (`study list ships | head -1`) ends the writing and not the work. What could act on the terminal is shown and not sent: a
-//! path, a file or a stored label may hold it.
+//! Writing to the terminal: results on standard output, warnings and errors on standard error. A reader that has gone
+//! away (`study list ships | head -1`) ends the writing and not the work. What could act on the terminal is shown and
+//! not sent: a path, a file or a stored label may hold it.
 
 use std::borrow::Cow;
 use std::io::{ErrorKind, Write};

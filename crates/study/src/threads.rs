@@ -8,8 +8,8 @@ use crate::screen;
 /// The variable of the environment that says how many threads to start where the command line does not.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
-/// How many threads to start on a machine of so many `cores`, and what to say of it, where the `variable` [`THREADS`] is all
-/// there is: a number above 0 is meant, anything else is none.
+/// How many threads to start on a machine of so many `cores`, and what to say of it, where the `variable` [`THREADS`]
+/// is all there is: a number above 0 is meant, anything else is none.
 fn threads_of(variable: Option<&str>, cores: usize) -> (usize, Option<String>) {
     let most = MOST_THREADS as usize;
     // Digits alone, so that a number beyond all bounds is one that is too large.

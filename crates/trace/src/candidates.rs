@@ -84,8 +84,8 @@ impl Candidate {
     }
 }
 
-/// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that depends on
-/// time alone is one of every record.
+/// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
+/// depends on time alone is one of every record.
 pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
     let effects = effects::all();
     let of = |effect: &dyn Effect, only: Option<usize>| {

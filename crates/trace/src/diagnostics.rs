@@ -129,9 +129,9 @@ const SPARSEST: usize = 16;
 
 /// Periodogram: the share of the mean square that every multiple of the lowest frequency has.
 ///
-/// Where values are missing it is that of Lomb (1976) and Scargle (1982), the share that a sine at the values alone explains.
-/// All its sums are Fourier transforms, of the values and of where they stand, because the clock is even. Empty for fewer than
-/// four values and when nearly all steps are holes.
+/// Where values are missing it is that of Lomb (1976) and Scargle (1982), the share that a sine at the values alone
+/// explains. All its sums are Fourier transforms, of the values and of where they stand, because the clock is even.
+/// Empty for fewer than four values and when nearly all steps are holes.
 pub fn spectrum(series: &Series) -> Vec<Line> {
     let (n, span) = (series.values.len(), series.span());
     if n < 4 || span > SPARSEST * n {
@@ -163,8 +163,8 @@ pub fn spectrum(series: &Series) -> Vec<Line> {
         .collect()
 }
 
-/// Sum of squares that a sine explains: from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. In the phase in which its
-/// cosine and sine are orthogonal, these have the squares (n ± |Σ e^(−2iωt)|)/2.
+/// Sum of squares that a sine explains: from Σ x e^(−iωt), Σ e^(−2iωt) and the number of values. In the phase in which
+/// its cosine and sine are orthogonal, these have the squares (n ± |Σ e^(−2iωt)|)/2.
 fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     let length = twice.norm();
     let half_angle = 0.5 * (-twice.im).atan2(twice.re);

@@ -1,5 +1,5 @@
-//! Does a term help where it was not fitted? On other records, or, where there are none, on parts of these that are kept
-//! from the fit.
+//! Does a term help where it was not fitted? On other records, or, where there are none, on parts of these that are
+//! kept from the fit.
 
 use rayon::prelude::*;
 use ship::Response;
@@ -89,8 +89,8 @@ impl Comparison {
         self.full < FULL_GAIN && self.mean < MEAN_GAIN
     }
 
-    /// Compares errors over records, pooled row by row; restarted replays count where both models have them. `None` without
-    /// a row.
+    /// Compares errors over records, pooled row by row; restarted replays count where both models have them. `None`
+    /// without a row.
     pub fn of(before: &[Errors], after: &[Errors]) -> Option<Self> {
         let pooled = |all: &[Errors], value: fn(&Errors) -> Option<f64>| {
             let mut square = 0.0;

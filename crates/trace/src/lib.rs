@@ -1,5 +1,5 @@
-//! From a residual to the effect the model lacks: fit the base, look at what is left, decide whether anything is missing,
-//! name it, add it, and say how far the model is from the records before and after.
+//! From a residual to the effect the model lacks: fit the base, look at what is left, decide whether anything is
+//! missing, name it, add it, and say how far the model is from the records before and after.
 //!
 //! There is no path from here to the simulator: a record is all that is known of a ship.
 //!

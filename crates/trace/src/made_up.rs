@@ -1,5 +1,5 @@
-//! Records with known truth, for tests of this crate only: an alternating rudder replayed through a response, with white
-//! heading noise.
+//! Records with known truth, for tests of this crate only: an alternating rudder replayed through a response, with
+//! white heading noise.
 
 use std::sync::Arc;
 

@@ -1,7 +1,8 @@
-//! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect carries.
+//! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect
+//! carries.
 
 use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
-use ship::{Real, Regressor};
+use ship::{EffectReal, Regressor};
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,7 +101,7 @@ impl Effect for Monomial {
     }
 }
 
-impl<R: Real> Acts<R> for Monomial {
+impl<R: EffectReal> Acts<R> for Monomial {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
         let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];

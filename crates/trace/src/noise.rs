@@ -1,10 +1,10 @@
 //! The noise that a fit is judged against: white heading noise, a random yaw moment that has gone through the ship, and
 //! narrow-band waves, as one linear stochastic system whose Kalman filter makes residual and sensitivities white.
 //!
-//! Noise is a competitor of every effect. A slow residual may be a missing term or a moment nobody knows the cause of; an
-//! effect is only believed when it explains the record better than the best of these random explanations. With the filter
-//! the likelihood is exact for the linearised response: −2 log L = n log(RSS/n) + Σ log S + const, where RSS is that of the
-//! whitened residual and S the predicted variances in units of σ².
+//! Noise is a competitor of every effect. A slow residual may be a missing term or a moment nobody knows the cause of;
+//! an effect is only believed when it explains the record better than the best of these random explanations. With the
+//! filter the likelihood is exact for the linearised response: −2 log L = n log(RSS/n) + Σ log S + const, where RSS is
+//! that of the whitened residual and S the predicted variances in units of σ².
 //!
 //! Sources: Åström and Källström (1976) for maximum likelihood on ship records; Harvey (1989) for the prediction error
 //! decomposition.
@@ -127,8 +127,8 @@ pub struct RecordNoise {
 }
 
 impl RecordNoise {
-    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest record, s,
-    /// and a full row is the mean of `full_readings`.
+    /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest
+    /// record, s, and a full row is the mean of `full_readings`.
     pub fn new(record: &Record, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
         let time = |number: usize| record.time[record.observed[number]];
         let durations: Vec<f64> =
@@ -268,8 +268,8 @@ fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64
     result
 }
 
-/// Takes a heading with white noise of variance `own` into account: the gain, and the variance S that was predicted for the
-/// heading.
+/// Takes a heading with white noise of variance `own` into account: the gain, and the variance S that was predicted for
+/// the heading.
 fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N], own: f64) -> ([f64; N], f64) {
     let mut seen = [0.0; N];
     for i in 0..N {
@@ -285,8 +285,8 @@ fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N], o
     (gain, variance)
 }
 
-/// A filter that makes columns of one record white; for white noise on rows of equally many readings it leaves them as they
-/// are.
+/// A filter that makes columns of one record white; for white noise on rows of equally many readings it leaves them as
+/// they are.
 #[derive(Debug, Clone)]
 pub struct Whitener {
     states: usize,

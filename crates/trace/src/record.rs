@@ -2,14 +2,14 @@
 //!
 //! Averaging the same rows of all channels keeps the relation between rudder and heading, because a response that is
 //! linear does not care whether it is filtered before or after. It is done only where headings are far denser than the
-//! response, and only for the search; errors are always those of all rows. A heading that stands alone among rows of the
-//! rudder is not averaged, and the rudder about it keeps its detail. Every heading counts: a row knows how many readings
-//! it is the mean of, and stands at their mean time.
+//! response, and only for the search; errors are always those of all rows. A heading that stands alone among rows of
+//! the rudder is not averaged, and the rudder about it keeps its detail. Every heading counts: a row knows how many
+//! readings it is the mean of, and stands at their mean time.
 
 use std::f64::consts::{PI, TAU};
 
 use ship::replay::Recorded;
-use ship::{Polyline, Real, Regressor, Response};
+use ship::{EffectReal, Polyline, Regressor, Response};
 use trial::{Channel, Trial};
 
 /// Rows that are kept at least, however dense they are.
@@ -139,7 +139,7 @@ impl Record {
     }
 
     /// The signals that drive a replay of a response: those it needs.
-    pub fn recorded<R: Real>(&self, response: &Response<R>) -> Recorded<'_> {
+    pub fn recorded<R: EffectReal>(&self, response: &Response<R>) -> Recorded<'_> {
         let needed = |channel| response.needs(channel);
         Recorded {
             rudder: &self.rudder,
@@ -166,7 +166,8 @@ impl Record {
         self.propeller.as_ref()
     }
 
-    /// Relative wind speed, m/s, as a signal, where its direction is there as well; measured, or computed from the true one.
+    /// Relative wind speed, m/s, as a signal, where its direction is there as well; measured, or computed from the true
+    /// one.
     pub fn wind_speed(&self) -> Option<&Polyline> {
         self.wind_speed.as_ref().filter(|_| self.wind_from.is_some())
     }
@@ -191,7 +192,8 @@ struct Rows {
 }
 
 impl Rows {
-    /// Adds the mean of the headings that were read, at the mean of their times; without any, a row at the mean of all times.
+    /// Adds the mean of the headings that were read, at the mean of their times; without any, a row at the mean of all
+    /// times.
     fn push(&mut self, time: &[f64], heading: &[f64]) {
         let read: Vec<usize> = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
         let mean_of = |values: &[f64]| read.iter().map(|&row| values[row]).sum::<f64>() / read.len() as f64;

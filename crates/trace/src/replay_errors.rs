@@ -8,7 +8,7 @@ use lanes::column::dot;
 use nalgebra::{Matrix2, Vector2};
 use ship::dynamics::Dynamics;
 use ship::replay::replay_states;
-use ship::{Real, Response, Tangent};
+use ship::{EffectReal, Response, Tangent};
 use trial::{Channel, Columns, Trial, ZigZag};
 
 use crate::record::Record;
@@ -147,8 +147,8 @@ fn overshoot_error(trial: &Trial, replayed: &Replayed) -> Option<f64> {
     (!pairs.is_empty()).then(|| pairs.iter().sum::<f64>() / pairs.len() as f64)
 }
 
-/// Error of a replay that is restarted every `length` seconds from the best heading and yaw rate of the window; the memory
-/// of the effects goes on.
+/// Error of a replay that is restarted every `length` seconds from the best heading and yaw rate of the window; the
+/// memory of the effects goes on.
 fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f64) -> Option<f64> {
     let count = record.time.len();
     let mut state = vec![0.0; response.dimension()];
@@ -184,7 +184,7 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
 }
 
 /// The state at a row: at rest there but for heading and yaw rate, or with the `memory` that the effects have by then.
-fn enter<R: Real>(
+fn enter<R: EffectReal>(
     response: &Response<R>,
     record: &Record,
     row: usize,
@@ -205,7 +205,7 @@ fn enter<R: Real>(
 }
 
 /// Replays some rows of a record and visits heading and yaw rate at each of them.
-fn run<R: Real>(
+fn run<R: EffectReal>(
     response: &Response<R>,
     record: &Record,
     rows: Range<usize>,
@@ -228,8 +228,8 @@ struct Point {
     square: f64,
 }
 
-/// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving), and
-/// the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
+/// Heading and yaw rate at the first of some rows that bring the replay nearest to them (Gauss–Newton with halving),
+/// and the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
 fn settle(
     response: &Response,
     record: &Record,

@@ -1,7 +1,7 @@
-//! What a record can tell apart, computed from the sensitivities of the fitted model: how far an effect, as large as it can
-//! be expected, would move the heading beyond what base and known terms could imitate, and how far two rival effects are
-//! apart. Both are expected gains in −2 log L, so they are compared with the thresholds of the search; for a trial that
-//! was not run yet they say what it would reveal.
+//! What a record can tell apart, computed from the sensitivities of the fitted model: how far an effect, as large as it
+//! can be expected, would move the heading beyond what base and known terms could imitate, and how far two rival
+//! effects are apart. Both are expected gains in −2 log L, so they are compared with the thresholds of the search; for
+//! a trial that was not run yet they say what it would reveal.
 
 use crate::candidates::Candidate;
 use crate::fit::{Columns, Fit, Linear, Problem, acts, whiten};
@@ -64,7 +64,8 @@ impl<'a> Ground<'a> {
         columns.normal(&whiten(moved, &self.whiteners)).projected(columns.unknowns()) / self.variance
     }
 
-    /// Mean logarithm of the standard deviations of the fitted parameters of the ship; `None` when they are not determined.
+    /// Mean logarithm of the standard deviations of the fitted parameters of the ship; `None` when they are not
+    /// determined.
     pub fn uncertainty(&self) -> Option<f64> {
         let covariance = self.columns.covariance()?;
         let entries = self.problem.entries(self.structure);

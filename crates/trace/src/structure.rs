@@ -1,5 +1,5 @@
-//! The structure that is fitted: the first-order base, shared by all records, and terms added to it, each with the bounds
-//! inside which a search may move its parameters.
+//! The structure that is fitted: the first-order base, shared by all records, and terms added to it, each with the
+//! bounds inside which a search may move its parameters.
 //!
 //! θ = (1/T, K/T, δ_r of all or of every record, parameters of the terms …), SI and rad.
 
@@ -9,12 +9,12 @@ use ship::dynamics::Dynamics;
 use ship::effects::{Effect, Parameter};
 use ship::replay::replay_states;
 use ship::response::BASE;
-use ship::{Real, Response, ResponseModel};
+use ship::{EffectReal, Response, ResponseModel};
 
 use crate::record::Record;
 
-/// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the response,
-/// far below any heading that is measured.
+/// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the
+/// response, far below any heading that is measured.
 const STEPS: f64 = 4.0;
 
 /// Most steps between two rows, which bounds the work for a trial point with an absurd time constant.
@@ -179,7 +179,7 @@ impl Structure {
     }
 
     /// The response of one record, with these parameters.
-    pub fn response<R: Real>(&self, record: usize, theta: &[R]) -> Response<R> {
+    pub fn response<R: EffectReal>(&self, record: usize, theta: &[R]) -> Response<R> {
         let (mut effects, mut own) = (Vec::with_capacity(self.terms.len()), Vec::with_capacity(theta.len()));
         own.extend_from_slice(&theta[..2]);
         own.push(theta[2 + if self.own_bias { record } else { 0 }]);
@@ -197,13 +197,18 @@ impl Structure {
 }
 
 /// Step of the solver for a response on rows `spacing` seconds apart, between two times.
-pub fn step<R: Real>(response: &Response<R>, spacing: f64) -> impl Fn(f64, f64) -> f64 {
+pub fn step<R: EffectReal>(response: &Response<R>, spacing: f64) -> impl Fn(f64, f64) -> f64 {
     let pace = response.pace();
     move |from, to| (pace.shortest(from, to) / STEPS).max(spacing / MOST_STEPS)
 }
 
 /// Replays a response along a record, from its first row, and visits the heading at every observed row.
-pub fn headings<R: Real>(response: &Response<R>, record: &Record, initial: [R; 2], mut visit: impl FnMut(usize, R)) {
+pub fn headings<R: EffectReal>(
+    response: &Response<R>,
+    record: &Record,
+    initial: [R; 2],
+    mut visit: impl FnMut(usize, R),
+) {
     let recorded = record.recorded(response);
     let mut state = vec![R::from(0.0); response.dimension()];
     let start = recorded.input(record.time[0], response.dead_time());

@@ -1,5 +1,5 @@
-//! Where in a record a moment may have been present for a while: boxes of several lengths are tried at every place, with
-//! the response of the base to a box in closed form, and the best places are handed on as starts of a fit.
+//! Where in a record a moment may have been present for a while: boxes of several lengths are tried at every place,
+//! with the response of the base to a box in closed form, and the best places are handed on as starts of a fit.
 
 use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};

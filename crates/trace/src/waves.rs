@@ -1,4 +1,5 @@
-//! Whether the heading carries a narrow band of waves: the likelihood of the residual over frequency, width and strength.
+//! Whether the heading carries a narrow band of waves: the likelihood of the residual over frequency, width and
+//! strength.
 
 use lanes::column::dot;
 use ship::narrow_band::NarrowBand;

@@ -1,5 +1,5 @@
-//! Text files that a user names: scenarios, sidecars and records all come in through here. Only files and pipes are opened,
-//! and nothing is read further than its kind may be long, so that no name can fill the memory.
+//! Text files that a user names: scenarios, sidecars and records all come in through here. Only files and pipes are
+//! opened, and nothing is read further than its kind may be long, so that no name can fill the memory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -93,8 +93,8 @@ impl Read for Limited {
 
 /// Opens a file or a pipe.
 ///
-/// Fails when there is none, and when it is known to be too large; a file that turns out to be so fails in reading, with
-/// an error that becomes a [`FileError`] again.
+/// Fails when there is none, and when it is known to be too large; a file that turns out to be so fails in reading,
+/// with an error that becomes a [`FileError`] again.
 pub fn open(path: &Path, kind: Kind) -> Result<Limited, FileError> {
     let about = fs::metadata(path)?;
     let size = match about.file_type() {

@@ -1,9 +1,9 @@
-//! What is checked before a record is believed: does anything move, are the units those the column names say, do rudder,
-//! heading and yaw rate have the same sign. The checks use ratios that hold for ships of every size; they do not judge
-//! whether a trial was well executed, nor how good its sensors are.
+//! What is checked before a record is believed: does anything move, are the units those the column names say, do
+//! rudder, heading and yaw rate have the same sign. The checks use ratios that hold for ships of every size; they do
+//! not judge whether a trial was well executed, nor how good its sensors are.
 //!
-//! An error is raised where a record can hardly be right, and says how to mend it. Where a record is only unusual there is a
-//! warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
+//! An error is raised where a record can hardly be right, and says how to mend it. Where a record is only unusual there
+//! is a warning. A sidecar with `plausibility = false` under `[check]` turns errors into warnings.
 
 mod regression;
 
@@ -136,10 +136,12 @@ pub enum Implausible {
 /// Ranges below this are the resolution of an instrument, not a movement, deg.
 const STILL_DEG: f64 = 0.01;
 
-/// A rudder that moves at least this far can be held against the heading, deg. The smallest amplitude in use is 5° (10° range).
+/// A rudder that moves at least this far can be held against the heading, deg. The smallest amplitude in use is 5° (10°
+/// range).
 const MOVED_DEG: f64 = 4.0;
 
-/// A heading that moves less says nothing about the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and more.
+/// A heading that moves less says nothing about the sign of the rudder, deg. A zig-zag to 1° moves it through 2° and
+/// more.
 const ANSWERED_DEG: f64 = 1.0;
 
 /// More reversals than any manoeuvre has: a dither, a pseudo-random sequence or an autopilot in waves.
@@ -149,8 +151,8 @@ const REVERSALS_OF_A_DITHER: usize = 24;
 /// regression cannot tell them apart, deg.
 const TURNED_DEG: f64 = 360.0;
 
-/// Share of the heading a flipped rudder has to explain. The zig-zags of KVLCC2 and Esso Osaka reach 0.82 to 0.99 with the
-/// right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
+/// Share of the heading a flipped rudder has to explain. The zig-zags of KVLCC2 and Esso Osaka reach 0.82 to 0.99 with
+/// the right sign (SIMMAN 2008; Wakita et al. 2022, in wind).
 const DECISIVE_SHARE: f64 = 0.7;
 
 /// Share from which on a flipped rudder is worth a warning.
@@ -159,8 +161,8 @@ const NOTABLE_SHARE: f64 = 0.4;
 /// Checks a record; returns warnings.
 ///
 /// Fails with [`Implausible`] when nothing moves, a unit is off by the factor between degrees and radians, or rudder,
-/// heading and yaw rate contradict each other in sign. The sign of the rudder is that of b = K/T in
-/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle that of ∫δ dψ.
+/// heading and yaw rate contradict each other in sign. The sign of the rudder is that of b = K/T in ψ = c₀ + c₁ t + c₂
+/// t²/2 − a ∫ψ + b ∬δ (the first-order response, integrated twice), in a turning circle that of ∫δ dψ.
 pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     let mut warnings = Vec::new();
     ranges(trial, &mut warnings)?;
@@ -231,8 +233,8 @@ fn ranges(trial: &Trial, warnings: &mut Vec<String>) -> Result<(), Implausible> 
         return Ok(());
     }
     let ratio = heading_deg / rudder_deg;
-    // 40° are 0.70 rad. In a zig-zag the heading moves 0.9 to 3 times as far as the rudder, in a turning circle up to about
-    // 20 times; radians for degrees make that 50 and more.
+    // 40° are 0.70 rad. In a zig-zag the heading moves 0.9 to 3 times as far as the rudder, in a turning circle up to
+    // about 20 times; radians for degrees make that 50 and more.
     if largest_deg < 0.72 {
         if heading_deg > 1.0 && ratio > 20.0 {
             return Err(Implausible::RudderInRadians { largest_deg, heading_deg });

@@ -1,13 +1,14 @@
-//! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. What a table
-//! cannot hold (origin, declared noise, particulars) is not written.
+//! Writing a record as CSV under the column names of the contract, so that reading it gives the same record. What a
+//! table cannot hold (origin, declared noise, particulars) is not written.
 
 use std::io::Write;
 
 use crate::channel::{Channel, TIME_COLUMN};
 use crate::record::Trial;
 
-/// Writes `trial` as CSV: `t_s`, then its channels in the order of [`Channel::ALL`] (angles in degrees), then its columns
-/// with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is left out.
+/// Writes `trial` as CSV: `t_s`, then its channels in the order of [`Channel::ALL`] (angles in degrees), then its
+/// columns with unknown names. A missing value is an empty cell; a heading that is the integral of the yaw rate is left
+/// out.
 ///
 /// Numbers have as many digits as they need to be read back as the same `f64`. Fails when `output` does.
 pub fn write_csv(trial: &Trial, output: impl Write) -> std::io::Result<()> {

@@ -263,7 +263,8 @@ fn mean_wind(trial: &Trial) -> Option<(f64, f64)> {
     Some((north.hypot(east), east.atan2(north)))
 }
 
-/// Heading error (rad) and own parameters of the base, of the base with steady wind and of the base with the measured wind.
+/// Heading error (rad) and own parameters of the base, of the base with steady wind and of the base with the measured
+/// wind.
 fn wind_fits(trial: &Trial) -> Outcome<[(f64, Vec<f64>); 3]> {
     let method = identify::output_error::Settings::default().build()?;
     let first = identify::Identifier::identify(&method, std::slice::from_ref(trial))?.response;

@@ -1,6 +1,7 @@
-//! Damaged files for every reader. [`targets`] holds one function a format: it feeds bytes through the public interface and asserts
-//! what every reader promises, which is a reading that makes sense or one message. Two things feed them: [`runner`], with the small
-//! [`mutate`] on stable Rust and in every `cargo test`, and libFuzzer from the package in `tests/fuzz`.
+//! Damaged files for every reader. [`targets`] holds one function a format: it feeds bytes through the public interface
+//! and asserts what every reader promises, which is a reading that makes sense or one message. Two things feed them:
+//! [`runner`], with the small [`mutate`] on stable Rust and in every `cargo test`, and libFuzzer from the package in
+//! `tests/fuzz`.
 //!
 //! `tests/fuzz/corpus/NAME` holds whole files to begin with, `tests/fuzz/regressions/NAME` what once broke something.
 

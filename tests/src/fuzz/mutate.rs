@@ -1,4 +1,5 @@
-//! Damages a file: flips, cuts, splices, repeats, words of the format, other numbers. What comes out depends on the generator alone.
+//! Damages a file: flips, cuts, splices, repeats, words of the format, other numbers. What comes out depends on the
+//! generator alone.
 
 use std::ops::Range;
 

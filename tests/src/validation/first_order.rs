@@ -1,4 +1,5 @@
-//! Zig-zags of the ship K = 0.1 1/s, T = 16.3 s against an independent simulation, by the closed form and by Runge-Kutta.
+//! Zig-zags of the ship K = 0.1 1/s, T = 16.3 s against an independent simulation, by the closed form and by
+//! Runge-Kutta.
 
 use std::sync::Arc;
 
@@ -10,8 +11,8 @@ use simulate::{Simulation, StreamKey, Truth};
 use super::{Check, INDEPENDENT, Section, Tolerance};
 use crate::records::Case;
 
-/// One row of the table: δ, ψ (deg), rate (deg/s), executes 2 to 5 (s), overshoots 1 to 3 (deg), period (s), yaw rate at
-/// executes 2 to 4 and its largest value (deg/s).
+/// One row of the table: δ, ψ (deg), rate (deg/s), executes 2 to 5 (s), overshoots 1 to 3 (deg), period (s), yaw rate
+/// at executes 2 to 4 and its largest value (deg/s).
 type Row = (f64, f64, f64, [f64; 4], [f64; 3], f64, [f64; 3], f64);
 
 const TABLE: [Row; 9] = [

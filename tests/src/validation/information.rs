@@ -112,8 +112,8 @@ pub fn bound() -> Section {
     }
 }
 
-/// Trials of one cell: with 5000 the sd of a sample is itself uncertain by 1.0 %, so that 5 % is five of its own standard
-/// deviations; with 500 it would be 3.2 %.
+/// Trials of one cell: with 5000 the sd of a sample is itself uncertain by 1.0 %, so that 5 % is five of its own
+/// standard deviations; with 500 it would be 3.2 %.
 const TRIALS: u64 = 5000;
 
 /// Sample statistics of one method in one cell.

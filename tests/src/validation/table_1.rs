@@ -1,7 +1,7 @@
 //! Which trial the paper's Table 1 was: its six visible rows against zig-zags of every reading, the best ship of each.
 //!
-//! The rows are (t, ψ, δ): (0, 20.4, 7), (1, 21.6, −1), (3, 22.6, −3), (268, −17.0, 10), (269, −16.4, 10), (270, −16.0, 10),
-//! in s and deg. The first six facts that are physically smooth are held against a grid over K, T and rudder rate.
+//! The rows are (t, ψ, δ): (0, 20.4, 7), (1, 21.6, −1), (3, 22.6, −3), (268, −17.0, 10), (269, −16.4, 10), (270, −16.0,
+//! 10), in s and deg. The first six facts that are physically smooth are held against a grid over K, T and rudder rate.
 
 use rayon::prelude::*;
 use ship::FirstOrder;

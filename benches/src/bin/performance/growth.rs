@@ -122,8 +122,8 @@ const LENGTHS: [u32; 4] = [150, 270, 540, 1080];
 const TRIALS: u64 = 48;
 const QUICK_TRIALS: u64 = 2;
 
-/// Time of one trial of a study, with all its methods and what is computed beside them, over its samples: on one thread,
-/// rows kept in memory.
+/// Time of one trial of a study, with all its methods and what is computed beside them, over its samples: on one
+/// thread, rows kept in memory.
 pub fn of_trials(quick: bool) -> Outcome<Growth> {
     let effort = if quick { Effort { rounds: 1, ..EFFORT } } else { EFFORT };
     let trials = if quick { QUICK_TRIALS } else { TRIALS };

@@ -1,7 +1,7 @@
-//! `performance [--quick] DIR` measures what simulation, identification, tracing and studies cost on this machine, beside
-//! rivals and beside what is to be reached, and how it grows with samples and trials; it writes a report, tables and figures
-//! into DIR. On a machine that does nothing else it takes some ten minutes; `--quick` does the same with small sizes
-//! in seconds, to see that it works.
+//! `performance [--quick] DIR` measures what simulation, identification, tracing and studies cost on this machine,
+//! beside rivals and beside what is to be reached, and how it grows with samples and trials; it writes a report, tables
+//! and figures into DIR. On a machine that does nothing else it takes some ten minutes; `--quick` does the same with
+//! small sizes in seconds, to see that it works.
 
 mod child;
 mod figures;

@@ -41,8 +41,8 @@ const fn number(
 const NO_BOUND: Bound = Bound { k_per_s: f64::NAN, t_s: f64::NAN, k_over_t_per_s2: f64::NAN };
 const NO_ENDS: [f64; 2] = [f64::NAN; 2];
 
-/// The columns every file of rows has, in their order. Behind them come one column `axis.NAME` per axis of the design, a
-/// number or the label of the point, and one `draw.KEY` per drawn value, in the unit of the key.
+/// The columns every file of rows has, in their order. Behind them come one column `axis.NAME` per axis of the design,
+/// a number or the label of the point, and one `draw.KEY` per drawn value, in the unit of the key.
 pub const COLUMNS: [Column; 22] = [
     count("cell", "index of the cell in the design, from 0", |row| row.cell, |row, value| row.cell = value),
     count(

@@ -1,4 +1,5 @@
-//! Guards about the Parquet decoder, which trusts sizes that a file states and panics on some of what it does not expect.
+//! Guards about the Parquet decoder, which trusts sizes that a file states and panics on some of what it does not
+//! expect.
 
 use std::cell::Cell;
 use std::io;
@@ -39,8 +40,8 @@ pub const PAGE_HEAD: usize = 40;
 
 /// Refuses a page whose head states more than any page of a study has: the decoder would reserve it.
 ///
-/// A head is a Thrift struct in compact form (Apache Parquet format, `PageHeader`): kind, size unpacked, size packed, and
-/// then the head of a data page (field 5) or of a dictionary (field 7), which begins with the number of values.
+/// A head is a Thrift struct in compact form (Apache Parquet format, `PageHeader`): kind, size unpacked, size packed,
+/// and then the head of a data page (field 5) or of a dictionary (field 7), which begins with the number of values.
 pub fn check_page(head: &[u8]) -> io::Result<()> {
     let is_page = || {
         let mut rest = head;

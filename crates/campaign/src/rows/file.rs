@@ -1,4 +1,5 @@
-//! Parquet files of rows, written and read a few rows at a time, so that neither needs memory in proportion to the file.
+//! Parquet files of rows, written and read a few rows at a time, so that neither needs memory in proportion to the
+//! file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! What the rows of one study look like: the fixed columns, its axes and its draws, and how rows become columns and back.
+//! What the rows of one study look like: the fixed columns, its axes and its draws, and how rows become columns and
+//! back.
 
 use std::borrow::Cow;
 use std::sync::Arc;

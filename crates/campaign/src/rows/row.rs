@@ -55,8 +55,8 @@ pub struct Row {
     pub method: usize,
     /// Why the method failed; `None` when it did not.
     pub failure: Option<Box<str>>,
-    /// K of the first-order response that comes nearest to the undisturbed trial of the ship, 1/s: its own where it is exactly
-    /// first order. A method that fits such a response should find it.
+    /// K of the first-order response that comes nearest to the undisturbed trial of the ship, 1/s: its own where it is
+    /// exactly first order. A method that fits such a response should find it.
     pub true_k_per_s: Option<f64>,
     /// T of that response, s.
     pub true_t_s: Option<f64>,
@@ -93,8 +93,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// K and T that this answer is held against, 1/s and s: the ship's own for a trace, which models its effects, else those of the
-    /// first-order response nearest to it.
+    /// K and T that this answer is held against, 1/s and s: the ship's own for a trace, which models its effects, else
+    /// those of the first-order response nearest to it.
     pub fn truth(&self) -> [Option<f64>; 2] {
         match (&self.traced, self.own_k_per_s, self.own_t_s) {
             (Some(_), k @ Some(_), t @ Some(_)) => [k, t],

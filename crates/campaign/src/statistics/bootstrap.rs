@@ -1,5 +1,5 @@
-//! The bootstrap over batches (Efron 1979): which batches a resample holds is drawn once and used for every figure, so that
-//! figures of two methods are resampled together.
+//! The bootstrap over batches (Efron 1979): which batches a resample holds is drawn once and used for every figure, so
+//! that figures of two methods are resampled together.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -41,8 +41,8 @@ impl Resamples {
         self.batches
     }
 
-    /// Several statistics of the same sums, each with a percentile interval; none for what is undefined, and no interval for
-    /// fewer than six values.
+    /// Several statistics of the same sums, each with a percentile interval; none for what is undefined, and no
+    /// interval for fewer than six values.
     pub fn figures<const N: usize>(
         &self,
         batches: &[BatchSums],
@@ -100,8 +100,8 @@ mod tests {
     use crate::statistics::{BATCHES, Sums};
     use rand_distr::StandardNormal;
 
-    /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a batch is
-    /// one value or several.
+    /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a
+    /// batch is one value or several.
     #[test]
     fn intervals_cover_what_they_say() {
         for (size, fewest) in [(200, 0.91), (2000, 0.92)] {

@@ -1,5 +1,5 @@
-//! A sample of any size in bounded memory: every value up to some thousands, and beyond that counts in bins whose width is a
-//! fixed share of the value (Masson, Rim and Lee 2019, "DDSketch").
+//! A sample of any size in bounded memory: every value up to some thousands, and beyond that counts in bins whose width
+//! is a fixed share of the value (Masson, Rim and Lee 2019, "DDSketch").
 
 use std::collections::BTreeMap;
 
@@ -149,8 +149,8 @@ impl Ordered {
         ranks.map(|rank| (self.at(rank), (rank + 1) as f64 / of as f64)).collect()
     }
 
-    /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, with the bandwidth of
-    /// Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
+    /// Density by a Gaussian kernel at `points` places from one end of the middle 98 % to the other, with the bandwidth
+    /// of Silverman (1986, eq. 3.31); nothing for fewer than ten values or for values that are all the same.
     pub fn density(&self, points: usize) -> Vec<(f64, f64)> {
         let quantiles = [0.01, 0.25, 0.75, 0.99].map(|p| self.quantile(p).unwrap_or(0.0));
         let n = self.len() as f64;

@@ -1,8 +1,8 @@
-//! What the rows say: bias, spread, failures, coverage and predictive error of every method in every cell and over all of
-//! them, each with its own uncertainty, and every method against a reference on the same trials.
+//! What the rows say: bias, spread, failures, coverage and predictive error of every method in every cell and over all
+//! of them, each with its own uncertainty, and every method against a reference on the same trials.
 //!
-//! Rows are seen once, in their order. Only the sums of the present cell and those over all cells are kept, so memory does
-//! not grow with the number of replicates.
+//! Rows are seen once, in their order. Only the sums of the present cell and those over all cells are kept, so memory
+//! does not grow with the number of replicates.
 
 mod detail;
 mod record;

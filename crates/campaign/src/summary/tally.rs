@@ -33,8 +33,8 @@ pub struct Tally {
     tracing: TraceTally,
 }
 
-/// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough that
-/// memory does not grow with the design.
+/// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough
+/// that memory does not grow with the design.
 const WAITING: u64 = 1 << 15;
 
 /// Errors of all methods on one trial.
@@ -171,7 +171,8 @@ struct Ended {
 }
 
 impl Ended {
-    /// What is said of the cell: every method, every method against the reference, and the distributions where asked for.
+    /// What is said of the cell: every method, every method against the reference, and the distributions where asked
+    /// for.
     fn summarised(self) -> (Vec<MethodSummary>, Vec<PairSummary>, Option<CellDetail>) {
         let Self { cell, reference, detailed, present, pairs, resamples } = self;
         let detail = detailed.then(|| CellDetail {

@@ -31,7 +31,8 @@ pub struct TraceSummary {
     pub complete: u64,
     /// Trials in which a group was named that holds no missing effect.
     pub wrong: u64,
-    /// Trials in which the one missing effect is clearly better than any other alone, and those of them in which it was named.
+    /// Trials in which the one missing effect is clearly better than any other alone, and those of them in which it was
+    /// named.
     pub clear: [u64; 2],
     /// Mean expected likelihood ratio.
     pub expected: Option<f64>,
@@ -43,8 +44,8 @@ impl TraceSummary {
         if self.missing.is_empty() || self.is_hull() { None } else { share(self.complete, self.trials) }
     }
 
-    /// Share of trials in which something was named that is not missing; `None` for a hull, of which nobody knows what it
-    /// lacks.
+    /// Share of trials in which something was named that is not missing; `None` for a hull, of which nobody knows what
+    /// it lacks.
     pub fn wrong_share(&self) -> Option<Statistic> {
         if self.is_hull() { None } else { share(self.wrong, self.trials) }
     }

@@ -187,7 +187,8 @@ fn covariance(gain: &Gain, rises: &[Interval], time: f64, squares: f64) -> Resul
     Ok((matrix, gain_freedom.min(time_freedom)))
 }
 
-/// K and T of the swings to either side apart, K without the first swing, scatter of T; what does not exist is left out.
+/// K and T of the swings to either side apart, K without the first swing, scatter of T; what does not exist is left
+/// out.
 fn diagnostics(swings: &[Interval], rises: &[Interval], gain: &Gain) -> Vec<(&'static str, f64)> {
     let gain_of = |swings: &[Interval], chosen: &dyn Fn(&Interval) -> bool| {
         let chosen: Vec<&Interval> = swings.iter().filter(|swing| chosen(swing)).collect();

@@ -285,7 +285,8 @@ impl Basis {
         derivative
     }
 
-    /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the other function of its pair.
+    /// (X D)ᵀy from Xᵀy: sums with the derivatives of the functions. Every derivative is the other function of its
+    /// pair.
     pub fn moments_of_derivative(&self, moments: &DVector<f64>) -> DVector<f64> {
         -self.derivative(moments)
     }

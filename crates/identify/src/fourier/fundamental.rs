@@ -1,7 +1,7 @@
 //! The fundamental w of the series: by local search from stated starts, by the lowest RSS of all, by a rule, or given.
 //!
-//! Reasons to prefer a rule: RSS is nearly the same in several minima while derivatives and conditioning are not, so the
-//! lowest RSS says little about which w serves best.
+//! Reasons to prefer a rule: RSS is nearly the same in several minima while derivatives and conditioning are not, so
+//! the lowest RSS says little about which w serves best.
 
 use serde::{Deserialize, Serialize};
 use ship::Shown;
@@ -36,8 +36,8 @@ impl StartPoint {
 pub enum Fundamental {
     /// A local search from every start, downhill in RSS(w); the best end wins.
     Starts(Vec<StartPoint>),
-    /// The lowest RSS over all w from 0.35 periods a record (or 1.25/N of the peak of the transform, if that is more) to
-    /// 1.5 times the peak.
+    /// The lowest RSS over all w from 0.35 periods a record (or 1.25/N of the peak of the transform, if that is more)
+    /// to 1.5 times the peak.
     Global,
     /// The best-conditioned local minimum of RSS whose R² lies within this much of the best.
     BestConditioned {

@@ -1,13 +1,15 @@
-//! A record as a quadrature: instants with weights, folded about the middle of the record, and fewer of them in its place.
+//! A record as a quadrature: instants with weights, folded about the middle of the record, and fewer of them in its
+//! place.
 //!
 //! A sum over rows of a smooth function of time is, to rounding, a sum over Chebyshev nodes of the record: as many as
 //! the function has Chebyshev coefficients. So a long record is turned once into the few nodes that the highest
-//! frequency needs, and a search over frequencies costs the same whatever the sampling. It knows no model of the signal.
+//! frequency needs, and a search over frequencies costs the same whatever the sampling. It knows no model of the
+//! signal.
 
 use std::f64::consts::PI;
 
-/// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes, and as few
-/// as stay in registers.
+/// Instants handled together: as many sums that do not wait for each other, in an order that no machine changes, and as
+/// few as stay in registers.
 pub const LANES: usize = 4;
 
 /// Deviation from even steps, as a share of the step, that is rounding of the clock.
@@ -80,8 +82,8 @@ impl Nodes {
     /// Chebyshev nodes, an even number, over a record of length L that carry Σ Tₖ(ξ), ξ = 1 − 2 (sin ½wu / sin a)², for
     /// k ≤ `order` and a = `quarter_turn` = ¼wL, or ½π where that is less.
     ///
-    /// The coefficient m of a function bounded by M on the ellipse of sum of semi-axes e^σ is below 2 M e^−mσ (Bernstein),
-    /// and Tₖ(ξ) is largest there at its imaginary end: Tₖ = cosh kη, sinh ½η = sinh(a sinh σ) / sin a.
+    /// The coefficient m of a function bounded by M on the ellipse of sum of semi-axes e^σ is below 2 M e^−mσ
+    /// (Bernstein), and Tₖ(ξ) is largest there at its imaginary end: Tₖ = cosh kη, sinh ½η = sinh(a sinh σ) / sin a.
     pub fn needed(order: usize, quarter_turn: f64) -> usize {
         let a = quarter_turn;
         let height = |sigma: f64| 2.0 * ((a * sigma.sinh()).sinh() / a.min(0.5 * PI).sin()).asinh();
@@ -92,8 +94,8 @@ impl Nodes {
 
     /// `count` (even) Chebyshev nodes of the interval ±`half_length` (s) in place of these instants.
     ///
-    /// With f(t) = Σ aₖ Tₖ(τ), τ = u/`half_length`, Σ y f = Σ aₖ μₖ, μₖ = Σ y Tₖ(τ); the coefficients are sums of f over the
-    /// nodes τⱼ, aₖ = (2/n) Σ f(τⱼ) Tₖ(τⱼ), half that for k = 0, so that node j gets (2/n) Σ μₖ Tₖ(τⱼ).
+    /// With f(t) = Σ aₖ Tₖ(τ), τ = u/`half_length`, Σ y f = Σ aₖ μₖ, μₖ = Σ y Tₖ(τ); the coefficients are sums of f
+    /// over the nodes τⱼ, aₖ = (2/n) Σ f(τⱼ) Tₖ(τⱼ), half that for k = 0, so that node j gets (2/n) Σ μₖ Tₖ(τⱼ).
     pub fn fewer(&self, count: usize, half_length: f64) -> Self {
         let relative: Vec<f64> = self.time.iter().map(|u| u / half_length).collect();
         let half = count / 2;

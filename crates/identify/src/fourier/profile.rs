@@ -3,8 +3,8 @@
 //!
 //! With time u from the middle of a record of length L, cos k w u is a polynomial of degree k in cos w u, and sin k w u
 //! is sin w u times one of degree k − 1. Over less than one period cos w u runs through a part of [−1, 1] only and its
-//! Chebyshev polynomials are nearly dependent; those of ξ = 1 − 2 (sin ½wu / sin ¼wL)², which always runs through all of
-//! it, span the same space and are not: Tₖ(ξ), k = 0..N, and sin w u Tₖ(ξ), k < N. Their normal equations hold only
+//! Chebyshev polynomials are nearly dependent; those of ξ = 1 − 2 (sin ½wu / sin ¼wL)², which always runs through all
+//! of it, span the same space and are not: Tₖ(ξ), k = 0..N, and sin w u Tₖ(ξ), k < N. Their normal equations hold only
 //! Σ Tₖ(ξ) and Σ sin w u Tₖ(ξ), and are well conditioned down to the lowest w. Where sums over rows are too many, they
 //! are taken over fewer [`Nodes`].
 //!
@@ -17,8 +17,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use super::nodes::{LANES, Nodes, lanes};
 
 /// Below this pivot against its column QR is used. A pivot of size p leaves an error of about ε/p in the pivots after
-/// it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error and false minima appear. It happens where
-/// gaps leave too little of the record, and where the highest harmonics are beyond the sampling.
+/// it: at 1e-6 that is harmless, from 1e-8 on pivots are made of their own error and false minima appear. It happens
+/// where gaps leave too little of the record, and where the highest harmonics are beyond the sampling.
 const SMALLEST_PIVOT: f64 = 1e-6;
 
 /// Highest fundamental of the coarsest nodes, periods a record; that of the others is doubled from one to the next.
@@ -27,8 +27,8 @@ const COARSEST_REACH: f64 = 1.25;
 /// Nodes are made where the record, folded, has at least this many times as many rows.
 const WORTHWHILE: usize = 2;
 
-/// Most nodes of a level. To make them takes as long as about a quarter of their number over N sums over the rows, and a search
-/// asks for some hundred.
+/// Most nodes of a level. To make them takes as long as about a quarter of their number over N sums over the rows, and
+/// a search asks for some hundred.
 const MOST_NODES: usize = 4096;
 
 /// Steps of a walk after which its phasors are computed anew, before rounding adds up.
@@ -68,7 +68,8 @@ struct Sums {
 }
 
 impl Profile {
-    /// The profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MOST_HARMONICS`] harmonics.
+    /// The profile of `values` at `time` (s, increasing, equal lengths, at least 2) for 1 to [`MOST_HARMONICS`]
+    /// harmonics.
     pub fn new(time: &[f64], values: &[f64], harmonics: usize) -> Self {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let centred: Vec<f64> = values.iter().map(|v| v - mean).collect();

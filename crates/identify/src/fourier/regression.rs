@@ -61,8 +61,8 @@ pub struct Solution {
 }
 
 impl Equations {
-    /// Adds equations at `rows` of the instants of `basis`: r and r' of the heading on it, `rudder` (rad) as given for all
-    /// instants.
+    /// Adds equations at `rows` of the instants of `basis`: r and r' of the heading on it, `rudder` (rad) as given for
+    /// all instants.
     ///
     /// `noise_variance`, rad², is that of white noise on the heading.
     pub fn add(

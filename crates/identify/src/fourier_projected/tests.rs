@@ -235,9 +235,9 @@ fn settings_out_of_range_name_their_key() {
     assert_eq!(key(Settings { condition_limit: 0.0, ..Settings::default() }), "condition-limit");
 }
 
-/// Means of three rows in place of the rows themselves, 120 000 of them at 0.005 s: the same answer within a hundredth of its
-/// standard deviation. That itself grows a little: what the series leaves beside noise is taken for noise of every row, and there
-/// are fewer of them.
+/// Means of three rows in place of the rows themselves, 120 000 of them at 0.005 s: the same answer within a hundredth
+/// of its standard deviation. That itself grows a little: what the series leaves beside noise is taken for noise of
+/// every row, and there are fewer of them.
 #[test]
 fn averaging_a_dense_record_changes_next_to_nothing() {
     let trial = Case { samples: 120_000, period_s: 0.005, noise_deg: 0.5, bias_deg: 0.5, ..Case::default() }.trial();
@@ -254,8 +254,8 @@ fn averaging_a_dense_record_changes_next_to_nothing() {
     }
 }
 
-/// The series holds the zig-zag and its third harmonic, or there is no answer: 64 harmonics that stop between the two gave
-/// K = 0.06 for 0.1.
+/// The series holds the zig-zag and its third harmonic, or there is no answer: 64 harmonics that stop between the two
+/// gave K = 0.06 for 0.1.
 #[test]
 fn a_record_of_more_zig_zags_than_the_series_can_follow_is_refused() {
     let long = |samples: usize| Case { samples, noise_deg: 0.1, ..Case::default() };

@@ -149,8 +149,8 @@ fn uneven_rows_and_missing_headings_do_no_harm() {
     }
 }
 
-/// Logs joined row by row: intervals of 0.01 to 7 s without order. The noise of two rows that nearly coincide must not be
-/// taken for a slope.
+/// Logs joined row by row: intervals of 0.01 to 7 s without order. The noise of two rows that nearly coincide must not
+/// be taken for a slope.
 #[test]
 fn rows_that_nearly_coincide_do_no_harm() {
     for seed in 0..10 {

@@ -196,7 +196,8 @@ fn settings_out_of_range_are_named() {
     assert_eq!(refused(Settings { condition_limit: 1.0, ..Settings::default() }), "condition-limit");
 }
 
-/// A turn in seven rows and an eighth six hours later. Five equations gave a K of 0.56 ± 0.49, and seven integrated ones 1.6 ± 9.
+/// A turn in seven rows and an eighth six hours later. Five equations gave a K of 0.56 ± 0.49, and seven integrated
+/// ones 1.6 ± 9.
 #[test]
 fn a_handful_of_rows_before_a_gap_is_too_little() {
     let time = vec![0.0, 9.0, 46.0, 55.0, 64.0, 73.0, 82.0, 23_600.0];

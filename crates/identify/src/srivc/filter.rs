@@ -42,8 +42,8 @@ impl Point {
 ///
 /// With F = 1/(s (s + â)) and lp = 1/(s + â), the signals are F 1/s = φ₂(t) and its derivative φ₁(t) in `unit`, F δ in
 /// `steered`, lp ψ in `lagged`, all exact for a rudder and a heading that are linear between rows; and the noise-free
-/// heading x of `shared` with ∂x/∂a in `motion` and `sensitivity`. Since (s + a) ∂x/∂a = −(x − x(0)), the sensitivity is
-/// the noise-free twin of −lp (ψ − ψ(0)): the instrument.
+/// heading x of `shared` with ∂x/∂a in `motion` and `sensitivity`. Since (s + a) ∂x/∂a = −(x − x(0)), the sensitivity
+/// is the noise-free twin of −lp (ψ − ψ(0)): the instrument.
 pub(super) struct Filters {
     shared: Shared,
     transition: TangentTransition,

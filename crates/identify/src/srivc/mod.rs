@@ -8,10 +8,10 @@
 //! and is linear in its unknowns. lp ψ is noisy, so an instrument takes its place on the left of the normal equations:
 //! the same filter over the heading simulated with the last estimate. Then â becomes the new a, until it stays.
 //!
-//! Three properties follow. At the fixed point lp ψ drops out, so neither its noise nor the straight line
-//! drawn between its samples biases the answer; the instruments are the gradient of the simulated heading, so the answer
-//! is a stationary point of the output error and efficient for white noise. Without noise the equation holds for
-//! any â. And a wrong noise model costs efficiency, not consistency, as long as the noise does not steer.
+//! Three properties follow. At the fixed point lp ψ drops out, so neither its noise nor the straight line drawn between
+//! its samples biases the answer; the instruments are the gradient of the simulated heading, so the answer is a
+//! stationary point of the output error and efficient for white noise. Without noise the equation holds for any â. And
+//! a wrong noise model costs efficiency, not consistency, as long as the noise does not steer.
 //!
 //! The start is â = 0 with the regressors as their own instruments: there 1/s is an integral, and the equation is the
 //! one of motion integrated twice, by least squares. For a < 0 the filters would grow; such a record is run backwards
@@ -70,8 +70,8 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings.
     ///
-    /// Fails when there are no iterations to do or more than a thousand, the step is not within 1e-12 and 0.1, or the condition limit is not
-    /// above 1.
+    /// Fails when there are no iterations to do or more than a thousand, the step is not within 1e-12 and 0.1, or the
+    /// condition limit is not above 1.
     pub fn build(self) -> Result<Srivc, SettingsError> {
         check_iterations("max-iterations", self.max_iterations)?;
         if !(1e-12..=0.1).contains(&self.relative_step) {
@@ -174,8 +174,8 @@ impl Srivc {
     /// Iterates to the fixed point; also tells the number of iterations.
     ///
     /// Where the residual is large and no noise, as with a rudder that is put over between two rows, whole steps go to
-    /// and fro about the fixed point and die out slowly or not at all. From the first step back that is longer than half
-    /// the one before, steps are shortened by their secant in a (Irons and Tuck 1969).
+    /// and fro about the fixed point and die out slowly or not at all. From the first step back that is longer than
+    /// half the one before, steps are shortened by their secant in a (Irons and Tuck 1969).
     fn iterate(&self, records: &[Record], start: Solution) -> Result<(Solution, usize), IdentifyError> {
         let mut solution = start;
         let mut step = f64::INFINITY;

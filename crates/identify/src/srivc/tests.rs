@@ -306,8 +306,8 @@ fn gaps_and_uneven_sampling_do_not_bias() {
     assert_recovers(&estimate, &case.ship(), 1e-7);
 }
 
-/// A rudder put over between two rows leaves a residual of degrees, about which whole steps sway; the fixed point is that
-/// of the output error all the same.
+/// A rudder put over between two rows leaves a residual of degrees, about which whole steps sway; the fixed point is
+/// that of the output error all the same.
 #[test]
 fn settles_where_whole_steps_sway() {
     for (K, T, period_s, seed) in [(0.08, 147.0, 20.7, 0), (0.16, 48.0, 6.75, 1), (0.073, 81.6, 5.9, 2)] {

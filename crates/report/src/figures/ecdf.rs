@@ -1,5 +1,5 @@
-//! Empirical distributions of the size of an error: which share of all trials is within how much, per method. A method that
-//! fails levels off below one.
+//! Empirical distributions of the size of an error: which share of all trials is within how much, per method. A method
+//! that fails levels off below one.
 
 use serde::{Deserialize, Serialize};
 

@@ -44,8 +44,8 @@ impl Scale {
     ) -> Axis {
         let mut values: Vec<f64> = values.collect();
         values.extend(reference.iter().flat_map(|reference| [reference.value, reference.band[0], reference.band[1]]));
-        // The lower end of an interval of an error can come close to zero and would stretch a logarithmic axis by decades;
-        // such a bar is cut at the frame.
+        // The lower end of an interval of an error can come close to zero and would stretch a logarithmic axis by
+        // decades; such a bar is cut at the frame.
         let lowest = values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
         values.extend(intervals.flatten().filter(|end| self == Self::Linear || *end > 0.5 * lowest));
         self.covering(values)
@@ -193,7 +193,8 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, curve: &ErrorCurve, asi
     }
 }
 
-/// A vertical bar with caps at `across`; an end beyond the frame (or at zero on a logarithmic axis) is cut, without cap.
+/// A vertical bar with caps at `across`; an end beyond the frame (or at zero on a logarithmic axis) is cut, without
+/// cap.
 fn error_bar(panel: &Panel, scene: &mut Scene, across: f64, [lo, hi]: [f64; 2], cap: f64, stroke: Stroke) {
     let rect = panel.rect;
     let Some(high) = panel.up(lo.max(hi)) else { return };

@@ -1,5 +1,6 @@
-//! A value over two axes: one panel a method, cells coloured by the value and the value written in them. The colours are those
-//! of viridis (Smith and van der Walt 2015): even steps look even, also in grey and with any common colour blindness.
+//! A value over two axes: one panel a method, cells coloured by the value and the value written in them. The colours
+//! are those of viridis (Smith and van der Walt 2015): even steps look even, also in grey and with any common colour
+//! blindness.
 
 use serde::{Deserialize, Serialize};
 

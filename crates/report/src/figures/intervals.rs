@@ -96,8 +96,8 @@ impl Quantity {
 
 /// Draws K and T side by side (one above the other when the figure is narrow).
 ///
-/// An estimate without interval is a dot, a method without estimate says so, and an estimate beyond the axis is an arrow
-/// with its number.
+/// An estimate without interval is a dot, a method without estimate says so, and an estimate beyond the axis is an
+/// arrow with its number.
 pub fn intervals(data: &Intervals, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));

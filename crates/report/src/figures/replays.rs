@@ -133,7 +133,8 @@ fn largest(curve: &Curve) -> Option<f64> {
     axis::range(curve.finite().map(|(_, y)| y.abs())).map(|(_, hi)| hi)
 }
 
-/// Half the height of the residual axis: the largest residual, but not more than [`RESIDUAL_ROOM`] times the middle one.
+/// Half the height of the residual axis: the largest residual, but not more than [`RESIDUAL_ROOM`] times the middle
+/// one.
 fn residual_limit(replays: &[Replay]) -> f64 {
     let mut peaks: Vec<f64> = replays.iter().filter_map(|r| largest(&r.residual)).collect();
     peaks.sort_by(f64::total_cmp);

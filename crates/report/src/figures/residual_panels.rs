@@ -1,5 +1,5 @@
-//! What two models leave of a record, seen from several sides: against time, heading, yaw rate and rudder, as spectrum and as
-//! autocorrelation. One panel per side; before and after lie on top of each other.
+//! What two models leave of a record, seen from several sides: against time, heading, yaw rate and rudder, as spectrum
+//! and as autocorrelation. One panel per side; before and after lie on top of each other.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,5 @@
-//! Errors of K and T together: the cloud of each method with its 95 % ellipse, beside the ellipse of the Cramér–Rao bound.
+//! Errors of K and T together: the cloud of each method with its 95 % ellipse, beside the ellipse of the Cramér–Rao
+//! bound.
 
 use serde::{Deserialize, Serialize};
 
@@ -113,8 +114,8 @@ fn bound_stroke(theme: &Theme) -> Stroke {
     Stroke { width: 1.2 * theme.line, ..stroke_of(&Origin::Bound, theme) }
 }
 
-/// Half the widths of the common axes: the middle one of the methods decides, so that a wild one does not hide the others, but
-/// no less than the bound needs.
+/// Half the widths of the common axes: the middle one of the methods decides, so that a wild one does not hide the
+/// others, but no less than the bound needs.
 fn reach(data: &KtScatter) -> [f64; 2] {
     [0, 1].map(|axis| {
         let reaches = || data.panels.iter().filter_map(|panel| panel.ellipse).map(|ellipse| ellipse.reach()[axis]);

@@ -76,7 +76,8 @@ pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     sorted.get(sorted.len() / 2).copied()
 }
 
-/// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves them.
+/// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves
+/// them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Reference95 {
     /// The value.

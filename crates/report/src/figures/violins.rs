@@ -1,4 +1,5 @@
-//! Distributions of a signed error, one violin a method: density, box of the quartiles, whiskers from 2.5 to 97.5 %, median.
+//! Distributions of a signed error, one violin a method: density, box of the quartiles, whiskers from 2.5 to 97.5 %,
+//! median.
 
 use serde::{Deserialize, Serialize};
 

@@ -87,8 +87,8 @@ const MOST_MARKED: usize = 60;
 const EXECUTE: Look = Look { colour: INK, marker: Marker::Diamond, dash: SOLID, hollow: false };
 const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: SOLID, hollow: true };
 
-/// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn without
-/// its characteristic quantities, and a note says so.
+/// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
+/// without its characteristic quantities, and a note says so.
 pub fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
     if data.executes.len() > MOST_MARKED {
         let curves = ZigzagTrial {

@@ -5,8 +5,8 @@ use crate::printable::escaped;
 
 impl Table {
     /// As CSV (RFC 4180, but with plain line breaks): headings with units in the first line, missing cells empty, and
-    /// ASCII minus signs, so that numbers can be read back. A text that a spreadsheet would take for a formula stands behind
-    /// an apostrophe. The title is not part of it.
+    /// ASCII minus signs, so that numbers can be read back. A text that a spreadsheet would take for a formula stands
+    /// behind an apostrophe. The title is not part of it.
     pub fn to_csv(&self) -> String {
         render(self)
     }

@@ -6,9 +6,9 @@ use crate::number::Real;
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when
 /// 1/T passes through zero.
 ///
-/// Sources: Norrbin (1963) for r|r| and r³; Bech (1968) for the full polynomial
-/// T₁T₂ r'' + (T₁+T₂) r' + K H(r) = K (δ + T₃ δ'), H = b₃r³ + b₂r² + b₁r + b₀, which is the second-order effect with
-/// [`Cubic`](Self::Cubic) = K b₃/T, [`Square`](Self::Square) = K b₂/T, 1/T times K b₁ and δ_r = −b₀.
+/// Sources: Norrbin (1963) for r|r| and r³; Bech (1968) for the full polynomial T₁T₂ r'' + (T₁+T₂) r' + K H(r) = K (δ +
+/// T₃ δ'), H = b₃r³ + b₂r² + b₁r + b₀, which is the second-order effect with [`Cubic`](Self::Cubic) = K b₃/T,
+/// [`Square`](Self::Square) = K b₂/T, 1/T times K b₁ and δ_r = −b₀.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NonlinearDamping {
     /// r' = … − (n₃/T) r³.

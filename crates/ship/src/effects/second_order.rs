@@ -32,8 +32,8 @@ const PARAMETERS: [Parameter; 2] = [
     },
 ];
 
-/// Largest T₂ and T₃ that are looked for, in time constants of the base. Beyond, zero and pole are so slow that they imitate
-/// a trend.
+/// Largest T₂ and T₃ that are looked for, in time constants of the base. Beyond, zero and pole are so slow that they
+/// imitate a trend.
 const SLOWEST_POLE: f64 = 1.0;
 const SLOWEST_ZERO: f64 = 2.0;
 

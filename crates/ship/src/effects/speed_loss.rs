@@ -141,8 +141,8 @@ impl Effect for SpeedLoss {
                 let loss = |recovery: f64| 0.2 / (recovery * rate * rate);
                 let at = |times: f64, exponent: f64| vec![loss(times * time), times * time, exponent];
                 let mut proposal = Proposal::new(*self, at(4.0, 1.0), vec![at(2.0, 2.0), at(8.0, 2.0)], at(4.0, 2.0));
-                // The exponent of the rudder force cannot be told from one manoeuvre without a speed: the law of the free
-                // stream.
+                // The exponent of the rudder force cannot be told from one manoeuvre without a speed: the law of the
+                // free stream.
                 proposal.held = &[2];
                 Some(proposal.within(0, [0.0, loss(0.5 * time)]).within(1, [0.5 * time, 2.0 * duration]))
             }

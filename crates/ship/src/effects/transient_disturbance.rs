@@ -3,8 +3,8 @@
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
-/// m over a span of time with smooth edges, as an equivalent rudder angle:
-/// m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
+/// m over a span of time with smooth edges, as an equivalent rudder angle: m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c
+/// − d/2)/w)], w = d/10.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TransientDisturbance;
 

@@ -191,8 +191,8 @@ fn small_steps_are_taken_where_motion_is_fast() {
     assert!(squall < 1.5 * base, "{squall:e} rad, {base:e} rad without the squall");
 }
 
-/// What is said of an effect agrees with what it does: only one that sees the heading changes when the record is turned,
-/// only one that depends on time when it begins later, and constants are those its equations hold.
+/// What is said of an effect agrees with what it does: only one that sees the heading changes when the record is
+/// turned, only one that depends on time when it begins later, and constants are those its equations hold.
 #[test]
 fn an_effect_is_what_it_says() {
     for effect in effects::all().into_iter().filter(|effect| !effect.is_random() && effect.needs().is_none()) {

@@ -36,7 +36,7 @@ fn turning_rate_deg(ship: &Ship, delta_deg: f64) -> f64 {
     held_rudder(dynamics.as_ref(), delta_deg, 3000.0, dynamics.largest_step()).1.yaw_rate.to_degrees()
 }
 
-// --- every ship -------------------------------------------------------------------------------------------------------
+// --- every ship ----------------------------------------------------------------------------------------------------
 
 #[test]
 fn identifiers_are_unique_and_found() {
@@ -165,7 +165,7 @@ fn the_largest_step_is_small_enough() {
     }
 }
 
-// --- single ships -----------------------------------------------------------------------------------------------------
+// --- single ships --------------------------------------------------------------------------------------------------
 
 /// Indices printed for the Mariner in the Marine Systems Simulator, to more digits from an independent linearisation.
 #[test]

@@ -57,8 +57,8 @@ fn check_indices(K: f64, T: f64, symbol: &'static str) -> Result<(), ShipError> 
     check("K", K, K / T > 0.0, "its sign has to be that of T, or the ship turns away from its rudder")
 }
 
-/// Refuses a response with a parameter outside the range it declares; `symbols` are the numbers it was made of, in the order
-/// of its parameters. A time constant of a nanosecond is no ship, and no simulation of one would end.
+/// Refuses a response with a parameter outside the range it declares; `symbols` are the numbers it was made of, in the
+/// order of its parameters. A time constant of a nanosecond is no ship, and no simulation of one would end.
 fn check_range(response: &Response, symbols: &[&'static str]) -> Result<(), ShipError> {
     let values = response.model().parameters().zip(response.parameters()).zip(symbols);
     for ((parameter, &value), symbol) in values {
@@ -84,8 +84,8 @@ fn ship(name: String, response: Response, particulars: Option<Particulars>) -> S
 /// A first-order ship T r' + r = K (δ + δ_r), with the identifier `user`.
 ///
 /// `K` (1/s) and `T` (s) both negative make a course-unstable ship. `rudder_bias` δ_r in rad. Fails for numbers that
-/// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and where 1/T, K/T or δ_r
-/// lies outside the range that [`crate::response::BASE`] declares.
+/// are not finite, K or T of zero, K and T of different sign, particulars that are not positive, and where 1/T, K/T or
+/// δ_r lies outside the range that [`crate::response::BASE`] declares.
 pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particulars>) -> Result<Ship, ShipError> {
     check_indices(K, T, "T")?;
     check("rudder bias", rudder_bias, true, "it has to be finite")?;
@@ -97,8 +97,8 @@ pub fn first_order(K: f64, T: f64, rudder_bias: f64, particulars: Option<Particu
 
 /// A second-order ship T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ', with the identifier `user`.
 ///
-/// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite, and where they lie outside
-/// the range that [`SecondOrder`] declares.
+/// Fails as [`first_order`] does for K and T1, for T2 that is not positive and T3 that is not finite, and where they
+/// lie outside the range that [`SecondOrder`] declares.
 pub fn second_order(
     indices: SecondOrderIndices,
     rudder_bias: f64,

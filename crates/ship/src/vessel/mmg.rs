@@ -3,8 +3,7 @@
 //! Every equation is divided by ½ρLd, so forces read as X' U² (m²/s²), the moment as N' U² after a further L, and the
 //! density of the water drops out. In the velocities (u, v, rL):
 //!
-//! (m' + m_x') L u' = X + (m' + m_y') v (rL) + x_G' m' (rL)²
-//! (m' + m_y') L v' + x_G' m' L² r' = Y − (m' + m_x') u (rL)
+//! (m' + m_x') L u' = X + (m' + m_y') v (rL) + x_G' m' (rL)² (m' + m_y') L v' + x_G' m' L² r' = Y − (m' + m_x') u (rL)
 //! (I_z' + x_G'² m' + J_z') L² r' + x_G' m' L v' = N − x_G' m' u (rL)
 //!
 //! β = atan(−v/u) and v are taken at midship. The rudder is positive to starboard, as everywhere here. The wake and the

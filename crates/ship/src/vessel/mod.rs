@@ -1,8 +1,8 @@
 //! Hulls with three degrees of freedom (surge, sway, yaw): a truth that no response model matches exactly.
 //!
 //! A hull gives its accelerations ([`Hull`]); heading, position and the link to [`Dynamics`] are written once here.
-//! [`mmg`] holds hull, propeller and rudder as separate parts, [`abkowitz`] one polynomial for the whole ship. Parameter
-//! sets with their sources are in [`crate::ships`].
+//! [`mmg`] holds hull, propeller and rudder as separate parts, [`abkowitz`] one polynomial for the whole ship.
+//! Parameter sets with their sources are in [`crate::ships`].
 //!
 //! Water is deep and at rest, propeller revolutions are constant, heel is absent. The equations hold for a ship that
 //! moves ahead; near standstill and astern they stay finite and mean nothing (see [`SLOWEST`]).
@@ -60,8 +60,8 @@ pub struct Acceleration {
 
 /// A hull with three degrees of freedom at constant propeller revolutions.
 ///
-/// Implementing it makes a [`Dynamics`] with the states of [`state`]:
-/// ψ' = r, x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ.
+/// Implementing it makes a [`Dynamics`] with the states of [`state`]: ψ' = r, x' = u cos ψ − v sin ψ, y' = u sin ψ + v
+/// cos ψ.
 pub trait Hull: Send + Sync {
     /// Length between perpendiculars L, m.
     fn length(&self) -> f64;

@@ -13,8 +13,8 @@ use crate::weather::{GRID, Weather};
 const LONGEST_STEP: f64 = 60.0;
 const LONGEST_SHARE_OF_T: f64 = 30.0;
 
-/// Steps closer together than this, s, are the same step: rows at k·period differ by rounding only, and a heading that is
-/// wrong by 1e-12 s of yaw rate is right to the last bit but a few.
+/// Steps closer together than this, s, are the same step: rows at k·period differ by rounding only, and a heading that
+/// is wrong by 1e-12 s of yaw rate is right to the last bit but a few.
 const SAME_STEP: f64 = 1e-12;
 
 /// Closed-form motion of a first-order ship.

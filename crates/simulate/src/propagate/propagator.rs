@@ -27,8 +27,8 @@ pub(crate) trait Propagator {
     /// What can be recorded now.
     fn sample(&mut self, path: &RudderPath) -> Sample;
 
-    /// Records row after row as long as nothing happens on the way, as going there step by step would, bit for bit; stops before
-    /// the first row that needs a closer look, which may be the next one.
+    /// Records row after row as long as nothing happens on the way, as going there step by step would, bit for bit;
+    /// stops before the first row that needs a closer look, which may be the next one.
     fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Tap) {}
 }
 
@@ -84,8 +84,8 @@ impl Crossing {
 
     /// Time from the beginning of a step to the first crossing in it, s.
     ///
-    /// The step leads from `from`, which has not crossed, to `end` in `h` seconds, and the yaw rate is monotone in it: so
-    /// the heading has at most one extremum, which is looked for when the yaw rate changes sign.
+    /// The step leads from `from`, which has not crossed, to `end` in `h` seconds, and the yaw rate is monotone in it:
+    /// so the heading has at most one extremum, which is looked for when the yaw rate changes sign.
     pub fn locate(&self, from: State, end: State, h: f64, mut probe: impl FnMut(f64) -> State) -> Option<f64> {
         let before = (0.0, self.excess(from.heading));
         let mut after = (h, self.excess(end.heading));

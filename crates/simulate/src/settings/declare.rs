@@ -1,5 +1,5 @@
-//! How a setting is declared: once, with the unit in its name and the meaning in the comment above it. From that follow what
-//! serde reads and writes, and the lists of keys for a person.
+//! How a setting is declared: once, with the unit in its name and the meaning in the comment above it. From that follow
+//! what serde reads and writes, and the lists of keys for a person.
 
 use std::fmt;
 
@@ -159,7 +159,8 @@ impl<T: Written> Written for Option<T> {
 
 /// Declares a table of settings, or a choice of one of several. Comments are read by users of `study list` too.
 ///
-/// A field that is no `Option` is required, unless it or its table has `#[serde(default)]`; every default is that of the type.
+/// A field that is no `Option` is required, unless it or its table has `#[serde(default)]`; every default is that of
+/// the type.
 macro_rules! settings {
     ($(#[doc = $about:literal])+ $(#[derive($derive:ident)])? $(#[serde($all:ident)])? pub struct $name:ident {
         $($(#[doc = $meaning:literal])+ $(#[serde($default:ident)])? pub $field:ident: $type:ty,)*

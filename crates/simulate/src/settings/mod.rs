@@ -1,5 +1,5 @@
-//! Settings of a trial as a person writes them: degrees, seconds and their units in the names of the keys. Each is declared
-//! once, in one of these files; `build` checks it and gives the specification in SI units and radians.
+//! Settings of a trial as a person writes them: degrees, seconds and their units in the names of the keys. Each is
+//! declared once, in one of these files; `build` checks it and gives the specification in SI units and radians.
 //!
 //! Where the text of a scenario comes from, and where in it a fault stands, is for whoever reads it.
 

@@ -1,4 +1,5 @@
-//! Settings that make no sense, in the words and units of a scenario: the key, what was found, what was expected, what to do.
+//! Settings that make no sense, in the words and units of a scenario: the key, what was found, what was expected, what
+//! to do.
 
 use ship::Shown;
 

@@ -1,4 +1,5 @@
-//! All settings of a trial together: their keys, what they have to be, and what is taken for granted where they are left out.
+//! All settings of a trial together: their keys, what they have to be, and what is taken for granted where they are
+//! left out.
 
 use crate::helm::Watches;
 use crate::manoeuvre::{Manoeuvre, ZigZag, ZigZagEnd};

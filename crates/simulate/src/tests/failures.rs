@@ -92,8 +92,8 @@ fn a_record_that_starts_at_no_execute_is_an_error() {
     assert_eq!(failure(&simulation), SimulateError::NoSuchExecute { execute: 5, made: 3 });
 }
 
-/// What no estimate foresees: a helmsman who reverses the rudder at every breath of the heading, and a record that nothing but the
-/// last execute ends.
+/// What no estimate foresees: a helmsman who reverses the rudder at every breath of the heading, and a record that
+/// nothing but the last execute ends.
 #[test]
 fn a_run_that_takes_too_much_is_given_up() {
     let mut simulation = zig_zag(10.0, 1e-290, f64::INFINITY, 100.0);

@@ -278,8 +278,8 @@ fn the_same_key_gives_the_same_bits() {
     }
 }
 
-/// Rows between which nothing happens are gone through at once; a heading that is late by a microsecond has every row looked at. The
-/// instants of the helm differ by rounding.
+/// Rows between which nothing happens are gone through at once; a heading that is late by a microsecond has every row
+/// looked at. The instants of the helm differ by rounding.
 #[test]
 fn going_on_without_looking_changes_nothing() {
     for (case, simulation) in variety().into_iter().enumerate() {
@@ -290,7 +290,8 @@ fn going_on_without_looking_changes_nothing() {
     }
 }
 
-/// What is kept for all keys must not be what one key has drawn: every way in which chance comes in, alone and together.
+/// What is kept for all keys must not be what one key has drawn: every way in which chance comes in, alone and
+/// together.
 #[test]
 fn a_prepared_simulation_gives_the_same_bits() {
     let shaken: [fn(&mut Simulation); 9] = [

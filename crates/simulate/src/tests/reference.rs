@@ -1,13 +1,13 @@
-//! Zig-zags of the ship K = 0.1 1/s, T = 16.3 s against numbers computed by independent code, and against closed forms of
-//! the instantaneous rudder.
+//! Zig-zags of the ship K = 0.1 1/s, T = 16.3 s against numbers computed by independent code, and against closed forms
+//! of the instantaneous rudder.
 //!
-//! The independent code steps by 0.01 s and reverses the rudder at the first step beyond the heading asked for, so every
-//! reversal is up to 0.01 s late and the delays add up: its fifth execute is 0.03 to 0.06 s late. A helmsman who reads the
-//! heading every 0.01 s does the same and is held against the table itself; exact events are held against it with the
-//! delays allowed for. Its rudder without rate limit moves within a step: half a step late.
+//! The independent code steps by 0.01 s and reverses the rudder at the first step beyond the heading asked for, so
+//! every reversal is up to 0.01 s late and the delays add up: its fifth execute is 0.03 to 0.06 s late. A helmsman who
+//! reads the heading every 0.01 s does the same and is held against the table itself; exact events are held against it
+//! with the delays allowed for. Its rudder without rate limit moves within a step: half a step late.
 //!
-//! Its period is the median over all pairs of executes to the same side in some 434 s, the first included: the one reading
-//! with which all nine rows agree. For 10/20 the median falls into the transient; the limit cycle is 160.00 s.
+//! Its period is the median over all pairs of executes to the same side in some 434 s, the first included: the one
+//! reading with which all nine rows agree. For 10/20 the median falls into the transient; the limit cycle is 160.00 s.
 
 use approx::assert_abs_diff_eq;
 use ship::angle::to_deg;
@@ -17,8 +17,8 @@ use crate::helm::{Helmsman, Watches};
 use crate::vessel::Solver;
 use crate::{Simulated, Simulation};
 
-/// One row of the table: δ, ψ (deg), rate (deg/s), executes 2 to 5 (s), overshoots 1 to 3 (deg), period (s), yaw rate at
-/// executes 2 to 4 and its largest value (deg/s).
+/// One row of the table: δ, ψ (deg), rate (deg/s), executes 2 to 5 (s), overshoots 1 to 3 (deg), period (s), yaw rate
+/// at executes 2 to 4 and its largest value (deg/s).
 type Row = (f64, f64, f64, [f64; 4], [f64; 3], f64, [f64; 3], f64);
 
 const TABLE: [Row; 9] = [

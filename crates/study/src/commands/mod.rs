@@ -1,4 +1,5 @@
-//! The commands, one file each: they read options, ask the crates below for work, and hand the answer to [`crate::views`].
+//! The commands, one file each: they read options, ask the crates below for work, and hand the answer to
+//! [`crate::views`].
 
 pub mod check;
 pub mod fit;

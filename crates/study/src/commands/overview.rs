@@ -1,5 +1,5 @@
-//! `study overview DIR`: one page over all published studies of a folder, each with its question, its answer in a sentence
-//! and the figure that stands for it. Made from the manifests, so it needs no rows.
+//! `study overview DIR`: one page over all published studies of a folder, each with its question, its answer in a
+//! sentence and the figure that stands for it. Made from the manifests, so it needs no rows.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

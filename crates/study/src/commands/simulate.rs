@@ -22,8 +22,8 @@ const MOST_RECORDS: u64 = 100_000;
 
 /// Simulates the trials that are asked for and writes them, with the truth of each.
 ///
-/// Fails when no such cell or trial is there, when several records are to become one file, and with the first trial that cannot
-/// be made.
+/// Fails when no such cell or trial is there, when several records are to become one file, and with the first trial
+/// that cannot be made.
 pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(&request.scenario, common.seed)?;
     let Some(out) = &common.out else {

@@ -1,5 +1,5 @@
-//! `study trace`: close the loop on measured records. The analysis is that of the crate [`trace`]; here its words, tables,
-//! figures and files are made.
+//! `study trace`: close the loop on measured records. The analysis is that of the crate [`trace`]; here its words,
+//! tables, figures and files are made.
 
 use std::path::PathBuf;
 

@@ -109,8 +109,8 @@ const MOST_COLUMNS: usize = 4;
 /// A ratio of the ends of an axis above which it is divided by factors.
 const WIDE: f64 = 12.0;
 
-/// Charts of a quantity over the last axis that is a number, else over the names of the last axis; points of the other axes
-/// side by side where they are few, else one chart each. Nothing where there is no axis or nothing to show.
+/// Charts of a quantity over the last axis that is a number, else over the names of the last axis; points of the other
+/// axes side by side where they are few, else one chart each. Nothing where there is no axis or nothing to show.
 pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<Chart> {
     let is_number = |axis: &usize| design.cells.iter().all(|cell| cell.values[*axis].is_some());
     let has_several =

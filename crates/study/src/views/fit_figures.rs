@@ -1,5 +1,5 @@
-//! Figures of `study fit`: the first record with its characteristic points, and every record with the replays of all methods
-//! and with the best fit.
+//! Figures of `study fit`: the first record with its characteristic points, and every record with the replays of all
+//! methods and with the best fit.
 
 use identify::Estimate;
 use identify::replay::replay;
@@ -27,8 +27,8 @@ pub struct Drawn<'a> {
     pub validation: bool,
 }
 
-/// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `replays` and `fit` of the first record, and the same with
-/// `-NAME` of the others.
+/// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `replays` and `fit` of the first record, and
+/// the same with `-NAME` of the others.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],

@@ -1,5 +1,5 @@
-//! The table of the answers of all methods: as narrow as the numbers allow, every estimate beside its 95 % interval, a failed
-//! method as a row with its reason. All digits are in the stored JSON.
+//! The table of the answers of all methods: as narrow as the numbers allow, every estimate beside its 95 % interval, a
+//! failed method as a row with its reason. All digits are in the stored JSON.
 
 use identify::StopReason;
 use report::number::{self, MISSING};

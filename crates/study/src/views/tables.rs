@@ -102,8 +102,8 @@ fn all_digits(figure: Option<Statistic>) -> [String; 3] {
     [text(figure.map(|figure| figure.value)), text(ends.map(|ends| ends[0])), text(ends.map(|ends| ends[1]))]
 }
 
-/// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over the
-/// bound, and the validation error where there is one.
+/// The same in the width of a screen or a page: failures, median and rms errors with interval, coverage, spread over
+/// the bound, and the validation error where there is one.
 pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let records = || summary.methods.iter().map(|line| &line.record);
     let validated = records().any(|record| record.validation_rmse_deg.is_some());

@@ -10,7 +10,8 @@ use campaign::summary::TraceSummary;
 /// Name of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
 
-/// The confusion matrices: rows are points of the first axis, one matrix for every combination of the others, with its name.
+/// The confusion matrices: rows are points of the first axis, one matrix for every combination of the others, with its
+/// name.
 pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Vec<(String, HeatMap)> {
     let mut names: Vec<String> = vec![NOTHING.to_owned()];
     for id in lines.iter().flat_map(|line| line.named.keys()) {

@@ -94,8 +94,8 @@ impl Run {
     }
 }
 
-/// A 10/10 zig-zag of YUKUN as a CSV record of time, heading and rudder: 300 s at 1 Hz, perfect instruments, rudder rate
-/// 2.5 deg/s.
+/// A 10/10 zig-zag of YUKUN as a CSV record of time, heading and rudder: 300 s at 1 Hz, perfect instruments, rudder
+/// rate 2.5 deg/s.
 pub fn zig_zag_csv() -> String {
     zig_zag_csv_of(&ship::ships::find("yukun").expect("it is in the registry"))
 }

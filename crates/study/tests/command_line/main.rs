@@ -1,5 +1,5 @@
-//! The command line as a user meets it: the built program on scenarios and records, good and bad. What is asserted is the
-//! exit code, the one message, and what lies on disk afterwards; what the numbers mean is tested elsewhere.
+//! The command line as a user meets it: the built program on scenarios and records, good and bad. What is asserted is
+//! the exit code, the one message, and what lies on disk afterwards; what the numbers mean is tested elsewhere.
 
 mod commands;
 mod desk;

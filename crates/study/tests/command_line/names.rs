@@ -1,5 +1,5 @@
-//! Names, labels and options that no folder, figure or page can carry are refused before anything runs; what is shown of the
-//! input cannot act on a terminal.
+//! Names, labels and options that no folder, figure or page can carry are refused before anything runs; what is shown
+//! of the input cannot act on a terminal.
 
 use crate::desk::{Desk, of_repository, zig_zag_csv};
 

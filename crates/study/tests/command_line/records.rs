@@ -224,8 +224,8 @@ fn a_good_record_gives_a_table_figures_and_json() {
         (&exact["status"], &exact["reason"], &exact["course_unstable"]),
         (&"ok".into(), &().into(), &false.into())
     );
-    // The record is noise-free and of first order: K = 0.1 1/s, T = 16.3 s (ship::ships::yukun); its rows are 1 s apart, so the
-    // corners of the rudder between them are lost.
+    // The record is noise-free and of first order: K = 0.1 1/s, T = 16.3 s (ship::ships::yukun); its rows are 1 s
+    // apart, so the corners of the rudder between them are lost.
     for (name, truth, tolerance) in [("K_per_s", 0.1, 1e-3), ("T_s", 16.3, 0.2), ("delta_r_deg", 0.0, 0.05)] {
         let quantity = &exact["parameters"][name];
         let value = quantity["value"].as_f64().expect("a number");

@@ -1,5 +1,5 @@
-//! What is stored is checked by everyone who reads it, only our own files are replaced or removed, and nothing is lost in
-//! silence.
+//! What is stored is checked by everyone who reads it, only our own files are replaced or removed, and nothing is lost
+//! in silence.
 
 use std::fs;
 use std::process::Command;

@@ -1,5 +1,5 @@
-//! What records that were not fitted say of a term: it is dropped when it predicts them worse, and believed when it predicts
-//! them much better.
+//! What records that were not fitted say of a term: it is dropped when it predicts them worse, and believed when it
+//! predicts them much better.
 
 use crate::held_out::{self, Comparison, HeldOut};
 use crate::search::{Evidence, Model, Search};
@@ -61,8 +61,8 @@ pub(super) struct Predicted {
     pub comparison: Comparison,
 }
 
-/// Adds terms whose evidence does not stand against a random moment, but which predict the held-out records: chance does
-/// not.
+/// Adds terms whose evidence does not stand against a random moment, but which predict the held-out records: chance
+/// does not.
 pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
     let mut predicted = Vec::new();
     if held_out.is_empty() || model.judged.colour.moment.is_none() {

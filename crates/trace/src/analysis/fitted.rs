@@ -13,10 +13,12 @@ fn heading_error(records: &[OnRecord]) -> f64 {
     (square / rows as f64).sqrt()
 }
 
-/// A model with its replays of the fitted records, without terms that make the heading error there larger than `before`.
+/// A model with its replays of the fitted records, without terms that make the heading error there larger than
+/// `before`.
 ///
-/// The likelihood that chose a term is that of averaged rows under coloured noise, and the search for its parameters is local:
-/// nothing else makes sure that the error of a replay of all rows falls. The term without which it is smallest goes first.
+/// The likelihood that chose a term is that of averaged rows under coloured noise, and the search for its parameters is
+/// local: nothing else makes sure that the error of a replay of all rows falls. The term without which it is smallest
+/// goes first.
 pub(super) fn no_larger_error(
     search: &Search,
     mut model: Model,
@@ -81,7 +83,8 @@ mod tests {
         vec![OnRecord { replayed, errors }]
     }
 
-    /// Whatever a replay says, the heading error after is not larger than before; the term that is at fault goes and is named.
+    /// Whatever a replay says, the heading error after is not larger than before; the term that is at fault goes and is
+    /// named.
     #[test]
     fn a_term_that_makes_the_error_larger_is_not_adopted() {
         let truth = ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])]);

@@ -34,8 +34,8 @@ pub use settings::{Settings, TraceError};
 
 /// Analyses records of one ship.
 ///
-/// The base comes from `output-error`, which is global in 1/T. `validation` records are replayed only; what makes their error
-/// worse is not kept. Fails when a setting is out of its range and when the base cannot be fitted or replayed.
+/// The base comes from `output-error`, which is global in 1/T. `validation` records are replayed only; what makes their
+/// error worse is not kept. Fails when a setting is out of its range and when the base cannot be fitted or replayed.
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
     settings.check()?;
     let method = output_error::Settings::default().build().expect("default settings are valid");

@@ -154,8 +154,8 @@ mod tests {
         assert_eq!(ends(0.1).1, [false; 3]);
     }
 
-    /// One estimate has one interval: that of δ_r is Fieller's wherever it is told, which is no longer symmetric when K/T is
-    /// not well known.
+    /// One estimate has one interval: that of δ_r is Fieller's wherever it is told, which is no longer symmetric when
+    /// K/T is not well known.
     #[test]
     fn the_rudder_bias_has_one_interval() {
         let truth = ship(Vec::new());

@@ -86,8 +86,8 @@ impl Reporter<'_> {
         shares
     }
 
-    /// Rivals that explain the records as well as the term at `place` does in its stead, under the same noise. A term that
-    /// is believed for what it predicts is compared as it was found, under white noise.
+    /// Rivals that explain the records as well as the term at `place` does in its stead, under the same noise. A term
+    /// that is believed for what it predicts is compared as it was found, under white noise.
     fn aliases(&self, place: usize, less: &Model, predicted: bool) -> Vec<(&'static str, &'static str)> {
         let own = &self.model.structure.terms[place];
         let with = if predicted { &self.model.plain } else { &self.model.judged };

@@ -108,8 +108,8 @@ pub struct Traced {
     pub parameters: Vec<Value>,
     /// How much it explains, against the best model without it.
     pub evidence: Evidence,
-    /// Share of the mean square of the residual of the base that it took away when it was added; `None` for waves, which
-    /// are part of the residual.
+    /// Share of the mean square of the residual of the base that it took away when it was added; `None` for waves,
+    /// which are part of the residual.
     pub residual_share: Option<f64>,
     /// One sentence on it.
     pub sentence: String,
@@ -223,7 +223,8 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Whether K, T and δ_r of the final model rest on a parameter at an end of its range: K = (K/T)/(1/T), T = 1/(1/T).
+    /// Whether K, T and δ_r of the final model rest on a parameter at an end of its range: K = (K/T)/(1/T), T =
+    /// 1/(1/T).
     pub fn indices_at_bound(&self) -> [bool; 3] {
         let ends = |key: &str| self.parameters.iter().any(|value| value.key == key && value.at_bound);
         let [inverse, ratio] = ["inverse_T", "K_over_T"].map(ends);

@@ -7,8 +7,8 @@ use super::outcome::Fit;
 use crate::noise::{Colour, Moment};
 use crate::structure::{Structure, TermName};
 
-/// What decides a fit: names of the terms and which of their parameters are held, and every number that goes into it, by its
-/// bits.
+/// What decides a fit: names of the terms and which of their parameters are held, and every number that goes into it,
+/// by its bits.
 type Question = (Vec<(TermName, &'static [usize])>, Vec<u64>);
 
 /// Answers by their questions.

@@ -1,5 +1,5 @@
-//! The search for the parameters and initial states that bring the whitened replay nearest to the records (Levenberg–Marquardt;
-//! Moré 1978).
+//! The search for the parameters and initial states that bring the whitened replay nearest to the records
+//! (Levenberg–Marquardt; Moré 1978).
 
 use lanes::column::dot;
 use nalgebra::DVector;
@@ -91,8 +91,8 @@ impl Problem {
 
     /// Searches for the minimum from a point with whitened sensitivities, which are fresh or those of a point near by.
     ///
-    /// Sensitivities are computed anew only when a step did not do what they promised: most terms change the response so
-    /// little that one set serves the whole search.
+    /// Sensitivities are computed anew only when a step did not do what they promised: most terms change the response
+    /// so little that one set serves the whole search.
     fn search(
         &self,
         structure: &Structure,
@@ -167,8 +167,8 @@ impl Problem {
         self.finished(structure, now, whiteners, colour)
     }
 
-    /// A damped step and how much it lowers RSS if the heading is linear; parameters that would leave their range go to its
-    /// end.
+    /// A damped step and how much it lowers RSS if the heading is linear; parameters that would leave their range go to
+    /// its end.
     fn step(
         &self,
         normal: &Normal,

@@ -1,5 +1,5 @@
-//! Output error for a structure with terms: the parameters, bounded, and the initial state of every record that bring the
-//! whitened heading of the replay nearest to the record.
+//! Output error for a structure with terms: the parameters, bounded, and the initial state of every record that bring
+//! the whitened heading of the replay nearest to the record.
 //!
 //! | to learn about | read |
 //! |---|---|

@@ -16,8 +16,8 @@ const FINEST: f64 = 1.75e-5;
 /// Share of the rows whose rudder bends most, by which the error of the rudder between rows is judged.
 const BENT: f64 = 0.05;
 
-/// Heading error, rad, that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral of
-/// the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
+/// Heading error, rad, that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the
+/// integral of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
 ///
 /// `gain` is K, 1/s. Half the largest error is taken, root mean square over the corners.
 fn blur(record: &Record, gain: f64) -> f64 {
@@ -72,8 +72,8 @@ impl Problem {
         self.noise.iter().map(RecordNoise::longest).fold(0.0, f64::max)
     }
 
-    /// −2 log L of a whitened sum of squares (rad²) and Σ log S, up to a constant of the records, the variance at its best
-    /// value but not below what the rudder between rows leaves unknown.
+    /// −2 log L of a whitened sum of squares (rad²) and Σ log S, up to a constant of the records, the variance at its
+    /// best value but not below what the rudder between rows leaves unknown.
     pub fn deviance(&self, rss: f64, log_variance: f64) -> f64 {
         let n = self.observations() as f64;
         if rss.is_finite() && rss >= 0.0 { n * (rss / n + self.floor).ln() + log_variance } else { f64::INFINITY }
@@ -127,8 +127,8 @@ impl Problem {
         headings
     }
 
-    /// Replayed headings of one record, rad, and their derivatives by some of its `variables`: places in θ, and after it the
-    /// initial heading and yaw rate.
+    /// Replayed headings of one record, rad, and their derivatives by some of its `variables`: places in θ, and after
+    /// it the initial heading and yaw rate.
     fn tangents(
         &self,
         structure: &Structure,
@@ -156,8 +156,8 @@ impl Problem {
         (replayed, columns)
     }
 
-    /// Residual and sensitivities at a point. Unknowns are the fitted entries of θ in order, then heading and yaw rate at
-    /// the beginning of every record.
+    /// Residual and sensitivities at a point. Unknowns are the fitted entries of θ in order, then heading and yaw rate
+    /// at the beginning of every record.
     pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
         let entries = self.entries(structure);
         let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
@@ -184,8 +184,8 @@ impl Problem {
         Linear { blocks: blocks.collect(), unknowns: fitted.len() + 2 * self.records.len() }
     }
 
-    /// How the heading changes by the last term of a structure presence there at all, against the `without` it, and with its
-    /// fitted parameters.
+    /// How the heading changes by the last term of a structure presence there at all, against the `without` it, and
+    /// with its fitted parameters.
     pub fn columns_of_last(
         &self,
         structure: &Structure,

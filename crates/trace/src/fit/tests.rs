@@ -43,7 +43,8 @@ fn the_truth_is_found_and_no_point_beside_it_is_better() {
     }
 }
 
-/// A parameter that wants to leave its range stays at the end of it, and the others are those of a fit that holds it there.
+/// A parameter that wants to leave its range stays at the end of it, and the others are those of a fit that holds it
+/// there.
 #[test]
 fn a_bound_is_kept_and_the_rest_is_still_the_best() {
     let problem = problem();

@@ -1,10 +1,10 @@
 //! The search for what is missing: terms are added one at a time, needless ones dropped again, and what remains has to
 //! explain the records better than the best random moment.
 //!
-//! First as if the noise were white (or white with waves): the candidate with the lowest BIC is added while it gains more
-//! than the threshold. Then every term so found is confronted with the random moments of [`crate::noise`]: it stays if its
-//! likelihood ratio against the model without it, each with the noise that suits it best, passes the threshold. If a random
-//! moment is still needed, terms are looked for once more under it.
+//! First as if the noise were white (or white with waves): the candidate with the lowest BIC is added while it gains
+//! more than the threshold. Then every term so found is confronted with the random moments of [`crate::noise`]: it
+//! stays if its likelihood ratio against the model without it, each with the noise that suits it best, passes the
+//! threshold. If a random moment is still needed, terms are looked for once more under it.
 
 mod evidence;
 mod models;

@@ -47,7 +47,8 @@ impl Search<'_> {
         Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
     }
 
-    /// Gain in BIC that a term needs: a trend, or a moment for a while, is also what a random moment looks like in one record.
+    /// Gain in BIC that a term needs: a trend, or a moment for a while, is also what a random moment looks like in one
+    /// record.
     pub fn needed(&self, term: &Term) -> f64 {
         if term.effect.is_of_time() { OF_TIME * self.thresholds.gain } else { self.thresholds.gain }
     }
@@ -114,7 +115,8 @@ impl Search<'_> {
             let (mut colour, deviance) = self.best_moment(&self.linear(&structure, &plain), waves);
             let mut start = plain.clone();
             let mut reached = deviance;
-            // Level and parameters are found in turn. A random moment that does not pay for its one parameter is not tried.
+            // Level and parameters are found in turn. A random moment that does not pay for its one parameter is not
+            // tried.
             for _ in 0..2 {
                 if reached + self.log_n() >= plain.deviance {
                     break;

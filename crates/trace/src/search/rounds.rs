@@ -55,8 +55,8 @@ impl Search<'_> {
         tried.into_iter().find(|tried| self.believes(&self.candidates[tried.place].term, &tried.evidence))
     }
 
-    /// Adds what is missing under white noise, one at a time, dropping what a later term made needless; `timeless` without
-    /// moments that depend on time alone.
+    /// Adds what is missing under white noise, one at a time, dropping what a later term made needless; `timeless`
+    /// without moments that depend on time alone.
     fn add_plainly(&self, base: &Model, first: &[Tried], timeless: bool) -> Model {
         let mut model = base.clone();
         let plain = Model { judged: base.plain.clone(), ..base.clone() };

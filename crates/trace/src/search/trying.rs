@@ -30,9 +30,9 @@ pub struct Tried {
 const SHORT_LIST: usize = 6;
 
 impl Search<'_> {
-    /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands beside
-    /// any other damping), or another moment that depends on time. Several of those would be a random moment, written as
-    /// a sum.
+    /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands
+    /// beside any other damping), or another moment that depends on time. Several of those would be a random moment,
+    /// written as a sum.
     fn excludes(&self, structure: &Structure, term: &Term) -> bool {
         let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
         structure.terms.iter().any(|other| {

@@ -17,8 +17,8 @@ pub(super) struct Slope {
 
 /// b = K/T (1/s²) of the first-order response by regression on integrals.
 ///
-/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate and
-/// rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
+/// ψ = c₀ + c₁ t + c₂ t²/2 − a ∫ψ + b ∬δ, over the rows with a heading; linear, so initial heading, initial yaw rate
+/// and rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
 pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice, mut heading) = (0.0, 0.0, 0.0);
@@ -43,7 +43,8 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
     partial_slope(thin(&rows))
 }
 
-/// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a rudder.
+/// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
+/// rudder.
 pub(super) fn turn_with_rudder(trial: &Trial) -> Option<Slope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let seen: Vec<usize> = (0..time.len()).filter(|&i| psi[i].is_finite()).collect();
@@ -93,8 +94,8 @@ fn thin<const N: usize>(rows: &[[f64; N]]) -> Vec<[f64; N]> {
 
 /// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933).
 ///
-/// Orthogonalisation by Gram and Schmidt, twice over: powers of time are nearly collinear, and one pass leaves errors of the
-/// size of the condition number.
+/// Orthogonalisation by Gram and Schmidt, twice over: powers of time are nearly collinear, and one pass leaves errors
+/// of the size of the condition number.
 fn partial_slope<const N: usize>(rows: Vec<[f64; N]>) -> Option<Slope> {
     let mut columns: Vec<Vec<f64>> = (0..N).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
     let before: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();

@@ -9,7 +9,8 @@ use super::*;
 use crate::channel::Channel;
 use crate::record::{Columns, Origin};
 
-/// Rudder and heading of a ship with K, T (s), 10 Hz, by small Euler steps; `steer` gives the rudder from time, heading, rate.
+/// Rudder and heading of a ship with K, T (s), 10 Hz, by small Euler steps; `steer` gives the rudder from time,
+/// heading, rate.
 fn sail(gain: f64, lag: f64, duration: f64, mut steer: impl FnMut(f64, f64, f64) -> (f64, f64)) -> Columns {
     let (mut psi, mut r) = (0.0, 0.0);
     let h = 0.01;

@@ -1,4 +1,5 @@
-//! The lines of a file: bytes are hashed, checked to be text, cut at line ends and decoded, one line in memory at a time.
+//! The lines of a file: bytes are hashed, checked to be text, cut at line ends and decoded, one line in memory at a
+//! time.
 
 use std::io::{BufRead, BufReader, Read};
 

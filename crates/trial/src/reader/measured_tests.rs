@@ -1,4 +1,5 @@
-//! Measured trials as they are downloaded, where they are there: read through their sidecars they agree with their tidy twins.
+//! Measured trials as they are downloaded, where they are there: read through their sidecars they agree with their tidy
+//! twins.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +25,8 @@ fn measured_sidecar(stem: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/measured").join(format!("{stem}.trial.toml"))
 }
 
-/// Largest difference of a channel of `raw` from `tidy` at the times of `tidy` that lie in `raw`, and how many were compared.
+/// Largest difference of a channel of `raw` from `tidy` at the times of `tidy` that lie in `raw`, and how many were
+/// compared.
 fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> (f64, usize) {
     let (mut largest, mut compared) = (0.0_f64, 0);
     let (found, expected) = (raw.channel(channel).expect("described"), tidy.channel(channel).expect("a column"));
@@ -46,8 +48,8 @@ fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> 
 #[test]
 fn raw_files_agree_with_their_tidy_twins() {
     let Some(data) = data() else { return };
-    // Tidy values are rounded to five digits after the point, half a unit is 5e-6 (deg, deg/s, m, 1/s). The rebuilt times of
-    // MARIN differ by at most 1 ms, from the digits of the step.
+    // Tidy values are rounded to five digits after the point, half a unit is 5e-6 (deg, deg/s, m, 1/s). The rebuilt
+    // times of MARIN differ by at most 1 ms, from the digits of the step.
     let rounding = from_deg(5.1e-6);
     let cases = [
         ("HSVA_CPMC_KVLCC2_Z_20_10_S", "dat", "kvlcc2_hsva/zigzag_20_10_s.csv", 1901),

@@ -1,5 +1,5 @@
-//! The rows of a table, one after the other: cells to SI units, the part and thinning asked for, rows that are left out,
-//! and the bound on memory. Only the rows kept are held.
+//! The rows of a table, one after the other: cells to SI units, the part and thinning asked for, rows that are left
+//! out, and the bound on memory. Only the rows kept are held.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

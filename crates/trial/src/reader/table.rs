@@ -36,9 +36,9 @@ pub fn read(path: &Path) -> Result<Reading, ReadError> {
 
 /// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` reads it by its header alone.
 ///
-/// Fails with [`ReadError`] when the file is not there, larger than [`RECORD`] or no table, when a needed column is absent,
-/// a cell is no number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or more than [`super::MAX_ROWS`] rows are usable,
-/// the sidecar is at fault, or the record contradicts itself ([`plausibility`]).
+/// Fails with [`ReadError`] when the file is not there, larger than [`RECORD`] or no table, when a needed column is
+/// absent, a cell is no number, time does not increase, fewer than [`Trial::FEWEST_ROWS`] or more than
+/// [`super::MAX_ROWS`] rows are usable, the sidecar is at fault, or the record contradicts itself ([`plausibility`]).
 pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<Reading, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     if path.to_str().is_some_and(|name| name.ends_with(".trial.toml")) {
@@ -50,8 +50,8 @@ pub fn read_with(path: &Path, sidecar: Option<&Path>) -> Result<Reading, ReadErr
     read_bytes(path, file, size, sidecar.as_ref())
 }
 
-/// Reads a trial from `input`; `path` names it, and `size` (bytes), where known, serves to estimate the rows of a file that
-/// is too long.
+/// Reads a trial from `input`; `path` names it, and `size` (bytes), where known, serves to estimate the rows of a file
+/// that is too long.
 ///
 /// Fails as [`read_with`] does, except for faults of the file system.
 pub fn read_bytes(

@@ -136,8 +136,8 @@ fn middle_course(reversals: &[Execute]) -> Quantity {
     Quantity::mean(&[mean(Side::Port), mean(Side::Starboard)]).expect("there are two sides")
 }
 
-/// Whether the ship runs straight on the middle course when the rudder moves into its first hold: then this is the first
-/// execute of the trial, else the record begins within a reversal.
+/// Whether the ship runs straight on the middle course when the rudder moves into its first hold: then this is the
+/// first execute of the trial, else the record begins within a reversal.
 fn starts_straight(
     start: f64,
     heading: &Heading,
@@ -146,8 +146,8 @@ fn starts_straight(
     largest_rate: Option<Quantity>,
 ) -> bool {
     let Some(largest) = largest_rate else { return false };
-    // At the first row of a record a cubic is many times as noisy as a line, and a line has the mean rate of its window:
-    // the highest degree whose noise is well below the rate looked for.
+    // At the first row of a record a cubic is many times as noisy as a line, and a line has the mean rate of its
+    // window: the highest degree whose noise is well below the rate looked for.
     let precise = 0.4 * STRAIGHT_RATE * largest.value;
     let Some((psi, rate)) = start_motion::<4>(heading, start, precise)
         .or_else(|| start_motion::<3>(heading, start, precise))
@@ -185,8 +185,8 @@ fn approach_course(trial: &Trial, first: &Movement, hold: &Hold, heading: &Headi
 
 /// Nominal pair from the rudder held and the headings at the reversals; the helm is late rather than early.
 ///
-/// Headings count from the middle course: it is less noisy than the first heading of a record, and where an approach was
-/// not steered on the course of the trial it is the right one.
+/// Headings count from the middle course: it is less noisy than the first heading of a record, and where an approach
+/// was not steered on the course of the trial it is the right one.
 fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Option<Pair> {
     let mut angles: Vec<f64> =
         reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();

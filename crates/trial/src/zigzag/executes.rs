@@ -1,6 +1,6 @@
-//! Movements of the rudder between its holds: when it starts to move, from which angle, how fast. Works on ramps, on orders
-//! that jump in one sample, on quantised, drifting and noisy rudders. Whether the first movement of a record is the first
-//! execute of a trial is not decided here: that takes the heading.
+//! Movements of the rudder between its holds: when it starts to move, from which angle, how fast. Works on ramps, on
+//! orders that jump in one sample, on quantised, drifting and noisy rudders. Whether the first movement of a record is
+//! the first execute of a trial is not decided here: that takes the heading.
 
 use super::holds::{Hold, LAID};
 use super::quantity::{Quantity, median};
@@ -77,8 +77,8 @@ impl<'a> Rudder<'a> {
         rudder
     }
 
-    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves, a bound where a ramp is about as
-    /// long as a sampling interval, `None` where it is shorter.
+    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves, a bound where a ramp is about
+    /// as long as a sampling interval, `None` where it is shorter.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }
@@ -164,7 +164,8 @@ impl<'a> Rudder<'a> {
                 }
             }
             ([], rate) => {
-                // The faster a rudder may be, the later it may have started: a bound on its speed leaves the whole interval.
+                // The faster a rudder may be, the later it may have started: a bound on its speed leaves the whole
+                // interval.
                 let under_way = rate.filter(|_| !self.rate_is_bound).map_or(0.0, |rate| LAID * travel.abs() / rate);
                 (uniform(earliest, (latest - under_way).max(earliest)), None)
             }
@@ -176,8 +177,8 @@ impl<'a> Rudder<'a> {
 
     /// Least-squares line through the rows of a ramp: the time it leaves `before`, with its speed (rad/s, signed).
     ///
-    /// A steering gear has one speed, so a ramp whose own speed does not differ from that of the others by more than its
-    /// uncertainty takes theirs: a short ramp in whole degrees is timed far better so.
+    /// A steering gear has one speed, so a ramp whose own speed does not differ from that of the others by more than
+    /// its uncertainty takes theirs: a short ramp in whole degrees is timed far better so.
     fn line_start(&self, ramp: &[usize], level: Level, direction: f64) -> Option<(Quantity, f64)> {
         let n = ramp.len() as f64;
         let mean_time = ramp.iter().map(|&row| self.time[row]).sum::<f64>() / n;

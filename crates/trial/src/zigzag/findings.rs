@@ -167,7 +167,8 @@ pub struct Overshoot {
     pub peak_time: Quantity,
     /// Heading at the peak, rad.
     pub peak_heading: Quantity,
-    /// Overshoot angle, rad, positive: from the heading at the execute to the peak, in the direction of the turn before.
+    /// Overshoot angle, rad, positive: from the heading at the execute to the peak, in the direction of the turn
+    /// before.
     ///
     /// Source: MSC.137(76); ITTC 7.5-04-02-01.
     pub angle: Quantity,
@@ -175,7 +176,8 @@ pub struct Overshoot {
     pub time_to_check_yaw: Quantity,
 }
 
-/// The characteristics of a zig-zag trial. Angles in rad, times in s; `None` and empty where a record does not show them.
+/// The characteristics of a zig-zag trial. Angles in rad, times in s; `None` and empty where a record does not show
+/// them.
 ///
 /// In a record that begins within the trial there is no first execute, and what counts from it is `None`.
 ///
@@ -207,8 +209,8 @@ pub struct ZigZag {
     /// Largest |yaw rate| between the first execute and the end of the last hold, rad/s. As the largest of many noisy
     /// slopes it is high by about one of its standard deviations.
     pub largest_yaw_rate: Option<Quantity>,
-    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is about
-    /// as long as a sampling interval; `None` where it is shorter.
+    /// Speed of the rudder, rad/s: median over the reversals that the sampling resolves; a lower bound where a ramp is
+    /// about as long as a sampling interval; `None` where it is shorter.
     pub rudder_rate: Option<f64>,
     /// Standard deviation of the heading noise the uncertainties are made with, rad: the declared one, or a robust
     /// estimate from the record ([`super::noise_sd`]).

@@ -1,5 +1,5 @@
-//! The heading of a record as a smooth signal: its noise, the width of local fits that suits it, and its values, slopes,
-//! peaks and crossings with their uncertainty. It knows nothing of rudders or executes.
+//! The heading of a record as a smooth signal: its noise, the width of local fits that suits it, and its values,
+//! slopes, peaks and crossings with their uncertainty. It knows nothing of rudders or executes.
 
 use super::local::Cubic;
 use super::quantity::{Quantity, median};
@@ -61,8 +61,8 @@ pub(super) struct Heading {
 impl Heading {
     /// The observed headings of a manoeuvre with the given period (s).
     ///
-    /// The half-width of the fits balances noise against the bend of the heading where a rudder ramp starts or ends:
-    /// h = 0.35 P ((σ/A)² Δt/P)^(1/7), with the period P, the amplitude A and the sampling interval Δt. (The variance of
+    /// The half-width of the fits balances noise against the bend of the heading where a rudder ramp starts or ends: h
+    /// = 0.35 P ((σ/A)² Δt/P)^(1/7), with the period P, the amplitude A and the sampling interval Δt. (The variance of
     /// a local cubic falls as σ²Δt/h, its bias at a jump J of ψ''' grows as J h³/192, and J is about 6 A (2π/P)³ for
     /// ships whose rudder ramp is a tenth of the period.) `None` with fewer than 8 headings.
     pub fn new(time: &[f64], heading: &[f64], period: f64, declared_noise: Option<f64>) -> Option<Self> {
@@ -129,7 +129,8 @@ impl Heading {
 
     /// Time and heading of the peak towards `side` (+1 or −1) between two times.
     ///
-    /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit: the peak was not seen.
+    /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit: the peak was not
+    /// seen.
     pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
         let rows = self.rows(from, to);
         let every = rows.len().div_ceil(MOST_FITS).max(1);
@@ -154,7 +155,8 @@ impl Heading {
         Some((time, Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t)))))
     }
 
-    /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1 falling).
+    /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1
+    /// falling).
     ///
     /// The standard deviation is that of the heading there over the slope.
     pub fn crossing(&self, level: f64, side: f64, from: f64, to: f64) -> Option<Quantity> {

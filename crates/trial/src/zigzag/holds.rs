@@ -13,7 +13,8 @@ pub(super) const LAID: f64 = 0.85;
 /// Smallest rudder angle of a zig-zag, degrees.
 const SMALLEST_RUDDER_DEG: f64 = 0.5;
 
-/// Least share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise 0.15.
+/// Least share of rows between first and last execute with the rudder held. A first-order 35/5 trial has 0.5, noise
+/// 0.15.
 const LEAST_HELD: f64 = 0.3;
 
 /// A stretch with the rudder laid to one side.
@@ -91,7 +92,8 @@ fn level(rudder: &[f64], side: f64) -> f64 {
     median(&mut angles[first..]).unwrap_or(0.0)
 }
 
-/// A conventional trial angle near a measured one, degrees: 1, 2, 3 or a multiple of 5 where one is near, a whole degree else.
+/// A conventional trial angle near a measured one, degrees: 1, 2, 3 or a multiple of 5 where one is near, a whole
+/// degree else.
 ///
 /// `below` and `above` say by how much the measured angle may miss the conventional one, as a share of it; `slack_deg`
 /// adds what the noise of the measurement allows.

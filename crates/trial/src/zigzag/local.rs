@@ -25,7 +25,8 @@ pub(super) type Cubic = Local<4>;
 impl<const N: usize> Local<N> {
     /// Fits the samples within `half_width` of `centre`; NaN values are skipped.
     ///
-    /// `None` when the window holds fewer than `N` values or they do not determine the polynomial. `time` must increase.
+    /// `None` when the window holds fewer than `N` values or they do not determine the polynomial. `time` must
+    /// increase.
     pub fn fit(time: &[f64], value: &[f64], centre: f64, half_width: f64) -> Option<Self> {
         // Times such as 0.1 k carry rounding errors: a sample meant to lie on the rim of the window is in it.
         let reach = half_width * (1.0 + 1e-9);
@@ -108,8 +109,8 @@ impl<const N: usize> Local<N> {
         Some(t)
     }
 
-    /// The time at which the slope of a parabola or cubic is zero and its bend has the sign it has at the centre; `None`
-    /// when that is outside the window or nowhere.
+    /// The time at which the slope of a parabola or cubic is zero and its bend has the sign it has at the centre;
+    /// `None` when that is outside the window or nowhere.
     pub fn stationary_point(&self) -> Option<f64> {
         let [c1, c2, c3] = [1, 2, 3].map(|k| self.coefficients.get(k).copied().unwrap_or(0.0));
         // c₁ + 2 c₂ x + 3 c₃ x² = 0, in the form that is regular at c₃ = 0.

@@ -3,9 +3,9 @@
 //! record alone, simulated or measured. It compares with no criterion (see [`crate::imo`]) and identifies nothing; the
 //! points a characteristic-point identification needs are in [`points`].
 //!
-//! Executes come from the rudder (`holds`, `executes`): a rudder is laid to alternate sides and the moment it starts to move is
-//! where the line through its ramp leaves the level before. Everything about the heading comes from local cubic fits
-//! (`heading`), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
+//! Executes come from the rudder (`holds`, `executes`): a rudder is laid to alternate sides and the moment it starts to
+//! move is where the line through its ramp leaves the level before. Everything about the heading comes from local cubic
+//! fits (`heading`), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
 
 mod characteristics;
 mod executes;

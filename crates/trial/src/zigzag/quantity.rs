@@ -49,7 +49,8 @@ fn root_sum_of_squares(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     Some(a?.hypot(b?))
 }
 
-/// Median; the mean of the two middle values where their number is even, so that a mirrored set has the mirrored median.
+/// Median; the mean of the two middle values where their number is even, so that a mirrored set has the mirrored
+/// median.
 ///
 /// `None` for an empty set. The values are reordered and must be finite.
 pub(super) fn median(values: &mut [f64]) -> Option<f64> {

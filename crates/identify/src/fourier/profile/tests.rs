@@ -57,7 +57,8 @@ fn nodes_in_place_of_the_rows_change_nothing() {
     }
 }
 
-/// Harmonics beyond the sampling nearly repeat lower ones, and a record that is mostly a gap can hardly tell them apart.
+/// Harmonics beyond the sampling nearly repeat lower ones, and a record that is mostly a gap can hardly tell them
+/// apart.
 #[test]
 fn goes_on_where_columns_are_nearly_dependent() {
     let even: Vec<f64> = (0..41).map(f64::from).collect();

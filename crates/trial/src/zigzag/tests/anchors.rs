@@ -99,9 +99,9 @@ const fn anchor(
     Anchor { plant, executes, overshoots_deg, period, rates_deg_s, largest_deg_s }
 }
 
-/// Tolerance 0.02 of everything (s, deg, deg/s), and what the reference adds: it reverses the rudder at the first of its
-/// 0.01 s steps after the heading condition. So an interval between executes may be a step long, a cycle two, and an
-/// overshoot (from the nominal heading there) contains the yaw of a step.
+/// Tolerance 0.02 of everything (s, deg, deg/s), and what the reference adds: it reverses the rudder at the first of
+/// its 0.01 s steps after the heading condition. So an interval between executes may be a step long, a cycle two, and
+/// an overshoot (from the nominal heading there) contains the yaw of a step.
 fn check_anchor(anchor: &Anchor, step: f64) {
     let (delta_deg, psi_deg, rate_deg_s) = anchor.plant;
     let plant = Plant::new(delta_deg, psi_deg, rate_deg_s);
@@ -163,8 +163,8 @@ fn anchors_sampled_finely() {
     ANCHORS.iter().for_each(|anchor| check_anchor(anchor, if anchor.plant.2.is_finite() { 0.2 } else { 0.01 }));
 }
 
-/// 13.74, 14.95, 15.01 s (10/10) and 18.64, 19.63, 19.68 s (20/20) at 2.5 deg/s, same source; tolerance 0.05 s, because the
-/// peak is flat: 0.05 s change the heading by 1e-4 deg.
+/// 13.74, 14.95, 15.01 s (10/10) and 18.64, 19.63, 19.68 s (20/20) at 2.5 deg/s, same source; tolerance 0.05 s, because
+/// the peak is flat: 0.05 s change the heading by 1e-4 deg.
 #[test]
 fn time_to_check_yaw() {
     for (angle_deg, expected) in [(10.0, [13.74, 14.95, 15.01]), (20.0, [18.64, 19.63, 19.68])] {

@@ -77,8 +77,8 @@ fn characteristics_are_what_the_samples_show() {
 }
 
 /// The largest raw heading of a swing is at most a few noise deviations above the smooth peak and never far below it.
-/// The HSVA headings hold for several rows and then step by up to 0.02 degrees, the Esso Osaka headings, from two antennas,
-/// jump by a degree or more.
+/// The HSVA headings hold for several rows and then step by up to 0.02 degrees, the Esso Osaka headings, from two
+/// antennas, jump by a degree or more.
 fn check_peaks(file: &str, trial: &Trial, zigzag: &ZigZag) {
     let noise = zigzag.heading_noise.expect("enough rows to estimate it");
     let tolerance = if file.starts_with("esso") { from_deg(1.2) } else { from_deg(0.02) + 4.0 * noise };

@@ -236,8 +236,8 @@ fn other_records_are_refused() {
     assert!(matches!(of(holed, rudder), ZigZagError::NoHeading { .. }));
 }
 
-/// Rudder noise of 0.3 deg: executes are off by what their standard deviations say (rms of error/sd within 0.6 and 1.6, an
-/// approximation because the rows of a ramp are chosen by their noisy angle).
+/// Rudder noise of 0.3 deg: executes are off by what their standard deviations say (rms of error/sd within 0.6 and 1.6,
+/// an approximation because the rows of a ramp are chosen by their noisy angle).
 #[test]
 fn executes_of_a_noisy_rudder() {
     for step in [0.1, 1.0] {
@@ -263,8 +263,8 @@ fn executes_of_a_noisy_rudder() {
     }
 }
 
-/// Every 5 s the ramps of 8 s (reversals) and 4 s (first execute) hold two rows, one or none: executes are off by less than
-/// the half-width of the interval they are known to lie in, √3 of its standard deviation, or by half a second.
+/// Every 5 s the ramps of 8 s (reversals) and 4 s (first execute) hold two rows, one or none: executes are off by less
+/// than the half-width of the interval they are known to lie in, √3 of its standard deviation, or by half a second.
 #[test]
 fn sparse_sampling() {
     for (delta_deg, psi_deg) in [(10.0, 10.0), (10.0, 20.0), (20.0, 20.0)] {
