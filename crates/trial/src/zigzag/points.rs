@@ -52,8 +52,8 @@ pub struct Crossing {
 /// Extrema of a heading (rad, measured from the base course, NaN where missing) at increasing times (s).
 ///
 /// The record is split at its zero-crossings; in each part a parabola is fitted to the samples within ±h of the largest
-/// |heading| of a lightly smoothed (three-point mean) record. A part gives no extremum when the parabola bends the wrong
-/// way, its vertex lies outside the fit or the part, the record ends within h of it, or it is below
+/// |heading| of a lightly smoothed (three-point mean) record. A part gives no extremum when the parabola bends the
+/// wrong way, its vertex lies outside the fit or the part, the record ends within h of it, or it is below
 /// [`SMALLEST_EXTREMUM`] of the largest |heading|. Empty for a record without a swing.
 pub fn extrema(time: &[f64], heading: &[f64], settings: &Settings) -> Vec<Extremum> {
     let (time, heading) = observed(time, heading);
