@@ -79,6 +79,26 @@ pub struct Quantity {
 }
 
 /// The result of one identification.
+///
+/// ```
+/// use kempf_identify::{Identifier, output_error};
+/// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
+/// # let (mut psi, mut r, mut delta) = (0.0_f64, 0.0_f64, 10.0_f64);
+/// # for t in 0..300 {
+/// #     table += &format!("{t},{psi},{delta}\n");
+/// #     for _ in 0..100 {
+/// #         r += 0.01 * (0.1 * delta - r) / 16.0;
+/// #         psi += 0.01 * r;
+/// #     }
+/// #     delta = if psi * delta.signum() > 10.0 { -delta } else { delta };
+/// # }
+/// # let read = trial::reader::read_bytes("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// let estimate = output_error::Settings::default().build()?.identify(&[read.trial])?;
+/// let [low, high] = estimate.T().ci95.expect("output error has an interval");
+/// assert!(low < estimate.T().value && estimate.T().value < high);
+/// assert!((estimate.K().value - 0.1).abs() < 0.005, "the rudder that jumps is read as one that moves for a second");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
     /// The first-order response.

@@ -10,6 +10,30 @@ use crate::estimate::Estimate;
 ///
 /// A value of this type is a method with its settings. It holds no data: calling it twice with the same trials gives
 /// the same bits.
+///
+/// ```
+/// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
+/// # let (mut psi, mut r, mut delta) = (0.0_f64, 0.0_f64, 10.0_f64);
+/// # for t in 0..300 {
+/// #     table += &format!("{t},{psi},{delta}\n");
+/// #     for _ in 0..100 {
+/// #         r += 0.01 * (0.1 * delta - r) / 16.0;
+/// #         psi += 0.01 * r;
+/// #     }
+/// #     delta = if psi * delta.signum() > 10.0 { -delta } else { delta };
+/// # }
+/// # let read = trial::reader::read_bytes("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// // A zig-zag of a ship with K = 0.1 1/s and T = 16 s, read from a table.
+/// let record = read.trial;
+/// for settings in kempf_identify::registry::defaults() {
+///     let method = settings.build()?;
+///     match method.identify(std::slice::from_ref(&record)) {
+///         Ok(estimate) => println!("{}: K = {:.3} 1/s", method.id(), estimate.K().value),
+///         Err(error) => println!("{}: {error}", method.id()),
+///     }
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Identifier: Send + Sync {
     /// Identifier used in scenario files, tables and JSON.
     fn id(&self) -> &'static str;

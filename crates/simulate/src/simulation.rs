@@ -49,6 +49,22 @@ impl Approach {
 }
 
 /// The specification of a simulated trial.
+///
+/// ```
+/// use kempf_simulate::manoeuvre::ZigZagEnd;
+/// use kempf_simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
+/// use ship::{FirstOrder, angle::from_deg};
+///
+/// let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+/// let zig_zag = Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0), ZigZagEnd::Executes(4));
+/// let mut simulation = Simulation::new(ship, zig_zag);
+/// simulation.sensors.heading.noise = from_deg(0.2);
+/// // The same key gives the same trial, another replicate another one.
+/// let run = |replicate| simulation.run(&StreamKey { seed: 7, cell: 0, replicate });
+/// assert_eq!(run(0)?.trial.heading(), run(0)?.trial.heading());
+/// assert_ne!(run(0)?.trial.heading(), run(1)?.trial.heading());
+/// # Ok::<(), kempf_simulate::SimulateError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Simulation {
     /// Name of the scenario, carried into the origin of the record.

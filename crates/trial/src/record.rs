@@ -98,6 +98,19 @@ pub enum TrialError {
 ///
 /// Time increases strictly; the rudder is finite in every row; heading (and any other channel) may be missing in single
 /// rows, as NaN. A record without a heading column gets the integral of its yaw rate, and says so.
+///
+/// ```
+/// use kempf_trial::{Channel, Columns, Origin, Trial};
+///
+/// let time: Vec<f64> = (0..60).map(f64::from).collect();
+/// let rudder = time.iter().map(|t| if *t < 30.0 { 0.17 } else { -0.17 }).collect();
+/// let heading = time.iter().map(|t| 0.3 * (t / 15.0).sin()).collect();
+/// let channels = [(Channel::Rudder, rudder), (Channel::Heading, heading)].into();
+/// let origin = Origin::Measured { file: "run.csv".into(), sha256: String::new() };
+/// let trial = Trial::new("run", origin, Columns { time, channels, unknown: Vec::new() })?;
+/// assert_eq!((trial.len(), trial.duration(), trial.sampling_period()), (60, 59.0, 1.0));
+/// # Ok::<(), kempf_trial::TrialError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Trial {
     name: String,

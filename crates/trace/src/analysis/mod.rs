@@ -36,6 +36,28 @@ pub use settings::{Settings, TraceError};
 ///
 /// The base comes from `output-error`, which is global in 1/T. `validation` records are replayed only; what makes their
 /// error worse is not kept. Fails when a setting is out of its range and when the base cannot be fitted or replayed.
+///
+/// ```
+/// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
+/// # let (mut psi, mut r, mut delta, mut order) = (0.0_f64, 0.0_f64, 0.0_f64, 1.0_f64);
+/// # for t in 0..300 {
+/// #     table += &format!("{t},{psi},{delta}\n");
+/// #     let next = (delta + 5.0 * order).clamp(-20.0, 20.0);
+/// #     for k in 0..100 {
+/// #         r += 0.01 * (0.1 * (delta + 0.01 * f64::from(k) * (next - delta)) - r - 0.5 * r * r * r) / 16.0;
+/// #         psi += 0.01 * r;
+/// #     }
+/// #     order = if psi * order > 20.0 { -order } else { order };
+/// #     delta = next;
+/// # }
+/// # let read = trial::reader::read_bytes("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// // A zig-zag of a ship whose damping grows with the cube of its yaw rate.
+/// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
+/// assert_eq!(analysis.effects[0].id, "nonlinear_damping");
+/// let errors = &analysis.identification[0];
+/// assert!(errors.after.errors.heading < 0.5 * errors.before.errors.heading);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
     settings.check()?;
     let method = output_error::Settings::default().build().expect("default settings are valid");
