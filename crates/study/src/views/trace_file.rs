@@ -376,3 +376,16 @@ impl TraceFile {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_is_written_where_it_was_reached_and_nowhere_else() {
+        let number = Number { value: Some(0.1), sd: None, ci95: None };
+        let written = |at_bound| serde_json::to_value(Index { number, at_bound }).expect("plain data");
+        assert_eq!(written(true)["at_bound"], true);
+        assert_eq!(written(false).as_object().map(|object| object.len()), Some(3));
+    }
+}

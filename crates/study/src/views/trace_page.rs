@@ -418,3 +418,24 @@ pub fn title(judged: &Judged, name: &str, held_out: bool) -> String {
     let held = if held_out { ", held out" } else { "" };
     format!("{name}{held}: heading error after / before {}", significant(ratio, 2))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parameter_at_its_bound_is_a_warning() {
+        let value = |key, symbol: &str, number, unit, at_bound| Value {
+            key,
+            symbol: symbol.into(),
+            unit,
+            value: number,
+            sd: None,
+            ci95: None,
+            only: None,
+            at_bound,
+        };
+        let all = [value("inverse_T", "1/T", 10.0, "1/s", true), value("rudder_bias", "δ_r", 0.01, "rad", false)];
+        assert_eq!(bounds(&all), ["1/T = 10.0 1/s is at its bound: the search ends there, and K and T follow from it"]);
+    }
+}
