@@ -43,7 +43,7 @@ struct Drawn {
 pub struct Specimen<'a> {
     /// The specification, whole.
     pub specification: Cow<'a, Specification>,
-    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`].
+    /// Drawn values in the units of their keys, in the order of [`Scenario::draws`](crate::Scenario::draws).
     pub drawn: Vec<f64>,
 }
 

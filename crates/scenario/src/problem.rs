@@ -1,5 +1,5 @@
 //! What is wrong with a scenario, as data: the key, what was found, what was expected and what to do. Where the key
-//! stands in the file is found in [`crate::locate`]; the words of a parser never reach the user.
+//! stands in the file is found in `locate`; the words of a parser never reach the user.
 
 use std::fmt;
 

@@ -5,7 +5,7 @@ use crate::noise::Colour;
 /// A fitted structure.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// Parameters, in the order of [`Structure::entries`].
+    /// Parameters, in the order of [`Structure::entries`](crate::structure::Structure::entries).
     pub theta: Vec<f64>,
     /// Initial heading (rad) and yaw rate (rad/s) of every record.
     pub initial: Vec<[f64; 2]>,

@@ -1,6 +1,6 @@
-//! Reading a measured trial: a text table, with a sidecar where its columns need words, becomes a [`Trial`] or one
-//! message that says what is wrong, where, and what to do. Nothing is guessed silently: what the reader had to decide
-//! is a warning.
+//! Reading a measured trial: a text table, with a sidecar where its columns need words, becomes a
+//! [`Trial`](crate::Trial) or one message that says what is wrong, where, and what to do. Nothing is guessed silently:
+//! what the reader had to decide is a warning.
 //!
 //! A table is one row per line below a header of `quantity_unit` names (see [`crate::channel`]), separated by commas,
 //! semicolons, tabs or blanks. Lines that start with `#` and empty lines are passed over; a commented header is used
