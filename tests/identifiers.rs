@@ -2,14 +2,14 @@
 //! test says otherwise. What a method promises beyond it is in its own file, with the reason; everything else is
 //! common.
 
-use identify::estimate::{Covariance, Quantity};
+use identify::estimate::Covariance;
 use identify::{Accuracy, Estimate, Identifier, IdentifierSettings, StopReason, Uncertainty, registry};
 use kempf_tests::records::{self, Begin, Case};
 use nalgebra::{Matrix3, SymmetricEigen};
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use simulate::Side;
-use trial::Trial;
+use trial::{Quantity, Trial};
 
 /// Rudder and heading of the zig-zags, deg.
 const ZIG_ZAGS: [(f64, f64); 3] = [(10.0, 10.0), (10.0, 20.0), (20.0, 20.0)];

@@ -119,17 +119,18 @@ fn every_effect_is_named_from_the_csv_alone() {
         let error = analysis.identification[0].after.errors.heading;
         if id == "wave_yaw" {
             assert!(
-                (found.parameters[0].value / values[0] - 1.0).abs() < 0.5
-                    && (found.parameters[1].value - 0.6).abs() < 0.1
+                (found.parameters[0].quantity.value / values[0] - 1.0).abs() < 0.5
+                    && (found.parameters[1].quantity.value - 0.6).abs() < 0.1
             );
         } else {
             // What is left is the noise of the compass, to a tenth.
             assert!((error / from_deg(0.05) - 1.0).abs() < 0.1, "{id} ({form}): {:.4} deg is left", error.to_degrees());
         }
         if found.form == form && id != "wave_yaw" {
-            for (found, truth) in found.parameters.iter().zip(&values).filter(|(found, _)| found.sd.is_some()) {
-                let sd = found.sd.expect("filtered");
-                assert!((found.value - truth).abs() < 5.0 * sd, "{id} ({form}): {found:?} is not {truth}");
+            for (found, truth) in found.parameters.iter().zip(&values).filter(|(found, _)| found.quantity.sd.is_some())
+            {
+                let sd = found.quantity.sd.expect("filtered");
+                assert!((found.quantity.value - truth).abs() < 5.0 * sd, "{id} ({form}): {found:?} is not {truth}");
             }
         }
     }
@@ -265,7 +266,7 @@ fn a_squall_of_another_shape_is_located_in_time() {
     let analysis = analysed(&[run(&simulation, 5)], &[]);
     let [found] = &analysis.effects[..] else { panic!("named {:?}", names(&analysis)) };
     assert_eq!(found.id, "transient_disturbance");
-    assert!((found.parameters[1].value - 155.0).abs() < 3.0, "{:?}", found.parameters);
+    assert!((found.parameters[1].quantity.value - 155.0).abs() < 3.0, "{:?}", found.parameters);
 }
 
 /// A ship with a moment that grows with the distance from its first track, which is in no list.
@@ -372,8 +373,8 @@ fn records_of_one_ship_may_have_a_rudder_bias_each() {
     let biases: Vec<f64> = analysis
         .parameters
         .iter()
-        .filter(|value| value.symbol == "δ_r")
-        .map(|value| value.value.to_degrees())
+        .filter(|fitted| fitted.parameter.symbol == "δ_r")
+        .map(|fitted| fitted.quantity.value.to_degrees())
         .collect();
     assert!((biases[0] + 1.0).abs() < 0.02 && (biases[1] - 1.5).abs() < 0.02, "{biases:?}");
 }
@@ -388,10 +389,9 @@ fn port_and_starboard_are_exchanged_and_nothing_else() {
     let (one, other) = (analysed(std::slice::from_ref(&trial), &[]), analysed(&[mirrored(&trial)], &[]));
     assert_eq!(names(&one), names(&other));
     for (one, other) in one.parameters.iter().zip(&other.parameters) {
-        let odd = ["δ_r", "a"].contains(&one.symbol.as_str());
-        let mirrored = if odd { -other.value } else { other.value };
-        let size = one.sd.expect("fitted");
-        assert!((one.value - mirrored).abs() < 0.05 * size, "{one:?} and {other:?}");
+        let mirrored = other.quantity.scaled(if one.parameter.odd { -1.0 } else { 1.0 });
+        let size = one.quantity.sd.expect("fitted");
+        assert!((one.quantity.value - mirrored.value).abs() < 0.05 * size, "{one:?} and {other:?}");
     }
 }
 

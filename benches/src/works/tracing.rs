@@ -17,7 +17,7 @@ fn all_candidates(trial: &Trial) -> usize {
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(std::slice::from_ref(trial)).expect("a zig-zag").response;
     let replay = identify::replay::replay(trial, &base).expect("finite");
-    let initial = vec![[replay.heading[0], replay.yaw_rate[0]]];
+    let initial = vec![replay.initial()];
     let record = Record::averaged(trial, base.T().abs());
     let problem = Problem::new(vec![record], base.inverse_T, base.K_over_T);
     let structure = Structure::base(1, false);

@@ -2,48 +2,22 @@
 
 use std::collections::BTreeMap;
 
-use identify::estimate::Quantity;
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
-
-/// A number with its error; `null` where a method has none.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Value {
-    /// The value; `null` when it is infinite (a neutrally stable ship).
-    pub value: Option<f64>,
-    /// Standard deviation.
-    pub sd: Option<f64>,
-    /// 95 % interval; `null` when it is unbounded or the method has none.
-    pub ci95: Option<[f64; 2]>,
-}
-
-impl Value {
-    /// A quantity, multiplied by `factor` for its unit.
-    pub fn of(quantity: Quantity, factor: f64) -> Self {
-        let finite = |value: f64| value.is_finite().then_some(value);
-        Self {
-            value: finite(quantity.value * factor),
-            sd: quantity.sd.and_then(|sd| finite(sd * factor)),
-            ci95: quantity
-                .ci95
-                .filter(|ends| ends.iter().all(|end| end.is_finite()))
-                .map(|ends| ends.map(|end| end * factor)),
-        }
-    }
-}
+use trial::Quantity;
 
 /// K, T and δ_r of one method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Parameters {
     /// K, 1/s.
     #[serde(rename = "K_per_s")]
-    pub k_per_s: Value,
+    pub k_per_s: Quantity,
     /// T, s.
     #[serde(rename = "T_s")]
-    pub t_s: Value,
+    pub t_s: Quantity,
     /// δ_r, deg.
-    pub delta_r_deg: Value,
+    pub delta_r_deg: Quantity,
 }
 
 /// Heading error on a record that was not used for identification.
@@ -95,16 +69,15 @@ pub struct MethodEntry {
 impl MethodEntry {
     /// The entry of a method that gave an answer.
     pub fn of(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> Self {
-        let degree = to_deg(1.0);
         Self {
             method: method.to_owned(),
             status: Status::Ok,
             reason: None,
             failure: None,
             parameters: Some(Parameters {
-                k_per_s: Value::of(estimate.K(), 1.0),
-                t_s: Value::of(estimate.T(), 1.0),
-                delta_r_deg: Value::of(estimate.rudder_bias(), degree),
+                k_per_s: estimate.K(),
+                t_s: estimate.T(),
+                delta_r_deg: estimate.rudder_bias().scaled(to_deg(1.0)),
             }),
             course_unstable: estimate.response.is_course_unstable(),
             heading_rmse_deg,
@@ -156,8 +129,10 @@ fn pooled_rmse_deg(trials: &[trial::Trial], estimate: &Estimate) -> Option<f64> 
     let mut rows = 0usize;
     for trial in trials {
         let replay = identify::replay::replay(trial, &estimate.response)?;
-        square += replay.heading_rmse_deg.powi(2) * replay.residual.len() as f64;
-        rows += replay.residual.len();
+        for (_, residual) in replay.observed() {
+            square += residual * residual;
+            rows += 1;
+        }
     }
-    Some((square / rows as f64).sqrt())
+    Some(to_deg((square / rows as f64).sqrt()))
 }

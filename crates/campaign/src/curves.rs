@@ -80,11 +80,12 @@ pub fn replay_curves(
         .iter()
         .filter_map(|(entry, estimate)| {
             let replay = replay(trial, &estimate.as_ref()?.response)?;
+            let (time, residual): (Vec<f64>, Vec<f64>) = replay.observed().unzip();
             Some(Replay {
                 origin: origin(&entry.method),
                 heading: curve(&replay.time, &replay.heading),
-                residual: curve(&replay.residual_time, &replay.residual),
-                rms_deg: Some(replay.heading_rmse_deg),
+                residual: curve(&time, &residual),
+                rms_deg: Some(to_deg(replay.rms())),
             })
         })
         .collect()

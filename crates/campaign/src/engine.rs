@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 use ::trace::analysis::Traced;
 use ::trace::record::Record;
 use ::trace::{Analysis, TraceError, replay_errors};
-use identify::estimate::Quantity;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
 use nalgebra::{Matrix2, Matrix2x3};
@@ -18,7 +17,7 @@ use ship::angle::to_deg;
 use ship::first_order::State;
 use simulate::recording::RudderColumn;
 use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simulated, Simulation, StreamKey};
-use trial::Trial;
+use trial::{Quantity, Trial};
 
 use crate::design::CellFacts;
 use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
@@ -332,7 +331,7 @@ fn with_indices(blank: Row, [k, t, bias]: [Quantity; 3]) -> Row {
 }
 
 fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
-    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| replay.heading_rmse_deg);
+    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| to_deg(replay.rms()));
     Row {
         heading_rmse_deg: error(trial),
         validation_rmse_deg: validation.and_then(error),

@@ -9,9 +9,9 @@ use report::{Curve, Origin};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use simulate::Truth;
-use trial::{Trial, ZigZag};
+use trial::{Quantity, Trial, ZigZag};
 
-use crate::answer::{MethodEntry, Value, entry};
+use crate::answer::{MethodEntry, entry};
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::task::Task;
@@ -92,7 +92,9 @@ fn intervals(
     truth: Option<&FirstOrder>,
     published: &Published,
 ) -> Intervals {
-    let point = |value: &Value| value.value.map(|number| PointEstimate { value: number, interval: value.ci95 });
+    let point = |quantity: &Quantity| {
+        quantity.value.is_finite().then_some(PointEstimate { value: quantity.value, interval: quantity.ci95 })
+    };
     Intervals {
         title,
         estimates: answers

@@ -6,6 +6,7 @@ use std::cell::Cell;
 use nalgebra::{Matrix3, Vector3};
 use ship::FirstOrder;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+use trial::Quantity;
 
 /// Why a method stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,17 +68,6 @@ pub enum Uncertainty {
     },
 }
 
-/// A number with what is known of its error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Quantity {
-    /// The value.
-    pub value: f64,
-    /// Standard deviation, where the method has one.
-    pub sd: Option<f64>,
-    /// 95 % interval, where the method has one and it is bounded.
-    pub ci95: Option<[f64; 2]>,
-}
-
 /// The result of one identification.
 ///
 /// ```
@@ -122,8 +112,8 @@ impl Estimate {
     pub fn K(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_K(&self.response, covariance),
-            Uncertainty::Intervals { K, .. } => Quantity { value: self.response.K(), sd: None, ci95: Some(*K) },
-            Uncertainty::None { .. } => Quantity { value: self.response.K(), sd: None, ci95: None },
+            Uncertainty::Intervals { K, .. } => known(self.response.K(), None, Some(*K)),
+            Uncertainty::None { .. } => Quantity::bare(self.response.K()),
         }
     }
 
@@ -131,8 +121,8 @@ impl Estimate {
     pub fn T(&self) -> Quantity {
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => index_T(&self.response, covariance),
-            Uncertainty::Intervals { T, .. } => Quantity { value: self.response.T(), sd: None, ci95: Some(*T) },
-            Uncertainty::None { .. } => Quantity { value: self.response.T(), sd: None, ci95: None },
+            Uncertainty::Intervals { T, .. } => known(self.response.T(), None, Some(*T)),
+            Uncertainty::None { .. } => Quantity::bare(self.response.T()),
         }
     }
 
@@ -141,8 +131,8 @@ impl Estimate {
         let value = self.response.rudder_bias;
         match &self.uncertainty {
             Uncertainty::Covariance(covariance) => bias(&self.response, covariance),
-            Uncertainty::Intervals { rudder_bias, .. } => Quantity { value, sd: None, ci95: Some(*rudder_bias) },
-            Uncertainty::None { .. } => Quantity { value, sd: None, ci95: None },
+            Uncertainty::Intervals { rudder_bias, .. } => known(value, None, Some(*rudder_bias)),
+            Uncertainty::None { .. } => Quantity::bare(value),
         }
     }
 
@@ -188,6 +178,12 @@ fn quantile95(degrees_of_freedom: Option<f64>) -> f64 {
     }
 }
 
+/// A value with as much of its error as is bounded.
+fn known(value: f64, sd: Option<f64>, ci95: Option<[f64; 2]>) -> Quantity {
+    let ci95 = ci95.filter(|ends| ends.iter().all(|end| end.is_finite()));
+    Quantity { value, sd: sd.filter(|sd| sd.is_finite()), ci95 }
+}
+
 /// K = b/a with the delta-method standard deviation and Fieller's interval (Fieller 1954), unbounded when the
 /// interval of a = 1/T holds zero.
 fn index_K(response: &FirstOrder, covariance: &Covariance) -> Quantity {
@@ -200,7 +196,7 @@ fn index_K(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (p, q, c) = (a * a - z2 * m[(0, 0)], a * b - z2 * m[(0, 1)], b * b - z2 * m[(1, 1)]);
     let root = (q * q - p * c).max(0.0).sqrt();
     let ci95 = (p > 0.0 && value.is_finite()).then(|| [(q - root) / p, (q + root) / p]);
-    Quantity { value, sd: sd.is_finite().then_some(sd), ci95 }
+    known(value, Some(sd), ci95)
 }
 
 /// T = 1/a with the delta-method standard deviation and the reciprocal of the interval of a.
@@ -210,7 +206,7 @@ fn index_T(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let reach = covariance.quantile95() * sd_a;
     let ci95 = (reach < a.abs()).then(|| [1.0 / (a + reach), 1.0 / (a - reach)]);
     let sd = sd_a / (a * a);
-    Quantity { value: response.T(), sd: sd.is_finite().then_some(sd), ci95 }
+    known(response.T(), Some(sd), ci95)
 }
 
 /// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded when the interval of
@@ -224,7 +220,7 @@ fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let root = (q * q - p * c).max(0.0).sqrt();
     let ci95 = (p > 0.0 && value.is_finite()).then(|| [value + (q - root) / p, value + (q + root) / p]);
     let sd = m[(2, 2)].max(0.0).sqrt();
-    Quantity { value, sd: sd.is_finite().then_some(sd), ci95 }
+    known(value, Some(sd), ci95)
 }
 
 #[cfg(test)]

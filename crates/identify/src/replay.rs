@@ -5,7 +5,6 @@
 
 use lanes::column::{dot, sum};
 use ship::FirstOrder;
-use ship::angle::to_deg;
 use ship::first_order::State;
 use trial::Trial;
 
@@ -23,12 +22,30 @@ pub struct Replay {
     pub heading: Vec<f64>,
     /// Yaw rate of these rows, rad/s.
     pub yaw_rate: Vec<f64>,
-    /// Measured less replayed heading at the observed rows, rad.
+    /// Measured less replayed heading of these rows, rad; NaN where none was measured.
     pub residual: Vec<f64>,
-    /// Times of the observed rows, s.
-    pub residual_time: Vec<f64>,
-    /// Root mean square of the residual, deg.
-    pub heading_rmse_deg: f64,
+}
+
+impl Replay {
+    /// Heading (rad) and yaw rate (rad/s) at the first row.
+    pub fn initial(&self) -> [f64; 2] {
+        [self.heading[0], self.yaw_rate[0]]
+    }
+
+    /// Time (s) and residual (rad) of every row whose heading was measured.
+    pub fn observed(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.time.iter().copied().zip(self.residual.iter().copied()).filter(|(_, residual)| residual.is_finite())
+    }
+
+    /// Root mean square of the residual, rad; NaN when no heading was measured.
+    pub fn rms(&self) -> f64 {
+        let (mut square, mut rows) = (0.0, 0usize);
+        for (_, residual) in self.observed() {
+            square += residual * residual;
+            rows += 1;
+        }
+        (square / rows as f64).sqrt()
+    }
 }
 
 /// Replays the rudder of `trial` through `response` with the best initial state.
@@ -52,17 +69,18 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     }
     coefficients.anchor = best_start(&rest, &columns.homogeneous);
     let states = track.simulate(a, &coefficients);
-    let residual: Vec<f64> =
-        track.observed().iter().zip(&track.heading).map(|(&row, &measured)| measured - states[row].heading).collect();
-    let mean_square = residual.iter().map(|e| e * e).sum::<f64>() / residual.len() as f64;
-    let residual_time = track.observed().iter().map(|&row| track.time()[row]).collect();
-    mean_square.is_finite().then(|| Replay {
+    let mut residual = vec![f64::NAN; states.len()];
+    for (&row, &measured) in track.observed().iter().zip(&track.heading) {
+        residual[row] = measured - states[row].heading;
+        if !residual[row].is_finite() {
+            return None;
+        }
+    }
+    Some(Replay {
         time: track.time().to_vec(),
         heading: states.iter().map(|state| state.heading).collect(),
         yaw_rate: states.iter().map(|state| state.yaw_rate).collect(),
         residual,
-        residual_time,
-        heading_rmse_deg: to_deg(mean_square.sqrt()),
     })
 }
 

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use ::trace::search::Thresholds;
+use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
-use ship::Shown;
 use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
@@ -62,26 +62,7 @@ pub fn identify(identifier: &dyn Identifier, trial: &Trial, key: &StreamKey) -> 
 pub(crate) struct IdentifierWire {
     pub label: Option<String>,
     pub method: Option<IdentifierSettings>,
-    pub trace: Option<TraceWire>,
-}
-
-/// Thresholds of a trace.
-#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
-pub(crate) struct TraceWire {
-    /// Smallest gain in BIC.
-    pub gain: f64,
-    /// Probability of naming any effect where there is none.
-    pub false_discovery: f64,
-    /// Most effects.
-    pub most_effects: usize,
-}
-
-impl Default for TraceWire {
-    fn default() -> Self {
-        let Thresholds { gain, false_discovery, most_terms } = ::trace::Settings::default().thresholds;
-        Self { gain, false_discovery, most_effects: most_terms }
-    }
+    pub trace: Option<Thresholds>,
 }
 
 /// The methods, all with names of their own.
@@ -123,20 +104,13 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
 fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, Problem> {
     match (&entry.method, &entry.trace) {
         (Some(settings), None) => {
-            let identifier = settings.build().map_err(|error| {
-                let id = registry_id(settings);
-                let setting = error.key.split('.').fold(key.child("method").child(id), |key, part| key.child(part));
-                let found = format!("`{setting}` is {}", error.found);
-                Problem::value(
-                    setting,
-                    found,
-                    format!("expected {}", error.expected),
-                    "change the value, or leave the key out",
-                )
-            })?;
+            let table = key.child("method").child(registry_id(settings));
+            let identifier = settings.build().map_err(|error| refused(&table, &error))?;
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
-        (None, Some(trace)) => tracing(trace, &key.child("trace")).map(Procedure::Trace),
+        (None, Some(thresholds)) => {
+            tracing(*thresholds).map(Procedure::Trace).map_err(|error| refused(&key.child("trace"), &error))
+        }
         (method, _) => Err(Problem::name(
             key.clone(),
             format!("`{key}` names {}", if method.is_some() { "a method and a trace" } else { "no method" }),
@@ -146,35 +120,17 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, Problem
     }
 }
 
+/// A setting that its owner refuses, at the table in which it stands.
+fn refused(table: &KeyPath, error: &SettingsError) -> Problem {
+    let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
+    let found = format!("`{key}` is {}", error.found);
+    Problem::value(key, found, format!("expected {}", error.expected), "change the value, or leave the key out")
+}
+
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
-fn tracing(wire: &TraceWire, key: &KeyPath) -> Result<::trace::Settings, Problem> {
-    let refuse = |name: &str, value: f64, expected: &str| {
-        let key = key.child(name);
-        let found = format!("`{key}` is {}", Shown(value));
-        Problem::value(key, found, format!("expected {expected}"), "change the value, or leave the key out")
-    };
-    if !(wire.gain.is_finite() && wire.gain >= 0.0) {
-        return Err(refuse("gain", wire.gain, "a gain in BIC of at least 0"));
-    }
-    if !(wire.false_discovery > 0.0 && wire.false_discovery <= 1.0) {
-        return Err(refuse("false-discovery", wire.false_discovery, "a probability above 0 and up to 1"));
-    }
-    if wire.most_effects > limits::MOST_EFFECTS {
-        let key = key.child("most-effects");
-        let found = format!("`{key}` is {}", wire.most_effects);
-        let expected = format!("expected at most {}", limits::MOST_EFFECTS);
-        return Err(Problem::value(key, found, expected, "change the value, or leave the key out"));
-    }
-    Ok(::trace::Settings {
-        thresholds: Thresholds {
-            gain: wire.gain,
-            false_discovery: wire.false_discovery,
-            most_terms: wire.most_effects,
-        },
-        discovery: false,
-        thorough: false,
-        ..::trace::Settings::default()
-    })
+fn tracing(thresholds: Thresholds) -> Result<::trace::Settings, SettingsError> {
+    thresholds.check()?;
+    Ok(::trace::Settings { thresholds, discovery: false, thorough: false, ..::trace::Settings::default() })
 }
 
 /// The key of a method in a scenario.

@@ -1,13 +1,14 @@
 //! Does a term help where it was not fitted? On other records, or, where there are none, on parts of these that are
 //! kept from the fit.
 
+use identify::replay::Replay;
 use rayon::prelude::*;
 use ship::Response;
 use trial::Trial;
 
 use crate::fit::{Fit, Problem};
 use crate::record::Record;
-use crate::replay_errors::{self, Errors, Replayed};
+use crate::replay_errors::{self, Errors};
 use crate::structure::Structure;
 
 /// A record that is kept from the fit.
@@ -27,7 +28,7 @@ impl<'a> HeldOut<'a> {
     }
 
     /// Replay and errors of a response; `None` when it is not finite.
-    pub fn judge(&self, response: &Response) -> Option<(Replayed, Errors)> {
+    pub fn judge(&self, response: &Response) -> Option<(Replay, Errors)> {
         let replayed = replay_errors::full(response, &self.record, &self.starts)?;
         let errors = replay_errors::errors(self.trial, &self.record, response, &replayed);
         Some((replayed, errors))

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use identify::replay::Replay;
 use lanes::column::dot;
 use nalgebra::{Matrix2, Vector2};
 use ship::dynamics::Dynamics;
@@ -30,21 +31,6 @@ const SAME: f64 = 1e-6;
 /// A step that promises to lower the sum of squares by less than this share ends the search.
 const NEGLIGIBLE: f64 = 1e-7;
 
-/// A replay of all rows of a record.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Replayed {
-    /// Time, s.
-    pub time: Vec<f64>,
-    /// Heading, rad.
-    pub heading: Vec<f64>,
-    /// Yaw rate, rad/s.
-    pub yaw_rate: Vec<f64>,
-    /// Measured less replayed heading, rad; NaN where there is none.
-    pub residual: Vec<f64>,
-    /// Heading (rad) and yaw rate (rad/s) at the first row.
-    pub initial: [f64; 2],
-}
-
 /// Errors of a response on one record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Errors {
@@ -62,7 +48,7 @@ pub struct Errors {
 }
 
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
-pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option<Replayed> {
+pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option<Replay> {
     let rows = 0..record.time.len();
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for &start in starts {
@@ -73,12 +59,11 @@ pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option
     let mut state = vec![0.0; response.dimension()];
     enter(response, record, 0, start, None, &mut state);
     let count = record.time.len();
-    let mut replayed = Replayed {
+    let mut replayed = Replay {
         time: record.time.clone(),
         heading: vec![0.0; count],
         yaw_rate: vec![0.0; count],
         residual: vec![0.0; count],
-        initial: start,
     };
     run(response, record, rows, &mut state, |row, heading, rate| {
         replayed.heading[row] = heading;
@@ -89,11 +74,10 @@ pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option
 }
 
 /// The heading error of a full replay alone.
-pub fn in_brief(replayed: &Replayed) -> Errors {
-    let residual: Vec<f64> = replayed.residual.iter().copied().filter(|e| e.is_finite()).collect();
+pub fn in_brief(replayed: &Replay) -> Errors {
     Errors {
-        heading: root_mean_square(&residual).unwrap_or(f64::NAN),
-        rows: residual.len(),
+        heading: replayed.rms(),
+        rows: replayed.observed().count(),
         yaw_rate: None,
         overshoot: None,
         horizon: [None; HORIZONS.len()],
@@ -101,7 +85,7 @@ pub fn in_brief(replayed: &Replayed) -> Errors {
 }
 
 /// Errors of a full replay, with the restarted ones.
-pub fn errors(trial: &Trial, record: &Record, response: &Response, replayed: &Replayed) -> Errors {
+pub fn errors(trial: &Trial, record: &Record, response: &Response, replayed: &Replay) -> Errors {
     let first = trial.observed_rows().next().unwrap_or(0);
     let yaw_rate = trial.yaw_rate().and_then(|measured| {
         let differences: Vec<f64> = measured[first..]
@@ -115,7 +99,7 @@ pub fn errors(trial: &Trial, record: &Record, response: &Response, replayed: &Re
     Errors {
         yaw_rate,
         overshoot: overshoot_error(trial, replayed),
-        horizon: HORIZONS.map(|length| restarted(response, record, replayed.initial, length)),
+        horizon: HORIZONS.map(|length| restarted(response, record, replayed.initial(), length)),
         ..in_brief(replayed)
     }
 }
@@ -125,7 +109,7 @@ fn root_mean_square(values: &[f64]) -> Option<f64> {
 }
 
 /// The zig-zag of a replayed heading under the rudder of its record.
-pub fn replayed_zigzag(trial: &Trial, replayed: &Replayed) -> Option<ZigZag> {
+pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     let first = trial.observed_rows().next().unwrap_or(0);
     let range = first..first + replayed.time.len();
     let channels: BTreeMap<Channel, Vec<f64>> =
@@ -135,7 +119,7 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replayed) -> Option<ZigZag> {
     ZigZag::of(&twin).ok()
 }
 
-fn overshoot_error(trial: &Trial, replayed: &Replayed) -> Option<f64> {
+fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     let (measured, twin) = (ZigZag::of(trial).ok()?, replayed_zigzag(trial, replayed)?);
     let pairs: Vec<f64> = measured
         .overshoots

@@ -8,7 +8,8 @@
 use ship::Particulars;
 use ship::angle::to_deg;
 
-use crate::zigzag::{Pair, Quantity, ZigZag};
+use crate::Quantity;
+use crate::zigzag::{Pair, ZigZag};
 
 /// Largest advance of a turning circle, ship lengths.
 pub const ADVANCE_LENGTHS: f64 = 4.5;
@@ -103,7 +104,7 @@ impl Criterion {
 
 /// The criteria of a turning circle, from its advance and tactical diameter in metres.
 pub fn turning_circle(advance: Option<f64>, tactical_diameter: Option<f64>, length: f64) -> [Criterion; 2] {
-    let lengths = |metres: Option<f64>| metres.map(|metres| Quantity { value: metres / length, sd: None });
+    let lengths = |metres: Option<f64>| metres.map(|metres| Quantity::bare(metres / length));
     [
         Criterion::new("advance", lengths(advance), ADVANCE_LENGTHS, Unit::ShipLengths),
         Criterion::new("tactical diameter", lengths(tactical_diameter), TACTICAL_DIAMETER_LENGTHS, Unit::ShipLengths),
@@ -119,12 +120,12 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
     let is_pair = |angle_deg: f64| zigzag.pair.is_some_and(|pair: Pair| pair.is_deg(angle_deg, angle_deg));
     let overshoot = |angle_deg: f64, n: usize| {
         let angle = zigzag.nth_overshoot(n).filter(|_| is_pair(angle_deg))?.angle;
-        Some(Quantity { value: to_deg(angle.value), sd: angle.sd.map(to_deg) })
+        Some(angle.scaled(to_deg(1.0)))
     };
     let initial_turning = zigzag.initial_turning_time.filter(|_| is_pair(10.0)).map(|time| {
         let Particulars { length, speed } = particulars;
         let way = zigzag.initial_turning_distance.unwrap_or(speed * time.value);
-        Quantity { value: way / length, sd: time.sd.map(|sd| sd * speed / length) }
+        Quantity::new(way / length, time.sd.map(|sd| sd * speed / length))
     });
     vec![
         Criterion::new(

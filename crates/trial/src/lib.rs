@@ -17,6 +17,7 @@ mod encoding;
 pub mod file;
 pub mod imo;
 pub mod plausibility;
+mod quantity;
 pub mod reader;
 pub mod record;
 pub mod sidecar;
@@ -27,6 +28,7 @@ pub mod zigzag;
 
 pub use channel::Channel;
 pub use file::FileError;
+pub use quantity::Quantity;
 pub use reader::{ReadError, Reading, read, read_with};
 pub use record::{Columns, Noise, Origin, Trial, TrialError};
 pub use sidecar::{Sidecar, SidecarError};

@@ -269,7 +269,7 @@ fn wind_fits(trial: &Trial) -> Outcome<[(f64, Vec<f64>); 3]> {
     let method = identify::output_error::Settings::default().build()?;
     let first = identify::Identifier::identify(&method, std::slice::from_ref(trial))?.response;
     let replay = identify::replay::replay(trial, &first).ok_or("the base can be replayed")?;
-    let initial = vec![[replay.heading[0], replay.yaw_rate[0]]];
+    let initial = vec![replay.initial()];
     let problem = Problem::new(vec![Record::averaged(trial, first.T().abs())], first.inverse_T, first.K_over_T);
     let base = Structure::base(1, false);
     let theta = vec![first.inverse_T, first.K_over_T, first.rudder_bias];

@@ -120,7 +120,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(std::slice::from_ref(&trial)).expect("a zig-zag").response;
     let replay = identify::replay::replay(&trial, &base).expect("finite");
-    let initial = vec![[replay.heading[0], replay.yaw_rate[0]]];
+    let initial = vec![replay.initial()];
     let problem = Problem::new(vec![Record::whole(&trial)], base.inverse_T, base.K_over_T);
     let structure = Structure::base(1, false);
     let theta = vec![base.inverse_T, base.K_over_T, base.rudder_bias];
@@ -136,7 +136,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     });
     let best = fits.min_by(|one, other| one.rss.total_cmp(&other.rss)).expect("at least one start");
     let rms = to_deg((best.rss / problem.observations() as f64).sqrt());
-    (replay.heading_rmse_deg, base.K(), base.T(), rms, best.theta[theta.len()..].to_vec())
+    (to_deg(replay.rms()), base.K(), base.T(), rms, best.theta[theta.len()..].to_vec())
 }
 
 /// The section.

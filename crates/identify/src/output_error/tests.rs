@@ -103,8 +103,7 @@ fn the_bound_is_the_published_one() {
             diagnostics: vec![],
             warnings: vec![],
         };
-        let relative =
-            |quantity: crate::estimate::Quantity| 100.0 * quantity.sd.expect("a covariance") / quantity.value;
+        let relative = |quantity: trial::Quantity| 100.0 * quantity.sd.expect("a covariance") / quantity.value;
         let found =
             (relative(estimate.K()), relative(estimate.T()), to_deg(estimate.rudder_bias().sd.expect("a covariance")));
         println!("{rudder_deg}/{heading_deg}: {found:?}");

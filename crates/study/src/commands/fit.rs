@@ -7,6 +7,7 @@ use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use report::number::{fixed, optional, with_uncertainty};
+use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
 use crate::options::{Common, FitRequest, Format};
@@ -187,7 +188,7 @@ fn validate(other: &Trial, estimate: Option<&Estimate>) -> Validation {
         file: file_of(other).0.to_owned(),
         heading_rmse_deg: estimate
             .and_then(|estimate| replay(other, &estimate.response))
-            .map(|replay| replay.heading_rmse_deg),
+            .map(|replay| to_deg(replay.rms())),
     }
 }
 

@@ -2,7 +2,6 @@
 //! methods and with the best fit.
 
 use identify::Estimate;
-use identify::replay::replay;
 use rayon::prelude::*;
 use report::figures::{self, Fit, RecordFit, Replay, Replays};
 use report::{Figure, Origin, Theme};
@@ -10,7 +9,7 @@ use trial::{Trial, ZigZag, ZigZagError};
 
 use super::picture::{first_failure, write_figure};
 use campaign::answer::MethodEntry;
-use campaign::curves::{curve, zigzag_figure};
+use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::folder::ResultFolder;
 use scenario::failure::Failure;
 
@@ -55,18 +54,7 @@ fn title(record: &Drawn) -> Option<String> {
 
 fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Replays {
     let trial = record.trial;
-    let replays = answers
-        .par_iter()
-        .filter_map(|(entry, estimate)| {
-            let replay = replay(trial, &estimate.as_ref()?.response)?;
-            Some(Replay {
-                origin: Origin::Method(entry.method.clone()),
-                heading: curve(&replay.time, &replay.heading),
-                residual: curve(&replay.residual_time, &replay.residual),
-                rms_deg: Some(replay.heading_rmse_deg),
-            })
-        })
-        .collect();
+    let replays = replay_curves(trial, answers, |method| Origin::Method(method.to_owned()));
     Replays { title: title(record), record: curve(trial.time(), trial.heading()), truth: None, replays }
 }
 

@@ -5,7 +5,8 @@ use identify::StopReason;
 use report::number::{self, MISSING};
 use report::{Column, Table};
 
-use campaign::answer::{MethodEntry, Status, Value};
+use campaign::answer::{MethodEntry, Status};
+use trial::Quantity;
 
 /// One row per method; `validated` names the records of the validation columns.
 pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
@@ -41,8 +42,11 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
 const DIGITS: i32 = 5;
 
 /// A value and its interval, with the digits the interval supports and no more than five significant ones.
-fn estimate(quantity: &Value) -> [String; 2] {
-    let Some(value) = quantity.value else { return [MISSING.to_owned(), MISSING.to_owned()] };
+fn estimate(quantity: &Quantity) -> [String; 2] {
+    let value = quantity.value;
+    if !value.is_finite() {
+        return [MISSING.to_owned(), MISSING.to_owned()];
+    }
     let Some([low, high]) = quantity.ci95 else {
         return [number::significant(value, DIGITS as usize - 1), MISSING.to_owned()];
     };
@@ -76,7 +80,7 @@ mod tests {
 
     #[test]
     fn digits_follow_the_interval_and_stop_at_five() {
-        let shown = |value, ci95| estimate(&Value { value: Some(value), sd: None, ci95 });
+        let shown = |value, ci95| estimate(&Quantity { value, sd: None, ci95 });
         assert_eq!(shown(0.18713, Some([0.166, 0.215])), ["0.187", "[0.166, 0.215]"]);
         assert_eq!(shown(0.1748075, Some([0.1748052, 0.1748099])), ["0.17481", "[0.17481, 0.17481]"]);
         assert_eq!(shown(-0.7, Some([-5.83, 4.42])), ["−0.7", "[−5.8, 4.4]"]);

@@ -3,7 +3,7 @@
 
 use ::trace::analysis::{Judged, Outcome};
 use ::trace::diagnostics::{Series, autocorrelation, spectrum};
-use ::trace::replay_errors::Replayed;
+use identify::replay::Replay;
 use rayon::prelude::*;
 use report::figures::{self, Evidence, EvidenceBar, Fate, Fit, RecordFit, ResidualPanel, ResidualPanels};
 use report::{Curve, Figure, Origin, Theme};
@@ -65,7 +65,7 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
 }
 
 fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {
-    let fit = |origin: Origin, replayed: &Replayed, error: f64| Fit {
+    let fit = |origin: Origin, replayed: &Replay, error: f64| Fit {
         origin,
         heading: curve(&replayed.time, &replayed.heading),
         residual: curve(&replayed.time, &replayed.residual),
@@ -77,8 +77,8 @@ fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure 
         heading: curve(trial.time(), trial.heading()),
         rudder: curve(trial.time(), trial.rudder()),
         fits: vec![
-            fit(Origin::Before, &before.replayed, before.errors.heading),
-            fit(Origin::After, &after.replayed, after.errors.heading),
+            fit(Origin::Before, &before.replay, before.errors.heading),
+            fit(Origin::After, &after.replay, after.errors.heading),
         ],
     };
     figures::record_fit(&data, theme)
@@ -86,9 +86,9 @@ fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure 
 
 fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure {
     let first = trial.observed_rows().next().unwrap_or(0);
-    let models = [(Origin::Before, &judged.before.replayed), (Origin::After, &judged.after.replayed)];
+    let models = [(Origin::Before, &judged.before.replay), (Origin::After, &judged.after.replay)];
     let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
-    let against = |x_title: &str, x: &dyn Fn(&Replayed) -> Vec<f64>| ResidualPanel {
+    let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| ResidualPanel {
         x_title: x_title.to_owned(),
         y_title: String::from("residual [°]"),
         logarithmic: false,
@@ -99,9 +99,8 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
             .collect(),
         band: None,
     };
-    let rudder = |replayed: &Replayed| degrees(&trial.rudder()[first..first + replayed.time.len()]);
-    let series =
-        |replayed: &Replayed| Series::new(&replayed.time, &degrees(&replayed.residual), trial.sampling_period());
+    let rudder = |replayed: &Replay| degrees(&trial.rudder()[first..first + replayed.time.len()]);
+    let series = |replayed: &Replay| Series::new(&replayed.time, &degrees(&replayed.residual), trial.sampling_period());
     let lines = ResidualPanel {
         x_title: String::from("frequency [Hz]"),
         y_title: String::from("power [°²/Hz]"),

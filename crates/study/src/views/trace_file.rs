@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::analysis::{Considered, Judged, Outcome, Traced, Value};
+use ::trace::analysis::{Considered, Fitted, Judged, Outcome, Traced};
 use ::trace::replay_errors::{Errors, HORIZONS};
 use serde::Serialize;
 use ship::angle::to_deg;
-use trial::Trial;
+use trial::{Quantity, Trial};
 
 use super::trace_page;
 use super::trace_report::TraceReport;
 use crate::records::file_of;
-use campaign::answer::{Parameters, Value as Number};
+use campaign::answer::Parameters;
 
 /// `trace.json`.
 #[derive(Debug, Serialize)]
@@ -43,14 +43,11 @@ pub struct TraceFile {
 /// A parameter.
 #[derive(Debug, Clone, Serialize)]
 pub struct ParameterEntry {
-    /// Value.
-    pub value: f64,
-    /// Standard deviation.
-    pub sd: Option<f64>,
-    /// 95 % interval.
-    pub ci95: Option<[f64; 2]>,
+    /// Value, standard deviation and 95 % interval.
+    #[serde(flatten)]
+    pub quantity: Quantity,
     /// Unit.
-    pub unit: String,
+    pub unit: &'static str,
     /// The one record it belongs to.
     pub only: Option<String>,
     /// Whether it ends at an end of its range; left out where it does not.
@@ -71,7 +68,7 @@ pub struct EffectEntry {
     only: Option<String>,
     aliases: Vec<&'static str>,
     alias_forms: Vec<String>,
-    parameters: BTreeMap<String, ParameterEntry>,
+    parameters: BTreeMap<&'static str, ParameterEntry>,
     delta_bic: f64,
     p_value: f64,
     residual_share: Option<f64>,
@@ -181,7 +178,7 @@ struct Indices {
 #[derive(Debug, Serialize)]
 struct Index {
     #[serde(flatten)]
-    number: Number,
+    quantity: Quantity,
     #[serde(skip_serializing_if = "is_false")]
     at_bound: bool,
 }
@@ -190,7 +187,7 @@ struct Index {
 #[derive(Debug, Serialize)]
 pub struct NamedParameter {
     key: &'static str,
-    symbol: String,
+    symbol: &'static str,
     #[serde(flatten)]
     value: ParameterEntry,
 }
@@ -218,16 +215,10 @@ impl From<&Errors> for ErrorsEntry {
     }
 }
 
-impl From<&Value> for ParameterEntry {
-    fn from(value: &Value) -> Self {
-        Self {
-            value: value.value,
-            sd: value.sd,
-            ci95: value.ci95,
-            unit: value.unit.to_owned(),
-            only: value.only.clone(),
-            at_bound: value.at_bound,
-        }
+impl From<&Fitted> for ParameterEntry {
+    fn from(fitted: &Fitted) -> Self {
+        let Fitted { parameter, quantity, ref only, at_bound } = *fitted;
+        Self { quantity, unit: parameter.unit, only: only.clone(), at_bound }
     }
 }
 
@@ -243,7 +234,7 @@ impl From<&Traced> for EffectEntry {
             only: effect.only.clone(),
             aliases,
             alias_forms: effect.aliases.iter().map(|(id, form)| format!("{id} ({form})")).collect(),
-            parameters: effect.parameters.iter().map(|value| (value.symbol.clone(), value.into())).collect(),
+            parameters: effect.parameters.iter().map(|fitted| (fitted.parameter.symbol, fitted.into())).collect(),
             delta_bic: -effect.evidence.gain,
             p_value: effect.evidence.p_value,
             residual_share: effect.residual_share,
@@ -316,16 +307,12 @@ impl TraceFile {
             whiteness_p: analysis.whiteness[k].p_value,
         };
         let [k, t] = analysis.indices;
-        let unknown = Number { value: None, sd: None, ci95: None };
+        let unknown = Quantity::bare(f64::NAN);
         let noise = &analysis.randomness;
         Self {
             schema: "trace/1",
             verdict: analysis.verdict.as_str(),
-            base: Parameters {
-                k_per_s: Number::of(base.K(), 1.0),
-                t_s: Number::of(base.T(), 1.0),
-                delta_r_deg: Number::of(base.rudder_bias(), degree),
-            },
+            base: Parameters { k_per_s: base.K(), t_s: base.T(), delta_r_deg: base.rudder_bias().scaled(degree) },
             effects: analysis.effects.iter().map(EffectEntry::from).collect(),
             candidates: candidates(&analysis.candidates),
             unexplained: UnexplainedEntry {
@@ -351,18 +338,22 @@ impl TraceFile {
                     false => analysis.effects.iter().map(|effect| effect.equation).collect(),
                 },
                 indices: {
-                    let bias = analysis.rudder_bias.map_or(unknown, |bias| Number::of(bias, degree));
+                    let bias = analysis.rudder_bias.map_or(unknown, |bias| bias.scaled(degree));
                     let [k_ends, t_ends, bias_ends] = analysis.indices_at_bound();
                     Indices {
-                        k_per_s: Index { number: Number::of(k, 1.0), at_bound: k_ends },
-                        t_s: Index { number: Number::of(t, 1.0), at_bound: t_ends },
-                        delta_r_deg: Index { number: bias, at_bound: bias_ends },
+                        k_per_s: Index { quantity: k, at_bound: k_ends },
+                        t_s: Index { quantity: t, at_bound: t_ends },
+                        delta_r_deg: Index { quantity: bias, at_bound: bias_ends },
                     }
                 },
                 parameters: analysis
                     .parameters
                     .iter()
-                    .map(|value| NamedParameter { key: value.key, symbol: value.symbol.clone(), value: value.into() })
+                    .map(|fitted| NamedParameter {
+                        key: fitted.parameter.key,
+                        symbol: fitted.parameter.symbol,
+                        value: fitted.into(),
+                    })
                     .collect(),
                 noise: NoiseEntry {
                     heading_sd_deg: to_deg(noise.white),
@@ -383,8 +374,8 @@ mod tests {
 
     #[test]
     fn a_bound_is_written_where_it_was_reached_and_nowhere_else() {
-        let number = Number { value: Some(0.1), sd: None, ci95: None };
-        let written = |at_bound| serde_json::to_value(Index { number, at_bound }).expect("plain data");
+        let quantity = Quantity::bare(0.1);
+        let written = |at_bound| serde_json::to_value(Index { quantity, at_bound }).expect("plain data");
         assert_eq!(written(true)["at_bound"], true);
         assert_eq!(written(false).as_object().map(|object| object.len()), Some(3));
     }

@@ -2,13 +2,14 @@
 
 use std::fmt::Write as _;
 
-use ::trace::analysis::{Judged, Outcome, Prospect, Traced, Value, Verdict};
+use ::trace::analysis::{Fitted, Judged, Outcome, Prospect, Traced, Verdict};
 use ::trace::noise::Moment;
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use report::number::{self, MISSING, optional, significant, with_uncertainty};
 use report::{Column, Table};
 use ship::angle::to_deg;
-use trial::{Trial, ZigZag};
+use ship::effects::Parameter;
+use trial::{Quantity, Trial, ZigZag};
 
 use super::trace_report::TraceReport;
 
@@ -20,22 +21,22 @@ pub fn moment(kind: Moment) -> &'static str {
     }
 }
 
-/// A parameter in degrees where its unit holds radians: value, standard deviation, interval and unit.
-fn in_degrees(value: &Value) -> (f64, Option<f64>, Option<[f64; 2]>, String) {
+/// A parameter in degrees where its unit holds radians, and that unit; none where it is a plain number.
+fn in_degrees(fitted: &Fitted) -> (Quantity, String) {
     let degree = to_deg(1.0);
-    let factor = match value.unit {
+    let Parameter { symbol, unit, .. } = *fitted.parameter;
+    let factor = match unit {
         unit if unit.contains("/rad²") => degree.powi(-2),
         unit if unit.contains("/rad") => degree.recip(),
         unit if unit.starts_with("rad") => degree,
         _ => 1.0,
     };
     // Frequencies stay in radians.
-    let (factor, unit) = match value.symbol.as_str() {
-        "ω₀" => (1.0, value.unit.to_owned()),
-        _ => (factor, value.unit.replace("rad", "deg")),
+    let (factor, unit) = match symbol {
+        "ω₀" => (1.0, unit.to_owned()),
+        _ => (factor, unit.replace("rad", "deg")),
     };
-    let scaled = |x: f64| x * factor;
-    (scaled(value.value), value.sd.map(scaled), value.ci95.map(|ends| ends.map(scaled)), unit)
+    (fitted.quantity.scaled(factor), unit)
 }
 
 /// The words of one analysis.
@@ -72,19 +73,19 @@ pub fn words(report: &TraceReport) -> String {
 }
 
 /// A sentence for every parameter at an end of its range.
-fn bounds(parameters: &[Value]) -> Vec<String> {
-    let ends = parameters.iter().filter(|value| value.at_bound);
-    ends.map(|value| {
-        let (number, _, _, unit) = in_degrees(value);
+fn bounds(parameters: &[Fitted]) -> Vec<String> {
+    let ends = parameters.iter().filter(|fitted| fitted.at_bound);
+    ends.map(|fitted| {
+        let (quantity, unit) = in_degrees(fitted);
         let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-        let only = value.only.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
-        let follows = match value.key {
+        let only = fitted.only.as_ref().map_or_else(String::new, |name| format!(" of {name}"));
+        let follows = match fitted.parameter.key {
             "inverse_T" => ", and K and T follow from it",
             "K_over_T" => ", and K follows from it",
             _ => "",
         };
-        let number = significant(number, 3);
-        format!("{} = {number}{unit}{only} is at its bound: the search ends there{follows}", value.symbol)
+        let (symbol, number) = (fitted.parameter.symbol, significant(quantity.value, 3));
+        format!("{symbol} = {number}{unit}{only} is at its bound: the search ends there{follows}")
     })
     .collect()
 }
@@ -93,10 +94,10 @@ fn effect_line(effect: &Traced) -> String {
     let parameters: Vec<String> = effect
         .parameters
         .iter()
-        .map(|value| {
-            let (value_deg, sd, _, unit) = in_degrees(value);
+        .map(|fitted| {
+            let (quantity, unit) = in_degrees(fitted);
             let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-            format!("{} = {}{unit}", value.symbol, uncertain(value_deg, sd))
+            format!("{} = {}{unit}", fitted.parameter.symbol, uncertain(quantity.value, quantity.sd))
         })
         .collect();
     let alike = match effect.aliases.as_slice() {
@@ -234,7 +235,7 @@ fn overshoots(report: &TraceReport) -> Option<Table> {
         let Ok(measured) = ZigZag::of(trial) else { continue };
         table.push(zigzag_cells(name, "measured", &measured));
         for (label, on) in [("before", &judged.before), ("after", &judged.after)] {
-            if let Some(zigzag) = replayed_zigzag(trial, &on.replayed) {
+            if let Some(zigzag) = replayed_zigzag(trial, &on.replay) {
                 table.push(zigzag_cells("", label, &zigzag));
             }
         }
@@ -250,7 +251,7 @@ fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
 
 fn parameters(report: &TraceReport) -> Table {
     let analysis = report.analysis;
-    let remarks = analysis.parameters.iter().any(|value| value.at_bound);
+    let remarks = analysis.parameters.iter().any(|fitted| fitted.at_bound);
     let mut columns = ["parameter", "value", "95 % interval", "unit", "record"].map(Column::left).to_vec();
     columns.extend(remarks.then(|| Column::left("remark")));
     let mut table = Table::new(columns);
@@ -263,10 +264,10 @@ fn parameters(report: &TraceReport) -> Table {
         let [value, interval] = [uncertain(quantity.value, quantity.sd), number::interval(quantity.ci95)];
         push([symbol.into(), value, interval, unit.into(), MISSING.into()], ends);
     }
-    for value in &analysis.parameters {
-        let (value_deg, sd, ci95, unit) = in_degrees(value);
-        let only = value.only.clone().unwrap_or_else(|| MISSING.into());
-        push([value.symbol.clone(), uncertain(value_deg, sd), interval(ci95), unit, only], value.at_bound);
+    for fitted in &analysis.parameters {
+        let (Quantity { value, sd, ci95 }, unit) = in_degrees(fitted);
+        let only = fitted.only.clone().unwrap_or_else(|| MISSING.into());
+        push([fitted.parameter.symbol.into(), uncertain(value, sd), interval(ci95), unit, only], fitted.at_bound);
     }
     table
 }
@@ -421,21 +422,19 @@ pub fn title(judged: &Judged, name: &str, held_out: bool) -> String {
 
 #[cfg(test)]
 mod tests {
+    use ship::response::BASE;
+
     use super::*;
 
     #[test]
     fn a_parameter_at_its_bound_is_a_warning() {
-        let value = |key, symbol: &str, number, unit, at_bound| Value {
-            key,
-            symbol: symbol.into(),
-            unit,
-            value: number,
-            sd: None,
-            ci95: None,
+        let fitted = |place: usize, value, at_bound| Fitted {
+            parameter: &BASE[place],
+            quantity: Quantity::bare(value),
             only: None,
             at_bound,
         };
-        let all = [value("inverse_T", "1/T", 10.0, "1/s", true), value("rudder_bias", "δ_r", 0.01, "rad", false)];
+        let all = [fitted(0, 10.0, true), fitted(2, 0.01, false)];
         assert_eq!(bounds(&all), ["1/T = 10.0 1/s is at its bound: the search ends there, and K and T follow from it"]);
     }
 }

@@ -68,7 +68,7 @@ pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: 
     if held_out.is_empty() || model.judged.colour.moment.is_none() {
         return predicted;
     }
-    while model.structure.terms.len() < search.thresholds.most_terms {
+    while model.structure.terms.len() < search.thresholds.most_effects {
         let Some(before) = held_out::errors(held_out, &model.structure, &model.plain) else { break };
         let tried = search.try_all(model, &model.plain, true);
         let next = tried.into_iter().take(LOOKED_AT).find_map(|tried| {

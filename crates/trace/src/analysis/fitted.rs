@@ -67,20 +67,15 @@ mod tests {
     use crate::fit::Problem;
     use crate::made_up::{BASE, Plan, record, ship};
     use crate::record::Record;
-    use crate::replay_errors::{Errors, Replayed};
+    use crate::replay_errors::Errors;
     use crate::search::Thresholds;
     use crate::structure::Structure;
+    use identify::replay::Replay;
 
     fn replayed(heading: f64) -> Vec<OnRecord> {
-        let replayed = Replayed {
-            time: Vec::new(),
-            heading: Vec::new(),
-            yaw_rate: Vec::new(),
-            residual: Vec::new(),
-            initial: [0.0; 2],
-        };
+        let replay = Replay { time: Vec::new(), heading: Vec::new(), yaw_rate: Vec::new(), residual: Vec::new() };
         let errors = Errors { heading, rows: 100, yaw_rate: None, overshoot: None, horizon: [None; 2] };
-        vec![OnRecord { replayed, errors }]
+        vec![OnRecord { replay, errors }]
     }
 
     /// Whatever a replay says, the heading error after is not larger than before; the term that is at fault goes and is
@@ -91,7 +86,7 @@ mod tests {
         let problem = Problem::new(vec![Record::whole(&record(&truth, Plan::default()))], BASE[0], BASE[1]);
         let headings = problem.replay(&Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let candidates = candidates::all(&problem.records, &Sizes::of(&problem.records, BASE[0], &headings));
-        let thresholds = Thresholds { gain: 10.0, false_discovery: 0.01, most_terms: 4 };
+        let thresholds = Thresholds::default();
         let search = Search { problem: &problem, candidates: &candidates, thresholds };
         let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let damped = search.run(&base, &search.try_all(&base, &base.plain, false));

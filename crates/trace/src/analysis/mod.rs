@@ -29,7 +29,7 @@ use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
 
 pub use prospects::Prospect;
-pub use result::{Analysis, Considered, Empirical, Judged, OnRecord, Outcome, Randomness, Traced, Value, Verdict};
+pub use result::{Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, Traced, Verdict};
 pub use settings::{Settings, TraceError};
 
 /// Analyses records of one ship.
@@ -59,7 +59,7 @@ pub use settings::{Settings, TraceError};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
-    settings.check()?;
+    settings.thresholds.check()?;
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(trials)?;
     let first = base.response;
@@ -91,9 +91,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
         pairs.map(|(name, (before, after))| Judged { name, before, after }).collect()
     };
-    let series = |(on, trial): (&OnRecord, &Trial)| {
-        Series::new(&on.replayed.time, &on.replayed.residual, trial.sampling_period())
-    };
+    let series =
+        |(on, trial): (&OnRecord, &Trial)| Series::new(&on.replay.time, &on.replay.residual, trial.sampling_period());
     let residuals = |all: &[OnRecord]| -> Vec<Series> { all.iter().zip(trials).map(series).collect() };
     let whiteness = [diagnostics::whiteness(&residuals(&before)), diagnostics::whiteness(&residuals(&after))];
     let elsewhere = validate(&held_out, &start, &model)?;

@@ -3,13 +3,14 @@
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
 use identify::Estimate;
-use identify::estimate::{Covariance, Quantity, StopReason, Uncertainty};
+use identify::estimate::{Covariance, StopReason, Uncertainty};
 use nalgebra::{DMatrix, Matrix3};
 use ship::FirstOrder;
 use ship::narrow_band::NarrowBand;
 use statrs::distribution::{ContinuousCDF, Normal};
+use trial::Quantity;
 
-use super::result::{Randomness, Value};
+use super::result::{Fitted, Randomness};
 use crate::fit::Problem;
 use crate::search::Model;
 
@@ -62,7 +63,7 @@ pub(super) fn parameters(
     model: &Model,
     covariance: Option<&DMatrix<f64>>,
     names: &[String],
-) -> Vec<Value> {
+) -> Vec<Fitted> {
     let biases = 2..model.structure.base_count();
     let quantile = Normal::standard().inverse_cdf(0.975);
     let mut fitted = 0..;
@@ -81,7 +82,12 @@ pub(super) fn parameters(
                 sd.map(|sd| [value - quantile * sd, value + quantile * sd])
             };
             let only = entry.only.map(|only| names[only].clone());
-            Value { sd, ci95, only, at_bound: entry.ends_at(value), ..Value::of(entry.parameter, value) }
+            Fitted {
+                parameter: entry.parameter,
+                quantity: Quantity { value, sd, ci95 },
+                only,
+                at_bound: entry.ends_at(value),
+            }
         })
         .collect()
 }
@@ -131,7 +137,7 @@ mod tests {
         let covariance = parameter_covariance(&problem, &model, 0.0);
         let names = ["one", "other"].map(String::from);
         let all = parameters(&problem, &model, covariance.as_ref(), &names);
-        assert!((all[2].value + 0.02).abs() < 1e-3 && (all[3].value - 0.03).abs() < 1e-3, "{all:?}");
+        assert!((all[2].quantity.value + 0.02).abs() < 1e-3 && (all[3].quantity.value - 0.03).abs() < 1e-3, "{all:?}");
         assert_eq!([all[2].only.as_deref(), all[3].only.as_deref()], [Some("one"), Some("other")]);
         assert_eq!(indices(&model, covariance.as_ref()).1, None);
     }
@@ -148,7 +154,7 @@ mod tests {
             let fit = problem.fit(&structure, &theta, &[[0.0; 2]], &Colour::WHITE);
             let model = Model { structure, plain: fit.clone(), judged: fit };
             let all = parameters(&problem, &model, None, &[String::from("one")]);
-            (all[0].value, all.iter().map(|value| value.at_bound).collect::<Vec<_>>())
+            (all[0].quantity.value, all.iter().map(|fitted| fitted.at_bound).collect::<Vec<_>>())
         };
         assert_eq!(ends(30.0), (ship::response::BASE[0].highest, vec![true, false, false]));
         assert_eq!(ends(0.1).1, [false; 3]);
@@ -170,7 +176,7 @@ mod tests {
         let (_, bias) = indices(&model, Some(&covariance));
         let bias = bias.expect("of one record");
         let listed = &parameters(&problem, &model, Some(&covariance), &[String::from("one")])[2];
-        assert_eq!((listed.value, listed.sd, listed.ci95), (bias.value, bias.sd, bias.ci95));
+        assert_eq!(listed.quantity, bias);
         let [low, high] = bias.ci95.expect("bounded");
         assert!((high - bias.value) / (bias.value - low) > 1.2 || (bias.value - low) / (high - bias.value) > 1.2);
     }

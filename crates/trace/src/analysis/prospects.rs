@@ -64,7 +64,7 @@ impl Analysis {
         let record = Record::averaged(trial, self.base.response.T().abs());
         let ship = self.ship();
         let rest = vec![[record.heading[record.observed[0]], 0.0]];
-        let initial = replay_errors::full(&ship, &record, &rest).map_or(rest[0], |replayed| replayed.initial);
+        let initial = replay_errors::full(&ship, &record, &rest).map_or(rest[0], |replay| replay.initial());
         records.push(record);
         let problem = self.problem.on(records);
         let mut structure = self.model.structure.clone();

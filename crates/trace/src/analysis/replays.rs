@@ -1,5 +1,6 @@
 //! Replays and errors of the models before and after, on records that were fitted and on those that were not.
 
+use identify::replay::replay;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
@@ -8,14 +9,13 @@ use super::settings::TraceError;
 use crate::fit::Problem;
 use crate::held_out::{self, HeldOut};
 use crate::record::Record;
-use crate::replay_errors::{self, Replayed};
+use crate::replay_errors;
 use crate::search::Model;
 
 /// Initial state of a base replay of all rows.
 pub(super) fn initial(trial: &Trial, response: &FirstOrder) -> Result<[f64; 2], TraceError> {
-    let replay = identify::replay::replay(trial, response)
-        .ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })?;
-    Ok([replay.heading[0], replay.yaw_rate[0]])
+    let replay = replay(trial, response).ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })?;
+    Ok(replay.initial())
 }
 
 /// Initial states from which the best is looked for on a record that was not fitted.
@@ -65,23 +65,16 @@ fn on_record(
     first: Option<&FirstOrder>,
     thorough: bool,
 ) -> Option<OnRecord> {
-    let replayed = match first {
-        Some(first) => closed_form(trial, record, first)?,
+    let replay = match first {
+        Some(first) => replay(trial, first)?,
         None => replay_errors::full(response, record, starts)?,
     };
     let errors = if thorough {
-        replay_errors::errors(trial, record, response, &replayed)
+        replay_errors::errors(trial, record, response, &replay)
     } else {
-        replay_errors::in_brief(&replayed)
+        replay_errors::in_brief(&replay)
     };
-    Some(OnRecord { replayed, errors })
-}
-
-fn closed_form(trial: &Trial, record: &Record, first: &FirstOrder) -> Option<Replayed> {
-    let replay = identify::replay::replay(trial, first)?;
-    let residual = record.heading.iter().zip(&replay.heading).map(|(measured, replayed)| measured - replayed).collect();
-    let initial = [replay.heading[0], replay.yaw_rate[0]];
-    Some(Replayed { time: replay.time, heading: replay.heading, yaw_rate: replay.yaw_rate, residual, initial })
+    Some(OnRecord { replay, errors })
 }
 
 pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Result<Vec<Judged>, TraceError> {
@@ -103,7 +96,7 @@ pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Res
                 before.clone()
             } else {
                 let mut all = held.starts.clone();
-                all.push(before.replayed.initial);
+                all.push(before.replay.initial());
                 on_record(held.trial, &held.record, &after, &all, None, true).ok_or_else(refuse)?
             };
             Ok(Judged { name: held.trial.name().to_owned(), before, after })

@@ -7,7 +7,7 @@ use ship::effects::{self, Effect, WaveYaw};
 use trial::Trial;
 
 use super::elsewhere::Predicted;
-use super::result::{ALIAS, Considered, Empirical, OnRecord, Outcome, Traced, Value};
+use super::result::{ALIAS, Considered, Empirical, Fitted, OnRecord, Outcome, Traced};
 use super::settings::Settings;
 use crate::candidates::{Candidate, Sizes};
 use crate::diagnostics::{self, Signature};
@@ -36,7 +36,7 @@ impl Reporter<'_> {
         term.only.map(|only| self.names[only].clone())
     }
 
-    pub fn effects(&self, parameters: &[Value]) -> Vec<Traced> {
+    pub fn effects(&self, parameters: &[Fitted]) -> Vec<Traced> {
         let structure = &self.model.structure;
         let tests = self.search.tested(self.model, true);
         let shares = self.shares();
@@ -157,7 +157,7 @@ impl Reporter<'_> {
         let effect = &WaveYaw;
         let values = [waves.sd * white, waves.frequency, waves.damping];
         let parameters =
-            effect.parameters().iter().zip(values).map(|(parameter, value)| Value::of(parameter, value)).collect();
+            effect.parameters().iter().zip(values).map(|(parameter, value)| Fitted::bare(parameter, value)).collect();
         Some(Traced {
             id: effect.id(),
             form: effect.form(),
@@ -292,7 +292,7 @@ impl Reporter<'_> {
         }
         let worst = (0..trials.len())
             .max_by(|&one, &other| after[one].errors.heading.total_cmp(&after[other].errors.heading))?;
-        let (trial, replayed) = (&trials[worst], &after[worst].replayed);
+        let (trial, replayed) = (&trials[worst], &after[worst].replay);
         let first = trial.observed_rows().next().unwrap_or(0);
         let rudder = &trial.rudder()[first..first + replayed.time.len()];
         Some(diagnostics::signature(

@@ -1,15 +1,16 @@
 //! What an analysis says.
 
 use identify::Estimate;
-use identify::estimate::Quantity;
+use identify::replay::Replay;
 use ship::effects::Parameter;
 use ship::narrow_band::NarrowBand;
+use trial::Quantity;
 
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;
 use crate::noise::Moment;
-use crate::replay_errors::{Errors, Replayed};
+use crate::replay_errors::Errors;
 use crate::search::{Evidence, Model, Thresholds};
 
 /// What the analysis says.
@@ -62,32 +63,24 @@ impl Outcome {
     }
 }
 
-/// A parameter with its error.
+/// A parameter of the final model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Value {
-    /// Name in files.
-    pub key: &'static str,
-    /// Symbol.
-    pub symbol: String,
-    /// Unit, SI and rad.
-    pub unit: &'static str,
-    /// Value.
-    pub value: f64,
-    /// Standard deviation; `None` when it is not determined or was not fitted.
-    pub sd: Option<f64>,
-    /// 95 % interval: Fieller's for δ_r, which is the ratio of two parameters, otherwise that of a normal error.
-    pub ci95: Option<[f64; 2]>,
+pub struct Fitted {
+    /// What it is called and measured in.
+    pub parameter: &'static Parameter,
+    /// Its value and error: no standard deviation where it is not determined or was not fitted; the interval is
+    /// Fieller's for δ_r, which is the ratio of two parameters, otherwise that of a normal error.
+    pub quantity: Quantity,
     /// Name of the one record it belongs to.
     pub only: Option<String>,
     /// Whether it ends at an end of its range: the search stopped there, not at the best value.
     pub at_bound: bool,
 }
 
-impl Value {
+impl Fitted {
     /// A parameter of all records whose error is not known.
-    pub(super) fn of(parameter: &Parameter, value: f64) -> Self {
-        let (key, symbol, unit) = (parameter.key, parameter.symbol.to_owned(), parameter.unit);
-        Self { key, symbol, unit, value, sd: None, ci95: None, only: None, at_bound: false }
+    pub(super) fn bare(parameter: &'static Parameter, value: f64) -> Self {
+        Self { parameter, quantity: Quantity::bare(value), only: None, at_bound: false }
     }
 }
 
@@ -105,7 +98,7 @@ pub struct Traced {
     /// Effects that these records cannot tell from it: identifier and form.
     pub aliases: Vec<(&'static str, &'static str)>,
     /// Its parameters.
-    pub parameters: Vec<Value>,
+    pub parameters: Vec<Fitted>,
     /// How much it explains, against the best model without it.
     pub evidence: Evidence,
     /// Share of the mean square of the residual of the base that it took away when it was added; `None` for waves,
@@ -169,7 +162,7 @@ pub struct Randomness {
 #[derive(Debug, Clone, PartialEq)]
 pub struct OnRecord {
     /// Replay.
-    pub replayed: Replayed,
+    pub replay: Replay,
     /// Errors.
     pub errors: Errors,
 }
@@ -194,7 +187,7 @@ pub struct Analysis {
     /// Rudder bias δ_r (rad) of the ship; `None` when several records have one each, which are among the parameters.
     pub rudder_bias: Option<Quantity>,
     /// All parameters of the final model.
-    pub parameters: Vec<Value>,
+    pub parameters: Vec<Fitted>,
     /// The verdict.
     pub verdict: Verdict,
     /// What was found, in the order of discovery.
@@ -226,7 +219,7 @@ impl Analysis {
     /// Whether K, T and δ_r of the final model rest on a parameter at an end of its range: K = (K/T)/(1/T), T =
     /// 1/(1/T).
     pub fn indices_at_bound(&self) -> [bool; 3] {
-        let ends = |key: &str| self.parameters.iter().any(|value| value.key == key && value.at_bound);
+        let ends = |key: &str| self.parameters.iter().any(|fitted| fitted.parameter.key == key && fitted.at_bound);
         let [inverse, ratio] = ["inverse_T", "K_over_T"].map(ends);
         [inverse || ratio, inverse, self.rudder_bias.is_some() && ends("rudder_bias")]
     }

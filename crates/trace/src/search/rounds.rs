@@ -60,7 +60,7 @@ impl Search<'_> {
     fn add_plainly(&self, base: &Model, first: &[Tried], timeless: bool) -> Model {
         let mut model = base.clone();
         let plain = Model { judged: base.plain.clone(), ..base.clone() };
-        for round in 0..self.thresholds.most_terms {
+        for round in 0..self.thresholds.most_effects {
             let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, &model.plain, true) };
             let allowed = |tried: &Tried| !timeless || !self.candidates[tried.place].term.effect.is_of_time();
             let Some(best) = self.best(tried.into_iter().filter(allowed)) else { break };
@@ -113,7 +113,7 @@ impl Search<'_> {
                 model = timeless;
             }
         }
-        while model.structure.terms.len() < self.thresholds.most_terms && model.judged.colour.moment.is_some() {
+        while model.structure.terms.len() < self.thresholds.most_effects && model.judged.colour.moment.is_some() {
             let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };
             let before = model.structure.terms.len();
             let next = self.prune(self.adopted(&best), base, true);

@@ -11,7 +11,7 @@ use crate::noise::Colour;
 use crate::record::Record;
 use crate::structure::Structure;
 
-const THRESHOLDS: Thresholds = Thresholds { gain: 10.0, false_discovery: 0.01, most_terms: 4 };
+const THRESHOLDS: Thresholds = Thresholds { gain: 10.0, false_discovery: 0.01, most_effects: 4 };
 
 /// A record of a ship with these effects, and what it may lack.
 fn prepared(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> (Problem, Vec<Candidate>) {

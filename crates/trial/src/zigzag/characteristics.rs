@@ -8,7 +8,8 @@ use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Si
 use super::heading::Heading;
 use super::holds::{self, Hold};
 use super::local::Local;
-use super::quantity::{Quantity, median};
+use super::median::median;
+use crate::Quantity;
 use crate::channel::Channel;
 use crate::record::Trial;
 

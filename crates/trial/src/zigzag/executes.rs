@@ -3,7 +3,8 @@
 //! the first execute of a trial is not decided here: that takes the heading.
 
 use super::holds::{Hold, LAID};
-use super::quantity::{Quantity, median};
+use super::median::median;
+use crate::Quantity;
 
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,8 +13,8 @@ mod findings;
 mod heading;
 mod holds;
 mod local;
+mod median;
 pub mod points;
-mod quantity;
 #[cfg(test)]
 pub(crate) mod simulator;
 #[cfg(test)]
@@ -22,4 +22,3 @@ mod tests;
 
 pub use findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
 pub use heading::noise_sd;
-pub use quantity::Quantity;

@@ -6,7 +6,8 @@
 
 use super::heading::noise_sd;
 use super::local::{Cubic, Parabola};
-use super::quantity::{Quantity, median};
+use super::median::median;
+use crate::Quantity;
 
 /// Extrema below this share of the largest |heading| are ripples or the remains of the start.
 pub const SMALLEST_EXTREMUM: f64 = 0.35;

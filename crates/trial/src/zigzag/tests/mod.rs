@@ -9,7 +9,7 @@ use ship::angle::{from_deg, to_deg};
 
 use super::simulator::{Gaussian, Plant, trial};
 use super::*;
-use crate::Noise;
+use crate::{Noise, Quantity};
 
 fn of_plant(plant: Plant, duration: f64, step: f64) -> ZigZag {
     let (time, heading, rudder) = plant.record(duration, step);
@@ -60,7 +60,7 @@ fn rough_record() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
 }
 
 fn mirrored(quantity: Quantity) -> Quantity {
-    Quantity { value: -quantity.value, ..quantity }
+    quantity.scaled(-1.0)
 }
 
 #[test]
@@ -182,7 +182,7 @@ fn reported_uncertainty_is_the_scatter_over_seeds() {
         ("execute heading", from_deg(10.0), |zigzag| zigzag.executes[1].heading),
         ("rate at execute", from_deg(0.741), |zigzag| zigzag.executes[1].yaw_rate.expect("has headings")),
         ("t_a", 24.09, |zigzag| zigzag.initial_turning_time.expect("has a first execute")),
-        ("heading noise", 0.0, |zigzag| Quantity { value: zigzag.heading_noise.expect("estimated"), sd: Some(0.0) }),
+        ("heading noise", 0.0, |zigzag| Quantity::new(zigzag.heading_noise.expect("estimated"), Some(0.0))),
     ];
     for noise_deg in [0.1, 0.5] {
         for (name, truth, pick) in picks {
