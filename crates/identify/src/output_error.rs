@@ -89,8 +89,9 @@ const AT_BOUND: f64 = 1e-6;
 /// Relative step at which the polish stops.
 const TOLERANCE: f64 = 1e-10;
 
-/// The goal on some of the rows: their minimum is another one by a share of its standard deviation, and where more
-/// steps are needed the residual is large and little is left to gain.
+/// The goal of a search that sees only some of the rows. Their minimum lies a fraction of a standard deviation from
+/// that of all rows, so more digits are of no use; a valley that needs more steps has a large residual and is not the
+/// lowest.
 const COARSE: Goal = Goal { tolerance: 1e-3, iterations: 8, bar: f64::INFINITY };
 
 /// A valley whose sum of squares over some of the rows is this many times the lowest is left there.

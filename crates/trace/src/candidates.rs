@@ -3,6 +3,7 @@
 use ship::Polyline;
 use ship::effects::{self, Effect, Manoeuvres, Proposal};
 
+use crate::index::RecordNumber;
 use crate::record::Record;
 use crate::structure::Term;
 
@@ -78,7 +79,7 @@ impl Sizes {
 
 impl Candidate {
     /// What an effect proposes for all records, or for one of them `only`.
-    pub fn new(proposal: Proposal, only: Option<usize>) -> Self {
+    pub fn new(proposal: Proposal, only: Option<RecordNumber>) -> Self {
         let Proposal { effect, held, lowest, highest, scale, starts, large } = proposal;
         Self { term: Term { effect, only, held, lowest, highest, scale }, starts, large }
     }
@@ -88,15 +89,15 @@ impl Candidate {
 /// depends on time alone is one of every record.
 pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
     let effects = effects::all();
-    let of = |effect: &dyn Effect, only: Option<usize>| {
-        let about = sizes.manoeuvres(records, &records[only.unwrap_or(0)]);
+    let of = |effect: &dyn Effect, only: Option<RecordNumber>| {
+        let about = sizes.manoeuvres(records, &records[only.map_or(0, |only| only.0)]);
         Some(Candidate::new(effect.proposal(&about)?, only))
     };
     effects
         .iter()
         .flat_map(|effect| {
             let places = if effect.is_of_time() && records.len() > 1 {
-                (0..records.len()).map(Some).collect()
+                (0..records.len()).map(|number| Some(RecordNumber(number))).collect()
             } else {
                 vec![None]
             };

@@ -7,6 +7,7 @@ use ship::Response;
 use trial::Trial;
 
 use crate::fit::{Fit, Problem};
+use crate::index::RecordNumber;
 use crate::record::Record;
 use crate::replay_errors::{self, Errors};
 use crate::structure::Structure;
@@ -45,8 +46,8 @@ pub fn errors(held_out: &[HeldOut], structure: &Structure, fit: &Fit) -> Option<
 pub fn portable(structure: &Structure, theta: &[f64]) -> Response {
     let mut kept = structure.clone();
     let mut values = theta.to_vec();
-    for place in (0..kept.terms.len()).rev() {
-        if kept.terms[place].effect.is_of_time() {
+    for place in structure.places().rev() {
+        if kept.term(place).effect.is_of_time() {
             values = kept.drop_from(&values, place);
             kept = kept.without(place);
         }
@@ -56,7 +57,7 @@ pub fn portable(structure: &Structure, theta: &[f64]) -> Response {
         values.splice(2..2 + kept.records, [mean]);
         kept.own_bias = false;
     }
-    kept.response(0, &values)
+    kept.response(RecordNumber(0), &values)
 }
 
 /// How a model does against another one where neither was fitted.

@@ -20,6 +20,7 @@ pub mod candidates;
 pub mod diagnostics;
 pub mod fit;
 pub mod held_out;
+pub mod index;
 pub mod monomial;
 pub mod noise;
 pub mod record;

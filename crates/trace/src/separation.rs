@@ -5,6 +5,7 @@
 
 use crate::candidates::Candidate;
 use crate::fit::{Columns, Fit, Linear, Problem, acts, whiten};
+use crate::index::TermPlace;
 use crate::noise::Whitener;
 use crate::structure::Structure;
 
@@ -43,7 +44,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Expected gain in −2 log L of the term at `place` against a rival in its stead.
-    pub fn distance(&self, place: usize, rival: &Candidate) -> f64 {
+    pub fn distance(&self, place: TermPlace, rival: &Candidate) -> f64 {
         let without = self.structure.without(place);
         let theta = self.structure.drop_from(&self.fit.theta, place);
         let bare = self.problem.replay(&without, &theta, &self.fit.initial);
@@ -80,10 +81,10 @@ impl<'a> Ground<'a> {
 }
 
 /// Places of the unknowns of a term.
-fn place_of(structure: &Structure, place: usize) -> std::ops::Range<usize> {
-    let before: usize = structure.terms[..place].iter().map(|term| term.freedom()).sum();
+fn place_of(structure: &Structure, place: TermPlace) -> std::ops::Range<usize> {
+    let before: usize = structure.terms[..place.0].iter().map(|term| term.freedom()).sum();
     let start = structure.base_count() + before;
-    start..start + structure.terms[place].freedom()
+    start..start + structure.term(place).freedom()
 }
 
 fn difference(one: &[Vec<f64>], other: &[Vec<f64>]) -> Vec<Vec<f64>> {

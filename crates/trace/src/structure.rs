@@ -11,6 +11,7 @@ use ship::replay::replay_states;
 use ship::response::BASE;
 use ship::{EffectReal, Response, ResponseModel};
 
+use crate::index::{RecordNumber, TermPlace, ThetaPlace};
 use crate::record::Record;
 
 /// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the
@@ -26,7 +27,7 @@ pub struct Term {
     /// The effect.
     pub effect: Arc<dyn Effect>,
     /// The one record in which it acts; `None` for all.
-    pub only: Option<usize>,
+    pub only: Option<RecordNumber>,
     /// Parameters that are not fitted but kept at their start.
     pub held: &'static [usize],
     /// Smallest values.
@@ -38,7 +39,7 @@ pub struct Term {
 }
 
 /// Identifier, form and record of a term.
-pub type TermName = (&'static str, &'static str, Option<usize>);
+pub type TermName = (&'static str, &'static str, Option<RecordNumber>);
 
 impl Term {
     /// Number of fitted parameters.
@@ -82,7 +83,7 @@ pub struct Entry {
     /// Size against which steps are measured.
     pub scale: f64,
     /// The record it belongs to; `None` for all.
-    pub only: Option<usize>,
+    pub only: Option<RecordNumber>,
 }
 
 /// A value counts as the end of a range within this share of its size: a step that ends there adds a rounding.
@@ -124,24 +125,34 @@ impl Structure {
         more
     }
 
+    /// Places of the terms.
+    pub fn places(&self) -> impl DoubleEndedIterator<Item = TermPlace> + ExactSizeIterator + use<> {
+        (0..self.terms.len()).map(TermPlace)
+    }
+
+    /// The term at `place`.
+    pub fn term(&self, place: TermPlace) -> &Term {
+        &self.terms[place.0]
+    }
+
     /// The same without the term at `place`.
-    pub fn without(&self, place: usize) -> Self {
+    pub fn without(&self, place: TermPlace) -> Self {
         let mut less = self.clone();
-        less.terms.remove(place);
+        less.terms.remove(place.0);
         less
     }
 
     /// θ without the parameters of the term at `place`.
-    pub fn drop_from(&self, theta: &[f64], place: usize) -> Vec<f64> {
+    pub fn drop_from(&self, theta: &[f64], place: TermPlace) -> Vec<f64> {
         let range = self.range(place);
         [&theta[..range.start], &theta[range.end..]].concat()
     }
 
     /// Where in θ the parameters of the term at `place` are.
-    pub fn range(&self, place: usize) -> std::ops::Range<usize> {
-        let before: usize = self.terms[..place].iter().map(|term| term.effect.parameters().len()).sum();
+    pub fn range(&self, place: TermPlace) -> std::ops::Range<usize> {
+        let before: usize = self.terms[..place.0].iter().map(|term| term.effect.parameters().len()).sum();
         let start = self.base_count() + before;
-        start..start + self.terms[place].effect.parameters().len()
+        start..start + self.term(place).effect.parameters().len()
     }
 
     /// Every entry of θ.
@@ -156,7 +167,7 @@ impl Structure {
         };
         let mut entries = vec![base(0, inverse_time_scale, None), base(1, gain_scale, None)];
         for record in 0..self.biases() {
-            entries.push(base(2, BASE[2].typical, self.own_bias.then_some(record)));
+            entries.push(base(2, BASE[2].typical, self.own_bias.then_some(RecordNumber(record))));
         }
         for term in &self.terms {
             for (k, parameter) in term.effect.parameters().iter().enumerate() {
@@ -173,16 +184,22 @@ impl Structure {
         entries
     }
 
+    /// Where in θ the parameters are that are fitted.
+    pub fn fitted(&self) -> Vec<ThetaPlace> {
+        let free = |(k, entry): (usize, Entry)| entry.fitted.then_some(ThetaPlace(k));
+        self.entries(1.0, 1.0).into_iter().enumerate().filter_map(free).collect()
+    }
+
     /// Whether the response depends on the direction in which the record begins.
     pub fn sees_heading(&self) -> bool {
         self.terms.iter().any(|term| term.effect.sees_heading())
     }
 
     /// The response of one record, with these parameters.
-    pub fn response<R: EffectReal>(&self, record: usize, theta: &[R]) -> Response<R> {
+    pub fn response<R: EffectReal>(&self, record: RecordNumber, theta: &[R]) -> Response<R> {
         let (mut effects, mut own) = (Vec::with_capacity(self.terms.len()), Vec::with_capacity(theta.len()));
         own.extend_from_slice(&theta[..2]);
-        own.push(theta[2 + if self.own_bias { record } else { 0 }]);
+        own.push(theta[2 + if self.own_bias { record.0 } else { 0 }]);
         let mut from = self.base_count();
         for term in &self.terms {
             let to = from + term.effect.parameters().len();

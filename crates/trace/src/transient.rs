@@ -18,7 +18,7 @@ const STARTS: usize = 2;
 ///
 /// `known` are the whitened residual and sensitivities at that fit.
 pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> Vec<Vec<f64>> {
-    let number = term.only.unwrap_or(0);
+    let number = term.only.map_or(0, |only| only.0);
     let record = &problem.records[number];
     let whitener = &known.whiteners[number];
     let columns: Vec<&[f64]> = known.columns.of_record(number).collect();

@@ -8,7 +8,7 @@
 use ship::Particulars;
 use ship::angle::to_deg;
 
-use crate::Quantity;
+use crate::quantity::Quantity;
 use crate::zigzag::{Pair, ZigZag};
 
 /// Largest advance of a turning circle, ship lengths.

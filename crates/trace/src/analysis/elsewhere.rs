@@ -2,6 +2,7 @@
 //! predicts them much better.
 
 use crate::held_out::{self, Comparison, HeldOut};
+use crate::index::TermPlace;
 use crate::search::{Evidence, Model, Search};
 use crate::structure::Term;
 
@@ -12,10 +13,11 @@ pub(super) fn believed_elsewhere(
     held_out: &[HeldOut],
     refused: &mut Vec<String>,
 ) -> Model {
-    let mut place = model.structure.terms.len();
-    while place > 0 {
-        place -= 1;
-        let term = &model.structure.terms[place];
+    let mut rest = model.structure.terms.len();
+    while rest > 0 {
+        rest -= 1;
+        let place = TermPlace(rest);
+        let term = model.structure.term(place);
         if term.effect.is_of_time() {
             continue;
         }
@@ -34,7 +36,7 @@ pub(super) fn believed_elsewhere(
             refused.push(format!("{} ({}) is not kept: {reason}", term.effect.id(), term.effect.form()));
             model = less;
             // What is left may behave differently without it.
-            place = model.structure.terms.len();
+            rest = model.structure.terms.len();
         }
     }
     model
@@ -72,7 +74,7 @@ pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: 
         let Some(before) = held_out::errors(held_out, &model.structure, &model.plain) else { break };
         let tried = search.try_all(model, &model.plain, true);
         let next = tried.into_iter().take(LOOKED_AT).find_map(|tried| {
-            let term = search.candidates[tried.place].term.clone();
+            let term = search.candidate(tried.candidate).term.clone();
             if term.effect.is_of_time() || !search.believes(&term, &tried.evidence) {
                 return None;
             }

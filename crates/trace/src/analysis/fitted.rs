@@ -39,11 +39,11 @@ pub(super) fn no_larger_error(
             let less = search.dropped(&model, place, true);
             (place, judged(&less), less)
         };
-        let all = (0..model.structure.terms.len()).map(without);
+        let all = model.structure.places().map(without);
         let Some((place, (smaller, replays), less)) = all.min_by(|one, other| one.1.0.total_cmp(&other.1.0)) else {
             break;
         };
-        let effect = &model.structure.terms[place].effect;
+        let effect = &model.structure.term(place).effect;
         let with = if error.is_finite() {
             format!("the heading error on the fitted records is {:.3} deg", to_deg(error))
         } else {

@@ -81,7 +81,7 @@ pub(super) fn parameters(
             } else {
                 sd.map(|sd| [value - quantile * sd, value + quantile * sd])
             };
-            let only = entry.only.map(|only| names[only].clone());
+            let only = entry.only.map(|only| names[only.0].clone());
             Fitted {
                 parameter: entry.parameter,
                 quantity: Quantity { value, sd, ci95 },

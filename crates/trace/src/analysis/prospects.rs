@@ -8,6 +8,7 @@ use super::result::{ALIAS, Analysis, Outcome};
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Problem};
 use crate::held_out;
+use crate::index::RecordNumber;
 use crate::record::Record;
 use crate::replay_errors;
 use crate::separation::Ground;
@@ -71,7 +72,7 @@ impl Analysis {
         structure.records = count + 1;
         let of_first = |term: &mut Term| {
             if term.effect.is_of_time() && term.only.is_none() {
-                term.only = Some(0);
+                term.only = Some(RecordNumber(0));
             }
         };
         structure.terms.iter_mut().for_each(of_first);
@@ -92,7 +93,8 @@ impl Analysis {
             sharpening: ground.uncertainty().zip(now).map(|(then, now)| then - now),
         };
         let label = |id: &str, form: &str| format!("{id} ({form})");
-        for (place, (effect, term)) in self.effects.iter().zip(&structure.terms).enumerate() {
+        for (place, effect) in structure.places().zip(&self.effects) {
+            let term = structure.term(place);
             for (id, form) in &effect.aliases {
                 let is = |c: &&Candidate| (c.term.effect.id(), c.term.effect.form()) == (*id, *form);
                 let Some(rival) = self.candidate_terms.iter().find(is) else { continue };

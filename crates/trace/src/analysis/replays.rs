@@ -8,6 +8,7 @@ use super::result::{Judged, OnRecord};
 use super::settings::TraceError;
 use crate::fit::Problem;
 use crate::held_out::{self, HeldOut};
+use crate::index::RecordNumber;
 use crate::record::Record;
 use crate::replay_errors;
 use crate::search::Model;
@@ -46,7 +47,7 @@ pub(super) fn on_records(
             let response = if is_base {
                 Response::first_order_ship(*first)
             } else {
-                model.structure.response(number, &model.plain.theta)
+                model.structure.response(RecordNumber(number), &model.plain.theta)
             };
             let mut all = starts(trial, first);
             all.push(model.plain.initial[number]);

@@ -12,9 +12,10 @@ use super::settings::Settings;
 use crate::candidates::{Candidate, Sizes};
 use crate::diagnostics::{self, Signature};
 use crate::fit::Fit;
+use crate::index::{CandidatePlace, TermPlace};
 use crate::monomial::{LIBRARY, Monomial};
 use crate::record::Record;
-use crate::search::{Evidence, Model, Search, Tried};
+use crate::search::{Evidence, Model, Search, Tested, Tried};
 use crate::separation::Ground;
 use crate::structure::Term;
 
@@ -33,24 +34,23 @@ pub(super) struct Reporter<'a> {
 
 impl Reporter<'_> {
     fn only(&self, term: &Term) -> Option<String> {
-        term.only.map(|only| self.names[only].clone())
+        term.only.map(|only| self.names[only.0].clone())
     }
 
     pub fn effects(&self, parameters: &[Fitted]) -> Vec<Traced> {
         let structure = &self.model.structure;
         let tests = self.search.tested(self.model, true);
-        let shares = self.shares();
         let mut effects: Vec<Traced> = tests
             .into_par_iter()
-            .enumerate()
-            .map(|(place, (evidence, less))| {
-                let term = &structure.terms[place];
+            .zip(self.shares())
+            .map(|(Tested { place, evidence, less }, share)| {
+                let term = structure.term(place);
                 let stands = self.search.believes(term, &evidence);
                 let predicted = self.predicted.iter().find(|predicted| predicted.term.is(term)).filter(|_| !stands);
                 let aliases = self.aliases(place, &less, predicted.is_some());
                 let (evidence, sentence) = match predicted {
-                    Some(predicted) => (predicted.evidence, self.prediction(predicted, shares[place])),
-                    None => (evidence, self.sentence(term, &evidence, shares[place], &aliases)),
+                    Some(predicted) => (predicted.evidence, self.prediction(predicted, share)),
+                    None => (evidence, self.sentence(term, &evidence, share, &aliases)),
                 };
                 Traced {
                     id: term.effect.id(),
@@ -60,7 +60,7 @@ impl Reporter<'_> {
                     aliases,
                     parameters: parameters[structure.range(place)].to_vec(),
                     evidence,
-                    residual_share: Some(shares[place]),
+                    residual_share: Some(share),
                     sentence,
                 }
             })
@@ -76,9 +76,9 @@ impl Reporter<'_> {
         let mut model = self.model.clone();
         let mut after = square(&model.plain);
         let mut shares = Vec::new();
-        for place in (0..self.model.structure.terms.len()).rev() {
+        for place in self.model.structure.places().rev() {
             model = self.search.dropped(&model, place, false);
-            let before = if place == 0 { all } else { square(&model.plain) };
+            let before = if place == TermPlace(0) { all } else { square(&model.plain) };
             shares.push(((before - after) / all).max(0.0));
             after = before;
         }
@@ -88,8 +88,8 @@ impl Reporter<'_> {
 
     /// Rivals that explain the records as well as the term at `place` does in its stead, under the same noise. A term
     /// that is believed for what it predicts is compared as it was found, under white noise.
-    fn aliases(&self, place: usize, less: &Model, predicted: bool) -> Vec<(&'static str, &'static str)> {
-        let own = &self.model.structure.terms[place];
+    fn aliases(&self, place: TermPlace, less: &Model, predicted: bool) -> Vec<(&'static str, &'static str)> {
+        let own = self.model.structure.term(place);
         let with = if predicted { &self.model.plain } else { &self.model.judged };
         let tried;
         let rivals = if less.structure.terms.is_empty() && with.colour == self.start.plain.colour {
@@ -104,7 +104,7 @@ impl Reporter<'_> {
         let mut aliases: Vec<(&'static str, &'static str)> = rivals
             .iter()
             .filter(|tried| tried.fit.bic < with.bic + ALIAS)
-            .map(|tried| &self.search.candidates[tried.place].term)
+            .map(|tried| &self.search.candidate(tried.candidate).term)
             .filter(|rival| !rival.is(own) && !self.model.structure.terms.iter().any(|term| term.is(rival)))
             .map(|rival| (rival.effect.id(), rival.effect.form()))
             .collect();
@@ -195,8 +195,8 @@ impl Reporter<'_> {
             .par_iter()
             .enumerate()
             .map(|(place, candidate)| {
-                let term = &candidate.term;
-                let alone = self.tried.iter().find(|tried| tried.place == place).map(|tried| tried.evidence.gain);
+                let (place, term) = (CandidatePlace(place), &candidate.term);
+                let alone = self.tried.iter().find(|tried| tried.candidate == place).map(|tried| tried.evidence.gain);
                 let added = structure.terms.iter().any(|own| own.is(term));
                 let alias =
                     effects.iter().any(|effect| effect.aliases.contains(&(term.effect.id(), term.effect.form())));
@@ -204,7 +204,7 @@ impl Reporter<'_> {
                     let own = |effect: &&Traced| (effect.id, effect.form) == (term.effect.id(), term.effect.form());
                     effects.iter().find(own).map(|effect| effect.evidence)
                 } else {
-                    last.iter().find(|tried| tried.place == place).map(|tried| tried.evidence)
+                    last.iter().find(|tried| tried.candidate == place).map(|tried| tried.evidence)
                 };
                 let visibility = (!added && self.settings.thorough).then(|| ground.visibility(candidate));
                 let needed = self.settings.thresholds.gain + term.freedom() as f64 * log_n;
@@ -324,12 +324,13 @@ impl Reporter<'_> {
             .collect();
         let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
         let tried = search.try_all(self.model, &self.model.judged, false);
-        let best = tried.first().filter(|best| search.believes(&library[best.place].term, &best.evidence))?;
+        let best =
+            tried.first().filter(|best| search.believes(&search.candidate(best.candidate).term, &best.evidence))?;
         let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);
-        let term = &library[best.place].term;
+        let term = &search.candidate(best.candidate).term;
         let square: f64 = search.adopted(best).plain.residual.iter().flatten().map(|e| e * e).sum();
         Some(Empirical {
-            group: near.map(|tried| library[tried.place].term.effect.form()).collect(),
+            group: near.map(|tried| search.candidate(tried.candidate).term.effect.form()).collect(),
             equation: term.effect.equation(),
             evidence: best.evidence,
             error: (square / self.search.problem.observations() as f64).sqrt(),

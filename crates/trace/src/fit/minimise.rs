@@ -9,6 +9,7 @@ use super::linearised::Linearised;
 use super::memory::question;
 use super::outcome::Fit;
 use super::problem::Problem;
+use crate::index::ThetaPlace;
 use crate::noise::{Colour, Whitener};
 use crate::structure::{Entry, Structure};
 
@@ -49,8 +50,8 @@ impl Point {
     }
 
     /// The unknowns that lead from here to another point.
-    fn step_to(&self, other: &Self, fitted: &[usize]) -> DVector<f64> {
-        let parameters = fitted.iter().map(|&k| other.theta[k] - self.theta[k]);
+    fn step_to(&self, other: &Self, fitted: &[ThetaPlace]) -> DVector<f64> {
+        let parameters = fitted.iter().map(|&ThetaPlace(k)| other.theta[k] - self.theta[k]);
         let states = self.initial.iter().zip(&other.initial).flat_map(|(from, to)| [to[0] - from[0], to[1] - from[1]]);
         DVector::from_vec(parameters.chain(states).collect())
     }
@@ -104,7 +105,7 @@ impl Problem {
         let entries = self.entries(structure);
         let mut damping = SMALLEST_DAMPING;
         let negligible = |rss: f64| NEGLIGIBLE * rss / self.observations() as f64;
-        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
+        let fitted = structure.fitted();
         // Whitened columns; `None` when they have to be computed anew.
         let mut sensitivities = Some(known);
         for _ in 0..MOST_STEPS {
@@ -125,7 +126,7 @@ impl Problem {
                     break;
                 }
                 let mut theta = now.theta.clone();
-                for (place, &k) in fitted.iter().enumerate() {
+                for (place, &ThetaPlace(k)) in fitted.iter().enumerate() {
                     theta[k] = (theta[k] + step[place]).clamp(entries[k].lowest, entries[k].highest);
                 }
                 let mut initial = now.initial.clone();
@@ -175,7 +176,7 @@ impl Problem {
         damping: f64,
         theta: &[f64],
         entries: &[Entry],
-        fitted: &[usize],
+        fitted: &[ThetaPlace],
     ) -> Option<(DVector<f64>, f64)> {
         let mut fixed: Vec<Option<f64>> = vec![None; normal.gradient.len()];
         for _ in 0..fitted.len() + 1 {
@@ -196,7 +197,8 @@ impl Problem {
             let beyond: Vec<(usize, f64)> = (0..fitted.len())
                 .filter(|&place| fixed[place].is_none())
                 .filter_map(|place| {
-                    let (x, entry) = (theta[fitted[place]], &entries[fitted[place]]);
+                    let ThetaPlace(at) = fitted[place];
+                    let (x, entry) = (theta[at], &entries[at]);
                     let inside = (x + step[place]).clamp(entry.lowest, entry.highest);
                     (inside != x + step[place]).then_some((place, inside - x))
                 })
@@ -214,8 +216,7 @@ impl Problem {
 
     fn finished(&self, structure: &Structure, point: Point, whiteners: &[Whitener], colour: &Colour) -> Fit {
         let n = self.observations() as f64;
-        let fitted = self.entries(structure).iter().filter(|entry| entry.fitted).count();
-        let freedom = fitted + 2 * self.records.len() + colour.freedom() + 1;
+        let freedom = structure.free_count() + 2 * self.records.len() + colour.freedom() + 1;
         let deviance = self.deviance(point.rss, log_variance(whiteners));
         let Point { theta, initial, residual, rss, .. } = point;
         let bic = deviance + freedom as f64 * n.ln();

@@ -6,6 +6,7 @@ use ship::number::DIRECTIONS;
 use super::linear::{Block, Column, Linear};
 use super::memory::Memory;
 use super::outcome::Fit;
+use crate::index::{RecordNumber, ThetaPlace};
 use crate::noise::{Colour, RecordNoise, Whitener};
 use crate::record::Record;
 use crate::structure::{Entry, Structure, headings};
@@ -113,7 +114,7 @@ impl Problem {
     pub fn replay(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
         let replayed = |(record, source): (usize, &Record)| {
             let mut out = vec![0.0; source.observed.len()];
-            let response = structure.response(record, theta);
+            let response = structure.response(RecordNumber(record), theta);
             headings(&response, source, initial[record], |number, heading| out[number] = heading);
             out
         };
@@ -132,18 +133,18 @@ impl Problem {
     fn tangents(
         &self,
         structure: &Structure,
-        record: usize,
+        record: RecordNumber,
         theta: &[f64],
         initial: [f64; 2],
-        variables: &[usize],
+        variables: &[ThetaPlace],
     ) -> (Vec<f64>, Vec<Vec<f64>>) {
-        let source = &self.records[record];
+        let source = &self.records[record.0];
         let rows = source.observed.len();
         let (mut replayed, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
         let constant: Vec<Tangent> = theta.iter().chain(&initial).map(|&value| Tangent::from(value)).collect();
         for (variables, columns) in variables.chunks(DIRECTIONS).zip(columns.chunks_mut(DIRECTIONS)) {
             let mut point = constant.clone();
-            for (direction, &variable) in variables.iter().enumerate() {
+            for (direction, &ThetaPlace(variable)) in variables.iter().enumerate() {
                 point[variable] = Tangent::variable(point[variable].value, direction);
             }
             let (theta, initial) = point.split_at(theta.len());
@@ -160,19 +161,20 @@ impl Problem {
     /// at the beginning of every record.
     pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
         let entries = self.entries(structure);
-        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].fitted).collect();
+        let fitted = structure.fitted();
         let blocks = (0..self.records.len()).map(|record| {
-            let acts = |k: &usize| entries[*k].only.is_none_or(|only| only == record);
-            let acting = fitted.iter().copied().enumerate().filter(|(_, k)| acts(k));
-            let (mut places, mut variables): (Vec<usize>, Vec<usize>) = acting.unzip();
+            let acts = |at: &ThetaPlace| entries[at.0].only.is_none_or(|only| only == RecordNumber(record));
+            let acting = fitted.iter().copied().enumerate().filter(|(_, at)| acts(at));
+            let (mut places, mut variables): (Vec<usize>, Vec<ThetaPlace>) = acting.unzip();
             let of_state = fitted.len() + 2 * record;
             places.push(of_state + 1);
-            variables.push(theta.len() + 1);
+            variables.push(ThetaPlace(theta.len() + 1));
             if structure.sees_heading() {
                 places.push(of_state);
-                variables.push(theta.len());
+                variables.push(ThetaPlace(theta.len()));
             }
-            let (mut replayed, columns) = self.tangents(structure, record, theta, initial[record], &variables);
+            let (mut replayed, columns) =
+                self.tangents(structure, RecordNumber(record), theta, initial[record], &variables);
             subtract_from(&self.records[record], &mut replayed);
             let mut columns: Vec<(usize, Vec<f64>)> = places.into_iter().zip(columns).collect();
             if !structure.sees_heading() {
@@ -184,8 +186,8 @@ impl Problem {
         Linear { blocks: blocks.collect(), unknowns: fitted.len() + 2 * self.records.len() }
     }
 
-    /// How the heading changes by the last term of a structure presence there at all, against the `without` it, and
-    /// with its fitted parameters.
+    /// What the last term of a structure does to the heading: the replay with it less the headings `without` it, and
+    /// the derivatives by its fitted parameters.
     pub fn columns_of_last(
         &self,
         structure: &Structure,
@@ -193,20 +195,22 @@ impl Problem {
         initial: &[[f64; 2]],
         without: &[Vec<f64>],
     ) -> (Column, Vec<Column>) {
-        let Some((term, range)) = structure.terms.last().zip(structure.terms.len().checked_sub(1)) else {
+        let Some(last) = structure.places().next_back() else {
             return (Column::new(), Vec::new());
         };
-        let variables: Vec<usize> =
-            structure.range(range).enumerate().filter(|(k, _)| !term.held.contains(k)).map(|(_, at)| at).collect();
+        let term = structure.term(last);
+        let own = structure.range(last).enumerate().filter(|(k, _)| !term.held.contains(k));
+        let variables: Vec<ThetaPlace> = own.map(|(_, at)| ThetaPlace(at)).collect();
         let mut presence = Column::new();
         let mut tangents = vec![Column::new(); variables.len()];
         for record in 0..self.records.len() {
-            if term.only.is_some_and(|only| only != record) {
+            if term.only.is_some_and(|only| only != RecordNumber(record)) {
                 presence.push(None);
                 tangents.iter_mut().for_each(|column| column.push(None));
                 continue;
             }
-            let (mut with, columns) = self.tangents(structure, record, theta, initial[record], &variables);
+            let (mut with, columns) =
+                self.tangents(structure, RecordNumber(record), theta, initial[record], &variables);
             with.iter_mut().zip(&without[record]).for_each(|(with, without)| *with -= without);
             presence.push(Some(with));
             tangents.iter_mut().zip(columns).for_each(|(all, column)| all.push(Some(column)));

@@ -14,5 +14,5 @@ mod tests;
 mod trying;
 
 pub use evidence::{Evidence, Thresholds};
-pub use models::{Model, Search};
+pub use models::{Model, Search, Tested};
 pub use trying::Tried;

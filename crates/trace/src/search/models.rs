@@ -7,6 +7,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use super::evidence::{Evidence, Thresholds};
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Linear, Problem};
+use crate::index::TermPlace;
 use crate::noise::{Colour, Moment};
 use crate::structure::{Structure, Term};
 use crate::waves;
@@ -33,6 +34,17 @@ pub struct Search<'a> {
     pub candidates: &'a [Candidate],
     /// When to believe it.
     pub thresholds: Thresholds,
+}
+
+/// A term of a model, held against the model without it.
+#[derive(Debug, Clone)]
+pub struct Tested {
+    /// The term.
+    pub place: TermPlace,
+    /// How much it explains.
+    pub evidence: Evidence,
+    /// The model without it, fitted anew.
+    pub less: Model,
 }
 
 impl Search<'_> {
@@ -133,7 +145,7 @@ impl Search<'_> {
     }
 
     /// A model without one of its terms, fitted anew.
-    pub fn dropped(&self, model: &Model, place: usize, under_moment: bool) -> Model {
+    pub fn dropped(&self, model: &Model, place: TermPlace, under_moment: bool) -> Model {
         let structure = model.structure.without(place);
         let theta = model.structure.drop_from(&model.plain.theta, place);
         let colour = Colour { moment: None, waves: model.plain.colour.waves };
@@ -152,15 +164,16 @@ impl Search<'_> {
         less
     }
 
-    /// Evidence of every term of a model against the model without it, and those models.
-    pub fn tested(&self, model: &Model, under_moment: bool) -> Vec<(Evidence, Model)> {
-        (0..model.structure.terms.len())
+    /// Every term of a model, tested against the model without it.
+    pub fn tested(&self, model: &Model, under_moment: bool) -> Vec<Tested> {
+        let places: Vec<TermPlace> = model.structure.places().collect();
+        places
             .into_par_iter()
             .map(|place| {
                 let less = self.dropped(model, place, under_moment);
                 let with = if under_moment { &model.judged } else { &model.plain };
-                let evidence = self.evidence(&less.judged, with, model.structure.terms[place].freedom());
-                (evidence, less)
+                let evidence = self.evidence(&less.judged, with, model.structure.term(place).freedom());
+                Tested { place, evidence, less }
             })
             .collect()
     }

@@ -1,7 +1,6 @@
 //! The rounds of a search: terms are added, exchanged and dropped until none is missing and none needless.
 
-use super::evidence::Evidence;
-use super::models::{Model, Search};
+use super::models::{Model, Search, Tested};
 use super::trying::Tried;
 
 /// Gain in BIC for which one term takes the place of another.
@@ -19,15 +18,11 @@ impl Search<'_> {
     fn prune(&self, mut model: Model, base: &Model, under_moment: bool) -> Model {
         while !model.structure.terms.is_empty() {
             let tests = self.tested(&model, under_moment);
-            let surplus =
-                |place: usize, evidence: &Evidence| evidence.gain - self.needed(&model.structure.terms[place]);
-            let weakest = tests
-                .into_iter()
-                .enumerate()
-                .min_by(|(i, one), (j, other)| surplus(*i, &one.0).total_cmp(&surplus(*j, &other.0)));
+            let surplus = |tested: &Tested| tested.evidence.gain - self.needed(model.structure.term(tested.place));
+            let weakest = tests.into_iter().min_by(|one, other| surplus(one).total_cmp(&surplus(other)));
             match weakest {
-                Some((place, (evidence, less)))
-                    if !self.believes(&model.structure.terms[place], &evidence) || !self.pays(&model, base) =>
+                Some(Tested { place, evidence, less })
+                    if !self.believes(model.structure.term(place), &evidence) || !self.pays(&model, base) =>
                 {
                     model = less;
                 }
@@ -40,10 +35,10 @@ impl Search<'_> {
     /// Drops terms that do not lower the heading error itself: what helps only under a random moment mends no replay.
     fn helpful(&self, mut model: Model) -> Model {
         while !model.structure.terms.is_empty() && model.judged.colour.moment.is_some() {
-            let all = (0..model.structure.terms.len()).map(|place| (place, self.dropped(&model, place, true)));
+            let all = model.structure.places().map(|place| (place, self.dropped(&model, place, true)));
             let gain = |less: &Model| less.plain.bic - model.plain.bic;
             match all.min_by(|one, other| gain(&one.1).total_cmp(&gain(&other.1))) {
-                Some((place, less)) if gain(&less) < self.needed(&model.structure.terms[place]) => model = less,
+                Some((place, less)) if gain(&less) < self.needed(model.structure.term(place)) => model = less,
                 _ => break,
             }
         }
@@ -52,7 +47,7 @@ impl Search<'_> {
 
     /// The believed candidate of lowest BIC.
     fn best(&self, tried: impl IntoIterator<Item = Tried>) -> Option<Tried> {
-        tried.into_iter().find(|tried| self.believes(&self.candidates[tried.place].term, &tried.evidence))
+        tried.into_iter().find(|tried| self.believes(&self.candidate(tried.candidate).term, &tried.evidence))
     }
 
     /// Adds what is missing under white noise, one at a time, dropping what a later term made needless; `timeless`
@@ -62,7 +57,7 @@ impl Search<'_> {
         let plain = Model { judged: base.plain.clone(), ..base.clone() };
         for round in 0..self.thresholds.most_effects {
             let tried = if round == 0 { first.to_vec() } else { self.try_all(&model, &model.plain, true) };
-            let allowed = |tried: &Tried| !timeless || !self.candidates[tried.place].term.effect.is_of_time();
+            let allowed = |tried: &Tried| !timeless || !self.candidate(tried.candidate).term.effect.is_of_time();
             let Some(best) = self.best(tried.into_iter().filter(allowed)) else { break };
             let before = model.structure.terms.len();
             let next = Model { structure: best.structure, judged: best.fit.clone(), plain: best.fit };
@@ -82,7 +77,7 @@ impl Search<'_> {
         if model.structure.terms.len() < 2 {
             return model;
         }
-        for place in 0..model.structure.terms.len() {
+        for place in model.structure.places() {
             let less = self.dropped(&model, place, false);
             let tried = self.try_all(&less, &less.plain, true);
             let Some(best) = self.best(tried).filter(|best| best.fit.bic < model.plain.bic - SWAP) else { continue };

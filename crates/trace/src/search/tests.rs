@@ -6,12 +6,11 @@ use super::*;
 use crate::candidates::{self, Candidate, Sizes};
 use crate::fit::Problem;
 use crate::held_out;
+use crate::index::CandidatePlace;
 use crate::made_up::{BASE, Plan, record, ship};
 use crate::noise::Colour;
 use crate::record::Record;
 use crate::structure::Structure;
-
-const THRESHOLDS: Thresholds = Thresholds { gain: 10.0, false_discovery: 0.01, most_effects: 4 };
 
 /// A record of a ship with these effects, and what it may lack.
 fn prepared(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> (Problem, Vec<Candidate>) {
@@ -30,7 +29,7 @@ fn damped() -> (Problem, Vec<Candidate>) {
 #[test]
 fn what_is_missing_is_found_and_nothing_else() {
     for (missing, (problem, candidates)) in [(true, damped()), (false, prepared(Vec::new()))] {
-        let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+        let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
         let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let tried = search.try_all(&base, &base.plain, false);
         assert_eq!(tried.len(), candidates.len());
@@ -38,11 +37,11 @@ fn what_is_missing_is_found_and_nothing_else() {
         let found = search.run(&base, &tried);
         let ids: Vec<_> = found.structure.terms.iter().map(|term| term.effect.id()).collect();
         assert_eq!(ids, if missing { vec!["nonlinear_damping"] } else { Vec::new() });
-        let first = &candidates[tried[0].place].term;
+        let first = &search.candidate(tried[0].candidate).term;
         assert_eq!(search.believes(first, &tried[0].evidence), missing, "{:?}", tried[0].evidence);
         // The list by scores holds what the list by fits begins with.
         let short = search.try_all(&base, &base.plain, true);
-        assert!(short.len() < tried.len() && (!missing || short[0].place == tried[0].place));
+        assert!(short.len() < tried.len() && (!missing || short[0].candidate == tried[0].candidate));
     }
 }
 
@@ -50,7 +49,7 @@ fn what_is_missing_is_found_and_nothing_else() {
 #[test]
 fn evidence_is_a_likelihood_ratio_among_many() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let mut better = base.plain.clone();
     // χ²₁ exceeds 10.828 with a probability of 0.001.
@@ -66,16 +65,18 @@ fn evidence_is_a_likelihood_ratio_among_many() {
 #[test]
 fn a_moment_of_time_needs_more_and_stands_alone() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
-    let place = |id: &str| candidates.iter().position(|candidate| candidate.term.effect.id() == id).expect("listed");
+    let place = |id: &str| {
+        CandidatePlace(candidates.iter().position(|candidate| candidate.term.effect.id() == id).expect("listed"))
+    };
     let (drift, squall, damping) = (place("moment_drift"), place("transient_disturbance"), place("nonlinear_damping"));
-    assert_eq!(search.needed(&candidates[drift].term), 25.0);
-    assert_eq!(search.needed(&candidates[damping].term), 10.0);
-    let structure = base.structure.with(candidates[drift].term.clone());
+    assert_eq!(search.needed(&search.candidate(drift).term), 25.0);
+    assert_eq!(search.needed(&search.candidate(damping).term), 10.0);
+    let structure = base.structure.with(search.candidate(drift).term.clone());
     let fit = problem.fit(&structure, &[&BASE[..], &[0.0]].concat(), &[[0.0; 2]], &Colour::WHITE);
     let drifting = Model { structure, plain: fit.clone(), judged: fit.clone() };
-    let tried: Vec<usize> = search.try_all(&drifting, &fit, false).iter().map(|tried| tried.place).collect();
+    let tried: Vec<_> = search.try_all(&drifting, &fit, false).iter().map(|tried| tried.candidate).collect();
     assert!(!tried.contains(&drift) && !tried.contains(&squall) && tried.contains(&damping));
 }
 
@@ -83,7 +84,7 @@ fn a_moment_of_time_needs_more_and_stands_alone() {
 #[test]
 fn parts_that_were_not_fitted_speak_for_the_truth() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: THRESHOLDS };
+    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let rich = search.run(&base, &search.try_all(&base, &base.plain, false));
     let (one, other) = ((&base.structure, &base.plain), (&rich.structure, &rich.plain));

@@ -9,6 +9,7 @@ use super::evidence::Evidence;
 use super::models::{Model, Search};
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Linearised, acts};
+use crate::index::CandidatePlace;
 use crate::noise::Colour;
 use crate::structure::{Structure, Term};
 use crate::transient;
@@ -16,8 +17,8 @@ use crate::transient;
 /// How a candidate did.
 #[derive(Debug, Clone)]
 pub struct Tried {
-    /// The candidate's place in the list.
-    pub place: usize,
+    /// Which candidate.
+    pub candidate: CandidatePlace,
     /// Structure with it.
     pub structure: Structure,
     /// Its fit, under the colour of the fit it is compared with.
@@ -30,6 +31,11 @@ pub struct Tried {
 const SHORT_LIST: usize = 6;
 
 impl Search<'_> {
+    /// The candidate at a place of the list.
+    pub fn candidate(&self, place: CandidatePlace) -> &Candidate {
+        &self.candidates[place.0]
+    }
+
     /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands
     /// beside any other damping), or another moment that depends on time. Several of those would be a random moment,
     /// written as a sum.
@@ -91,13 +97,14 @@ impl Search<'_> {
     /// best scores are fitted. The lowest BIC comes first.
     pub fn try_all(&self, model: &Model, fit: &Fit, short_list: bool) -> Vec<Tried> {
         let known = Linearised::new(self.problem, &model.structure, fit);
-        let mut places: Vec<usize> = (0..self.candidates.len())
-            .filter(|&k| !self.excludes(&model.structure, &self.candidates[k].term))
+        let mut places: Vec<CandidatePlace> = (0..self.candidates.len())
+            .map(CandidatePlace)
+            .filter(|&place| !self.excludes(&model.structure, &self.candidate(place).term))
             .collect();
         if short_list {
-            let mut scored: Vec<(f64, usize)> = places
+            let mut scored: Vec<(f64, CandidatePlace)> = places
                 .par_iter()
-                .map(|&place| (self.score(model, fit, &known, &self.candidates[place]), place))
+                .map(|&place| (self.score(model, fit, &known, self.candidate(place)), place))
                 .collect();
             scored.sort_by(|one, other| other.0.total_cmp(&one.0));
             places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
@@ -105,10 +112,10 @@ impl Search<'_> {
         let mut tried: Vec<Tried> = places
             .into_par_iter()
             .map(|place| {
-                let candidate = &self.candidates[place];
+                let candidate = self.candidate(place);
                 let (structure, with) = self.with_term(model, candidate, fit, &known);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
-                Tried { place, structure, fit: with, evidence }
+                Tried { candidate: place, structure, fit: with, evidence }
             })
             .collect();
         tried.sort_by(|one, other| one.fit.bic.total_cmp(&other.fit.bic));

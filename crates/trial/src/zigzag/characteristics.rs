@@ -9,8 +9,8 @@ use super::heading::Heading;
 use super::holds::{self, Hold};
 use super::local::Local;
 use super::median::median;
-use crate::Quantity;
 use crate::channel::Channel;
+use crate::quantity::Quantity;
 use crate::record::Trial;
 
 /// A first execute starts from at most this share of the largest yaw rate; at a reversal it is 0.7 or more.

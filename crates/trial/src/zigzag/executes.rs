@@ -4,7 +4,7 @@
 
 use super::holds::{Hold, LAID};
 use super::median::median;
-use crate::Quantity;
+use crate::quantity::Quantity;
 
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use std::fmt;
 use ship::angle::to_deg;
 use thiserror::Error;
 
-use crate::Quantity;
+use crate::quantity::Quantity;
 
 /// Why a record has no zig-zag characteristics.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -3,7 +3,7 @@
 
 use super::local::Cubic;
 use super::median::median;
-use crate::Quantity;
+use crate::quantity::Quantity;
 
 /// Half-width of the residual window that the noise is estimated with, in periods of the manoeuvre.
 const NOISE_WINDOW: f64 = 0.02;

@@ -9,7 +9,8 @@ use ship::angle::{from_deg, to_deg};
 
 use super::simulator::{Gaussian, Plant, trial};
 use super::*;
-use crate::{Noise, Quantity};
+use crate::Noise;
+use crate::quantity::Quantity;
 
 fn of_plant(plant: Plant, duration: f64, step: f64) -> ZigZag {
     let (time, heading, rudder) = plant.record(duration, step);
