@@ -1,4 +1,4 @@
-//! How the command line fails: one message and an exit code, never a backtrace.
+//! Why something could not be done, as a user sees it: one message, and who has to act.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -23,20 +23,10 @@ pub struct Failure {
 /// Who has to act.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Blame {
-    /// The input is wrong: usage, scenario or record. Exit code 2.
+    /// The input is wrong: usage, scenario or record.
     Input,
-    /// The work could not be done: a full disk, a folder that cannot be written. Exit code 1.
+    /// The work could not be done: a full disk, a folder that cannot be written.
     Work,
-}
-
-impl Blame {
-    /// The exit code of the process.
-    pub fn exit_code(self) -> u8 {
-        match self {
-            Self::Work => 1,
-            Self::Input => 2,
-        }
-    }
 }
 
 impl Failure {

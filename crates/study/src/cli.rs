@@ -105,14 +105,14 @@ pub fn main() -> ExitCode {
             Cli::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
         let advice = suggestion(&name, &known);
         screen::warn(&format!("error: there is no command `{name}`, and no scenario file of that name; {advice}"));
-        return ExitCode::from(Blame::Input.exit_code());
+        return ExitCode::from(screen::exit_code(Blame::Input));
     }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(usage) if usage.use_stderr() => {
             // By the same way as all other messages: an argument may hold anything.
             screen::warn(usage.render().to_string().trim_end());
-            return ExitCode::from(Blame::Input.exit_code());
+            return ExitCode::from(screen::exit_code(Blame::Input));
         }
         Err(help) => help.exit(),
     };
@@ -120,7 +120,7 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             screen::warn(&failure.to_string());
-            ExitCode::from(failure.blame.exit_code())
+            ExitCode::from(screen::exit_code(failure.blame))
         }
     }
 }

@@ -17,7 +17,7 @@ const INTERRUPTED: i32 = 1;
 /// Ends the program while work goes on that cannot be stopped, with the message of a failure.
 pub fn give_up(failure: &Failure) -> ! {
     screen::warn(&failure.to_string());
-    std::process::exit(i32::from(failure.blame.exit_code()))
+    std::process::exit(i32::from(screen::exit_code(failure.blame)))
 }
 
 /// While this lives, an interruption is a request.

@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Write};
 
 use report::printable::escaped;
 
-use scenario::failure::Failure;
+use scenario::failure::{Blame, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
 ///
@@ -30,4 +30,12 @@ pub fn warn(line: &str) {
 /// The lines without anything but text in them, as they are written.
 pub fn shown(lines: &str) -> String {
     lines.split('\n').map(escaped).collect::<Vec<Cow<str>>>().join("\n")
+}
+
+/// The exit code of the program after a failure.
+pub fn exit_code(blame: Blame) -> u8 {
+    match blame {
+        Blame::Work => 1,
+        Blame::Input => 2,
+    }
 }
