@@ -127,14 +127,17 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
         let caption = format!("{} of every method over both axes: dark is good.", data.value_title);
         drawings.push(Drawing::new(stem, caption, move |theme| figures::heat_map(&data, theme)));
     }
-    if let Some((data, first)) = charts::ranking(design, summary) {
+    // A trace is held against the ship's own K and T, another method against the nearest first-order response: in one pool
+    // their errors say nothing.
+    let is_one_pool = summary.tracing.is_empty();
+    if let Some((data, first)) = charts::ranking(design, summary).filter(|_| is_one_pool) {
         let caption = format!(
             "Methods by the size of their error of T over all trials: median (filled) and the size that 90 % of the answers do \
              not exceed (hollow), with 95 % intervals. Trials without an answer do not count here. First: {first}."
         );
         drawings.push(Drawing::new("ranking", caption, move |theme| figures::dots(&data, theme)));
     }
-    if let Some(data) = charts::ecdf(design, summary) {
+    if let Some(data) = charts::ecdf(design, summary).filter(|_| is_one_pool) {
         let caption = "Share of all trials whose error is within a size. Further left is better; a line that levels off below one \
                        belongs to a method that fails.";
         drawings.push(Drawing::new("ecdf", caption, move |theme| figures::ecdf(&data, theme)));

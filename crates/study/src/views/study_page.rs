@@ -85,12 +85,19 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings:
         Some(brief) => line(&brief.to_markdown()),
         None => line(&format!("The {} cells are in `summary.csv`.\n", design.cells.len())),
     }
-    line(
-        "Errors of K and T are relative to the truth. *median*, *rms*: median and root mean square error, with a bootstrap \
+    let truth = match summary.tracing.is_empty() {
+        true => "the truth",
+        false => {
+            "the truth: for a trace the ship's own K and T where it has any, for another method those of the first-order \
+             response nearest to the ship, so the two are not to be compared"
+        }
+    };
+    line(&format!(
+        "Errors of K and T are relative to {truth}. *median*, *rms*: median and root mean square error, with a bootstrap \
          interval; *coverage*: share of quoted 95 % intervals that hold the truth; *sd/bound*: standard deviation over the \
          Cramér–Rao bound; *validation*: median error of the heading on a manoeuvre no method has seen. All figures with all \
          intervals are in `summary.csv`, comparisons on the same trials in `pairs.csv`, times in `timings.csv`.\n",
-    );
+    ));
     let times: Vec<String> = design
         .methods
         .iter()
