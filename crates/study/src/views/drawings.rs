@@ -127,8 +127,8 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
         let caption = format!("{} of every method over both axes: dark is good.", data.value_title);
         drawings.push(Drawing::new(stem, caption, move |theme| figures::heat_map(&data, theme)));
     }
-    // A trace is held against the ship's own K and T, another method against the nearest first-order response: in one pool
-    // their errors say nothing.
+    // A trace is held against the ship's own K and T, another method against the nearest first-order response: in one
+    // pool their errors say nothing.
     let is_one_pool = summary.tracing.is_empty();
     if let Some((data, first)) = charts::ranking(design, summary).filter(|_| is_one_pool) {
         let caption = format!(
