@@ -53,7 +53,7 @@ impl Samples {
             rudder_double_integral: column(),
         };
         let (mut once, mut twice) = (0.0, 0.0);
-        let mut seat = 0;
+        let mut place = 0;
         for row in first..rows {
             // Integration starts at the first observed row.
             if row > first {
@@ -62,17 +62,17 @@ impl Samples {
                 once += 0.5 * h * (delta[row - 1] + delta[row]);
             }
             if psi[row].is_finite() {
-                samples.time[seat] = t[row] - t[first];
-                samples.heading[seat] = psi[row];
-                samples.rudder[seat] = delta[row];
-                samples.rudder_integral[seat] = once;
-                samples.rudder_double_integral[seat] = twice;
-                seat += 1;
+                samples.time[place] = t[row] - t[first];
+                samples.heading[place] = psi[row];
+                samples.rudder[place] = delta[row];
+                samples.rudder_integral[place] = once;
+                samples.rudder_double_integral[place] = twice;
+                place += 1;
             }
         }
         let Self { time, heading, rudder, rudder_integral, rudder_double_integral } = &mut samples;
         for column in [time, heading, rudder, rudder_integral, rudder_double_integral] {
-            column.truncate(seat);
+            column.truncate(place);
         }
         Ok(samples)
     }

@@ -155,8 +155,8 @@ impl Track {
     /// Leaves the observed rows of a column that was filled in every row.
     fn keep_observed(&self, column: &mut Vec<f64>) {
         if self.observed.len() < column.len() {
-            for (seat, &row) in self.observed.iter().enumerate() {
-                column[seat] = column[row];
+            for (place, &row) in self.observed.iter().enumerate() {
+                column[place] = column[row];
             }
             column.truncate(self.observed.len());
         }
