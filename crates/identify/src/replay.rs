@@ -76,12 +76,14 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
             return None;
         }
     }
-    Some(Replay {
+    let replay = Replay {
         time: track.time().to_vec(),
         heading: states.iter().map(|state| state.heading).collect(),
         yaw_rate: states.iter().map(|state| state.yaw_rate).collect(),
         residual,
-    })
+    };
+    // Finite residuals may have squares that are not.
+    replay.rms().is_finite().then_some(replay)
 }
 
 /// Heading and yaw rate at the anchor whose own motion, 1 and φ₁, comes nearest to `rest`.

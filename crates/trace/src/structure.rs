@@ -97,6 +97,11 @@ impl Entry {
     }
 }
 
+/// Where in θ the parameters are that are fitted.
+pub fn fitted(entries: &[Entry]) -> Vec<ThetaPlace> {
+    (0..entries.len()).filter(|&k| entries[k].fitted).map(ThetaPlace).collect()
+}
+
 impl Structure {
     /// The base alone.
     pub fn base(records: usize, own_bias: bool) -> Self {
@@ -182,12 +187,6 @@ impl Structure {
             }
         }
         entries
-    }
-
-    /// Where in θ the parameters are that are fitted.
-    pub fn fitted(&self) -> Vec<ThetaPlace> {
-        let free = |(k, entry): (usize, Entry)| entry.fitted.then_some(ThetaPlace(k));
-        self.entries(1.0, 1.0).into_iter().enumerate().filter_map(free).collect()
     }
 
     /// Whether the response depends on the direction in which the record begins.

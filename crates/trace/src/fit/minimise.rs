@@ -11,7 +11,7 @@ use super::outcome::Fit;
 use super::problem::Problem;
 use crate::index::ThetaPlace;
 use crate::noise::{Colour, Whitener};
-use crate::structure::{Entry, Structure};
+use crate::structure::{Entry, Structure, fitted};
 
 /// A step that lowers RSS by less than this many mean squares ends the search: far below what any test could see.
 const NEGLIGIBLE: f64 = 0.02;
@@ -105,7 +105,7 @@ impl Problem {
         let entries = self.entries(structure);
         let mut damping = SMALLEST_DAMPING;
         let negligible = |rss: f64| NEGLIGIBLE * rss / self.observations() as f64;
-        let fitted = structure.fitted();
+        let fitted = fitted(&entries);
         // Whitened columns; `None` when they have to be computed anew.
         let mut sensitivities = Some(known);
         for _ in 0..MOST_STEPS {

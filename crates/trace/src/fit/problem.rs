@@ -9,7 +9,7 @@ use super::outcome::Fit;
 use crate::index::{RecordNumber, ThetaPlace};
 use crate::noise::{Colour, RecordNoise, Whitener};
 use crate::record::Record;
-use crate::structure::{Entry, Structure, headings};
+use crate::structure::{Entry, Structure, fitted, headings};
 
 /// No heading is believed to be better than this, rad: a thousandth of a degree.
 const FINEST: f64 = 1.75e-5;
@@ -161,7 +161,7 @@ impl Problem {
     /// at the beginning of every record.
     pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
         let entries = self.entries(structure);
-        let fitted = structure.fitted();
+        let fitted = fitted(&entries);
         let blocks = (0..self.records.len()).map(|record| {
             let acts = |at: &ThetaPlace| entries[at.0].only.is_none_or(|only| only == RecordNumber(record));
             let acting = fitted.iter().copied().enumerate().filter(|(_, at)| acts(at));
