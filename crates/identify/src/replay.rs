@@ -102,3 +102,20 @@ fn best_start(rest: &[f64], homogeneous: &[f64]) -> State {
     let yaw_rate = dot(&centred, rest) / spread;
     State { heading: level - yaw_rate * mean, yaw_rate }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::record;
+
+    #[test]
+    fn a_replay_whose_error_overflows_is_none() {
+        let time: Vec<f64> = (0..100).map(f64::from).collect();
+        let heading = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
+        let rudder = time.iter().map(|t| 0.2 * (0.1 * t).cos()).collect();
+        let trial = record("one", time, heading, rudder);
+        let replayed = |gain| replay(&trial, &FirstOrder { inverse_T: 0.1, K_over_T: gain, rudder_bias: 0.0 });
+        assert!(replayed(0.01).is_some_and(|replay| replay.rms() > 0.0 && replay.observed().count() == 100));
+        assert_eq!(replayed(1e170), None);
+    }
+}
