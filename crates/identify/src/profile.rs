@@ -180,7 +180,7 @@ impl Profile {
 impl Part {
     fn project_columns(&mut self, inverse_time: f64) {
         self.track.fill(inverse_time, &mut self.columns);
-        let Columns { homogeneous, rudder, constant } = &mut self.columns;
+        let Columns { homogeneous, rudder, constant, .. } = &mut self.columns;
         let mean = sum(homogeneous) / homogeneous.len() as f64;
         homogeneous.iter_mut().for_each(|x| *x -= mean);
         let length = dot(homogeneous, homogeneous).sqrt();

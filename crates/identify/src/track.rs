@@ -27,6 +27,10 @@ pub(crate) struct Track {
     observed: Vec<usize>,
     /// Heading of the observed rows, rad.
     pub heading: Vec<f64>,
+    /// Rows that have a yaw rate which is used, in order.
+    observed_rates: Vec<usize>,
+    /// Yaw rate of these rows, rad/s.
+    pub rates: Vec<f64>,
 }
 
 /// What lies between two rows.
@@ -46,6 +50,19 @@ pub(crate) struct Columns {
     /// G, rad s².
     pub rudder: Vec<f64>,
     /// H, s².
+    pub constant: Vec<f64>,
+    /// The same of the yaw rate, at the rows where it is used.
+    pub rates: RateColumns,
+}
+
+/// The yaw rates of the columns.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct RateColumns {
+    /// exp(−a (t − t₁)).
+    pub homogeneous: Vec<f64>,
+    /// G', rad s.
+    pub rudder: Vec<f64>,
+    /// H', s.
     pub constant: Vec<f64>,
 }
 
@@ -96,7 +113,30 @@ impl Track {
             Interval { length, rudder_rate: (delta[1] - delta[0]) / length }
         };
         let intervals = time.windows(2).zip(rudder.windows(2)).map(interval).collect();
-        Self { time, rudder, intervals, observed, heading }
+        Self { time, rudder, intervals, observed, heading, observed_rates: Vec::new(), rates: Vec::new() }
+    }
+
+    /// The same with the yaw rates of its trial, if they are to be used.
+    pub fn with_rates(mut self, rates: Option<&[f64]>, trial: &Trial) -> Self {
+        let first = trial.observed_rows().next().unwrap_or(0);
+        let rates = rates.map_or(&[][..], |rates| &rates[first..][..self.time.len()]);
+        self.observed_rates = (0..rates.len()).filter(|&row| rates[row].is_finite()).collect();
+        self.rates = self.observed_rates.iter().map(|&row| rates[row]).collect();
+        self
+    }
+
+    /// The same without some of its readings, told by row.
+    pub fn without(&self, headings: &[usize]) -> Self {
+        let mut less = self.clone();
+        less.observed.retain(|row| !headings.contains(row));
+        less.heading = self
+            .observed
+            .iter()
+            .zip(&self.heading)
+            .filter(|(row, _)| !headings.contains(row))
+            .map(|(_, &psi)| psi)
+            .collect();
+        less
     }
 
     /// About `rows` of the observed rows, evenly spread, the first included: enough to see where a minimum lies. The
@@ -152,27 +192,51 @@ impl Track {
         if backward { self.time.len() - 1 } else { 0 }
     }
 
-    /// Leaves the observed rows of a column that was filled in every row.
-    fn keep_observed(&self, column: &mut Vec<f64>) {
-        if self.observed.len() < column.len() {
-            for (place, &row) in self.observed.iter().enumerate() {
-                column[place] = column[row];
+    /// Fills the columns for a = `inverse_time`, 1/s.
+    pub fn fill(&self, inverse_time: f64, columns: &mut Columns) {
+        self.fill_from(is_backward(inverse_time), inverse_time, columns);
+    }
+
+    /// The same with the anchor at the first row, whatever the sign of a.
+    pub fn fill_from_first(&self, inverse_time: f64, columns: &mut Columns) {
+        self.fill_from(false, inverse_time, columns);
+    }
+
+    fn fill_from(&self, backward: bool, inverse_time: f64, columns: &mut Columns) {
+        let (rows, anchor) = (self.time.len(), self.anchor_row(backward));
+        let Columns { homogeneous, rudder, constant, rates } = columns;
+        for column in [&mut *homogeneous, rudder, constant] {
+            column.resize(rows, 0.0);
+            column[anchor] = 0.0;
+        }
+        let (free, steered, turned) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
+        if self.observed_rates.is_empty() {
+            self.motions(inverse_time, backward, |row, heading, _| {
+                [free[row], steered[row], turned[row], _] = heading;
+            });
+        } else {
+            for (column, start) in [(&mut rates.homogeneous, 1.0), (&mut rates.rudder, 0.0), (&mut rates.constant, 0.0)]
+            {
+                column.resize(rows, 0.0);
+                column[anchor] = start;
             }
-            column.truncate(self.observed.len());
+            self.motions(inverse_time, backward, |row, heading, rate| {
+                [free[row], steered[row], turned[row], _] = heading;
+                [rates.homogeneous[row], rates.rudder[row], rates.constant[row], _] = rate;
+            });
+            for column in [&mut rates.homogeneous, &mut rates.rudder, &mut rates.constant] {
+                keep(&self.observed_rates, column);
+            }
+        }
+        for column in [homogeneous, rudder, constant] {
+            keep(&self.observed, column);
         }
     }
 
-    /// Fills the columns for a = `inverse_time`, 1/s.
-    pub fn fill(&self, inverse_time: f64, columns: &mut Columns) {
-        let backward = is_backward(inverse_time);
-        let rows = self.time.len();
-        let Columns { homogeneous, rudder, constant } = columns;
-        for column in [&mut *homogeneous, rudder, constant] {
-            column.resize(rows, 0.0);
-            column[self.anchor_row(backward)] = 0.0;
-        }
-        let (free, steered, turned) = (&mut homogeneous[..rows], &mut rudder[..rows], &mut constant[..rows]);
-        // The three motions side by side: φ₁, G, H, and one that rests.
+    /// Visits heading and yaw rate of the three motions φ₁, G, H side by side (and one that rests) at every row but the
+    /// anchor.
+    #[inline(always)]
+    fn motions(&self, inverse_time: f64, backward: bool, mut visit: impl FnMut(usize, [f64; 4], [f64; 4])) {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
         for k in 0..self.steps() {
@@ -187,19 +251,39 @@ impl Track {
                 heading[motion] += step.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = step.decay * yaw_rate[motion] + of_rate[motion];
             }
-            [free[to], steered[to], turned[to], _] = heading;
-        }
-        for column in [homogeneous, rudder, constant] {
-            self.keep_observed(column);
+            visit(to, heading, yaw_rate);
         }
     }
 
     /// ∂ψ/∂a at the observed rows for fixed coefficients, rad s.
     pub fn sensitivity(&self, inverse_time: f64, coefficients: &Coefficients, out: &mut Vec<f64>) {
-        let backward = is_backward(inverse_time);
+        let column = self.prepared(inverse_time, out);
+        self.tangents(inverse_time, coefficients, |row, by_heading, _| column[row] = by_heading);
+        keep(&self.observed, out);
+    }
+
+    /// The same, and ∂r/∂a at the rows with a yaw rate, rad.
+    pub fn sensitivities(&self, inverse_time: f64, coefficients: &Coefficients, out: [&mut Vec<f64>; 2]) {
+        let [heading, rate] = out;
+        let (of_heading, of_rate) = (self.prepared(inverse_time, heading), self.prepared(inverse_time, rate));
+        self.tangents(inverse_time, coefficients, |row, by_heading, by_rate| {
+            (of_heading[row], of_rate[row]) = (by_heading, by_rate);
+        });
+        keep(&self.observed, heading);
+        keep(&self.observed_rates, rate);
+    }
+
+    /// A column of all rows, zero at the anchor.
+    fn prepared<'a>(&self, inverse_time: f64, out: &'a mut Vec<f64>) -> &'a mut [f64] {
         out.resize(self.time.len(), 0.0);
-        out[self.anchor_row(backward)] = 0.0;
-        let column = &mut out[..self.time.len()];
+        out[self.anchor_row(is_backward(inverse_time))] = 0.0;
+        &mut out[..self.time.len()]
+    }
+
+    /// Visits ∂ψ/∂a and ∂r/∂a at every row but the anchor.
+    #[inline(always)]
+    fn tangents(&self, inverse_time: f64, coefficients: &Coefficients, mut visit: impl FnMut(usize, f64, f64)) {
+        let backward = is_backward(inverse_time);
         let anchor = coefficients.anchor;
         // The change of the motion and the motion itself, side by side.
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
@@ -219,9 +303,8 @@ impl Track {
                 heading[motion] += f.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
             }
-            column[to] = heading[0];
+            visit(to, heading[0], yaw_rate[0]);
         }
-        self.keep_observed(out);
     }
 
     /// Heading and yaw rate of every row (observed or not) for given coefficients.
@@ -257,6 +340,21 @@ impl Track {
     /// Row of the track for every observed heading.
     pub fn observed(&self) -> &[usize] {
         &self.observed
+    }
+
+    /// Row of the track for every yaw rate that is used.
+    pub fn observed_rates(&self) -> &[usize] {
+        &self.observed_rates
+    }
+}
+
+/// Leaves some rows of a column that was filled in every row.
+fn keep(rows: &[usize], column: &mut Vec<f64>) {
+    if rows.len() < column.len() {
+        for (place, &row) in rows.iter().enumerate() {
+            column[place] = column[row];
+        }
+        column.truncate(rows.len());
     }
 }
 

@@ -39,7 +39,7 @@ pub mod vessel;
 pub use dynamics::{Dynamics, Input, Measured, Motion, Regressor};
 pub use effects::EffectReal;
 pub use first_order::FirstOrder;
-pub use number::{Real, Tangent};
+pub use number::{DIRECTIONS, Real, Tangent};
 pub use particulars::Particulars;
 pub use response::{Response, ResponseModel};
 pub use ships::Ship;

@@ -1,0 +1,176 @@
+//! The noise as numbers that an optimiser can move: logarithms, in units of the compass error, so that each of them may
+//! take any value and the size of the compass error drops out.
+
+use ship::{FirstOrder, Real, Tangent};
+
+use super::{Moment, Noise};
+
+/// Direction of 1/T among the derivatives of a [`Tangent`]; the entries of a [`Place`] follow it.
+const INVERSE_TIME: usize = 0;
+
+/// Entries of a [`Place`].
+pub(crate) const ENTRIES: usize = 5;
+
+/// Where the noise is: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time
+/// of the compass error and of σ_r/σ, with which of them there are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place {
+    pub moment: Moment,
+    /// Whether the rudder has an error.
+    pub rudder: bool,
+    /// Whether the compass error has a correlation time.
+    pub coloured: bool,
+    /// The logarithms, in the order above; what there is not stays as it is.
+    pub log: [f64; ENTRIES],
+}
+
+/// Names for the entries.
+pub(crate) const LEVEL: usize = 0;
+pub(crate) const CORRELATION: usize = 1;
+pub(crate) const RUDDER: usize = 2;
+pub(crate) const COMPASS: usize = 3;
+pub(crate) const GYRO: usize = 4;
+
+impl Place {
+    /// The place of a known noise on a known ship.
+    pub fn of(noise: &Noise, ship: &FirstOrder) -> Self {
+        let unit = noise.heading_sd;
+        let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
+        Self {
+            moment: if noise.moment_level > 0.0 { noise.moment } else { Moment::None },
+            rudder: noise.rudder_sd > 0.0,
+            coloured: noise.heading_correlation.is_some(),
+            log: [
+                log(noise.moment_level / unit),
+                log(noise.moment_correlation),
+                log(ship.K_over_T.abs() * noise.rudder_sd / unit),
+                log(noise.heading_correlation.unwrap_or(0.0)),
+                log(noise.yaw_rate_sd.unwrap_or(0.0) / unit),
+            ],
+        }
+    }
+
+    /// The noise it stands for, on a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
+    pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> Noise {
+        let size = |entry: usize| heading_sd * self.log[entry].exp();
+        let has = self.moment != Moment::None;
+        Noise {
+            heading_sd,
+            heading_correlation: self.coloured.then(|| self.log[COMPASS].exp()),
+            yaw_rate_sd: gyro.then(|| size(GYRO)),
+            moment: self.moment,
+            moment_level: if has { size(LEVEL) } else { 0.0 },
+            moment_correlation: match self.moment {
+                Moment::OrnsteinUhlenbeck => self.log[CORRELATION].exp(),
+                Moment::White => 0.0,
+                Moment::None | Moment::Walk => f64::INFINITY,
+            },
+            rudder_sd: if self.rudder { size(RUDDER) / gain.abs() } else { 0.0 },
+        }
+    }
+
+    /// The entries that are there.
+    pub fn entries(&self, gyro: bool) -> impl Iterator<Item = usize> + use<> {
+        let there =
+            [self.moment != Moment::None, self.moment == Moment::OrnsteinUhlenbeck, self.rudder, self.coloured, gyro];
+        (0..ENTRIES).filter(move |&entry| there[entry])
+    }
+
+    /// The law of the noise for this 1/T.
+    pub fn law<R: Variable>(&self, inverse_time: f64) -> Law<R> {
+        let exponential = |entry: usize, sign: f64| {
+            let value = (sign * self.log[entry]).exp();
+            R::variable(value, 1 + entry, sign * value)
+        };
+        Law {
+            inverse_time: R::variable(inverse_time, INVERSE_TIME, 1.0),
+            moment: self.moment,
+            level: exponential(LEVEL, 1.0),
+            rate: match self.moment {
+                Moment::OrnsteinUhlenbeck => exponential(CORRELATION, -1.0),
+                Moment::None | Moment::White | Moment::Walk => R::from(0.0),
+            },
+            rudder: self.rudder.then(|| exponential(RUDDER, 1.0)),
+            compass_rate: self.coloured.then(|| exponential(COMPASS, -1.0)),
+            gyro: exponential(GYRO, 1.0),
+        }
+    }
+}
+
+/// A number that may be differentiated by the entries of a place.
+pub(crate) trait Variable: Real {
+    /// A value whose derivative in one direction is `slope`.
+    fn variable(value: f64, direction: usize, slope: f64) -> Self;
+
+    /// Its derivatives, where it has some.
+    fn slopes(&self) -> &[f64];
+
+    /// A function of this number, from its value there and its slope.
+    fn chained(self, value: f64, slope: f64) -> Self {
+        (self - self.value()) * slope + value
+    }
+}
+
+impl Variable for f64 {
+    fn variable(value: f64, _: usize, _: f64) -> Self {
+        value
+    }
+
+    fn slopes(&self) -> &[f64] {
+        &[]
+    }
+}
+
+impl Variable for Tangent {
+    fn variable(value: f64, direction: usize, slope: f64) -> Self {
+        let mut by = [0.0; ship::DIRECTIONS];
+        by[direction] = slope;
+        Self { value, by }
+    }
+
+    fn slopes(&self) -> &[f64] {
+        &self.by
+    }
+}
+
+/// How the noise moves the state, in units of the compass error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Law<R> {
+    /// a = 1/T, 1/s.
+    pub inverse_time: R,
+    pub moment: Moment,
+    /// q/σ.
+    pub level: R,
+    /// 1/τ, 1/s.
+    pub rate: R,
+    /// Standard deviation of the rudder error as yaw acceleration over σ, 1/s².
+    pub rudder: Option<R>,
+    /// One over the correlation time of the compass error, 1/s.
+    pub compass_rate: Option<R>,
+    /// σ_r/σ, 1/s.
+    pub gyro: R,
+}
+
+impl<R: Variable> Law<R> {
+    /// Whether the moment is a state.
+    pub fn has_moment_state(&self) -> bool {
+        matches!(self.moment, Moment::OrnsteinUhlenbeck | Moment::Walk)
+    }
+
+    /// Number of states: heading, yaw rate, moment, rudder error, compass error.
+    pub fn states(&self) -> usize {
+        2 + usize::from(self.has_moment_state())
+            + usize::from(self.rudder.is_some())
+            + usize::from(self.compass_rate.is_some())
+    }
+
+    /// Place of the rudder error among the states.
+    pub fn rudder_state(&self) -> Option<usize> {
+        self.rudder.map(|_| 2 + usize::from(self.has_moment_state()))
+    }
+
+    /// Place of the compass error among the states: the last.
+    pub fn compass_state(&self) -> Option<usize> {
+        self.compass_rate.map(|_| self.states() - 1)
+    }
+}

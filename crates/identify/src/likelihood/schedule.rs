@@ -1,0 +1,120 @@
+//! When a record was read, and what: the steps in time between readings, each kind once.
+
+use crate::track::{Track, differs};
+
+/// What is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Of {
+    /// The compass.
+    Heading,
+    /// The gyro.
+    YawRate,
+}
+
+/// A reading: the step that leads to it (`None` when no time passes), and the instrument.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reading {
+    pub step: Option<usize>,
+    pub of: Of,
+}
+
+/// Time from one reading to the next, in pieces between rows of the rudder.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Span {
+    /// Lengths, s.
+    pub pieces: Vec<f64>,
+}
+
+impl Span {
+    /// Length, s.
+    pub fn length(&self) -> f64 {
+        self.pieces.iter().sum()
+    }
+
+    fn is(&self, pieces: &[f64]) -> bool {
+        self.pieces.len() == pieces.len() && self.pieces.iter().zip(pieces).all(|(one, other)| !differs(*one, *other))
+    }
+}
+
+/// Readings of a record in order.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Schedule {
+    pub spans: Vec<Span>,
+    pub readings: Vec<Reading>,
+    /// For every reading, its number among those of its instrument.
+    numbers: Vec<usize>,
+}
+
+/// Kinds of steps that are remembered when the next one is looked for: clocks repeat themselves soon or not at all.
+const REMEMBERED: usize = 16;
+
+impl Schedule {
+    /// Readings of a track; `by_row` keeps the rows of the rudder between them apart.
+    pub fn new(track: &Track, by_row: bool) -> Self {
+        let time = track.time();
+        let mut schedule = Self { spans: Vec::new(), readings: Vec::new(), numbers: Vec::new() };
+        let mut last = None;
+        let (mut headings, mut rates) = (track.observed().iter().peekable(), track.observed_rates().iter().peekable());
+        let mut pieces = Vec::new();
+        let (mut heading, mut rate) = (0, 0);
+        while let Some(row) = [headings.peek(), rates.peek()].into_iter().flatten().min().map(|&&row| row) {
+            let step = last.map(|last: usize| {
+                pieces.clear();
+                if by_row {
+                    pieces.extend(time[last..=row].windows(2).map(|pair| pair[1] - pair[0]));
+                } else {
+                    pieces.push(time[row] - time[last]);
+                }
+                schedule.kind(&pieces)
+            });
+            last = Some(row);
+            let both = headings.peek() == rates.peek();
+            if headings.next_if(|&&next| next == row).is_some() {
+                schedule.readings.push(Reading { step, of: Of::Heading });
+                schedule.numbers.push(heading);
+                heading += 1;
+            }
+            if rates.next_if(|&&next| next == row).is_some() {
+                schedule.readings.push(Reading { step: step.filter(|_| !both), of: Of::YawRate });
+                schedule.numbers.push(rate);
+                rate += 1;
+            }
+        }
+        schedule
+    }
+
+    /// The number of a kind of step, which is noted when it is new.
+    fn kind(&mut self, pieces: &[f64]) -> usize {
+        let recent = self.spans.len().saturating_sub(REMEMBERED);
+        if let Some(place) = self.spans[recent..].iter().rposition(|span| span.is(pieces)) {
+            return recent + place;
+        }
+        self.spans.push(Span { pieces: pieces.to_vec() });
+        self.spans.len() - 1
+    }
+
+    /// One column from those of the two instruments.
+    pub fn stacked(&self, heading: &[f64], yaw_rate: &[f64]) -> Vec<f64> {
+        let mut column = Vec::with_capacity(self.readings.len());
+        self.stack_into(heading, yaw_rate, &mut column);
+        column
+    }
+
+    /// The same into a column that is there.
+    pub fn stack_into(&self, heading: &[f64], yaw_rate: &[f64], column: &mut Vec<f64>) {
+        column.clear();
+        if self.readings.len() == heading.len() {
+            column.extend_from_slice(heading);
+            return;
+        }
+        column.extend(self.readings.iter().zip(&self.numbers).map(|(reading, &number)| match reading.of {
+            Of::Heading => heading[number],
+            Of::YawRate => yaw_rate[number],
+        }));
+    }
+
+    /// Number of readings.
+    pub fn len(&self) -> usize {
+        self.readings.len()
+    }
+}

@@ -1,0 +1,276 @@
+use approx::assert_relative_eq;
+use nalgebra::{DMatrix, DVector};
+use ship::angle::from_deg;
+use ship::first_order::{State, Transition};
+use ship::{FirstOrder, Tangent};
+use trial::{Channel, Columns, Origin, Trial};
+
+use super::law::{Law, Place};
+use super::*;
+
+/// The record of the published values: uneven rows, a clipped sine of the rudder, a sine of the heading.
+fn published() -> Trial {
+    let mut time = Vec::new();
+    let mut t = 0.0;
+    for row in 0..60 {
+        t += if row == 0 {
+            0.0
+        } else if row % 7 == 3 {
+            1.7
+        } else {
+            1.0
+        };
+        time.push(t);
+    }
+    let wave = |t: f64| (std::f64::consts::TAU * t / 40.0).sin();
+    let rudder = time.iter().map(|&t| from_deg(10.0) * (3.0 * wave(t)).clamp(-1.0, 1.0)).collect();
+    let heading =
+        time.iter().map(|&t| from_deg(8.0) * wave(t - 9.0) + from_deg(0.05) * (5.1 * t + 1.0).cos()).collect();
+    crate::testing::record("published", time, heading, rudder)
+}
+
+const SIGMA_DEG: f64 = 0.1;
+
+fn noise(moment: Moment, level: f64, correlation: f64) -> Noise {
+    Noise { moment, moment_level: level, moment_correlation: correlation, ..Noise::compass(from_deg(SIGMA_DEG)) }
+}
+
+/// Four log-likelihoods that were computed twice elsewhere, by a Kalman filter and from the dense Gaussian.
+#[test]
+fn values_are_those_of_two_independent_computations() {
+    let trial = published();
+    assert_relative_eq!(trial.heading()[1], -0.13193448, epsilon = 1e-8);
+    assert_relative_eq!(trial.rudder()[2], 0.16180092, epsilon = 1e-8);
+    let ship = FirstOrder::from_indices(0.1, 16.3, from_deg(0.4));
+    let initial = [from_deg(5.0), from_deg(1.0)];
+    for (moment, level, correlation, expected) in [
+        (Moment::None, 0.0, 1.0, -84_499.009_4),
+        (Moment::White, 3.490658504e-4, 1.0, -1290.435376891),
+        (Moment::OrnsteinUhlenbeck, 3.490658504e-4, 12.0, -45.967541814),
+        (Moment::Walk, 8.726646260e-5, 1.0, -365.883210199),
+    ] {
+        let found = log_likelihood(&trial, &ship, &noise(moment, level, correlation), initial);
+        assert_relative_eq!(found, expected, max_relative = 1e-9);
+    }
+}
+
+/// Heading, yaw rate and rudder of every row: what a dense Gaussian is built from.
+fn with_gyro() -> Trial {
+    let trial = published();
+    let rate: Vec<f64> = trial.time().iter().map(|t| 0.012 * (0.157 * (t - 9.0)).cos()).collect();
+    // Some rows have no heading, some no yaw rate.
+    let missing = |values: &[f64], every: usize| -> Vec<f64> {
+        values.iter().enumerate().map(|(row, &x)| if row % every == every - 2 { f64::NAN } else { x }).collect()
+    };
+    let channels = [
+        (Channel::Heading, missing(trial.heading(), 5)),
+        (Channel::YawRate, missing(&rate, 4)),
+        (Channel::Rudder, trial.rudder().to_vec()),
+    ];
+    let origin = Origin::Simulated { scenario: String::from("gyro"), cell: 0, replicate: 0 };
+    let columns = Columns { time: trial.time().to_vec(), channels: channels.into(), unknown: Vec::new() };
+    Trial::new("gyro", origin, columns).expect("valid")
+}
+
+/// The same log-likelihood without a filter: the covariance of all readings from responses to every source of chance,
+/// with the moment stepped finely, and the determinant and inverse of that matrix.
+fn dense(trial: &Trial, ship: &FirstOrder, noise: &Noise, initial_sd: [f64; 2]) -> f64 {
+    const FINE: usize = 40;
+    let (time, rudder) = (trial.time(), trial.rudder());
+    let (a, b) = (ship.inverse_T, ship.K_over_T);
+    let rows = time.len();
+    // Response of all rows to an input of rows and an initial state.
+    let respond = |input: &dyn Fn(usize) -> f64, initial: State| -> Vec<State> {
+        let mut states = vec![initial];
+        for row in 1..rows {
+            let h = time[row] - time[row - 1];
+            let (u0, slope) = (input(row - 1), (input(row) - input(row - 1)) / h);
+            states.push(Transition::new(a, h).advance(states[row - 1], u0, slope));
+        }
+        states
+    };
+    let readings: Vec<(usize, bool)> = (0..rows)
+        .flat_map(|row| {
+            let rate = trial.yaw_rate().filter(|rate| noise.yaw_rate_sd.is_some() && rate[row].is_finite());
+            let heading = trial.heading()[row].is_finite().then_some((row, true));
+            [heading, rate.map(|_| (row, false))].into_iter().flatten()
+        })
+        .collect();
+    let column = |states: &[State]| {
+        DVector::from_iterator(
+            readings.len(),
+            readings.iter().map(|&(row, heading)| if heading { states[row].heading } else { states[row].yaw_rate }),
+        )
+    };
+    let mut covariance = DMatrix::zeros(readings.len(), readings.len());
+    let mut source = |states: &[State], sd: f64| {
+        let column = column(states) * sd;
+        covariance += &column * column.transpose();
+    };
+    source(&respond(&|_| 0.0, State { heading: 1.0, yaw_rate: 0.0 }), initial_sd[0]);
+    source(&respond(&|_| 0.0, State { heading: 0.0, yaw_rate: 1.0 }), initial_sd[1]);
+    if noise.rudder_sd > 0.0 {
+        for row in 0..rows {
+            source(&respond(&|other| b * f64::from(u8::from(other == row)), State::default()), noise.rudder_sd);
+        }
+    }
+    // An impulse of the moment within every fine step, at its middle.
+    for row in 1..rows {
+        let step = (time[row] - time[row - 1]) / FINE as f64;
+        for part in 0..FINE {
+            let at = time[row - 1] + (part as f64 + 0.5) * step;
+            let motion = |t: f64| {
+                let s = t - at;
+                let zero = State::default();
+                match noise.moment {
+                    Moment::None => zero,
+                    _ if s < 0.0 => zero,
+                    Moment::White => Transition::new(a, s).advance(State { heading: 0.0, yaw_rate: 1.0 }, 0.0, 0.0),
+                    Moment::Walk => Transition::new(a, s).advance(zero, 1.0, 0.0),
+                    Moment::OrnsteinUhlenbeck => decaying(a, noise.moment_correlation, s),
+                }
+            };
+            let density = match noise.moment {
+                Moment::OrnsteinUhlenbeck => 2.0 / noise.moment_correlation,
+                _ => 1.0,
+            };
+            source(&time.iter().map(|&t| motion(t)).collect::<Vec<_>>(), noise.moment_level * (density * step).sqrt());
+        }
+    }
+    if noise.moment == Moment::OrnsteinUhlenbeck {
+        let states: Vec<State> = time.iter().map(|t| decaying(a, noise.moment_correlation, t - time[0])).collect();
+        source(&states, noise.moment_level);
+    }
+    for (i, &(row, heading)) in readings.iter().enumerate() {
+        for (j, &(other, other_heading)) in readings.iter().enumerate() {
+            if heading && other_heading {
+                let apart = (time[row] - time[other]).abs();
+                let alike = match noise.heading_correlation {
+                    Some(correlation) => (-apart / correlation).exp(),
+                    None => f64::from(u8::from(i == j)),
+                };
+                covariance[(i, j)] += noise.heading_sd.powi(2) * alike;
+            } else if i == j {
+                covariance[(i, j)] += noise.yaw_rate_sd.expect("a gyro").powi(2);
+            }
+        }
+    }
+    let replay = column(&respond(&|row| b * (rudder[row] + ship.rudder_bias), State::default()));
+    let measured = readings
+        .iter()
+        .map(|&(row, heading)| if heading { trial.heading()[row] } else { trial.yaw_rate().expect("a gyro")[row] });
+    let residual = DVector::from_iterator(readings.len(), measured) - replay;
+    let factor = covariance.cholesky().expect("positive definite");
+    let determinant: f64 = factor.l().diagonal().iter().map(|x| 2.0 * x.ln()).sum();
+    let constant = readings.len() as f64 * std::f64::consts::TAU.ln();
+    -0.5 * (residual.dot(&factor.solve(&residual)) + determinant + constant)
+}
+
+/// State s seconds after a moment of one begins to decay.
+fn decaying(a: f64, correlation: f64, s: f64) -> State {
+    let pieces = 400;
+    let h = s / f64::from(pieces);
+    let moment = |k: i32| (-f64::from(k) * h / correlation).exp();
+    (0..pieces).fold(State::default(), |state, k| {
+        Transition::new(a, h).advance(state, moment(k), if h > 0.0 { (moment(k + 1) - moment(k)) / h } else { 0.0 })
+    })
+}
+
+/// Every kind of noise, for a stable and a course-unstable ship, against the dense Gaussian.
+#[test]
+fn the_filter_is_the_dense_gaussian() {
+    let (plain, gyro) = (published(), with_gyro());
+    let coloured = |noise: Noise| Noise { heading_correlation: Some(3.0), ..noise };
+    let steered = |noise: Noise| Noise { rudder_sd: from_deg(0.7), ..noise };
+    let rated = |noise: Noise| Noise { yaw_rate_sd: Some(2e-3), ..noise };
+    let white = noise(Moment::White, 3e-4, 1.0);
+    let gusts = noise(Moment::OrnsteinUhlenbeck, 4e-4, 12.0);
+    let walk = noise(Moment::Walk, 9e-5, 1.0);
+    let none = Noise::compass(from_deg(SIGMA_DEG));
+    for (trial, noise) in [
+        (&plain, white),
+        (&plain, steered(none)),
+        (&plain, coloured(walk)),
+        (&gyro, rated(none)),
+        (&gyro, rated(steered(gusts))),
+        (&gyro, rated(coloured(steered(walk)))),
+    ] {
+        for ship in [FirstOrder::from_indices(0.1, 16.3, 0.007), FirstOrder::from_indices(-0.05, -40.0, 0.007)] {
+            let initial = [from_deg(5.0), from_deg(1.0)];
+            let found = log_likelihood(trial, &ship, &noise, initial);
+            let expected = dense(trial, &ship, &noise, initial);
+            // What is left is the step of the dense computation.
+            assert_relative_eq!(found, expected, max_relative = 2e-4);
+        }
+    }
+}
+
+/// Derivatives of innovations and of their variances by every entry, against differences.
+#[test]
+fn slopes_are_derivatives() {
+    let trial = with_gyro();
+    let track = Track::unchecked(&trial).with_rates(trial.yaw_rate(), &trial);
+    let residual: Vec<f64> = (0..track.heading.len() + track.rates.len()).map(|k| (0.7 * k as f64).sin()).collect();
+    for moment in Moment::ALL {
+        for a in [0.06, -0.02] {
+            let place = Place { moment, rudder: true, coloured: true, log: [-2.0, 2.0, -5.0, 0.8, -3.0] };
+            let schedule = Schedule::new(&track, true);
+            let (_, filter) = differentiated(&schedule, &place.law::<Tangent>(a));
+            let found = filter.slopes(&schedule, &residual, &[0, 1, 2, 3, 4, 5]);
+            let innovations = |a: f64, place: &Place| {
+                let whitener = Whitener::new(&schedule, &place.law::<f64>(a), [0.0; 2]);
+                let mut column = residual.clone();
+                whitener.apply([&mut column]);
+                let spread: Vec<f64> = (0..column.len()).map(|k| whitener.spread(k)).collect();
+                let nu: Vec<f64> = column.iter().zip(&spread).map(|(x, s)| x * s).collect();
+                (nu, spread)
+            };
+            let (_, spread) = innovations(a, &place);
+            for direction in 0..6 {
+                let moved = |by: f64| match direction {
+                    0 => innovations(a + by, &place),
+                    _ => {
+                        let mut other = place;
+                        other.log[direction - 1] += by;
+                        innovations(a, &other)
+                    }
+                };
+                let (hi, lo) = (moved(1e-5), moved(-1e-5));
+                for k in 0..residual.len() {
+                    let by_nu = (hi.0[k] - lo.0[k]) / 2e-5 / spread[k];
+                    let by_log = 2.0 * (hi.1[k].ln() - lo.1[k].ln()) / 2e-5;
+                    assert_relative_eq!(found.innovation[direction][k], by_nu, max_relative = 1e-5, epsilon = 1e-6);
+                    assert_relative_eq!(found.log_variance[direction][k], by_log, max_relative = 1e-5, epsilon = 1e-6);
+                }
+            }
+        }
+    }
+}
+
+/// A gain that has settled is the gain that would have been computed.
+#[test]
+fn even_rows_settle() {
+    let time: Vec<f64> = (0..400).map(f64::from).collect();
+    let heading = time.iter().map(|t| 0.2 * (0.1 * t).sin()).collect();
+    let rudder = time.iter().map(|t| 0.2 * (0.1 * t).cos()).collect();
+    let trial = crate::testing::record("even", time, heading, rudder);
+    let track = Track::unchecked(&trial);
+    let schedule = Schedule::new(&track, false);
+    let place = Place { moment: Moment::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
+    let law: Law<f64> = place.law(0.06);
+    let whitener = Whitener::new(&schedule, &law, [0.0; 2]);
+    assert_eq!(schedule.spans.len(), 1);
+    let mut one = track.heading.clone();
+    whitener.apply([&mut one]);
+    // Steps that count as different kinds are computed one by one.
+    let mut apart = schedule.clone();
+    for (k, reading) in apart.readings.iter_mut().enumerate().skip(1) {
+        apart.spans.push(schedule.spans[0].clone());
+        reading.step = Some(k);
+    }
+    let mut other = track.heading.clone();
+    Whitener::new(&apart, &law, [0.0; 2]).apply([&mut other]);
+    for (one, other) in one.iter().zip(&other) {
+        assert_relative_eq!(one, other, max_relative = 1e-8, epsilon = 1e-12);
+    }
+}
