@@ -12,6 +12,7 @@
 //! | `least-squares` | regression on differentiated heading or on the gyro |
 //! | `integral-least-squares` | the equation of motion integrated twice |
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
+//! | `maximum-likelihood` | the same under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
 
 pub mod characteristic_points;
@@ -26,6 +27,7 @@ pub mod integral_least_squares;
 pub mod least_squares;
 pub mod likelihood;
 pub mod linear;
+pub mod maximum_likelihood;
 pub mod output_error;
 mod profile;
 pub mod registry;

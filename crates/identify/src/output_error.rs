@@ -113,16 +113,16 @@ const MOST_HALVINGS: usize = 12;
 const SHARED: usize = 3;
 
 /// Largest condition number of the scaled Jacobian: beyond, 1/T, K/T and δ_r cannot be told apart.
-const CONDITION_LIMIT: f64 = 1e6;
+pub(crate) const CONDITION_LIMIT: f64 = 1e6;
 
 /// Fewest headings of one trial.
-const FEWEST_ROWS: usize = 12;
+pub(crate) const FEWEST_ROWS: usize = 12;
 
 /// Rows of every trial that the scan looks at.
 const SCANNED_ROWS: usize = 200;
 
 /// Standard deviations by which K/T has to exceed zero: below, the rudder is not shown to act and δ_r means nothing.
-const SIGNIFICANT: f64 = 2.0;
+pub(crate) const SIGNIFICANT: f64 = 2.0;
 
 /// A polished minimum of the profiled sum of squares.
 struct Minimum {
@@ -134,9 +134,8 @@ struct Minimum {
 
 impl OutputError {
     /// Values of 1/T to scan, in increasing order: logarithmic for both signs, and zero.
-    fn grid(&self, tracks: &[Track], trials: &[Trial]) -> Vec<f64> {
+    fn grid(&self, tracks: &[Track], finest: f64) -> Vec<f64> {
         let longest = tracks.iter().map(Track::duration).fold(0.0, f64::max);
-        let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let slowest = SLOWEST / longest;
         let fastest = self.settings.smallest_time_constant_s.unwrap_or(0.5 * finest).recip().max(10.0 * slowest);
         let decades = (fastest / slowest).log10();
@@ -203,7 +202,16 @@ impl Identifier for OutputError {
         }
         let tracks =
             trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
-        let grid = self.grid(&tracks, trials);
+        let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
+        self.fit(tracks, finest)
+    }
+}
+
+impl OutputError {
+    /// Fits tracks whose rows are no nearer to each other than usually `finest`, s.
+    pub(crate) fn fit(&self, tracks: Vec<Track>, finest: f64) -> Result<Estimate, IdentifyError> {
+        let grid = self.grid(&tracks, finest);
+        let trials = tracks.len();
         let resolution = grid[grid.len() - 1].min(1.0 / tracks.iter().map(Track::duration).fold(0.0, f64::max));
         // The scan only has to find the valleys, and the first polish their place, for which some rows do; the last
         // takes all.
@@ -251,7 +259,7 @@ impl Identifier for OutputError {
 
         let information = profile.information(inverse_time);
         let observations = profile.observations();
-        let freedom = observations as f64 - (SHARED + 2 * trials.len()) as f64;
+        let freedom = observations as f64 - (SHARED + 2 * trials) as f64;
         let variance = minimum.rss / freedom;
         // Ships that turn the wrong way have their best fit with b > 0 where the rudder hardly counts.
         let (inverse, condition) =
@@ -309,7 +317,7 @@ fn refusal(scan: &[Option<Fit>], grid: &[f64], condition: f64) -> IdentifyError 
 }
 
 /// Covariance of (1/T, K/T, δ_r) from that of (1/T, b, b δ_r).
-fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
+pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freedom: f64) -> Covariance {
     let b = response.K_over_T;
     let jacobian = Matrix3::from_rows(&[
         Vector3::new(1.0, 0.0, 0.0).transpose(),

@@ -45,6 +45,7 @@ methods! {
     IntegralLeastSquares(integral_least_squares),
     OutputError(output_error),
     Srivc(srivc),
+    MaximumLikelihood(maximum_likelihood),
 }
 
 #[cfg(test)]

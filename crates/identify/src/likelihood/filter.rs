@@ -250,6 +250,17 @@ pub(crate) trait Differentiated {
     fn slopes(&self, schedule: &Schedule, residual: &[f64], wanted: &[usize]) -> Slopes;
 }
 
+impl Slopes {
+    /// ½ ∂ log det(JᵀJ)/∂θ in a direction, where this is what the filter makes of a column, not white yet, that becomes
+    /// one of an orthonormal basis of the whitened columns J: its share of the sum.
+    pub fn of_determinant(&self, unit: &[f64], direction: usize) -> f64 {
+        let logs = &self.log_variance[direction];
+        let turned: f64 = unit.iter().zip(&self.innovation[direction]).map(|(q, by)| q * by).sum();
+        let shrunk: f64 = unit.iter().zip(logs).map(|(q, by)| q * q * by).sum();
+        turned - 0.5 * shrunk
+    }
+}
+
 /// The filter of a law from a known initial state, and the same with its derivatives.
 pub(crate) fn differentiated(schedule: &Schedule, law: &Law<Tangent>) -> (Whitener, Box<dyn Differentiated>) {
     with_states!(law.states(), N => {

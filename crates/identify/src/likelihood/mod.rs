@@ -24,8 +24,8 @@ use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use trial::Trial;
 
-pub(crate) use filter::{Slopes, Whitener, differentiated};
-pub(crate) use law::{Law, Place};
+pub(crate) use filter::{Whitener, differentiated};
+pub(crate) use law::{COMPASS, CORRELATION, GYRO, LEVEL, Law, Place, RUDDER};
 pub(crate) use schedule::Schedule;
 
 use crate::track::{Columns, Track};

@@ -1,0 +1,304 @@
+//! Which noise a record shows: every kind is fitted, and the lowest BIC wins.
+
+use ship::FirstOrder;
+use trial::Trial;
+
+use super::outliers::{self, LARGEST_SHARE, Suspects};
+use super::point::{Point, Record, SHARED, evaluate};
+use super::search::{Found, Ranges, Search, gyro_start};
+use super::{CompassChoice, RudderChoice, Settings};
+use crate::error::IdentifyError;
+use crate::estimate::Estimate;
+use crate::likelihood::{COMPASS, Moment, Place, RUDDER};
+use crate::output_error::{self, CONDITION_LIMIT, FEWEST_ROWS};
+use crate::robust;
+use crate::track::{Coefficients, Columns, Track};
+
+/// Rounds in which outliers are looked for again in the fit without the last ones.
+const ROUNDS: usize = 6;
+
+/// Gain in −2 log L, beside log n, that a jump of the compass needs.
+const JUMP_GAIN: f64 = 25.0;
+
+/// Values of 1/T per decade, for each sign, that are asked again under the noise that was found.
+const ASKED_PER_DECADE: usize = 2;
+
+/// Weight below which a kind of noise is not a doubt.
+const NEGLIGIBLE: f64 = 0.01;
+
+/// Headings of a record that a first look takes.
+const LOOKED_AT: usize = 200;
+
+/// Records ready to be fitted, with the answer of `output-error` to begin with.
+pub(super) struct Prepared {
+    records: Vec<Record>,
+    /// Whether every record declares a rudder error.
+    declared: bool,
+    start: FirstOrder,
+    pub outliers: Vec<Suspects>,
+    too_many: bool,
+    evaluations: usize,
+}
+
+/// The noise that was chosen and its fit.
+pub(super) struct Chosen {
+    pub records: Vec<Record>,
+    /// The kinds of noise that cannot be told apart, with their weights, the most likely first.
+    pub found: Vec<(f64, Found)>,
+    /// Spikes and jumps of every record, by row of its track.
+    pub outliers: Vec<Suspects>,
+    /// Whether there were too many spikes to leave them out.
+    pub too_many: bool,
+    /// BIC of every kind of moment that was fitted.
+    pub tried: Vec<(Moment, f64)>,
+    pub evaluations: usize,
+    /// Whether 1/T is at the end of the range of `output-error`.
+    pub at_bound: bool,
+}
+
+impl Prepared {
+    /// Takes the records, looks for outliers, and fits `output-error` to the rest. Fails as it does.
+    pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
+        let whole =
+            trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
+        let method = output_error::Settings::default().build().expect("default settings are valid");
+        let mut suspects = vec![Suspects::default(); trials.len()];
+        let mut too_many = false;
+        let mut tracks = whole.clone();
+        let mut first = method.fit(tracks.clone(), finest);
+        let mut evaluations = 0;
+        for _ in 0..if settings.outliers { ROUNDS } else { 0 } {
+            evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
+            let residual = |track: &Track| left_over(track, first.as_ref().ok());
+            let next: Vec<Suspects> = whole.iter().map(|track| outliers::find(track, &residual(track))).collect();
+            let share = |(track, found): (&Track, &Suspects)| found.spikes.len() as f64 / track.len() as f64;
+            too_many = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > LARGEST_SHARE;
+            if too_many || next.iter().zip(&suspects).all(|(next, last)| next.spikes == last.spikes) {
+                suspects = next;
+                break;
+            }
+            tracks = whole.iter().zip(&next).map(|(track, found)| track.without(&found.spikes)).collect();
+            suspects = next;
+            first = method.fit(tracks.clone(), finest);
+        }
+        if too_many {
+            suspects.iter_mut().for_each(|found| found.spikes.clear());
+            tracks = whole.clone();
+            first = method.fit(tracks.clone(), finest);
+        }
+        let first = first?;
+        let gyro = settings.yaw_rate
+            && trials.iter().all(|trial| trial.yaw_rate().is_some() && !trial.heading_from_yaw_rate());
+        let of_rudder = |trial: &Trial| trial.noise().rudder.filter(|&sd| sd > 0.0);
+        let declared =
+            settings.rudder == RudderChoice::Declared && trials.iter().all(|trial| of_rudder(trial).is_some());
+        let by_row = declared || settings.rudder == RudderChoice::Estimated;
+        let records = tracks
+            .into_iter()
+            .zip(trials)
+            .map(|(track, trial)| {
+                let track = track.with_rates(trial.yaw_rate().filter(|_| gyro), trial);
+                Record { declared: of_rudder(trial).filter(|_| declared), ..Record::new(track, by_row) }
+            })
+            .collect();
+        Ok(Self { records, declared, start: first.response, outliers: suspects, too_many, evaluations })
+    }
+
+    /// Fits every kind of noise and takes the one with the lowest BIC.
+    pub fn choose(self, settings: &Settings) -> Result<Chosen, IdentifyError> {
+        let Self { mut records, declared, start, outliers, too_many, evaluations } = self;
+        let ranges: Vec<Ranges> = records.iter().map(|record| ranges(record, &start)).collect();
+        let a = start.inverse_T;
+        let blank = Place {
+            moment: Moment::None,
+            rudder: settings.rudder == RudderChoice::Estimated,
+            coloured: false,
+            log: [0.0; 5],
+        };
+        let none: Vec<Place> = ranges.iter().map(|ranges| gyro_start(ranges, &blank)).collect();
+
+        let mut spent = evaluations;
+        let mut all = contest(&records, &ranges, settings, a, &none, declared, &mut spent);
+        // Jumps are believed where they pay under the noise that was found.
+        let suspected: usize = outliers.iter().map(|found| found.jumps.len()).sum();
+        let mut kept = outliers;
+        if let Some((_, found)) = all.first().filter(|_| suspected > 0) {
+            believe_jumps(&mut records, &mut kept, &found.point);
+            if records.iter().any(|record| !record.jumps.is_empty()) {
+                all = contest(&records, &ranges, settings, a, &none, declared, &mut spent);
+            }
+        }
+        kept.iter_mut().zip(&records).for_each(|(found, record)| found.jumps.clone_from(&record.jumps));
+        let Some(&(lowest, _)) = all.first() else {
+            return Err(IdentifyError::Singular { condition: f64::INFINITY, limit: CONDITION_LIMIT });
+        };
+        let tried = all.iter().map(|(bic, found)| (found.point.places[0].moment, *bic)).collect();
+        let sum: f64 = all.iter().map(|(bic, _)| (-0.5 * (bic - lowest)).exp()).sum();
+        let weigh = |(bic, found): (f64, Found)| ((-0.5 * (bic - lowest)).exp() / sum, found);
+        let found: Vec<(f64, Found)> = all.into_iter().map(weigh).filter(|(weight, _)| *weight > NEGLIGIBLE).collect();
+        let end = found[0].1.point.inverse_time;
+        let at_bound = end == a && start.inverse_T.abs() * ranges[0].spacing >= 2.0 - 1e-6;
+        Ok(Chosen { records, found, outliers: kept, too_many, tried, evaluations: spent, at_bound })
+    }
+}
+
+/// What `output-error` leaves of every heading of the whole track; the heading itself when there is no answer.
+fn left_over(track: &Track, fitted: Option<&Estimate>) -> Vec<f64> {
+    let Some(estimate) = fitted else { return track.heading.clone() };
+    let ship = estimate.response;
+    let mut columns = Columns::default();
+    track.fill(ship.inverse_T, &mut columns);
+    // The start is found by medians of what is left: readings that are off have no say.
+    let forced = columns.rudder.iter().zip(&columns.constant);
+    let coefficients = Coefficients::of(&ship);
+    track
+        .heading
+        .iter()
+        .zip(forced)
+        .map(|(psi, (g, h))| psi - coefficients.gain * g - coefficients.offset * h)
+        .collect()
+}
+
+fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
+    let track = &record.track;
+    let plain = evaluate(
+        std::slice::from_ref(record),
+        start.inverse_T,
+        &[Place { moment: Moment::None, rudder: false, coloured: false, log: [0.0; 5] }],
+    );
+    let spacing = track.duration() / (track.len() - 1) as f64;
+    let residual = plain.map_or(1.0, |point| {
+        let part = &point.parts[0];
+        // Second differences of white noise have six times its variance; a moment leaves little in them.
+        let differences: Vec<f64> = part.white.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+        let white = differences.iter().sum::<f64>() / differences.len().max(1) as f64 / 6.0;
+        (part.variance / white.max(f64::MIN_POSITIVE)).sqrt().clamp(1.0, 1e6)
+    });
+    Ranges { duration: track.duration(), spacing, residual }
+}
+
+/// BIC of a point.
+fn bic(records: &[Record], point: &Point) -> f64 {
+    let readings: usize = records.iter().map(Record::len).sum();
+    let noise: usize = records
+        .iter()
+        .zip(&point.places)
+        .map(|(record, place)| {
+            // The entry of a declared rudder error stands for the size of the compass error, which is counted with all.
+            place.entries(record.has_gyro()).filter(|&entry| entry != RUDDER || record.declared.is_none()).count()
+        })
+        .sum();
+    point.restricted + noise as f64 * std::env::var("PEN").map_or((readings as f64).ln(), |x| x.parse().unwrap())
+}
+
+/// Fits of all kinds of noise, the lowest BIC first.
+type Ranked = Vec<(f64, Found)>;
+
+/// Fits every kind of noise that the settings allow.
+fn contest(
+    records: &[Record],
+    ranges: &[Ranges],
+    settings: &Settings,
+    a: f64,
+    none: &[Place],
+    declared: bool,
+    evaluations: &mut usize,
+) -> Ranked {
+    let coarse: Option<Vec<Record>> = records.iter().map(|record| record.thinned(LOOKED_AT)).collect();
+    let iterations = settings.iterations;
+    let mut search = Search { records, ranges, coarse: coarse.as_deref(), iterations, evaluations: 0 };
+    let kinds = settings.moment.kinds();
+    let none: &[Place] =
+        &none.iter().map(|place| Place { rudder: place.rudder || declared, ..*place }).collect::<Vec<_>>();
+    let mut all: Vec<(f64, Found)> = Vec::new();
+    let ranked = |found: Option<Found>| found.map(|found| (bic(records, &found.point), found));
+    // Gusts begin where a white moment and a walk end.
+    let (mut white, mut walk) = (None, None);
+    for kind in [Moment::None, Moment::White, Moment::Walk, Moment::OrnsteinUhlenbeck] {
+        let gusts = kinds.contains(&Moment::OrnsteinUhlenbeck) && matches!(kind, Moment::White | Moment::Walk);
+        if !kinds.contains(&kind) && !gusts {
+            continue;
+        }
+        let starts = match kind {
+            Moment::None if none[0].rudder => search.spread(a, none, RUDDER),
+            Moment::None => vec![(a, none.to_vec())],
+            Moment::White | Moment::Walk => search.levels(a, none, kind),
+            Moment::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
+        };
+        let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
+        match kind {
+            Moment::White => white = found.as_ref().map(|found| found.point.clone()),
+            Moment::Walk => walk = found.as_ref().map(|found| found.point.clone()),
+            Moment::None | Moment::OrnsteinUhlenbeck => {}
+        }
+        all.extend(ranked(found).filter(|_| kinds.contains(&kind)));
+    }
+    // A compass error with a memory is only looked for where the innovations have one.
+    if let Some((_, found)) = lowest(&all) {
+        let whites = found.point.parts.iter().map(|part| part.white.as_slice());
+        let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
+        let wanted = match settings.compass {
+            CompassChoice::Chosen => robust::lag1_autocorrelation(whites).abs() > 3.0 / (readings as f64).sqrt(),
+            CompassChoice::White => false,
+            CompassChoice::Coloured => true,
+        };
+        if wanted {
+            let mut froms = vec![(found.point.inverse_time, found.point.places.clone())];
+            if kinds.contains(&Moment::None) && found.point.places[0].moment != Moment::None {
+                froms.push((a, none.to_vec()));
+            }
+            if settings.compass == CompassChoice::Coloured {
+                all.clear();
+            }
+            for (a, places) in froms {
+                let coloured: Vec<Place> = places.iter().map(|place| Place { coloured: true, ..*place }).collect();
+                let starts = search.spread(a, &coloured, COMPASS);
+                let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
+                all.extend(ranked(found));
+            }
+        }
+    }
+    // Under the noise that was found another 1/T may be better.
+    if let Some((_, found)) = lowest(&all) {
+        let elsewhere = asked_again(&mut search, found.point.inverse_time, &found.point.places);
+        if elsewhere.as_ref().is_some_and(|point| point.deviance < found.point.deviance) {
+            let found = elsewhere.and_then(|better| search.maximise(better));
+            all.extend(ranked(found));
+        }
+    }
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    *evaluations += search.evaluations;
+    all
+}
+
+fn lowest(all: &[(f64, Found)]) -> Option<&(f64, Found)> {
+    all.iter().min_by(|one, other| one.0.total_cmp(&other.0))
+}
+
+/// The best of other values of 1/T, of both signs, under the same noise.
+fn asked_again(search: &mut Search, inverse_time: f64, places: &[Place]) -> Option<Point> {
+    let longest = search.ranges.iter().map(|ranges| ranges.duration).fold(0.0, f64::max);
+    let finest = search.ranges.iter().map(|ranges| ranges.spacing).fold(f64::INFINITY, f64::min);
+    let (slowest, fastest) = (0.2 / longest, 0.5 / finest);
+    let decades = (fastest / slowest).log10();
+    let points = (decades * ASKED_PER_DECADE as f64).ceil() as usize;
+    let sizes = (0..=points).map(|k| slowest * 10f64.powf(decades * k as f64 / points as f64));
+    let starts: Vec<f64> = sizes.flat_map(|a| [a, -a]).filter(|a| (a - inverse_time).abs() > 0.2 * a.abs()).collect();
+    search.best(starts.into_iter().map(|a| (a, places.to_vec())).collect(), |point| point.deviance)
+}
+
+/// Keeps the suspected jumps that make the record much more likely under the noise of a point.
+fn believe_jumps(records: &mut [Record], outliers: &mut [Suspects], point: &Point) {
+    for number in 0..records.len() {
+        for jump in outliers[number].jumps.clone() {
+            let height = |records: &[Record]| evaluate(records, point.inverse_time, &point.places).map(|p| p.deviance);
+            let before = height(records);
+            records[number].jumps.push(jump);
+            let gain = before.zip(height(records)).map_or(0.0, |(before, after)| before - after);
+            if gain < JUMP_GAIN + (records[number].len() as f64).ln() {
+                records[number].jumps.pop();
+            }
+        }
+    }
+}

@@ -1,0 +1,480 @@
+//! The likelihood as a function of 1/T and the noise alone: given these, the heading is linear in everything else, and
+//! the size of the compass error follows from what is left.
+//!
+//! The noise is judged by the restricted likelihood, −2 log L + log det(JᵀJ) with the whitened sensitivities J by all
+//! other unknowns: the likelihood of what these cannot move, which does not take the noise for smaller because some of
+//! it was fitted (Patterson and Thompson 1971; Cox and Reid 1987 for unknowns that are not linear).
+
+use lanes::column::{dot, gram};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
+use ship::first_order::State;
+
+use crate::likelihood::{Law, Place, RUDDER, Schedule, Whitener, differentiated};
+use crate::profile::solve2;
+use crate::track::{Coefficients, Columns, Track};
+
+/// Unknowns that all records share: 1/T, K/T and (K/T) δ_r.
+pub(super) const SHARED: usize = 3;
+
+/// Rounds in which records of one ship settle how much each of them counts.
+const WEIGHINGS: usize = 20;
+
+/// Relative change of the variances below which they have.
+const WEIGHED: f64 = 1e-12;
+
+/// One record with its readings.
+#[derive(Debug, Clone)]
+pub(super) struct Record {
+    pub track: Track,
+    pub schedule: Schedule,
+    /// Rows from which on the compass is off by a constant.
+    pub jumps: Vec<usize>,
+    /// Declared standard deviation of the rudder error, rad. Where a place has a rudder error it is this one, and its
+    /// entry stands for the size of the compass error.
+    pub declared: Option<f64>,
+}
+
+/// Columns of one record, white, and before where they are asked for; motions of its own start and jumps are made
+/// orthonormal and taken out of the others.
+struct White {
+    filter: Whitener,
+    /// Own columns, orthonormal, with the triangle that leads back to the columns.
+    own: Vec<Vec<f64>>,
+    triangle: DMatrix<f64>,
+    /// Responses to the rudder and to a constant, and the readings.
+    rest: [Vec<f64>; 3],
+    /// Their parts along the own columns.
+    shares: [Vec<f64>; 3],
+}
+
+/// What a record says at a point.
+#[derive(Debug, Clone)]
+pub(super) struct Part {
+    /// Variance of the compass error, rad².
+    pub variance: f64,
+    /// Number of readings.
+    pub readings: usize,
+    /// Heading and yaw rate at the anchor, and the heights of the jumps, rad.
+    pub anchor: State,
+    pub jumps: Vec<f64>,
+    /// Innovations over √S, rad.
+    pub white: Vec<f64>,
+}
+
+/// The best fit for one 1/T and one noise of every record.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    pub inverse_time: f64,
+    pub places: Vec<Place>,
+    /// −2 log L, and the same of the restricted likelihood.
+    pub deviance: f64,
+    pub restricted: f64,
+    /// b = K/T, 1/s², and b δ_r, rad/s².
+    pub gain: f64,
+    pub offset: f64,
+    pub parts: Vec<Part>,
+}
+
+/// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the places, record by record.
+pub(super) struct Linearised {
+    /// ∂(−log L) by 1/T, and that of the restricted likelihood by the entries; zero for b and b δ_r, which are at their
+    /// best.
+    pub score: DVector<f64>,
+    /// Fisher information, the sizes of the compass errors eliminated.
+    pub information: DMatrix<f64>,
+    /// Scores of (1/T, b, b δ_r) reading by reading, for every record.
+    pub scores: Vec<[Vec<f64>; 3]>,
+    /// Σ ∂ log S/∂θ over the readings of every record, by its entries; zero where the size of the compass error is tied.
+    pub totals: Vec<DVector<f64>>,
+}
+
+impl Record {
+    pub fn new(track: Track, by_row: bool) -> Self {
+        let schedule = Schedule::new(&track, by_row);
+        Self { track, schedule, jumps: Vec::new(), declared: None }
+    }
+
+    /// About so many of the headings, for a first look; `None` where the record has more than headings to look at.
+    pub fn thinned(&self, rows: usize) -> Option<Self> {
+        let plain = !self.has_gyro() && self.jumps.is_empty() && self.track.observed().len() == self.track.time().len();
+        (plain && self.track.len() >= 2 * rows).then(|| Self::new(self.track.thinned(rows), false))
+    }
+
+    /// Number of readings.
+    pub fn len(&self) -> usize {
+        self.schedule.readings.len()
+    }
+
+    /// Whether the yaw rate is among the readings.
+    pub fn has_gyro(&self) -> bool {
+        !self.track.rates.is_empty()
+    }
+
+    /// Declared rudder error of a place, rad.
+    fn tied(&self, place: &Place) -> Option<f64> {
+        self.declared.filter(|_| place.rudder)
+    }
+
+    /// Unknowns of the record alone.
+    fn own(&self) -> usize {
+        2 + self.jumps.len()
+    }
+
+    fn stacked(&self, heading: &[f64], rate: &[f64]) -> Vec<f64> {
+        self.schedule.stacked(heading, rate)
+    }
+
+    /// One from a row on in headings, zero in yaw rates.
+    fn step_at(&self, jump: usize) -> Vec<f64> {
+        let heading: Vec<f64> = self.track.observed().iter().map(|&row| f64::from(u8::from(row >= jump))).collect();
+        self.stacked(&heading, &vec![0.0; self.track.rates.len()])
+    }
+
+    /// Motions of the start and jumps, and the responses to rudder and constant with the readings.
+    fn columns(&self, inverse_time: f64) -> (Vec<Vec<f64>>, [Vec<f64>; 3]) {
+        let mut columns = Columns::default();
+        self.track.fill(inverse_time, &mut columns);
+        let Columns { homogeneous, rudder, constant, rates } = &columns;
+        let ones = self.stacked(&vec![1.0; homogeneous.len()], &vec![0.0; self.track.rates.len()]);
+        let mut own = vec![ones, self.stacked(homogeneous, &rates.homogeneous)];
+        own.extend(self.jumps.iter().map(|&jump| self.step_at(jump)));
+        let rest = [
+            self.stacked(rudder, &rates.rudder),
+            self.stacked(constant, &rates.constant),
+            self.stacked(&self.track.heading, &self.track.rates),
+        ];
+        (own, rest)
+    }
+
+    fn white(&self, inverse_time: f64, filter: Whitener) -> Option<White> {
+        let (mut own, mut rest) = self.columns(inverse_time);
+        let (first, jumps) = own.split_at_mut(2);
+        let [one, two] = first else { return None };
+        let [three, four, five] = &mut rest;
+        filter.apply([one, two, three, four, five]);
+        jumps.iter_mut().for_each(|jump| filter.apply([jump]));
+        let count = own.len();
+        let mut triangle = DMatrix::zeros(count, count);
+        for k in 0..count {
+            let (before, column) = own.split_at_mut(k);
+            for (j, unit) in before.iter().enumerate() {
+                triangle[(j, k)] = take_out(unit, &mut column[0]);
+            }
+            let length = dot(&column[0], &column[0]).sqrt();
+            triangle[(k, k)] = length;
+            if length.is_nan() {
+                return None;
+            }
+            // A start that is over before the first row is not seen.
+            let per = if length > 0.0 { length.recip() } else { 0.0 };
+            column[0].iter_mut().for_each(|x| *x *= per);
+        }
+        let shares = rest.each_mut().map(|column| own.iter().map(|unit| take_out(unit, column)).collect());
+        Some(White { filter, own, triangle, rest, shares })
+    }
+
+    /// Measured less fitted readings, and how the fitted ones change with 1/T.
+    fn residual(&self, point: &Point, part: &Part) -> (Vec<f64>, Vec<f64>) {
+        let coefficients = Coefficients { anchor: part.anchor, gain: point.gain, offset: point.offset };
+        let states = self.track.simulate(point.inverse_time, &coefficients);
+        let heading: Vec<f64> = self.track.observed().iter().map(|&row| states[row].heading).collect();
+        let rate: Vec<f64> = self.track.observed_rates().iter().map(|&row| states[row].yaw_rate).collect();
+        let mut residual = self.stacked(&self.track.heading, &self.track.rates);
+        let fitted = self.stacked(&heading, &rate);
+        residual.iter_mut().zip(&fitted).for_each(|(measured, fitted)| *measured -= fitted);
+        for (&jump, height) in self.jumps.iter().zip(&part.jumps) {
+            residual.iter_mut().zip(self.step_at(jump)).for_each(|(measured, step)| *measured -= height * step);
+        }
+        (residual, self.by_time(point.inverse_time, &coefficients))
+    }
+
+    /// How the readings change with 1/T at known coefficients.
+    fn by_time(&self, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
+        let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
+        self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
+        self.stacked(&by_heading, &by_rate)
+    }
+
+    /// Products of the whitened sensitivities by (1/T, b, b δ_r) at known coefficients, the start eliminated; over σ²
+    /// they are the information of the motion.
+    pub fn information(&self, inverse_time: f64, place: &Place, coefficients: &Coefficients) -> Option<Matrix3<f64>> {
+        let law: Law<f64> = place.law(inverse_time);
+        let white = self.white(inverse_time, Whitener::new(&self.schedule, &law, [0.0; 2]))?;
+        let by_time = white.by_time(self, inverse_time, coefficients);
+        let [rudder, constant, _] = &white.rest;
+        let products = Matrix3::from(gram([by_time.as_slice(), rudder, constant]));
+        products.iter().all(|value| value.is_finite()).then_some(products)
+    }
+}
+
+/// Takes a unit column out of another one and returns its part along it.
+fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
+    let share = dot(unit, column);
+    column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
+    share
+}
+
+impl White {
+    /// How the readings change with 1/T, white, the own columns taken out.
+    fn by_time(&self, record: &Record, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
+        let mut by_time = record.by_time(inverse_time, coefficients);
+        self.filter.apply([&mut by_time]);
+        self.own.iter().for_each(|unit| _ = take_out(unit, &mut by_time));
+        by_time
+    }
+
+    /// Readings less what steering explains.
+    fn residual(&self, gain: f64, offset: f64) -> Vec<f64> {
+        let [rudder, constant, readings] = &self.rest;
+        readings.iter().zip(rudder.iter().zip(constant)).map(|(psi, (g, h))| psi - gain * g - offset * h).collect()
+    }
+
+    /// Start at the anchor and heights of jumps.
+    fn start(&self, gain: f64, offset: f64) -> Option<(State, Vec<f64>)> {
+        let [rudder, constant, readings] = &self.shares;
+        let along = (0..readings.len()).map(|k| readings[k] - gain * rudder[k] - offset * constant[k]);
+        let mut along = DVector::from_iterator(readings.len(), along);
+        // An unseen start is none.
+        let mut triangle = self.triangle.clone();
+        for k in 0..triangle.nrows() {
+            if triangle[(k, k)] == 0.0 {
+                (triangle[(k, k)], along[k]) = (1.0, 0.0);
+            }
+        }
+        let found = triangle.solve_upper_triangular(&along)?;
+        Some((State { heading: found[0], yaw_rate: found[1] }, found.iter().skip(2).copied().collect()))
+    }
+}
+
+/// What decides how much a record counts.
+struct Weight {
+    /// Products of the responses to rudder and constant and the readings.
+    products: [[f64; 3]; 3],
+    readings: f64,
+    /// Readings less the unknowns that are fitted to them.
+    freedom: f64,
+    /// Compass error of a ship with b = 1, rad, where the rudder error is declared.
+    tied: Option<f64>,
+}
+
+impl Weight {
+    fn square(&self, b: f64, q: f64) -> f64 {
+        let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
+        (yy - 2.0 * (b * gy + q * hy) + b * b * gg + 2.0 * b * q * gh + q * q * hh).max(f64::MIN_POSITIVE)
+    }
+
+    fn variance(&self, b: f64, q: f64) -> f64 {
+        self.tied.map_or(self.square(b, q) / self.freedom, |unit| (b * unit).powi(2))
+    }
+}
+
+/// The best b and b δ_r over all records, and the variance of the compass error in every record.
+fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
+    let mut variances = vec![1.0; weights.len()];
+    let mut best = Vector2::zeros();
+    for _ in 0..WEIGHINGS {
+        let (mut matrix, mut moment) = (Matrix2::zeros(), Vector2::zeros());
+        for (Weight { products: [[gg, gh, gy], [_, hh, hy], _], .. }, variance) in weights.iter().zip(&variances) {
+            matrix += Matrix2::new(*gg, *gh, *gh, *hh) / *variance;
+            moment += Vector2::new(*gy, *hy) / *variance;
+        }
+        best = solve2(&matrix, &moment)?;
+        let mut moved = 0.0_f64;
+        for (weight, variance) in weights.iter().zip(&mut variances) {
+            let next = weight.variance(best[0], best[1]);
+            moved = moved.max((next / *variance - 1.0).abs());
+            *variance = next;
+        }
+        if weights.len() == 1 || moved < WEIGHED {
+            break;
+        }
+    }
+    Some((best, variances))
+}
+
+/// The best fit for one 1/T and these places, one a record. `None` when it is no ship or not finite.
+pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) -> Option<Point> {
+    let white = |(record, place): (&Record, &Place)| {
+        let law: Law<f64> = place.law(inverse_time);
+        record.white(inverse_time, Whitener::new(&record.schedule, &law, [0.0; 2]))
+    };
+    let whites = records.iter().zip(places).map(white).collect::<Option<Vec<_>>>()?;
+    let all: usize = records.iter().map(Record::len).sum();
+    let weight = |((record, place), white): ((&Record, &Place), &White)| {
+        let readings = record.len() as f64;
+        let fitted = record.own() as f64 + SHARED as f64 * readings / all as f64;
+        let [rudder, constant, measured] = &white.rest;
+        Weight {
+            products: gram([rudder, constant, measured]),
+            readings,
+            freedom: readings - fitted,
+            tied: record.tied(place).map(|sd| sd / place.log[RUDDER].exp()),
+        }
+    };
+    let weights: Vec<Weight> = records.iter().zip(places).zip(&whites).map(weight).collect();
+    let (steering, variances) = weigh(&weights)?;
+    let [gain, offset]: [f64; 2] = steering.into();
+    let (mut deviance, mut determinant) = (0.0, 0.0);
+    let mut motion = Matrix3::zeros();
+    let mut parts = Vec::with_capacity(records.len());
+    for (((white, weight), &variance), record) in whites.iter().zip(&weights).zip(&variances).zip(records) {
+        let constant = (2.0 * std::f64::consts::PI * variance).ln();
+        deviance += weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance();
+        let (anchor, jumps) = white.start(gain, offset)?;
+        let readings = weight.readings as usize;
+        let lengths = white.triangle.diagonal();
+        let seen = lengths.iter().filter(|&&length| length > 0.0);
+        determinant += seen.map(|length| (length * length / variance).ln()).sum::<f64>();
+        let by_time = white.by_time(record, inverse_time, &Coefficients { anchor, gain, offset });
+        let [rudder, constant, _] = &white.rest;
+        motion += Matrix3::from(gram([by_time.as_slice(), rudder, constant])) / variance;
+        parts.push(Part { variance, readings, anchor, jumps, white: white.residual(gain, offset) });
+    }
+    let restricted = deviance + determinant + motion.determinant().ln();
+    let ship = gain > 0.0 && restricted.is_finite();
+    ship.then(|| Point { inverse_time, places: places.to_vec(), deviance, restricted, gain, offset, parts })
+}
+
+/// Score and information at a point.
+pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
+    let entries: Vec<Vec<usize>> =
+        (records.iter().zip(&point.places)).map(|(record, place)| place.entries(record.has_gyro()).collect()).collect();
+    let unknowns = SHARED + entries.iter().map(Vec::len).sum::<usize>();
+    let mut score = DVector::zeros(unknowns);
+    let mut information = DMatrix::zeros(unknowns, unknowns);
+    let mut scores = Vec::with_capacity(records.len());
+    let mut determinants = Vec::new();
+    let mut all_totals = Vec::with_capacity(records.len());
+    let mut first = SHARED;
+    for (number, record) in records.iter().enumerate() {
+        let part = &point.parts[number];
+        let place = &point.places[number];
+        let (filter, differentiated) = differentiated(&record.schedule, &place.law(point.inverse_time));
+        let white = record.white(point.inverse_time, filter)?;
+        let (residual, raw_by_time) = record.residual(point, part);
+        let mut by_time = raw_by_time.clone();
+        white.filter.apply([&mut by_time]);
+        // Direction 0 is 1/T, direction k + 1 the entry k.
+        let wanted: Vec<usize> = std::iter::once(0).chain(entries[number].iter().map(|entry| entry + 1)).collect();
+        let mut slopes = differentiated.slopes(&record.schedule, &residual, &wanted);
+        let tied = record.tied(place).is_some();
+        if tied {
+            // A smaller compass error makes the same rudder error larger in its units.
+            slopes.log_variance[1 + RUDDER].iter_mut().for_each(|by| *by -= 2.0);
+        }
+        let mut by_shared = [by_time, white.rest[0].clone(), white.rest[1].clone()];
+        let along_time: Vec<f64> = white.own.iter().map(|unit| take_out(unit, &mut by_shared[0])).collect();
+        let at: Vec<usize> = std::iter::once(0).chain(first..first + entries[number].len()).collect();
+        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(wanted.len() + 2);
+        for &direction in &wanted {
+            let mut column = slopes.innovation[direction].clone();
+            white.own.iter().for_each(|unit| _ = take_out(unit, &mut column));
+            if direction == 0 {
+                column.iter_mut().zip(&by_shared[0]).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
+            }
+            columns.push(column);
+        }
+        let minus = |column: &[f64]| column.iter().map(|x| -x).collect::<Vec<f64>>();
+        columns.extend([minus(&by_shared[1]), minus(&by_shared[2])]);
+        let all: Vec<usize> = at.iter().copied().chain([1, 2]).collect();
+
+        let per = part.variance.recip();
+        for (i, &row) in all.iter().enumerate() {
+            for (j, &column) in all.iter().enumerate().take(i + 1) {
+                let product = dot(&columns[i], &columns[j]) * per;
+                information[(row, column)] += product;
+                if i != j {
+                    information[(column, row)] += product;
+                }
+            }
+        }
+        let mut totals = Vec::with_capacity(wanted.len());
+        for (i, &direction) in wanted.iter().enumerate() {
+            let logs = &slopes.log_variance[direction];
+            let surprise: f64 = logs.iter().zip(&part.white).map(|(by, nu)| by * (1.0 - nu * nu * per)).sum();
+            score[at[i]] += dot(&part.white, &columns[i]) * per + 0.5 * surprise;
+            totals.push(if tied { 0.0 } else { logs.iter().sum::<f64>() });
+        }
+        for (i, &one) in wanted.iter().enumerate() {
+            for (j, &other) in wanted.iter().enumerate() {
+                let product = dot(&slopes.log_variance[one], &slopes.log_variance[other]);
+                let of_size = totals[i] * totals[j] / part.readings as f64;
+                information[(at[i], at[j])] += 0.5 * (product - of_size);
+            }
+        }
+        all_totals.push(DVector::from_row_slice(&totals[1..]));
+        let times = |column: &[f64]| column.iter().zip(&part.white).map(|(x, nu)| x * nu).collect::<Vec<f64>>();
+        scores.push(by_shared.each_ref().map(|column| times(column)));
+        let fitted = Fitted::new(record, point, &white, raw_by_time, by_shared, along_time);
+        determinants.push((number, first, differentiated, fitted, slopes));
+        first += entries[number].len();
+    }
+    let motion = determinants.iter().map(|(number, .., fitted, _)| fitted.products / point.parts[*number].variance);
+    let motion: Matrix3<f64> = motion.sum();
+    let factor = motion.cholesky()?.l().try_inverse()?.transpose();
+    for (number, first, differentiated, fitted, slopes) in &determinants {
+        if entries[*number].is_empty() {
+            continue;
+        }
+        let (record, per) = (&records[*number], point.parts[*number].variance.sqrt().recip());
+        for (unit, raw) in fitted.orthonormal(&(factor * per)) {
+            let wanted: Vec<usize> = entries[*number].iter().map(|entry| entry + 1).collect();
+            let mut of_column = differentiated.slopes(&record.schedule, &raw, &wanted);
+            of_column.log_variance.clone_from(&slopes.log_variance);
+            for (k, &direction) in wanted.iter().enumerate() {
+                score[first + k] += of_column.of_determinant(&unit, direction);
+            }
+        }
+    }
+    let finite = score.iter().chain(information.iter()).all(|value: &f64| value.is_finite());
+    finite.then_some(Linearised { score, information, scores, totals: all_totals })
+}
+
+/// All columns that are fitted to a record, white and before, for the determinant of their products.
+struct Fitted {
+    own: Vec<(Vec<f64>, Vec<f64>)>,
+    /// By 1/T, b, b δ_r, the own ones taken out.
+    white: [Vec<f64>; 3],
+    raw: [Vec<f64>; 3],
+    products: Matrix3<f64>,
+}
+
+impl Fitted {
+    fn new(
+        record: &Record,
+        point: &Point,
+        white: &White,
+        raw_by_time: Vec<f64>,
+        by_shared: [Vec<f64>; 3],
+        along_time: Vec<f64>,
+    ) -> Self {
+        let (mut own, [rudder, constant, _]) = record.columns(point.inverse_time);
+        // What made the white columns orthonormal makes the others follow.
+        for k in 0..own.len() {
+            let (before, column) = own.split_at_mut(k);
+            for (j, unit) in before.iter().enumerate() {
+                column[0].iter_mut().zip(unit).for_each(|(x, u)| *x -= white.triangle[(j, k)] * u);
+            }
+            let length = white.triangle[(k, k)];
+            let per = if length > 0.0 { length.recip() } else { 0.0 };
+            column[0].iter_mut().for_each(|x| *x *= per);
+        }
+        let mut raw = [raw_by_time, rudder, constant];
+        for (column, shares) in raw.iter_mut().zip([&along_time, &white.shares[0], &white.shares[1]]) {
+            for (unit, share) in own.iter().zip(shares) {
+                column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
+            }
+        }
+        let products = Matrix3::from(gram(by_shared.each_ref().map(Vec::as_slice)));
+        Self { own: white.own.iter().cloned().zip(own).collect(), white: by_shared, raw, products }
+    }
+
+    /// Orthonormal columns with what they were before they were white; `factor` makes the shared ones so.
+    fn orthonormal(&self, factor: &Matrix3<f64>) -> Vec<(Vec<f64>, Vec<f64>)> {
+        let combined = |columns: &[Vec<f64>; 3], k: usize| -> Vec<f64> {
+            (0..columns[0].len()).map(|row| (0..3).map(|j| columns[j][row] * factor[(j, k)]).sum()).collect()
+        };
+        let shared = (0..3).map(|k| (combined(&self.white, k), combined(&self.raw, k)));
+        self.own.iter().cloned().chain(shared).collect()
+    }
+}

@@ -1,0 +1,249 @@
+//! The largest likelihood over 1/T and the noise: Fisher scoring with exact slopes from starts of every size.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::point::{Linearised, Point, Record, SHARED, evaluate, linearise};
+use crate::likelihood::{COMPASS, CORRELATION, GYRO, LEVEL, Moment, Place, RUDDER};
+
+/// Steps end when they promise less than this in −log L: a hundredth of a standard deviation of the noise. Where there
+/// is none to find, 1/T alone has to be as exact as that of `output-error`.
+const PROMISE: f64 = 1e-4;
+const PROMISE_ALONE: f64 = 1e-12;
+
+/// By how much a step may raise −2 log of the restricted likelihood.
+const SLACK: f64 = 1e-2;
+
+/// Halvings of a step.
+const HALVINGS: usize = 12;
+
+/// Largest change of a logarithm in one step.
+const LONGEST_STEP: f64 = 2.5;
+
+/// Ranges of the logarithms of one record, and where the search begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ranges {
+    /// Length of the record and usual time between its readings, s.
+    pub duration: f64,
+    pub spacing: f64,
+    /// Root mean square residual of a fit without a moment, in units of what of it is white.
+    pub residual: f64,
+}
+
+impl Ranges {
+    /// The level of a moment that moves the heading of a ship without damping by `by` (in units of σ) over `time`.
+    fn level(moment: Moment, by: f64, time: f64) -> f64 {
+        match moment {
+            Moment::Walk => by * (20.0 / time.powi(5)).sqrt(),
+            Moment::White => by * (3.0 / time.powi(3)).sqrt(),
+            Moment::None | Moment::OrnsteinUhlenbeck => 2.0 * by / (time * time),
+        }
+    }
+
+    /// Smallest and largest logarithm of an entry.
+    fn of(&self, place: &Place, entry: usize) -> [f64; 2] {
+        let Self { duration, spacing, .. } = *self;
+        let ends = match entry {
+            LEVEL => [Self::level(place.moment, 1e-3, duration), Self::level(place.moment, 1e3, spacing)],
+            CORRELATION => [0.5 * spacing, 10.0 * duration],
+            RUDDER => [2e-3 / (duration * duration), 2e3 / (spacing * spacing)],
+            COMPASS => [0.1 * spacing, duration],
+            _ => [1e-4 / duration, 1e4 / spacing],
+        };
+        ends.map(f64::ln)
+    }
+
+    /// The same place with one entry at a value, inside its range.
+    fn with(&self, place: &Place, entry: usize, log: f64) -> Place {
+        let [low, high] = self.of(place, entry);
+        let mut moved = *place;
+        moved.log[entry] = log.clamp(low, high);
+        moved
+    }
+}
+
+/// A search over all records.
+pub(super) struct Search<'a> {
+    pub records: &'a [Record],
+    pub ranges: &'a [Ranges],
+    /// The same records with fewer readings, for a first look.
+    pub coarse: Option<&'a [Record]>,
+    pub iterations: usize,
+    pub evaluations: usize,
+}
+
+/// The end of a search.
+pub(super) struct Found {
+    pub point: Point,
+    pub linearised: Linearised,
+    pub converged: bool,
+}
+
+impl Search<'_> {
+    fn evaluate(&mut self, inverse_time: f64, places: &[Place]) -> Option<Point> {
+        self.evaluations += 1;
+        evaluate(self.records, inverse_time, places)
+    }
+
+    /// The start with the lowest −2 log L, or restricted one where only the noise differs; it is looked for in fewer
+    /// readings where there are many.
+    pub fn best(&mut self, starts: Vec<(f64, Vec<Place>)>, height: fn(&Point) -> f64) -> Option<Point> {
+        let records = self.coarse.unwrap_or(self.records);
+        self.evaluations += starts.len();
+        let of_start = |(a, places): &(f64, Vec<Place>)| {
+            evaluate(records, *a, places).map_or(f64::INFINITY, |point| height(&point))
+        };
+        let best = starts.iter().map(|start| (of_start(start), start)).min_by(|one, other| one.0.total_cmp(&other.0));
+        best.and_then(|(_, (a, places))| self.evaluate(*a, places))
+    }
+
+    /// Starts of several sizes for the moment of a kind.
+    pub fn levels(&self, inverse_time: f64, places: &[Place], moment: Moment) -> Vec<(f64, Vec<Place>)> {
+        LEVELS
+            .iter()
+            .map(|by| {
+                let place = |(place, ranges): (&Place, &Ranges)| {
+                    let wanted = Place { moment, ..*place };
+                    // A record shows what a moment does in a quarter of it.
+                    let log = Ranges::level(moment, by * ranges.residual, 0.25 * ranges.duration).ln();
+                    ranges.with(&wanted, LEVEL, log)
+                };
+                (inverse_time, places.iter().zip(self.ranges).map(place).collect())
+            })
+            .collect()
+    }
+
+    /// Starts for gusts: short ones that act like a white moment, and long ones like a walk.
+    pub fn gusts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<(f64, Vec<Place>)> {
+        let mut starts = Vec::new();
+        for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {
+            let Some(point) = point else { continue };
+            for share in shares {
+                let place = |(place, ranges): (&Place, &Ranges)| {
+                    let time = share * ranges.duration;
+                    let factor = if place.moment == Moment::White { 0.5 / time } else { 0.5 * time };
+                    let wanted = Place { moment: Moment::OrnsteinUhlenbeck, ..*place };
+                    let wanted = ranges.with(&wanted, CORRELATION, time.ln());
+                    ranges.with(&wanted, LEVEL, place.log[LEVEL] + 0.5 * factor.ln())
+                };
+                let places = point.places.iter().zip(self.ranges).map(place).collect();
+                starts.push((point.inverse_time, places));
+            }
+        }
+        starts
+    }
+
+    /// Starts for an entry of all places: a few sizes over its range.
+    pub fn spread(&self, inverse_time: f64, places: &[Place], entry: usize) -> Vec<(f64, Vec<Place>)> {
+        let start = |share: f64| {
+            let place = |(place, ranges): (&Place, &Ranges)| {
+                let [low, high] = ranges.of(place, entry);
+                ranges.with(place, entry, low + share * (high - low))
+            };
+            (inverse_time, places.iter().zip(self.ranges).map(place).collect())
+        };
+        [0.2, 0.35, 0.5, 0.65].map(start).into()
+    }
+
+    /// Fisher scoring from a point.
+    ///
+    /// 1/T follows the likelihood and the noise the restricted one, so steps need not lower the latter to the last digit.
+    pub fn maximise(&mut self, start: Point) -> Option<Found> {
+        let mut point = start;
+        for _ in 0..self.iterations {
+            let linearised = linearise(self.records, &point)?;
+            let free = self.free(&point, &linearised.score);
+            let Some((step, promise)) = step(&linearised, &free) else {
+                return Some(Found { point, linearised, converged: false });
+            };
+            let settled = if free.len() > 1 { PROMISE } else { PROMISE_ALONE };
+            if promise <= settled {
+                return Some(Found { point, linearised, converged: true });
+            }
+            let longest = step.iter().skip(1).fold(0.0_f64, |most, by| most.max(by.abs()));
+            let mut share = if longest > LONGEST_STEP { LONGEST_STEP / longest } else { 1.0 };
+            let lower = (0..HALVINGS).find_map(|_| {
+                let (inverse_time, places) = self.moved(&point, &free, &(&step * share));
+                let next =
+                    self.evaluate(inverse_time, &places).filter(|next| next.restricted < point.restricted + SLACK);
+                if next.is_none() {
+                    share *= 0.4;
+                }
+                next
+            });
+            let Some(lower) = lower else {
+                // No step downhill is left: a minimum to rounding.
+                return Some(Found { point, linearised, converged: promise < SLACK });
+            };
+            point = lower;
+        }
+        let linearised = linearise(self.records, &point)?;
+        Some(Found { point, linearised, converged: false })
+    }
+
+    /// Where in the score the unknowns are that may move: an entry at the end of its range only if it leads back.
+    fn free(&self, point: &Point, score: &DVector<f64>) -> Vec<usize> {
+        let mut free = vec![0];
+        let mut at = SHARED;
+        for ((record, place), ranges) in self.records.iter().zip(&point.places).zip(self.ranges) {
+            for entry in place.entries(record.has_gyro()) {
+                let [low, high] = ranges.of(place, entry);
+                let log = place.log[entry];
+                let outward = (log <= low && score[at] > 0.0) || (log >= high && score[at] < 0.0);
+                if !outward {
+                    free.push(at);
+                }
+                at += 1;
+            }
+        }
+        free
+    }
+
+    /// The place a step away.
+    fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> (f64, Vec<Place>) {
+        let by = |at: usize| free.iter().position(|&place| place == at).map_or(0.0, |k| step[k]);
+        let mut at = SHARED;
+        let mut places = point.places.clone();
+        for ((record, place), ranges) in self.records.iter().zip(&mut places).zip(self.ranges) {
+            for entry in place.entries(record.has_gyro()) {
+                *place = ranges.with(place, entry, place.log[entry] + by(at));
+                at += 1;
+            }
+        }
+        (point.inverse_time + by(0), places)
+    }
+}
+
+/// Sizes of a moment that are tried, in units of what a fit without one leaves.
+const LEVELS: [f64; 4] = [0.03, 0.2, 1.0, 5.0];
+
+/// The scoring step of the free unknowns with b and b δ_r following, and the change of −2 log L it promises.
+fn step(linearised: &Linearised, free: &[usize]) -> Option<(DVector<f64>, f64)> {
+    let information = reduced(&linearised.information, free)?;
+    let score = DVector::from_iterator(free.len(), free.iter().map(|&at| linearised.score[at]));
+    let scale = DVector::from_iterator(free.len(), information.diagonal().iter().map(|x| x.sqrt().recip()));
+    if scale.iter().any(|x| !x.is_finite()) {
+        return None;
+    }
+    let count = free.len();
+    let scaled = DMatrix::from_fn(count, count, |i, j| information[(i, j)] * scale[i] * scale[j]);
+    let ridge = DMatrix::identity(count, count) * 1e-10;
+    let step = -(scaled + ridge).cholesky()?.solve(&score.component_mul(&scale)).component_mul(&scale);
+    let promise = -step.dot(&score);
+    Some((step, promise))
+}
+
+/// Information of some unknowns when b and b δ_r follow them.
+fn reduced(information: &DMatrix<f64>, wanted: &[usize]) -> Option<DMatrix<f64>> {
+    let pick = |rows: &[usize], columns: &[usize]| {
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| information[(rows[i], columns[j])])
+    };
+    let steering = [1, 2];
+    let cross = pick(wanted, &steering);
+    let inner = pick(&steering, &steering).cholesky()?;
+    Some(pick(wanted, wanted) - &cross * inner.solve(&cross.transpose()))
+}
+
+/// The logarithm of the gyro error with which a search begins.
+pub(super) fn gyro_start(ranges: &Ranges, place: &Place) -> Place {
+    ranges.with(place, GYRO, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
+}
