@@ -87,7 +87,7 @@ pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
 }
 
 /// Heading and yaw rate at the anchor whose own motion, 1 and φ₁, comes nearest to `rest`.
-fn best_start(rest: &[f64], homogeneous: &[f64]) -> State {
+pub(crate) fn best_start(rest: &[f64], homogeneous: &[f64]) -> State {
     let rows = rest.len() as f64;
     let (level, mean) = (sum(rest) / rows, sum(homogeneous) / rows);
     let square = dot(homogeneous, homogeneous);

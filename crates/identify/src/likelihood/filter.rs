@@ -2,9 +2,8 @@
 //!
 //! With readings of one kind at even times the gain settles; from there on no covariance is computed.
 
-use ship::{DIRECTIONS, Tangent};
-
-use super::law::{Law, Variable};
+use super::law::{Law, Place};
+use super::number::{Dual, Variable};
 use super::schedule::{Of, Reading, Schedule};
 use super::transition::Step;
 
@@ -15,8 +14,8 @@ const MOST: usize = 5;
 const INSTRUMENTS: usize = 2;
 
 /// A gain that changes by less than this share, and its derivatives by less than the other, has settled.
-const SETTLED: f64 = 1e-11;
-const SETTLED_SLOPE: f64 = 1e-8;
+const SETTLED: f64 = 1e-10;
+const SETTLED_SLOPE: f64 = 1e-7;
 
 /// What the filter does with a reading.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +30,8 @@ struct Gain<R, const N: usize> {
 struct Filter<R, const N: usize> {
     transitions: Vec<[[R; N]; N]>,
     gains: Vec<Gain<R, N>>,
+    /// One over √S of every gain.
+    weights: Vec<f64>,
     /// Gain of every reading.
     of: Vec<u32>,
     compass: Option<usize>,
@@ -54,6 +55,7 @@ impl<R: Variable, const N: usize> Filter<R, N> {
         let mut filter = Self {
             transitions: steps.iter().map(|step| step.transition).collect(),
             gains: Vec::new(),
+            weights: Vec::new(),
             of: Vec::with_capacity(schedule.readings.len()),
             compass,
         };
@@ -81,6 +83,7 @@ impl<R: Variable, const N: usize> Filter<R, N> {
             filter.of.push(filter.gains.len() as u32);
             filter.gains.push(gain);
         }
+        filter.weights = filter.gains.iter().map(|gain| gain.variance.value().sqrt().recip()).collect();
         filter
     }
 
@@ -108,10 +111,11 @@ impl<R: Variable, const N: usize> Filter<R, N> {
         Gain { gain, variance }
     }
 
-    /// What a state makes a reading.
-    fn read<T: Copy + std::ops::Add<Output = T>>(&self, state: &[T; N], of: Of) -> T {
+    /// What states side by side make of a reading.
+    #[inline(always)]
+    fn read<const COLUMNS: usize>(&self, state: &[[f64; COLUMNS]; N], of: Of) -> [f64; COLUMNS] {
         match (of, self.compass) {
-            (Of::Heading, Some(compass)) => state[0] + state[compass],
+            (Of::Heading, Some(compass)) => std::array::from_fn(|k| state[0][k] + state[compass][k]),
             (Of::Heading, None) => state[0],
             (Of::YawRate, _) => state[1],
         }
@@ -178,7 +182,7 @@ impl Whitener {
             states: N,
             compass: filter.compass,
             transitions: filter.transitions.iter().map(matrix).collect(),
-            gains: filter.gains.iter().map(|gain| (wide(&gain.gain), gain.variance.value().sqrt().recip())).collect(),
+            gains: filter.gains.iter().zip(&filter.weights).map(|(gain, &weight)| (wide(&gain.gain), weight)).collect(),
             readings: readings.map(|(reading, &of)| (reading.step, reading.of, of)).collect(),
             log_variance: filter.of.iter().map(|&of| logs[of as usize]).sum(),
         }
@@ -189,9 +193,10 @@ impl Whitener {
         self.log_variance
     }
 
-    /// Standard deviation of the innovation of a reading in units of that of the compass.
-    pub fn spread(&self, reading: usize) -> f64 {
-        self.gains[self.readings[reading].2 as usize].1.recip()
+    /// One over the standard deviation of the innovation of a reading, in units of that of the compass.
+    #[cfg(test)]
+    pub fn weight(&self, reading: usize) -> f64 {
+        self.gains[self.readings[reading].2 as usize].1
     }
 
     /// Makes columns white in place.
@@ -235,78 +240,142 @@ impl Whitener {
     }
 }
 
-/// How innovations and their variances change with 1/T and the entries of a place.
+/// How innovations and their variances change with 1/T and the entries of a place, by lane.
 #[derive(Debug, Clone)]
 pub(crate) struct Slopes {
-    /// ∂ν/∂θ over √S of every reading, by direction.
-    pub innovation: [Vec<f64>; DIRECTIONS],
-    /// ∂ log S/∂θ of every reading, by direction.
-    pub log_variance: [Vec<f64>; DIRECTIONS],
+    /// ∂ν/∂θ over √S of every reading.
+    pub innovation: Vec<Vec<f64>>,
+    /// ∂ log S/∂θ of every reading.
+    pub log_variance: Vec<Vec<f64>>,
 }
+
+/// Columns whose slopes are computed side by side.
+pub(crate) const SIDE_BY_SIDE: usize = 6;
 
 /// A filter that knows its derivatives.
 pub(crate) trait Differentiated {
-    /// How the innovations of a residual change, in the directions that are `wanted`.
-    fn slopes(&self, schedule: &Schedule, residual: &[f64], wanted: &[usize]) -> Slopes;
+    /// How the innovations of a residual change, in the first `lanes`.
+    fn slopes(&self, schedule: &Schedule, residual: &[f64], lanes: usize) -> Slopes;
+
+    /// Σ over columns of q·∂ν/∂θ/√S, by lane, where ∂ν/∂θ is what the filter makes of a column that is not white yet and
+    /// q one that is. A column that is not there is empty.
+    fn turned(&self, schedule: &Schedule, raw: [&[f64]; SIDE_BY_SIDE], white: [&[f64]; SIDE_BY_SIDE]) -> Vec<f64>;
 }
 
-impl Slopes {
-    /// ½ ∂ log det(JᵀJ)/∂θ in a direction, where this is what the filter makes of a column, not white yet, that becomes
-    /// one of an orthonormal basis of the whitened columns J: its share of the sum.
-    pub fn of_determinant(&self, unit: &[f64], direction: usize) -> f64 {
-        let logs = &self.log_variance[direction];
-        let turned: f64 = unit.iter().zip(&self.innovation[direction]).map(|(q, by)| q * by).sum();
-        let shrunk: f64 = unit.iter().zip(logs).map(|(q, by)| q * q * by).sum();
-        turned - 0.5 * shrunk
+/// The filter of a place from a known initial state, and the same with its derivatives.
+pub(crate) fn differentiated(
+    schedule: &Schedule,
+    place: &Place,
+    inverse_time: f64,
+    gyro: bool,
+) -> Box<dyn Differentiated> {
+    match place.entries(gyro).count() {
+        0 | 1 => of_lanes::<2>(schedule, &place.law(inverse_time, gyro)),
+        2 => of_lanes::<3>(schedule, &place.law(inverse_time, gyro)),
+        3 => of_lanes::<4>(schedule, &place.law(inverse_time, gyro)),
+        _ => of_lanes::<6>(schedule, &place.law(inverse_time, gyro)),
     }
 }
 
-/// The filter of a law from a known initial state, and the same with its derivatives.
-pub(crate) fn differentiated(schedule: &Schedule, law: &Law<Tangent>) -> (Whitener, Box<dyn Differentiated>) {
-    with_states!(law.states(), N => {
-        let filter = Filter::<Tangent, N>::new(schedule, law, [0.0; 2]);
-        (Whitener::of(schedule, &filter), Box::new(filter))
-    })
+fn of_lanes<const LANES: usize>(schedule: &Schedule, law: &Law<Dual<LANES>>) -> Box<dyn Differentiated> {
+    with_states!(law.states(), N => Box::new(Filter::<Dual<LANES>, N>::new(schedule, law, [0.0; 2])))
 }
 
-impl<const N: usize> Differentiated for Filter<Tangent, N> {
-    fn slopes(&self, schedule: &Schedule, residual: &[f64], wanted: &[usize]) -> Slopes {
-        let mut slopes = Slopes { innovation: Default::default(), log_variance: Default::default() };
-        for &direction in wanted {
-            slopes.innovation[direction].reserve_exact(residual.len());
-            slopes.log_variance[direction].reserve_exact(residual.len());
-        }
-        let mut x = [0.0; N];
-        let mut by = [[0.0; DIRECTIONS]; N];
-        for ((&Reading { step, of }, &place), &reading) in schedule.readings.iter().zip(&self.of).zip(residual) {
+impl<const LANES: usize, const N: usize> Differentiated for Filter<Dual<LANES>, N> {
+    fn slopes(&self, schedule: &Schedule, residual: &[f64], lanes: usize) -> Slopes {
+        let empty = || vec![Vec::with_capacity(residual.len()); lanes];
+        let mut slopes = Slopes { innovation: empty(), log_variance: empty() };
+        self.run(
+            schedule,
+            |row, _| [residual[row]],
+            |_, place, _, by: [[f64; 1]; LANES]| {
+                let variance = &self.gains[place].variance;
+                let weight = self.weights[place];
+                let columns = slopes.innovation.iter_mut().zip(&mut slopes.log_variance);
+                for ((innovation, log_variance), (by, of_variance)) in columns.zip(by.iter().zip(variance.by)) {
+                    innovation.push(by[0] * weight);
+                    log_variance.push(of_variance / variance.value);
+                }
+            },
+        );
+        slopes
+    }
+
+    fn turned(&self, schedule: &Schedule, raw: [&[f64]; SIDE_BY_SIDE], white: [&[f64]; SIDE_BY_SIDE]) -> Vec<f64> {
+        let mut sums = [[0.0; SIDE_BY_SIDE]; LANES];
+        let at = |columns: &[&[f64]; SIDE_BY_SIDE], row: usize| -> [f64; SIDE_BY_SIDE] {
+            std::array::from_fn(|k| columns[k].get(row).copied().unwrap_or(0.0))
+        };
+        self.run(
+            schedule,
+            |row, _| at(&raw, row),
+            |row, place, _, by: [[f64; SIDE_BY_SIDE]; LANES]| {
+                let q = at(&white, row);
+                let weight = self.weights[place];
+                for (sums, by) in sums.iter_mut().zip(&by) {
+                    for k in 0..SIDE_BY_SIDE {
+                        sums[k] += q[k] * by[k] * weight;
+                    }
+                }
+            },
+        );
+        sums.iter().map(|sums| sums.iter().sum()).collect()
+    }
+}
+
+impl<const LANES: usize, const N: usize> Filter<Dual<LANES>, N> {
+    /// Runs columns through the filter and visits every reading with the number of its gain, the innovations and their
+    /// derivatives.
+    #[inline(always)]
+    fn run<const COLUMNS: usize>(
+        &self,
+        schedule: &Schedule,
+        column: impl Fn(usize, usize) -> [f64; COLUMNS],
+        mut visit: impl FnMut(usize, usize, [f64; COLUMNS], [[f64; COLUMNS]; LANES]),
+    ) {
+        let mut x = [[0.0; COLUMNS]; N];
+        let mut by = [[[0.0; COLUMNS]; N]; LANES];
+        for (row, (&Reading { step, of }, &place)) in schedule.readings.iter().zip(&self.of).enumerate() {
             if let Some(step) = step {
                 let f = &self.transitions[step];
-                let (mut next, mut next_by) = ([0.0; N], [[0.0; DIRECTIONS]; N]);
+                let mut next = [[0.0; COLUMNS]; N];
+                let mut next_by = [[[0.0; COLUMNS]; N]; LANES];
                 for i in 0..N {
-                    for j in 0..N {
-                        next[i] += f[i][j].value * x[j];
-                        for d in 0..DIRECTIONS {
-                            next_by[i][d] += f[i][j].value * by[j][d] + f[i][j].by[d] * x[j];
+                    for (j, f) in f[i].iter().enumerate() {
+                        for k in 0..COLUMNS {
+                            next[i][k] += f.value * x[j][k];
+                        }
+                        for (lane, (next_by, by)) in next_by.iter_mut().zip(&by).enumerate() {
+                            for k in 0..COLUMNS {
+                                next_by[i][k] += f.value * by[j][k] + f.by[lane] * x[j][k];
+                            }
                         }
                     }
                 }
                 (x, by) = (next, next_by);
             }
-            let Gain { gain, variance } = &self.gains[place as usize];
-            let innovation = reading - self.read(&x, of);
-            let innovation_by: [f64; DIRECTIONS] = std::array::from_fn(|d| -self.read(&by.map(|row| row[d]), of));
-            for i in 0..N {
-                x[i] += gain[i].value * innovation;
-                for d in 0..DIRECTIONS {
-                    by[i][d] += gain[i].value * innovation_by[d] + gain[i].by[d] * innovation;
+            let place = place as usize;
+            let gain = &self.gains[place].gain;
+            let seen = self.read(&x, of);
+            let reading = column(row, place);
+            let innovation: [f64; COLUMNS] = std::array::from_fn(|k| reading[k] - seen[k]);
+            let mut innovation_by = [[0.0; COLUMNS]; LANES];
+            for (innovation_by, by) in innovation_by.iter_mut().zip(&by) {
+                *innovation_by = self.read(by, of).map(|seen| -seen);
+            }
+            for (x, gain) in x.iter_mut().zip(gain) {
+                for k in 0..COLUMNS {
+                    x[k] += gain.value * innovation[k];
                 }
             }
-            let weight = variance.value.sqrt().recip();
-            for &direction in wanted {
-                slopes.innovation[direction].push(innovation_by[direction] * weight);
-                slopes.log_variance[direction].push(variance.by[direction] / variance.value);
+            for (lane, (by, innovation_by)) in by.iter_mut().zip(&innovation_by).enumerate() {
+                for (by, gain) in by.iter_mut().zip(gain) {
+                    for k in 0..COLUMNS {
+                        by[k] += gain.value * innovation_by[k] + gain.by[lane] * innovation[k];
+                    }
+                }
             }
+            visit(row, place, innovation, innovation_by);
         }
-        slopes
     }
 }

@@ -1,12 +1,10 @@
 //! The noise as numbers that an optimiser can move: logarithms, in units of the compass error, so that each of them may
 //! take any value and the size of the compass error drops out.
 
-use ship::{FirstOrder, Real, Tangent};
+use ship::FirstOrder;
 
+use super::number::Variable;
 use super::{Moment, Noise};
-
-/// Direction of 1/T among the derivatives of a [`Tangent`]; the entries of a [`Place`] follow it.
-const INVERSE_TIME: usize = 0;
 
 /// Entries of a [`Place`].
 pub(crate) const ENTRIES: usize = 5;
@@ -76,14 +74,16 @@ impl Place {
         (0..ENTRIES).filter(move |&entry| there[entry])
     }
 
-    /// The law of the noise for this 1/T.
-    pub fn law<R: Variable>(&self, inverse_time: f64) -> Law<R> {
+    /// The law of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of the entries
+    /// that are there.
+    pub fn law<R: Variable>(&self, inverse_time: f64, gyro: bool) -> Law<R> {
+        let lane = |entry: usize| self.entries(gyro).position(|other| other == entry).map(|place| place + 1);
         let exponential = |entry: usize, sign: f64| {
             let value = (sign * self.log[entry]).exp();
-            R::variable(value, 1 + entry, sign * value)
+            lane(entry).map_or(R::from(value), |lane| R::variable(value, lane, sign * value))
         };
         Law {
-            inverse_time: R::variable(inverse_time, INVERSE_TIME, 1.0),
+            inverse_time: R::variable(inverse_time, 0, 1.0),
             moment: self.moment,
             level: exponential(LEVEL, 1.0),
             rate: match self.moment {
@@ -94,42 +94,6 @@ impl Place {
             compass_rate: self.coloured.then(|| exponential(COMPASS, -1.0)),
             gyro: exponential(GYRO, 1.0),
         }
-    }
-}
-
-/// A number that may be differentiated by the entries of a place.
-pub(crate) trait Variable: Real {
-    /// A value whose derivative in one direction is `slope`.
-    fn variable(value: f64, direction: usize, slope: f64) -> Self;
-
-    /// Its derivatives, where it has some.
-    fn slopes(&self) -> &[f64];
-
-    /// A function of this number, from its value there and its slope.
-    fn chained(self, value: f64, slope: f64) -> Self {
-        (self - self.value()) * slope + value
-    }
-}
-
-impl Variable for f64 {
-    fn variable(value: f64, _: usize, _: f64) -> Self {
-        value
-    }
-
-    fn slopes(&self) -> &[f64] {
-        &[]
-    }
-}
-
-impl Variable for Tangent {
-    fn variable(value: f64, direction: usize, slope: f64) -> Self {
-        let mut by = [0.0; ship::DIRECTIONS];
-        by[direction] = slope;
-        Self { value, by }
-    }
-
-    fn slopes(&self) -> &[f64] {
-        &self.by
     }
 }
 

@@ -15,6 +15,7 @@
 
 mod filter;
 mod law;
+mod number;
 mod schedule;
 #[cfg(test)]
 mod tests;
@@ -24,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use trial::Trial;
 
-pub(crate) use filter::{Whitener, differentiated};
+pub(crate) use filter::{SIDE_BY_SIDE, Whitener, differentiated};
 pub(crate) use law::{COMPASS, CORRELATION, GYRO, LEVEL, Law, Place, RUDDER};
 pub(crate) use schedule::Schedule;
 
@@ -104,7 +105,7 @@ impl Noise {
 pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &Noise, initial_sd: [f64; 2]) -> f64 {
     let track = Track::unchecked(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let schedule = Schedule::new(&track, noise.rudder_sd > 0.0);
-    let law: Law<f64> = Place::of(noise, ship).law(ship.inverse_T);
+    let law: Law<f64> = Place::of(noise, ship).law(ship.inverse_T, noise.yaw_rate_sd.is_some());
     let unit = noise.heading_sd;
     let filter = Whitener::new(&schedule, &law, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns are from rest at the first row, where the prior stands.

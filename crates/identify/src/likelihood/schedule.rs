@@ -112,9 +112,4 @@ impl Schedule {
             Of::YawRate => yaw_rate[number],
         }));
     }
-
-    /// Number of readings.
-    pub fn len(&self) -> usize {
-        self.readings.len()
-    }
 }

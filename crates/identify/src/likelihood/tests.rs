@@ -1,8 +1,8 @@
 use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
+use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
-use ship::{FirstOrder, Tangent};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::law::{Law, Place};
@@ -215,29 +215,30 @@ fn slopes_are_derivatives() {
         for a in [0.06, -0.02] {
             let place = Place { moment, rudder: true, coloured: true, log: [-2.0, 2.0, -5.0, 0.8, -3.0] };
             let schedule = Schedule::new(&track, true);
-            let (_, filter) = differentiated(&schedule, &place.law::<Tangent>(a));
-            let found = filter.slopes(&schedule, &residual, &[0, 1, 2, 3, 4, 5]);
+            let filter = differentiated(&schedule, &place, a, true);
+            let entries: Vec<usize> = place.entries(true).collect();
+            let found = filter.slopes(&schedule, &residual, 1 + entries.len());
             let innovations = |a: f64, place: &Place| {
-                let whitener = Whitener::new(&schedule, &place.law::<f64>(a), [0.0; 2]);
+                let whitener = Whitener::new(&schedule, &place.law::<f64>(a, true), [0.0; 2]);
                 let mut column = residual.clone();
                 whitener.apply([&mut column]);
-                let spread: Vec<f64> = (0..column.len()).map(|k| whitener.spread(k)).collect();
+                let spread: Vec<f64> = (0..column.len()).map(|k| whitener.weight(k).recip()).collect();
                 let nu: Vec<f64> = column.iter().zip(&spread).map(|(x, s)| x * s).collect();
                 (nu, spread)
             };
             let (_, spread) = innovations(a, &place);
-            for direction in 0..6 {
+            for direction in 0..=entries.len() {
                 let moved = |by: f64| match direction {
                     0 => innovations(a + by, &place),
                     _ => {
                         let mut other = place;
-                        other.log[direction - 1] += by;
+                        other.log[entries[direction - 1]] += by;
                         innovations(a, &other)
                     }
                 };
                 let (hi, lo) = (moved(1e-5), moved(-1e-5));
-                for k in 0..residual.len() {
-                    let by_nu = (hi.0[k] - lo.0[k]) / 2e-5 / spread[k];
+                for (k, spread) in spread.iter().enumerate() {
+                    let by_nu = (hi.0[k] - lo.0[k]) / 2e-5 / spread;
                     let by_log = 2.0 * (hi.1[k].ln() - lo.1[k].ln()) / 2e-5;
                     assert_relative_eq!(found.innovation[direction][k], by_nu, max_relative = 1e-5, epsilon = 1e-6);
                     assert_relative_eq!(found.log_variance[direction][k], by_log, max_relative = 1e-5, epsilon = 1e-6);
@@ -257,7 +258,7 @@ fn even_rows_settle() {
     let track = Track::unchecked(&trial);
     let schedule = Schedule::new(&track, false);
     let place = Place { moment: Moment::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
-    let law: Law<f64> = place.law(0.06);
+    let law: Law<f64> = place.law(0.06, false);
     let whitener = Whitener::new(&schedule, &law, [0.0; 2]);
     assert_eq!(schedule.spans.len(), 1);
     let mut one = track.heading.clone();

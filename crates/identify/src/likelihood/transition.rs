@@ -1,7 +1,8 @@
 //! The exact step of the state over a time in which the noise goes on, with its derivatives.
 
 use super::Moment;
-use super::law::{Law, Variable};
+use super::law::Law;
+use super::number::Variable;
 use super::schedule::Span;
 use ship::first_order::TangentTransition;
 
@@ -16,8 +17,8 @@ const NODES: [(f64, f64); 8] = [
     (0.019_855_071_751_231_884, 0.050_614_268_145_188_13),
     (0.101_666_761_293_186_63, 0.111_190_517_226_687_24),
     (0.237_233_795_041_835_5, 0.156_853_322_938_943_64),
-    (0.408_282_678_752_175_1, 0.181_341_891_689_180_99),
-    (0.591_717_321_247_824_9, 0.181_341_891_689_180_99),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
+    (0.591_717_321_247_825, 0.181_341_891_689_181),
     (0.762_766_204_958_164_5, 0.156_853_322_938_943_64),
     (0.898_333_238_706_813_4, 0.111_190_517_226_687_24),
     (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
@@ -148,13 +149,9 @@ fn short<R: Variable>(law: &Law<R>, h: f64) -> (Small<R>, Small<R>) {
             }
         }
     }
-    for i in 0..3 {
-        for j in 0..=i {
-            added[i][j] = added[i][j] * density / h.powi((i + j) as i32);
-            added[j][i] = added[i][j];
-        }
-    }
-    (transition, added)
+    let units = [1.0, h, h * h];
+    let entry = |i: usize, j: usize| added[i.max(j)][i.min(j)] * density / (units[i] * units[j]);
+    (transition, std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))
 }
 
 fn identity<R: Variable, const N: usize>() -> [[R; N]; N] {
@@ -166,19 +163,28 @@ fn sum<R: Variable, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [
 }
 
 fn product<R: Variable, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
-    let entry = |i: usize, j: usize| (0..N).fold(R::from(0.0), |sum, k| sum + one[i][k] * other[k][j]);
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    let mut result = [[R::from(0.0); N]; N];
+    for (result, one) in result.iter_mut().zip(one) {
+        // Most of a transition is zero: nothing leads back from the ship to what disturbs it.
+        for (one, other) in one.iter().zip(other).filter(|(one, _)| !one.vanishes()) {
+            for (result, other) in result.iter_mut().zip(other) {
+                *result = *result + *one * *other;
+            }
+        }
+    }
+    result
 }
 
 /// F P Fᵀ of a symmetric P.
 fn sandwich<R: Variable, const N: usize>(f: &[[R; N]; N], p: &[[R; N]; N]) -> [[R; N]; N] {
     let half = product(f, p);
     let mut result = [[R::from(0.0); N]; N];
-    for i in 0..N {
-        for j in 0..=i {
-            result[i][j] = (0..N).fold(R::from(0.0), |sum, k| sum + half[i][k] * f[j][k]);
-            result[j][i] = result[i][j];
+    for (j, f) in f.iter().enumerate() {
+        for (k, f) in f.iter().enumerate().filter(|(_, f)| !f.vanishes()) {
+            for i in j..N {
+                result[i][j] = result[i][j] + half[i][k] * *f;
+            }
         }
     }
-    result
+    std::array::from_fn(|i| std::array::from_fn(|j| result[i.max(j)][i.min(j)]))
 }

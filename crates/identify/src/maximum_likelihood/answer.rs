@@ -131,7 +131,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
         .collect();
     let long_run = robust::newey_west_of_three(&scores) * (readings as f64 / freedom);
     let robust_covariance = to_response(&(inverse * long_run * inverse), &response, freedom);
-    let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.white.as_slice()));
+    let lag1 = robust::lag1_autocorrelation(parts.iter().map(|part| part.innovations.as_slice()));
     let (uncertainty, warning) = robust::judge(white, &robust_covariance, lag1, readings);
 
     let mut warnings = Vec::from_iter(warning);

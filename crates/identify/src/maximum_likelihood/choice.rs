@@ -4,18 +4,19 @@ use ship::FirstOrder;
 use trial::Trial;
 
 use super::outliers::{self, LARGEST_SHARE, Suspects};
-use super::point::{Point, Record, SHARED, evaluate};
+use super::point::{Point, Record, evaluate};
 use super::search::{Found, Ranges, Search, gyro_start};
 use super::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::likelihood::{COMPASS, Moment, Place, RUDDER};
 use crate::output_error::{self, CONDITION_LIMIT, FEWEST_ROWS};
+use crate::replay::best_start;
 use crate::robust;
 use crate::track::{Coefficients, Columns, Track};
 
 /// Rounds in which outliers are looked for again in the fit without the last ones.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 12;
 
 /// Gain in −2 log L, beside log n, that a jump of the compass needs.
 const JUMP_GAIN: f64 = 25.0;
@@ -25,6 +26,9 @@ const ASKED_PER_DECADE: usize = 2;
 
 /// Weight below which a kind of noise is not a doubt.
 const NEGLIGIBLE: f64 = 0.01;
+
+/// Gain in −2 log of the restricted likelihood from which on a moment is looked at more closely.
+const SEEN: f64 = 2.0;
 
 /// Headings of a record that a first look takes.
 const LOOKED_AT: usize = 200;
@@ -70,8 +74,11 @@ impl Prepared {
         let mut evaluations = 0;
         for _ in 0..if settings.outliers { ROUNDS } else { 0 } {
             evaluations += first.as_ref().map_or(0, |estimate| estimate.evaluations);
-            let residual = |track: &Track| left_over(track, first.as_ref().ok());
-            let next: Vec<Suspects> = whole.iter().map(|track| outliers::find(track, &residual(track))).collect();
+            let fitted = first.as_ref().ok();
+            let again = |(track, known): (&Track, &Suspects)| {
+                outliers::find(track, &left_over(track, fitted, &known.spikes), &known.spikes)
+            };
+            let next: Vec<Suspects> = whole.iter().zip(&suspects).map(again).collect();
             let share = |(track, found): (&Track, &Suspects)| found.spikes.len() as f64 / track.len() as f64;
             too_many = whole.iter().zip(&next).map(share).fold(0.0, f64::max) > LARGEST_SHARE;
             if too_many || next.iter().zip(&suspects).all(|(next, last)| next.spikes == last.spikes) {
@@ -143,21 +150,23 @@ impl Prepared {
     }
 }
 
-/// What `output-error` leaves of every heading of the whole track; the heading itself when there is no answer.
-fn left_over(track: &Track, fitted: Option<&Estimate>) -> Vec<f64> {
+/// What `output-error` leaves of every heading of the whole track, with a start that `known` spikes have no say in; the
+/// heading itself when there is no answer.
+fn left_over(track: &Track, fitted: Option<&Estimate>, known: &[usize]) -> Vec<f64> {
     let Some(estimate) = fitted else { return track.heading.clone() };
     let ship = estimate.response;
     let mut columns = Columns::default();
     track.fill(ship.inverse_T, &mut columns);
-    // The start is found by medians of what is left: readings that are off have no say.
+    let Coefficients { gain, offset, .. } = Coefficients::of(&ship);
     let forced = columns.rudder.iter().zip(&columns.constant);
-    let coefficients = Coefficients::of(&ship);
-    track
-        .heading
-        .iter()
-        .zip(forced)
-        .map(|(psi, (g, h))| psi - coefficients.gain * g - coefficients.offset * h)
-        .collect()
+    let rest: Vec<f64> = track.heading.iter().zip(forced).map(|(psi, (g, h))| psi - gain * g - offset * h).collect();
+    let honest = |values: &[f64]| -> Vec<f64> {
+        let rows = track.observed().iter().zip(values);
+        rows.filter(|(row, _)| !known.contains(row)).map(|(_, &value)| value).collect()
+    };
+    let start = best_start(&honest(&rest), &honest(&columns.homogeneous));
+    let motion = columns.homogeneous.iter().map(|free| start.heading + start.yaw_rate * free);
+    rest.iter().zip(motion).map(|(rest, motion)| rest - motion).collect()
 }
 
 fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
@@ -171,7 +180,7 @@ fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
     let residual = plain.map_or(1.0, |point| {
         let part = &point.parts[0];
         // Second differences of white noise have six times its variance; a moment leaves little in them.
-        let differences: Vec<f64> = part.white.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+        let differences: Vec<f64> = part.innovations.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
         let white = differences.iter().sum::<f64>() / differences.len().max(1) as f64 / 6.0;
         (part.variance / white.max(f64::MIN_POSITIVE)).sqrt().clamp(1.0, 1e6)
     });
@@ -189,7 +198,7 @@ fn bic(records: &[Record], point: &Point) -> f64 {
             place.entries(record.has_gyro()).filter(|&entry| entry != RUDDER || record.declared.is_none()).count()
         })
         .sum();
-    point.restricted + noise as f64 * std::env::var("PEN").map_or((readings as f64).ln(), |x| x.parse().unwrap())
+    point.restricted + noise as f64 * (readings as f64).ln()
 }
 
 /// Fits of all kinds of noise, the lowest BIC first.
@@ -209,34 +218,41 @@ fn contest(
     let iterations = settings.iterations;
     let mut search = Search { records, ranges, coarse: coarse.as_deref(), iterations, evaluations: 0 };
     let kinds = settings.moment.kinds();
-    let none: &[Place] =
-        &none.iter().map(|place| Place { rudder: place.rudder || declared, ..*place }).collect::<Vec<_>>();
+    let mut none: Vec<Place> = none.iter().map(|place| Place { rudder: place.rudder || declared, ..*place }).collect();
     let mut all: Vec<(f64, Found)> = Vec::new();
     let ranked = |found: Option<Found>| found.map(|found| (bic(records, &found.point), found));
     // Gusts begin where a white moment and a walk end.
     let (mut white, mut walk) = (None, None);
     for kind in [Moment::None, Moment::White, Moment::Walk, Moment::OrnsteinUhlenbeck] {
         let gusts = kinds.contains(&Moment::OrnsteinUhlenbeck) && matches!(kind, Moment::White | Moment::Walk);
-        if !kinds.contains(&kind) && !gusts {
+        let plain = all.iter().find(|(_, found)| found.point.places[0].moment == Moment::None);
+        let random =
+            [&white, &walk].into_iter().flatten().map(|point: &Point| point.restricted).fold(f64::INFINITY, f64::min);
+        // Gusts are between a white moment and a walk: where neither is seen, nor are they.
+        let hopeless =
+            kind == Moment::OrnsteinUhlenbeck && plain.is_some_and(|(_, plain)| plain.point.restricted - random < SEEN);
+        if (!kinds.contains(&kind) && !gusts) || hopeless {
             continue;
         }
         let starts = match kind {
-            Moment::None if none[0].rudder => search.spread(a, none, RUDDER),
-            Moment::None => vec![(a, none.to_vec())],
-            Moment::White | Moment::Walk => search.levels(a, none, kind),
+            Moment::None if none[0].rudder => search.spread(a, &none, RUDDER),
+            Moment::None => vec![(a, none.clone())],
+            Moment::White | Moment::Walk => search.levels(a, &none, kind),
             Moment::OrnsteinUhlenbeck => search.gusts(white.as_ref(), walk.as_ref()),
         };
         let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
         match kind {
             Moment::White => white = found.as_ref().map(|found| found.point.clone()),
             Moment::Walk => walk = found.as_ref().map(|found| found.point.clone()),
-            Moment::None | Moment::OrnsteinUhlenbeck => {}
+            // What is known of the other noises by then.
+            Moment::None => none = found.as_ref().map_or(none, |found| found.point.places.clone()),
+            Moment::OrnsteinUhlenbeck => {}
         }
         all.extend(ranked(found).filter(|_| kinds.contains(&kind)));
     }
     // A compass error with a memory is only looked for where the innovations have one.
     if let Some((_, found)) = lowest(&all) {
-        let whites = found.point.parts.iter().map(|part| part.white.as_slice());
+        let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());
         let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
         let wanted = match settings.compass {
             CompassChoice::Chosen => robust::lag1_autocorrelation(whites).abs() > 3.0 / (readings as f64).sqrt(),
@@ -246,7 +262,7 @@ fn contest(
         if wanted {
             let mut froms = vec![(found.point.inverse_time, found.point.places.clone())];
             if kinds.contains(&Moment::None) && found.point.places[0].moment != Moment::None {
-                froms.push((a, none.to_vec()));
+                froms.push((a, none.clone()));
             }
             if settings.compass == CompassChoice::Coloured {
                 all.clear();

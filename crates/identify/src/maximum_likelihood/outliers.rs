@@ -8,7 +8,13 @@
 use crate::track::Track;
 
 /// Neighbours on either side that a reading is held against: runs of up to three spikes are told from them.
-const NEIGHBOURS: usize = 3;
+const NEIGHBOURS: usize = 7;
+
+/// Fewest neighbours that make a side.
+const FEWEST: usize = 3;
+
+/// Readings on either side of a jump.
+const LEVEL: usize = 4;
 
 /// Distance from the neighbours, in robust standard deviations, beyond which a reading is left out: one of 10⁸ normal
 /// ones.
@@ -20,6 +26,9 @@ const JUMP: f64 = 8.0;
 /// Share of the range of the heading below which neither is looked for: corners of the rudder between rows leave as
 /// much.
 const SMALLEST: f64 = 2e-3;
+
+/// Share of the grossest new spike that another one has to have to be taken with it.
+const GROSS: f64 = 0.3;
 
 /// With a larger share of the readings they are no outliers but noise of another law.
 pub(super) const LARGEST_SHARE: f64 = 0.1;
@@ -38,36 +47,48 @@ pub(super) struct Suspects {
 
 /// Looks for spikes and jumps in what a fit leaves of the headings of a track (rad, one for every reading of the whole
 /// track).
-pub(super) fn find(whole: &Track, residual: &[f64]) -> Suspects {
+///
+/// A fit that spikes have spoilt leaves more than they: beside those that were `known` when it was made, only the
+/// grossest are taken at a time.
+pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects {
     let range = whole.heading.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], &x| [lo.min(x), hi.max(x)]);
     // The range itself may be that of a sentinel.
     let floor = SMALLEST * (range[1] - range[0]).min(std::f64::consts::PI);
     let rows = whole.observed();
     let mut kept: Vec<usize> = (0..residual.len()).collect();
     let most = (LARGEST_SHARE * residual.len() as f64).ceil() as usize + 1;
-    let limit = (SPIKE * NORMAL * median(&mut magnitudes(&deviations(residual, &kept)))).max(floor);
+    let one_sided: Vec<f64> = deviations(residual, &kept).into_iter().filter_map(|[before, _]| before).collect();
+    let limit = (SPIKE * NORMAL * median(&mut magnitudes(&one_sided))).max(floor);
     let mut spikes = Vec::new();
+    let mut grossest = 0.0_f64;
     while spikes.len() < most {
-        let deviations = deviations(residual, &kept);
-        let largest = (0..kept.len()).max_by(|&one, &other| deviations[one].abs().total_cmp(&deviations[other].abs()));
-        match largest {
-            Some(place) if deviations[place].abs() > limit => spikes.push(rows[kept.remove(place)]),
-            _ => break,
+        // Far from both sides: where the level changes, a reading is near to one of them.
+        let apart = |sides: [Option<f64>; 2]| sides.into_iter().flatten().map(f64::abs).fold(f64::INFINITY, f64::min);
+        let distances = deviations(residual, &kept).into_iter().map(apart).enumerate();
+        let far = distances.filter(|(_, distance)| distance.is_finite() && *distance > limit);
+        let Some((place, distance)) = far.max_by(|one, other| one.1.total_cmp(&other.1)) else { break };
+        let row = rows[kept[place]];
+        if !known.contains(&row) {
+            if distance < GROSS * grossest {
+                break;
+            }
+            grossest = grossest.max(distance);
         }
+        kept.remove(place);
+        spikes.push(row);
     }
     spikes.sort_unstable();
     Suspects { jumps: jumps(residual, &kept, floor).into_iter().map(|number| rows[number]).collect(), spikes }
 }
 
-/// Every reading less the median of its neighbours.
-fn deviations(residual: &[f64], kept: &[usize]) -> Vec<f64> {
-    let mut around = Vec::with_capacity(2 * NEIGHBOURS);
+/// Every reading less the median of its neighbours before and after.
+fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<f64>; 2]> {
     (0..kept.len())
         .map(|k| {
-            around.clear();
-            around.extend((k.saturating_sub(NEIGHBOURS)..k).map(|other| residual[kept[other]]));
-            around.extend((k + 1..(k + 1 + NEIGHBOURS).min(kept.len())).map(|other| residual[kept[other]]));
-            residual[kept[k]] - median(&mut around)
+            [k.saturating_sub(NEIGHBOURS)..k, k + 1..(k + 1 + NEIGHBOURS).min(kept.len())].map(|side| {
+                let mut around: Vec<f64> = side.map(|other| residual[kept[other]]).collect();
+                (around.len() >= FEWEST).then(|| residual[kept[k]] - median(&mut around))
+            })
         })
         .collect()
 }
@@ -75,12 +96,11 @@ fn deviations(residual: &[f64], kept: &[usize]) -> Vec<f64> {
 /// Readings from which on the level is another one.
 fn jumps(residual: &[f64], kept: &[usize], floor: f64) -> Vec<usize> {
     let level = |range: std::ops::Range<usize>| median(&mut range.map(|k| residual[kept[k]]).collect::<Vec<f64>>());
-    let width = NEIGHBOURS + 1;
-    if kept.len() < 4 * width {
+    if kept.len() < 4 * LEVEL {
         return Vec::new();
     }
-    let places: Vec<usize> = (width..=kept.len() - width).collect();
-    let changes: Vec<f64> = places.iter().map(|&k| level(k..k + width) - level(k - width..k)).collect();
+    let places: Vec<usize> = (LEVEL..=kept.len() - LEVEL).collect();
+    let changes: Vec<f64> = places.iter().map(|&k| level(k..k + LEVEL) - level(k - LEVEL..k)).collect();
     let limit = (JUMP * NORMAL * median(&mut magnitudes(&changes))).max(floor);
     let mut found: Vec<usize> = Vec::new();
     let mut order: Vec<usize> = (0..changes.len()).filter(|&k| changes[k].abs() > limit).collect();
@@ -88,7 +108,7 @@ fn jumps(residual: &[f64], kept: &[usize], floor: f64) -> Vec<usize> {
     let steep = |k: usize| (residual[kept[places[k]]] - residual[kept[places[k] - 1]]) * changes[k].signum();
     order.sort_by(|&one, &other| (changes[other].abs() + steep(other)).total_cmp(&(changes[one].abs() + steep(one))));
     for k in order {
-        if found.iter().all(|&other| other.abs_diff(places[k]) > 2 * width) {
+        if found.iter().all(|&other| other.abs_diff(places[k]) > 2 * LEVEL) {
             found.push(places[k]);
         }
     }
@@ -123,16 +143,16 @@ mod tests {
         // Noise alone, as a good fit leaves it.
         let truth = Case::default().truth();
         let noise: Vec<f64> = track.heading.iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();
-        assert_eq!(find(&track, &noise), Suspects::default());
+        assert_eq!(find(&track, &noise, &[]), Suspects::default());
         let mut spoilt = noise.clone();
         for (row, by) in [(0, 1.0), (60, -0.05), (100, 4.9), (101, 4.9), (102, 4.9), (270, 0.03)] {
             spoilt[row] += by;
         }
-        assert_eq!(find(&track, &spoilt).spikes, [0, 60, 100, 101, 102, 270]);
-        assert_eq!(find(&track, &spoilt).jumps, []);
+        assert_eq!(find(&track, &spoilt, &[0, 60, 270]).spikes, [0, 60, 100, 101, 102, 270]);
+        assert_eq!(find(&track, &spoilt, &[0, 60, 270]).jumps, []);
         let jumped: Vec<f64> =
             noise.iter().enumerate().map(|(row, x)| x + if row >= 130 { 0.07 } else { 0.0 }).collect();
-        assert_eq!(find(&track, &jumped), Suspects { spikes: vec![], jumps: vec![130] });
+        assert_eq!(find(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
     }
 
     #[test]

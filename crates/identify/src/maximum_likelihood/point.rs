@@ -9,7 +9,7 @@ use lanes::column::{dot, gram};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
-use crate::likelihood::{Law, Place, RUDDER, Schedule, Whitener, differentiated};
+use crate::likelihood::{Law, Place, RUDDER, SIDE_BY_SIDE, Schedule, Whitener, differentiated};
 use crate::profile::solve2;
 use crate::track::{Coefficients, Columns, Track};
 
@@ -34,17 +34,33 @@ pub(super) struct Record {
     pub declared: Option<f64>,
 }
 
-/// Columns of one record, white, and before where they are asked for; motions of its own start and jumps are made
-/// orthonormal and taken out of the others.
+/// Columns of one record before they are white: motions of its own start and jumps, responses to rudder and constant,
+/// and the readings.
+#[derive(Debug, Clone)]
+struct Raw {
+    own: Vec<Vec<f64>>,
+    rest: [Vec<f64>; 3],
+}
+
+/// The same, white; the own ones are orthonormal and taken out of the others.
+#[derive(Debug, Clone)]
 struct White {
     filter: Whitener,
-    /// Own columns, orthonormal, with the triangle that leads back to the columns.
     own: Vec<Vec<f64>>,
+    /// Leads from the orthonormal columns back to those of the start and the jumps.
     triangle: DMatrix<f64>,
-    /// Responses to the rudder and to a constant, and the readings.
     rest: [Vec<f64>; 3],
-    /// Their parts along the own columns.
+    /// Parts of the others along the own columns.
     shares: [Vec<f64>; 3],
+}
+
+/// How the readings change with 1/T.
+#[derive(Debug, Clone)]
+struct ByTime {
+    raw: Vec<f64>,
+    /// White, the own columns taken out, and its parts along them.
+    white: Vec<f64>,
+    shares: Vec<f64>,
 }
 
 /// What a record says at a point.
@@ -58,7 +74,10 @@ pub(super) struct Part {
     pub anchor: State,
     pub jumps: Vec<f64>,
     /// Innovations over √S, rad.
-    pub white: Vec<f64>,
+    pub innovations: Vec<f64>,
+    raw: Raw,
+    white: White,
+    by_time: ByTime,
 }
 
 /// The best fit for one 1/T and one noise of every record.
@@ -130,8 +149,8 @@ impl Record {
         self.stacked(&heading, &vec![0.0; self.track.rates.len()])
     }
 
-    /// Motions of the start and jumps, and the responses to rudder and constant with the readings.
-    fn columns(&self, inverse_time: f64) -> (Vec<Vec<f64>>, [Vec<f64>; 3]) {
+    /// The columns for a value of 1/T.
+    fn raw(&self, inverse_time: f64) -> Raw {
         let mut columns = Columns::default();
         self.track.fill(inverse_time, &mut columns);
         let Columns { homogeneous, rudder, constant, rates } = &columns;
@@ -143,11 +162,49 @@ impl Record {
             self.stacked(constant, &rates.constant),
             self.stacked(&self.track.heading, &self.track.rates),
         ];
-        (own, rest)
+        Raw { own, rest }
     }
 
-    fn white(&self, inverse_time: f64, filter: Whitener) -> Option<White> {
-        let (mut own, mut rest) = self.columns(inverse_time);
+    /// How the readings change with 1/T at known coefficients.
+    fn by_time(&self, white: &White, inverse_time: f64, coefficients: &Coefficients) -> ByTime {
+        let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
+        self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
+        let raw = self.stacked(&by_heading, &by_rate);
+        let mut column = raw.clone();
+        white.filter.apply([&mut column]);
+        let shares = white.own.iter().map(|unit| take_out(unit, &mut column)).collect();
+        ByTime { raw, white: column, shares }
+    }
+
+    /// Products of the whitened sensitivities by (1/T, b, b δ_r) at known coefficients, the start eliminated; over σ²
+    /// they are the information of the motion.
+    pub fn information(&self, inverse_time: f64, place: &Place, coefficients: &Coefficients) -> Option<Matrix3<f64>> {
+        let law: Law<f64> = place.law(inverse_time, self.has_gyro());
+        let white = White::new(&self.raw(inverse_time), Whitener::new(&self.schedule, &law, [0.0; 2]))?;
+        let by_time = self.by_time(&white, inverse_time, coefficients);
+        let [rudder, constant, _] = &white.rest;
+        let products = Matrix3::from(gram([by_time.white.as_slice(), rudder, constant]));
+        products.iter().all(|value| value.is_finite()).then_some(products)
+    }
+}
+
+/// Divides a column by its length; a start that is over before the first row is not seen.
+fn shrink(column: &mut [f64], length: f64) {
+    let per = if length > 0.0 { length.recip() } else { 0.0 };
+    column.iter_mut().for_each(|x| *x *= per);
+}
+
+/// Takes a unit column out of another one and returns its part along it.
+fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
+    let share = dot(unit, column);
+    column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
+    share
+}
+
+impl White {
+    /// `None` when a column is not finite.
+    fn new(raw: &Raw, filter: Whitener) -> Option<Self> {
+        let Raw { mut own, mut rest } = raw.clone();
         let (first, jumps) = own.split_at_mut(2);
         let [one, two] = first else { return None };
         let [three, four, five] = &mut rest;
@@ -165,62 +222,10 @@ impl Record {
             if length.is_nan() {
                 return None;
             }
-            // A start that is over before the first row is not seen.
-            let per = if length > 0.0 { length.recip() } else { 0.0 };
-            column[0].iter_mut().for_each(|x| *x *= per);
+            shrink(&mut column[0], length);
         }
         let shares = rest.each_mut().map(|column| own.iter().map(|unit| take_out(unit, column)).collect());
-        Some(White { filter, own, triangle, rest, shares })
-    }
-
-    /// Measured less fitted readings, and how the fitted ones change with 1/T.
-    fn residual(&self, point: &Point, part: &Part) -> (Vec<f64>, Vec<f64>) {
-        let coefficients = Coefficients { anchor: part.anchor, gain: point.gain, offset: point.offset };
-        let states = self.track.simulate(point.inverse_time, &coefficients);
-        let heading: Vec<f64> = self.track.observed().iter().map(|&row| states[row].heading).collect();
-        let rate: Vec<f64> = self.track.observed_rates().iter().map(|&row| states[row].yaw_rate).collect();
-        let mut residual = self.stacked(&self.track.heading, &self.track.rates);
-        let fitted = self.stacked(&heading, &rate);
-        residual.iter_mut().zip(&fitted).for_each(|(measured, fitted)| *measured -= fitted);
-        for (&jump, height) in self.jumps.iter().zip(&part.jumps) {
-            residual.iter_mut().zip(self.step_at(jump)).for_each(|(measured, step)| *measured -= height * step);
-        }
-        (residual, self.by_time(point.inverse_time, &coefficients))
-    }
-
-    /// How the readings change with 1/T at known coefficients.
-    fn by_time(&self, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
-        let (mut by_heading, mut by_rate) = (Vec::new(), Vec::new());
-        self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
-        self.stacked(&by_heading, &by_rate)
-    }
-
-    /// Products of the whitened sensitivities by (1/T, b, b δ_r) at known coefficients, the start eliminated; over σ²
-    /// they are the information of the motion.
-    pub fn information(&self, inverse_time: f64, place: &Place, coefficients: &Coefficients) -> Option<Matrix3<f64>> {
-        let law: Law<f64> = place.law(inverse_time);
-        let white = self.white(inverse_time, Whitener::new(&self.schedule, &law, [0.0; 2]))?;
-        let by_time = white.by_time(self, inverse_time, coefficients);
-        let [rudder, constant, _] = &white.rest;
-        let products = Matrix3::from(gram([by_time.as_slice(), rudder, constant]));
-        products.iter().all(|value| value.is_finite()).then_some(products)
-    }
-}
-
-/// Takes a unit column out of another one and returns its part along it.
-fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
-    let share = dot(unit, column);
-    column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
-    share
-}
-
-impl White {
-    /// How the readings change with 1/T, white, the own columns taken out.
-    fn by_time(&self, record: &Record, inverse_time: f64, coefficients: &Coefficients) -> Vec<f64> {
-        let mut by_time = record.by_time(inverse_time, coefficients);
-        self.filter.apply([&mut by_time]);
-        self.own.iter().for_each(|unit| _ = take_out(unit, &mut by_time));
-        by_time
+        Some(Self { filter, own, triangle, rest, shares })
     }
 
     /// Readings less what steering explains.
@@ -294,13 +299,15 @@ fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
 
 /// The best fit for one 1/T and these places, one a record. `None` when it is no ship or not finite.
 pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) -> Option<Point> {
-    let white = |(record, place): (&Record, &Place)| {
-        let law: Law<f64> = place.law(inverse_time);
-        record.white(inverse_time, Whitener::new(&record.schedule, &law, [0.0; 2]))
+    let columns = |(record, place): (&Record, &Place)| {
+        let law: Law<f64> = place.law(inverse_time, record.has_gyro());
+        let raw = record.raw(inverse_time);
+        let white = White::new(&raw, Whitener::new(&record.schedule, &law, [0.0; 2]))?;
+        Some((raw, white))
     };
-    let whites = records.iter().zip(places).map(white).collect::<Option<Vec<_>>>()?;
+    let columns = records.iter().zip(places).map(columns).collect::<Option<Vec<_>>>()?;
     let all: usize = records.iter().map(Record::len).sum();
-    let weight = |((record, place), white): ((&Record, &Place), &White)| {
+    let weight = |((record, place), (_, white)): ((&Record, &Place), &(Raw, White))| {
         let readings = record.len() as f64;
         let fitted = record.own() as f64 + SHARED as f64 * readings / all as f64;
         let [rudder, constant, measured] = &white.rest;
@@ -311,24 +318,25 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) 
             tied: record.tied(place).map(|sd| sd / place.log[RUDDER].exp()),
         }
     };
-    let weights: Vec<Weight> = records.iter().zip(places).zip(&whites).map(weight).collect();
+    let weights: Vec<Weight> = records.iter().zip(places).zip(&columns).map(weight).collect();
     let (steering, variances) = weigh(&weights)?;
     let [gain, offset]: [f64; 2] = steering.into();
     let (mut deviance, mut determinant) = (0.0, 0.0);
     let mut motion = Matrix3::zeros();
     let mut parts = Vec::with_capacity(records.len());
-    for (((white, weight), &variance), record) in whites.iter().zip(&weights).zip(&variances).zip(records) {
+    for ((((raw, white), weight), &variance), record) in columns.into_iter().zip(&weights).zip(&variances).zip(records)
+    {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
         deviance += weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance();
         let (anchor, jumps) = white.start(gain, offset)?;
-        let readings = weight.readings as usize;
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);
         determinant += seen.map(|length| (length * length / variance).ln()).sum::<f64>();
-        let by_time = white.by_time(record, inverse_time, &Coefficients { anchor, gain, offset });
+        let by_time = record.by_time(&white, inverse_time, &Coefficients { anchor, gain, offset });
         let [rudder, constant, _] = &white.rest;
-        motion += Matrix3::from(gram([by_time.as_slice(), rudder, constant])) / variance;
-        parts.push(Part { variance, readings, anchor, jumps, white: white.residual(gain, offset) });
+        motion += Matrix3::from(gram([by_time.white.as_slice(), rudder, constant])) / variance;
+        let (readings, innovations) = (record.len(), white.residual(gain, offset));
+        parts.push(Part { variance, readings, anchor, jumps, innovations, raw, white, by_time });
     }
     let restricted = deviance + determinant + motion.determinant().ln();
     let ship = gain > 0.0 && restricted.is_finite();
@@ -337,45 +345,35 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) 
 
 /// Score and information at a point.
 pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
-    let entries: Vec<Vec<usize>> =
-        (records.iter().zip(&point.places)).map(|(record, place)| place.entries(record.has_gyro()).collect()).collect();
-    let unknowns = SHARED + entries.iter().map(Vec::len).sum::<usize>();
+    let entries: Vec<usize> =
+        (records.iter().zip(&point.places)).map(|(record, place)| place.entries(record.has_gyro()).count()).collect();
+    let unknowns = SHARED + entries.iter().sum::<usize>();
     let mut score = DVector::zeros(unknowns);
     let mut information = DMatrix::zeros(unknowns, unknowns);
-    let mut scores = Vec::with_capacity(records.len());
-    let mut determinants = Vec::new();
-    let mut all_totals = Vec::with_capacity(records.len());
+    let (mut scores, mut all_totals) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
+    let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion() / part.variance).sum();
+    let factor = motion.cholesky()?.l().try_inverse()?.transpose();
     let mut first = SHARED;
     for (number, record) in records.iter().enumerate() {
-        let part = &point.parts[number];
-        let place = &point.places[number];
-        let (filter, differentiated) = differentiated(&record.schedule, &place.law(point.inverse_time));
-        let white = record.white(point.inverse_time, filter)?;
-        let (residual, raw_by_time) = record.residual(point, part);
-        let mut by_time = raw_by_time.clone();
-        white.filter.apply([&mut by_time]);
-        // Direction 0 is 1/T, direction k + 1 the entry k.
-        let wanted: Vec<usize> = std::iter::once(0).chain(entries[number].iter().map(|entry| entry + 1)).collect();
-        let mut slopes = differentiated.slopes(&record.schedule, &residual, &wanted);
+        let (part, place, count) = (&point.parts[number], &point.places[number], entries[number]);
+        let filter = differentiated(&record.schedule, place, point.inverse_time, record.has_gyro());
+        let lanes = 1 + count;
+        let mut slopes = filter.slopes(&record.schedule, &part.left_over(point), lanes);
         let tied = record.tied(place).is_some();
-        if tied {
+        let lane_of = |entry| place.entries(record.has_gyro()).position(|other| other == entry).map(|k| k + 1);
+        if let Some(lane) = lane_of(RUDDER).filter(|_| tied) {
             // A smaller compass error makes the same rudder error larger in its units.
-            slopes.log_variance[1 + RUDDER].iter_mut().for_each(|by| *by -= 2.0);
+            slopes.log_variance[lane].iter_mut().for_each(|by| *by -= 2.0);
         }
-        let mut by_shared = [by_time, white.rest[0].clone(), white.rest[1].clone()];
-        let along_time: Vec<f64> = white.own.iter().map(|unit| take_out(unit, &mut by_shared[0])).collect();
-        let at: Vec<usize> = std::iter::once(0).chain(first..first + entries[number].len()).collect();
-        let mut columns: Vec<Vec<f64>> = Vec::with_capacity(wanted.len() + 2);
-        for &direction in &wanted {
-            let mut column = slopes.innovation[direction].clone();
-            white.own.iter().for_each(|unit| _ = take_out(unit, &mut column));
-            if direction == 0 {
-                column.iter_mut().zip(&by_shared[0]).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
-            }
-            columns.push(column);
+        let at: Vec<usize> = std::iter::once(0).chain(first..first + count).collect();
+        let mut columns = slopes.innovation;
+        for column in &mut columns {
+            part.white.own.iter().for_each(|unit| _ = take_out(unit, column));
         }
+        columns[0].iter_mut().zip(&part.by_time.white).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
         let minus = |column: &[f64]| column.iter().map(|x| -x).collect::<Vec<f64>>();
-        columns.extend([minus(&by_shared[1]), minus(&by_shared[2])]);
+        let [rudder, constant, _] = &part.white.rest;
+        columns.extend([minus(rudder), minus(constant)]);
         let all: Vec<usize> = at.iter().copied().chain([1, 2]).collect();
 
         let per = part.variance.recip();
@@ -388,93 +386,95 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
                 }
             }
         }
-        let mut totals = Vec::with_capacity(wanted.len());
-        for (i, &direction) in wanted.iter().enumerate() {
-            let logs = &slopes.log_variance[direction];
-            let surprise: f64 = logs.iter().zip(&part.white).map(|(by, nu)| by * (1.0 - nu * nu * per)).sum();
-            score[at[i]] += dot(&part.white, &columns[i]) * per + 0.5 * surprise;
+        let mut totals = Vec::with_capacity(lanes);
+        for (lane, logs) in slopes.log_variance.iter().enumerate() {
+            let surprise: f64 = logs.iter().zip(&part.innovations).map(|(by, nu)| by * (1.0 - nu * nu * per)).sum();
+            score[at[lane]] += dot(&part.innovations, &columns[lane]) * per + 0.5 * surprise;
             totals.push(if tied { 0.0 } else { logs.iter().sum::<f64>() });
         }
-        for (i, &one) in wanted.iter().enumerate() {
-            for (j, &other) in wanted.iter().enumerate() {
-                let product = dot(&slopes.log_variance[one], &slopes.log_variance[other]);
-                let of_size = totals[i] * totals[j] / part.readings as f64;
-                information[(at[i], at[j])] += 0.5 * (product - of_size);
+        for i in 0..lanes {
+            for j in 0..lanes {
+                let product = dot(&slopes.log_variance[i], &slopes.log_variance[j]);
+                information[(at[i], at[j])] += 0.5 * (product - totals[i] * totals[j] / part.readings as f64);
             }
         }
+        if count > 0 {
+            let fitted = part.fitted(&(factor * per.sqrt()));
+            for columns in fitted.chunks(SIDE_BY_SIDE) {
+                let raw = std::array::from_fn(|k| columns.get(k).map_or(&[][..], |(_, raw)| raw.as_slice()));
+                let white = std::array::from_fn(|k| columns.get(k).map_or(&[][..], |(white, _)| white.as_slice()));
+                let turned = filter.turned(&record.schedule, raw, white);
+                for lane in 1..lanes {
+                    let logs = &slopes.log_variance[lane];
+                    let shrunk: f64 = columns.iter().map(|(white, _)| weighted_square(white, logs)).sum();
+                    score[at[lane]] += turned[lane] - 0.5 * shrunk;
+                }
+            }
+        }
+        let times = |column: &[f64]| column.iter().zip(&part.innovations).map(|(x, nu)| x * nu).collect::<Vec<f64>>();
+        scores.push([times(&part.by_time.white), times(rudder), times(constant)]);
         all_totals.push(DVector::from_row_slice(&totals[1..]));
-        let times = |column: &[f64]| column.iter().zip(&part.white).map(|(x, nu)| x * nu).collect::<Vec<f64>>();
-        scores.push(by_shared.each_ref().map(|column| times(column)));
-        let fitted = Fitted::new(record, point, &white, raw_by_time, by_shared, along_time);
-        determinants.push((number, first, differentiated, fitted, slopes));
-        first += entries[number].len();
-    }
-    let motion = determinants.iter().map(|(number, .., fitted, _)| fitted.products / point.parts[*number].variance);
-    let motion: Matrix3<f64> = motion.sum();
-    let factor = motion.cholesky()?.l().try_inverse()?.transpose();
-    for (number, first, differentiated, fitted, slopes) in &determinants {
-        if entries[*number].is_empty() {
-            continue;
-        }
-        let (record, per) = (&records[*number], point.parts[*number].variance.sqrt().recip());
-        for (unit, raw) in fitted.orthonormal(&(factor * per)) {
-            let wanted: Vec<usize> = entries[*number].iter().map(|entry| entry + 1).collect();
-            let mut of_column = differentiated.slopes(&record.schedule, &raw, &wanted);
-            of_column.log_variance.clone_from(&slopes.log_variance);
-            for (k, &direction) in wanted.iter().enumerate() {
-                score[first + k] += of_column.of_determinant(&unit, direction);
-            }
-        }
+        first += count;
     }
     let finite = score.iter().chain(information.iter()).all(|value: &f64| value.is_finite());
     finite.then_some(Linearised { score, information, scores, totals: all_totals })
 }
 
-/// All columns that are fitted to a record, white and before, for the determinant of their products.
-struct Fitted {
-    own: Vec<(Vec<f64>, Vec<f64>)>,
-    /// By 1/T, b, b δ_r, the own ones taken out.
-    white: [Vec<f64>; 3],
-    raw: [Vec<f64>; 3],
-    products: Matrix3<f64>,
+/// Σ w q².
+fn weighted_square(column: &[f64], weights: &[f64]) -> f64 {
+    column.iter().zip(weights).map(|(q, w)| q * q * w).sum()
 }
 
-impl Fitted {
-    fn new(
-        record: &Record,
-        point: &Point,
-        white: &White,
-        raw_by_time: Vec<f64>,
-        by_shared: [Vec<f64>; 3],
-        along_time: Vec<f64>,
-    ) -> Self {
-        let (mut own, [rudder, constant, _]) = record.columns(point.inverse_time);
+/// A column times a factor taken out of another one.
+fn less(column: &mut [f64], factor: f64, other: &[f64]) {
+    column.iter_mut().zip(other).for_each(|(x, y)| *x -= factor * y);
+}
+
+impl Part {
+    /// Measured less fitted readings.
+    fn left_over(&self, point: &Point) -> Vec<f64> {
+        let [rudder, constant, readings] = &self.raw.rest;
+        let mut left = readings.clone();
+        let start = [self.anchor.heading, self.anchor.yaw_rate];
+        let own = start.iter().chain(&self.jumps).zip(&self.raw.own);
+        own.for_each(|(size, column)| less(&mut left, *size, column));
+        less(&mut left, point.gain, rudder);
+        less(&mut left, point.offset, constant);
+        left
+    }
+
+    /// Products of what changes with 1/T, b and b δ_r.
+    fn motion(&self) -> Matrix3<f64> {
+        let [rudder, constant, _] = &self.white.rest;
+        Matrix3::from(gram([self.by_time.white.as_slice(), rudder, constant]))
+    }
+
+    /// All columns that are fitted, orthonormal and white, each with what it was before; `factor` makes those that all
+    /// records share so.
+    fn fitted(&self, factor: &Matrix3<f64>) -> Vec<(Vec<f64>, Vec<f64>)> {
         // What made the white columns orthonormal makes the others follow.
+        let mut own = self.raw.own.clone();
         for k in 0..own.len() {
             let (before, column) = own.split_at_mut(k);
             for (j, unit) in before.iter().enumerate() {
-                column[0].iter_mut().zip(unit).for_each(|(x, u)| *x -= white.triangle[(j, k)] * u);
+                less(&mut column[0], self.white.triangle[(j, k)], unit);
             }
-            let length = white.triangle[(k, k)];
-            let per = if length > 0.0 { length.recip() } else { 0.0 };
-            column[0].iter_mut().for_each(|x| *x *= per);
+            shrink(&mut column[0], self.white.triangle[(k, k)]);
         }
-        let mut raw = [raw_by_time, rudder, constant];
-        for (column, shares) in raw.iter_mut().zip([&along_time, &white.shares[0], &white.shares[1]]) {
-            for (unit, share) in own.iter().zip(shares) {
-                column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
-            }
+        let [rudder, constant, _] = &self.raw.rest;
+        let mut raw = [self.by_time.raw.clone(), rudder.clone(), constant.clone()];
+        for (column, shares) in raw.iter_mut().zip([&self.by_time.shares, &self.white.shares[0], &self.white.shares[1]])
+        {
+            own.iter().zip(shares).for_each(|(unit, share)| less(column, *share, unit));
         }
-        let products = Matrix3::from(gram(by_shared.each_ref().map(Vec::as_slice)));
-        Self { own: white.own.iter().cloned().zip(own).collect(), white: by_shared, raw, products }
-    }
-
-    /// Orthonormal columns with what they were before they were white; `factor` makes the shared ones so.
-    fn orthonormal(&self, factor: &Matrix3<f64>) -> Vec<(Vec<f64>, Vec<f64>)> {
-        let combined = |columns: &[Vec<f64>; 3], k: usize| -> Vec<f64> {
-            (0..columns[0].len()).map(|row| (0..3).map(|j| columns[j][row] * factor[(j, k)]).sum()).collect()
+        let [rudder, constant, _] = &self.white.rest;
+        let white = [&self.by_time.white, rudder, constant];
+        let combined = |[x, y, z]: [&[f64]; 3], k: usize| -> Vec<f64> {
+            let [fx, fy, fz] = [0, 1, 2].map(|j| factor[(j, k)]);
+            x.iter().zip(y).zip(z).map(|((x, y), z)| fx * x + fy * y + fz * z).collect()
         };
-        let shared = (0..3).map(|k| (combined(&self.white, k), combined(&self.raw, k)));
-        self.own.iter().cloned().chain(shared).collect()
+        let shared =
+            (0..3).map(|k| (combined(white.map(Vec::as_slice), k), combined(raw.each_ref().map(Vec::as_slice), k)));
+        self.white.own.iter().cloned().zip(own).chain(shared).collect()
     }
 }

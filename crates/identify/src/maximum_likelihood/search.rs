@@ -7,11 +7,14 @@ use crate::likelihood::{COMPASS, CORRELATION, GYRO, LEVEL, Moment, Place, RUDDER
 
 /// Steps end when they promise less than this in −log L: a hundredth of a standard deviation of the noise. Where there
 /// is none to find, 1/T alone has to be as exact as that of `output-error`.
-const PROMISE: f64 = 1e-4;
+const PROMISE: f64 = 2e-4;
 const PROMISE_ALONE: f64 = 1e-12;
 
 /// By how much a step may raise −2 log of the restricted likelihood.
 const SLACK: f64 = 1e-2;
+
+/// Share of the information that keeps it regular.
+const RIDGE: f64 = 1e-10;
 
 /// Halvings of a step.
 const HALVINGS: usize = 12;
@@ -144,17 +147,20 @@ impl Search<'_> {
         [0.2, 0.35, 0.5, 0.65].map(start).into()
     }
 
-    /// Fisher scoring from a point.
+    /// The largest likelihood near a point: quasi-Newton steps (BFGS) with exact slopes that begin as Fisher scoring.
     ///
     /// 1/T follows the likelihood and the noise the restricted one, so steps need not lower the latter to the last digit.
     pub fn maximise(&mut self, start: Point) -> Option<Found> {
         let mut point = start;
+        let mut linearised = linearise(self.records, &point)?;
+        let mut free = self.free(&point, &linearised.score);
+        let mut inverse = inverse_information(&linearised, &free);
         for _ in 0..self.iterations {
-            let linearised = linearise(self.records, &point)?;
-            let free = self.free(&point, &linearised.score);
-            let Some((step, promise)) = step(&linearised, &free) else {
+            let score = picked(&linearised.score, &free);
+            let Some(step) = inverse.as_ref().map(|inverse| -(inverse * &score)) else {
                 return Some(Found { point, linearised, converged: false });
             };
+            let promise = -step.dot(&score);
             let settled = if free.len() > 1 { PROMISE } else { PROMISE_ALONE };
             if promise <= settled {
                 return Some(Found { point, linearised, converged: true });
@@ -175,8 +181,15 @@ impl Search<'_> {
                 return Some(Found { point, linearised, converged: promise < SLACK });
             };
             point = lower;
+            linearised = linearise(self.records, &point)?;
+            let now = self.free(&point, &linearised.score);
+            if now == free && share == 1.0 {
+                learn(&mut inverse, &step, &(picked(&linearised.score, &free) - score));
+            } else {
+                inverse = inverse_information(&linearised, &now);
+                free = now;
+            }
         }
-        let linearised = linearise(self.records, &point)?;
         Some(Found { point, linearised, converged: false })
     }
 
@@ -216,20 +229,35 @@ impl Search<'_> {
 /// Sizes of a moment that are tried, in units of what a fit without one leaves.
 const LEVELS: [f64; 4] = [0.03, 0.2, 1.0, 5.0];
 
-/// The scoring step of the free unknowns with b and b δ_r following, and the change of −2 log L it promises.
-fn step(linearised: &Linearised, free: &[usize]) -> Option<(DVector<f64>, f64)> {
+fn picked(score: &DVector<f64>, free: &[usize]) -> DVector<f64> {
+    DVector::from_iterator(free.len(), free.iter().map(|&at| score[at]))
+}
+
+/// Inverse information of the free unknowns with b and b δ_r following.
+fn inverse_information(linearised: &Linearised, free: &[usize]) -> Option<DMatrix<f64>> {
     let information = reduced(&linearised.information, free)?;
-    let score = DVector::from_iterator(free.len(), free.iter().map(|&at| linearised.score[at]));
     let scale = DVector::from_iterator(free.len(), information.diagonal().iter().map(|x| x.sqrt().recip()));
     if scale.iter().any(|x| !x.is_finite()) {
         return None;
     }
     let count = free.len();
     let scaled = DMatrix::from_fn(count, count, |i, j| information[(i, j)] * scale[i] * scale[j]);
-    let ridge = DMatrix::identity(count, count) * 1e-10;
-    let step = -(scaled + ridge).cholesky()?.solve(&score.component_mul(&scale)).component_mul(&scale);
-    let promise = -step.dot(&score);
-    Some((step, promise))
+    let inverse = (scaled + DMatrix::identity(count, count) * RIDGE).cholesky()?.inverse();
+    Some(DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
+}
+
+/// Teaches an inverse curvature what a step has done to the slope (Broyden, Fletcher, Goldfarb and Shanno 1970).
+fn learn(inverse: &mut Option<DMatrix<f64>>, step: &DVector<f64>, change: &DVector<f64>) {
+    let Some(matrix) = inverse else { return };
+    let along = step.dot(change);
+    let bent = &*matrix * change;
+    // A slope that did not rise along the step says nothing of a minimum.
+    if along <= 1e-3 * change.dot(&bent).sqrt() * along.abs().sqrt() || along <= 0.0 {
+        return;
+    }
+    let outer = step * bent.transpose();
+    *matrix +=
+        step * step.transpose() * ((1.0 + change.dot(&bent) / along) / along) - (&outer + outer.transpose()) / along;
 }
 
 /// Information of some unknowns when b and b δ_r follow them.
