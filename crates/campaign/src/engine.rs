@@ -11,14 +11,14 @@ use ::trace::record::Record;
 use ::trace::{Analysis, TraceError, replay_errors};
 use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
-use nalgebra::{Matrix2, Matrix2x3};
+use nalgebra::Matrix2;
 use ship::FirstOrder;
 use ship::angle::to_deg;
-use ship::first_order::State;
 use simulate::recording::RudderColumn;
 use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simulated, Simulation, StreamKey};
 use trial::{Quantity, Trial};
 
+use crate::bound;
 use crate::design::CellFacts;
 use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
 use crate::task::Task;
@@ -85,7 +85,7 @@ impl Yardstick {
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
         let own = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading;
-        let bound = nearest.zip(sd).and_then(|(nearest, sd)| bound(simulated, &nearest, sd));
+        let bound = nearest.and_then(|nearest| bound::of(simulation, simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
         let expected = near.filter(|_| traces).zip(sd).map(|(near, sd)| near.mean_square / (sd * sd) * near.rows);
         Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
@@ -114,23 +114,6 @@ fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<Neare
     let residual = replay(&trial, &response)?.residual;
     let rows = residual.len() as f64;
     Some(Nearest { response, mean_square: residual.iter().map(|e| e * e).sum::<f64>() / rows, rows })
-}
-
-/// Cramér–Rao bound of a trial for white heading noise of `sd`, rad.
-fn bound(simulated: &Simulated, truth: &FirstOrder, sd: f64) -> Option<(Bound, Matrix2<f64>)> {
-    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
-    let covariance = output_error::cramer_rao(&simulated.trial, truth, initial, sd)?;
-    let (a, b) = (truth.inverse_T, truth.K_over_T);
-    // Gradients of ln K = ln b − ln a and ln T = −ln a.
-    let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
-    let relative = gradient * covariance.matrix * gradient.transpose();
-    let bound = Bound {
-        k_per_s: relative[(0, 0)].sqrt() * truth.K().abs(),
-        t_s: relative[(1, 1)].sqrt() * truth.T().abs(),
-        k_over_t_per_s2: covariance.matrix[(1, 1)].sqrt(),
-    };
-    let finite = [bound.k_per_s, bound.t_s, bound.k_over_t_per_s2].iter().all(|sd| sd.is_finite());
-    finite.then_some((bound, relative * 1e4))
 }
 
 /// Runs trials of one study; what all trials of a cell share is made once.

@@ -13,6 +13,7 @@
 //! | records and answers for figures and other programs | [`curves`], [`answer`] |
 
 pub mod answer;
+mod bound;
 pub mod collect;
 pub mod curves;
 pub mod design;

@@ -79,6 +79,7 @@ pub const DASH_DOT: Dash = &[6.0, 2.0, 1.4, 2.0];
 const LONG_DASH: Dash = &[10.0, 2.5];
 const DASH_DOT_DOT: Dash = &[6.0, 1.8, 1.4, 1.8, 1.4, 1.8];
 const SHORT_DASH: Dash = &[3.0, 1.6];
+const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 
 /// Text, frames and the truth.
 pub const INK: Colour = Colour(0x11, 0x11, 0x11);
@@ -114,6 +115,8 @@ pub enum Marker {
     Plus,
     /// ×
     Cross,
+    /// ★
+    Star,
 }
 
 /// How one origin is drawn.
@@ -135,7 +138,7 @@ impl Look {
     }
 }
 
-const METHODS: [(&str, Look); 7] = [
+const METHODS: [(&str, Look); 8] = [
     ("fourier-published", Look::new(Colour(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
     ("fourier-projected", Look::new(Colour(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
     ("characteristic-points", Look::new(Colour(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
@@ -143,6 +146,7 @@ const METHODS: [(&str, Look); 7] = [
     ("integral-least-squares", Look::new(Colour(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
     ("output-error", Look::new(Colour(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
     ("srivc", Look::new(Colour(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
+    ("maximum-likelihood", Look::new(Colour(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
 /// The ids that have a look of their own, in the order figures list them.
@@ -165,8 +169,11 @@ fn variant_look(method: &str, number: usize) -> Look {
 /// Filled shapes, the only ones that can be hollow.
 const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
 
+/// Known methods whose colours and dashes others may have: a look that was once given stays when a method joins.
+const LENT: usize = 7;
+
 /// How many looks there are beside those of the known methods.
-const OTHERS: usize = METHODS.len() * OUTLINES.len() * METHODS.len();
+const OTHERS: usize = LENT * OUTLINES.len() * LENT;
 
 /// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow
 /// marker, which keeps them apart from the known methods.
@@ -182,7 +189,7 @@ fn method_look(id: &str) -> Look {
 /// Look number `number` of the cycle of colour, marker and dash. Of neighbours in the cycle all three differ, and
 /// within a lap of 35 at least two.
 fn other_look(number: usize) -> Look {
-    let (colours, shapes) = (METHODS.len(), OUTLINES.len());
+    let (colours, shapes) = (LENT, OUTLINES.len());
     let (colour, shape, lap) = (number % colours, number % shapes, number / (colours * shapes));
     Look {
         colour: METHODS[colour].1.colour,

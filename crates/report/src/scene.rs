@@ -97,6 +97,20 @@ pub(crate) struct Scene {
     shapes: Vec<(Layer, Shape)>,
 }
 
+/// Corners of a star.
+const STAR: [(f64, f64); 10] = [
+    (0.0, -1.25),
+    (0.32, -0.44),
+    (1.19, -0.39),
+    (0.52, 0.17),
+    (0.73, 1.01),
+    (0.0, 0.55),
+    (-0.73, 1.01),
+    (-0.52, 0.17),
+    (-1.19, -0.39),
+    (-0.32, -0.44),
+];
+
 impl Scene {
     /// The shapes from the bottom layer to the top, each layer in the order of drawing.
     pub(crate) fn shapes(&self) -> Vec<&Shape> {
@@ -162,6 +176,7 @@ impl Scene {
             Marker::Up => &[(0.0, -1.15), (1.05, 0.75), (-1.05, 0.75)],
             Marker::Down => &[(0.0, 1.15), (1.05, -0.75), (-1.05, -0.75)],
             Marker::Diamond => &[(0.0, -1.2), (1.0, 0.0), (0.0, 1.2), (-1.0, 0.0)],
+            Marker::Star => &STAR,
             Marker::Circle | Marker::Plus | Marker::Cross => &[],
         };
         if look.marker == Marker::Circle {
