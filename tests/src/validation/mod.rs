@@ -11,6 +11,7 @@ pub mod first_order;
 pub mod fourier;
 pub mod hulls;
 pub mod information;
+pub mod likelihood;
 pub mod residuals;
 pub mod table_1;
 pub mod zig_zags_of_hulls;
@@ -132,6 +133,7 @@ pub fn sections() -> Vec<Section> {
         estimators::section(),
         information::bound(),
         information::efficiency(),
+        likelihood::section(),
         residuals::section(),
         table_1::section(),
     ]
