@@ -8,6 +8,7 @@
 //! | the whole analysis and its result | [`analysis`] |
 //! | what may be missing, with bounds and starts | [`candidates`] |
 //! | how terms are added, tested and dropped | [`search`] |
+//! | what a user asks for or excludes | [`wanted`] |
 //! | random explanations that compete with effects | [`noise`] and [`waves`] |
 //! | the fit itself | [`fit`], [`structure`], [`record`] |
 //! | where a squall was | [`transient`] |
@@ -29,9 +30,11 @@ pub mod search;
 pub mod separation;
 pub mod structure;
 pub mod transient;
+pub mod wanted;
 pub mod waves;
 
 pub use analysis::{Analysis, Settings, TraceError, trace};
+pub use wanted::{EffectId, Wanted};
 
 #[cfg(test)]
 mod made_up;

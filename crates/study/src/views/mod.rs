@@ -14,5 +14,6 @@ pub mod trace_figures;
 pub mod trace_file;
 pub mod trace_page;
 pub mod trace_report;
+pub mod trace_tables;
 pub mod tracing_table;
 pub mod truth_file;

@@ -66,6 +66,9 @@ pub struct EffectEntry {
     form: &'static str,
     equation: &'static str,
     only: Option<String>,
+    /// Whether it is in the model on request; left out where it was found.
+    #[serde(skip_serializing_if = "is_false")]
+    asked: bool,
     aliases: Vec<&'static str>,
     alias_forms: Vec<String>,
     parameters: BTreeMap<&'static str, ParameterEntry>,
@@ -232,6 +235,7 @@ impl From<&Traced> for EffectEntry {
             form: effect.form,
             equation: effect.equation,
             only: effect.only.clone(),
+            asked: effect.asked,
             aliases,
             alias_forms: effect.aliases.iter().map(|(id, form)| format!("{id} ({form})")).collect(),
             parameters: effect.parameters.iter().map(|fitted| (fitted.parameter.symbol, fitted.into())).collect(),

@@ -147,3 +147,31 @@ fn columns_can_be_withheld_and_described_in_a_folder() {
     desk.file("sidecars/windy.trial.toml", "[part]\nfrom-s = 0.0\nuntil-s = 200.0\n");
     desk.run(&["trace", "windy.csv", "--columns", "sidecars", "--out", "cut"]).is_done();
 }
+
+#[test]
+fn effects_can_be_asked_for_and_excluded() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv_of(&second_order()));
+    let run = desk.run(&["trace", "run.csv", "--with", "speed_loss,moment_drift", "--out", "with"]);
+    run.is_done();
+    assert!(run.out.contains("asked for, not found"), "{}", run.out);
+    let effects = |name: &str| {
+        let json = desk.json(name);
+        let all = json["effects"].as_array().cloned().unwrap_or_default();
+        all.iter().map(|one| (one["id"].as_str().unwrap_or("").to_owned(), one["asked"] == true)).collect::<Vec<_>>()
+    };
+    let with = effects("with/trace.json");
+    assert_eq!(with[..2], ["speed_loss", "moment_drift"].map(|id| (id.to_owned(), true)));
+    assert!(with.contains(&("second_order".to_owned(), false)), "{with:?}");
+    desk.run(&["trace", "run.csv", "--only", "second_order", "--out", "only", "--quiet"]).is_done();
+    assert_eq!(effects("only/trace.json"), [("second_order".to_owned(), true)]);
+    keeps_the_contract(&desk.json("only/trace.json"), 1, 0);
+    desk.run(&["trace", "run.csv", "--without-effect", "second_order", "--out", "without", "--quiet"]).is_done();
+    assert!(effects("without/trace.json").iter().all(|(id, _)| id != "second_order"));
+    desk.run(&["trace", "run.csv", "--with", "sway"]).is_refused(2, &["sway", "second_order"]);
+    desk.run(&["trace", "run.csv", "--only", "speed_los"]).is_refused(2, &["did you mean `speed_loss`"]);
+    desk.run(&["trace", "run.csv", "--only", "wind_moment", "--with", "speed_loss"]).is_refused(2, &["--only"]);
+    desk.run(&["trace", "run.csv", "--only", "sway_coupling_measured"]).is_refused(2, &["sway velocity", "run.csv"]);
+    let both = ["trace", "run.csv", "--with", "speed_loss", "--without-effect", "speed_loss"];
+    desk.run(&both).is_refused(2, &["without-effect", "speed_loss"]);
+}

@@ -18,7 +18,7 @@ pub(super) fn believed_elsewhere(
         rest -= 1;
         let place = TermPlace(rest);
         let term = model.structure.term(place);
-        if term.effect.is_of_time() {
+        if term.effect.is_of_time() || search.wanted.keeps(term) {
             continue;
         }
         let less = search.dropped(&model, place, true);
@@ -67,7 +67,7 @@ pub(super) struct Predicted {
 /// does not.
 pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
     let mut predicted = Vec::new();
-    if held_out.is_empty() || model.judged.colour.moment.is_none() {
+    if held_out.is_empty() || model.judged.colour.moment.is_none() || !search.wanted.search {
         return predicted;
     }
     while model.structure.terms.len() < search.thresholds.most_effects {

@@ -19,6 +19,9 @@ use crate::search::{Evidence, Model, Search, Tested, Tried};
 use crate::separation::Ground;
 use crate::structure::Term;
 
+/// Why an effect was no candidate, where the user did not want it.
+const EXCLUDED: &str = "excluded on request";
+
 /// What is said about a finished search.
 pub(super) struct Reporter<'a> {
     pub search: &'a Search<'a>,
@@ -39,7 +42,7 @@ impl Reporter<'_> {
 
     pub fn effects(&self, parameters: &[Fitted]) -> Vec<Traced> {
         let structure = &self.model.structure;
-        let tests = self.search.tested(self.model, true);
+        let tests = self.search.tested(self.model, structure.places(), true);
         let mut effects: Vec<Traced> = tests
             .into_par_iter()
             .zip(self.shares())
@@ -59,6 +62,7 @@ impl Reporter<'_> {
                     only: self.only(term),
                     aliases,
                     parameters: parameters[structure.range(place)].to_vec(),
+                    asked: self.search.wanted.keeps(term),
                     evidence,
                     residual_share: Some(share),
                     sentence,
@@ -125,13 +129,20 @@ impl Reporter<'_> {
             (Some(_), true) => "against the best model without it, while a random moment takes what neither explains",
             (_, false) => "against the best model without any of its aliases",
         };
-        format!(
-            "{} ({}) takes away {:.0} % of the mean square error of the base; BIC falls by {:.0} {whom}",
-            term.effect.id(),
-            term.effect.form(),
-            100.0 * share,
-            evidence.gain
-        )
+        let fall = match evidence.gain {
+            gain if gain < 0.0 => format!("BIC rises by {:.0}", -gain),
+            gain => format!("BIC falls by {gain:.0}"),
+        };
+        let (id, form, percent) = (term.effect.id(), term.effect.form(), 100.0 * share);
+        let takes =
+            format!("{id} ({form}) takes away {percent:.0} % of the mean square error of the base; {fall} {whom}");
+        match (self.search.wanted.keeps(term), self.search.believes(term, evidence)) {
+            (false, _) => takes,
+            (true, true) => format!("asked for, not found, but believed: {takes}"),
+            (true, false) => {
+                format!("asked for, not found: {takes}, and {:.0} are needed to believe it", self.search.needed(term))
+            }
+        }
     }
 
     fn prediction(&self, predicted: &Predicted, share: f64) -> String {
@@ -165,6 +176,7 @@ impl Reporter<'_> {
             only: None,
             aliases: Vec::new(),
             parameters,
+            asked: self.search.wanted.asks_for(effect.id()),
             evidence,
             residual_share: None,
             sentence: format!(
@@ -241,6 +253,9 @@ impl Reporter<'_> {
             .into_iter()
             .filter(|effect| !effect.is_random() && list.iter().all(|other| other.id != effect.id()))
             .map(|effect| {
+                if !self.search.wanted.allows(effect.id()) {
+                    return self.unfitted(effect.as_ref(), Outcome::Rejected, None, Some(EXCLUDED));
+                }
                 let lacking = effect.needs().map(Regressor::lacking);
                 self.unfitted(effect.as_ref(), Outcome::NotObservable, None, lacking)
             })
@@ -255,7 +270,9 @@ impl Reporter<'_> {
             .map(|effect| match traced.iter().find(|traced| traced.id == effect.id()) {
                 Some(found) => self.unfitted(effect.as_ref(), Outcome::Added, Some(found.evidence), None),
                 None => {
-                    let reason = "no band above five times the frequency of the manoeuvre";
+                    let allowed = self.search.wanted.allows(effect.id());
+                    let reason =
+                        if allowed { "no band above five times the frequency of the manoeuvre" } else { EXCLUDED };
                     self.unfitted(effect.as_ref(), Outcome::Rejected, None, Some(reason))
                 }
             })
@@ -322,7 +339,7 @@ impl Reporter<'_> {
             .filter_map(|place| Monomial { place, size }.proposal(&about))
             .map(|proposal| Candidate::new(proposal, None))
             .collect();
-        let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
+        let search = Search::new(self.search.problem, &library, self.search.thresholds);
         let tried = search.try_all(self.model, &self.model.judged, false);
         let best =
             tried.first().filter(|best| search.believes(&search.candidate(best.candidate).term, &best.evidence))?;

@@ -99,6 +99,8 @@ pub struct Traced {
     pub aliases: Vec<(&'static str, &'static str)>,
     /// Its parameters.
     pub parameters: Vec<Fitted>,
+    /// Whether it is in the model on request, whatever its evidence.
+    pub asked: bool,
     /// How much it explains, against the best model without it.
     pub evidence: Evidence,
     /// Share of the mean square of the residual of the base that it took away when it was added; `None` for waves,

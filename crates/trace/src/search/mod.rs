@@ -6,6 +6,7 @@
 //! stays if its likelihood ratio against the model without it, each with the noise that suits it best, passes the
 //! threshold. If a random moment is still needed, terms are looked for once more under it.
 
+mod asked;
 mod evidence;
 mod models;
 mod rounds;
@@ -13,6 +14,7 @@ mod rounds;
 mod tests;
 mod trying;
 
+pub use asked::NotFitted;
 pub use evidence::{Evidence, Thresholds};
 pub use models::{Model, Search, Tested};
 pub use trying::Tried;

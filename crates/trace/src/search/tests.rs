@@ -29,7 +29,7 @@ fn damped() -> (Problem, Vec<Candidate>) {
 #[test]
 fn what_is_missing_is_found_and_nothing_else() {
     for (missing, (problem, candidates)) in [(true, damped()), (false, prepared(Vec::new()))] {
-        let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+        let search = Search::new(&problem, &candidates, Thresholds::default());
         let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let tried = search.try_all(&base, &base.plain, false);
         assert_eq!(tried.len(), candidates.len());
@@ -49,7 +49,7 @@ fn what_is_missing_is_found_and_nothing_else() {
 #[test]
 fn evidence_is_a_likelihood_ratio_among_many() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+    let search = Search::new(&problem, &candidates, Thresholds::default());
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let mut better = base.plain.clone();
     // χ²₁ exceeds 10.828 with a probability of 0.001.
@@ -65,7 +65,7 @@ fn evidence_is_a_likelihood_ratio_among_many() {
 #[test]
 fn a_moment_of_time_needs_more_and_stands_alone() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+    let search = Search::new(&problem, &candidates, Thresholds::default());
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let place = |id: &str| {
         CandidatePlace(candidates.iter().position(|candidate| candidate.term.effect.id() == id).expect("listed"))
@@ -84,7 +84,7 @@ fn a_moment_of_time_needs_more_and_stands_alone() {
 #[test]
 fn parts_that_were_not_fitted_speak_for_the_truth() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+    let search = Search::new(&problem, &candidates, Thresholds::default());
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let rich = search.run(&base, &search.try_all(&base, &base.plain, false));
     let (one, other) = ((&base.structure, &base.plain), (&rich.structure, &rich.plain));

@@ -109,11 +109,20 @@ impl Search<'_> {
             scored.sort_by(|one, other| other.0.total_cmp(&one.0));
             places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
         }
+        self.try_on(model, fit, places, &known)
+    }
+
+    /// Tries some candidates on one fit of a model, lowest BIC first.
+    pub(super) fn try_these(&self, model: &Model, fit: &Fit, places: Vec<CandidatePlace>) -> Vec<Tried> {
+        self.try_on(model, fit, places, &Linearised::new(self.problem, &model.structure, fit))
+    }
+
+    fn try_on(&self, model: &Model, fit: &Fit, places: Vec<CandidatePlace>, known: &Linearised) -> Vec<Tried> {
         let mut tried: Vec<Tried> = places
             .into_par_iter()
             .map(|place| {
                 let candidate = self.candidate(place);
-                let (structure, with) = self.with_term(model, candidate, fit, &known);
+                let (structure, with) = self.with_term(model, candidate, fit, known);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
                 Tried { candidate: place, structure, fit: with, evidence }
             })
