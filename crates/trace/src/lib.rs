@@ -12,7 +12,7 @@
 //! | random explanations that compete with effects | [`noise`] and [`waves`] |
 //! | the fit itself | [`fit`], [`structure`], [`record`] |
 //! | where a squall was | [`transient`] |
-//! | errors before and after | [`replay_errors`], [`held_out`] |
+//! | errors before and after | [`replay_errors`], [`held_out`], [`own_moment`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
 //! | what is left in the end | [`diagnostics`], [`monomial`] |
 
@@ -24,6 +24,7 @@ pub mod held_out;
 pub mod index;
 pub mod monomial;
 pub mod noise;
+pub mod own_moment;
 pub mod record;
 pub mod replay_errors;
 pub mod search;

@@ -16,7 +16,7 @@ use campaign::answer::Parameters;
 /// `trace.json`.
 #[derive(Debug, Serialize)]
 pub struct TraceFile {
-    /// `trace/1`.
+    /// `trace/2`.
     pub schema: &'static str,
     /// `clean`, `traced` or `unexplained`.
     pub verdict: &'static str,
@@ -141,6 +141,9 @@ pub struct ErrorsEntry {
     yaw_rate_rmse_deg_s: Option<f64>,
     overshoot_error_deg: Option<f64>,
     horizon_rmse_deg: BTreeMap<String, Option<f64>>,
+    /// With a moment of the record's own, where it was held out and the fitted records have such moments.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with_own_moment: Option<Box<ErrorsEntry>>,
 }
 
 /// Residual before and after.
@@ -214,6 +217,7 @@ impl From<&Errors> for ErrorsEntry {
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
             overshoot_error_deg: errors.overshoot.map(to_deg),
             horizon_rmse_deg: horizon.collect(),
+            with_own_moment: None,
         }
     }
 }
@@ -295,7 +299,10 @@ fn entries(trials: &[Trial], judged: &[Judged]) -> Vec<BeforeAfter> {
         .map(|(trial, judged)| BeforeAfter {
             file: file_of(trial).0.to_owned(),
             before: (&judged.before.errors).into(),
-            after: (&judged.after.errors).into(),
+            after: ErrorsEntry {
+                with_own_moment: judged.own_moment.as_ref().map(|own| Box::new((&own.errors).into())),
+                ..(&judged.after.errors).into()
+            },
         })
         .collect()
 }
@@ -314,7 +321,7 @@ impl TraceFile {
         let unknown = Quantity::bare(f64::NAN);
         let noise = &analysis.randomness;
         Self {
-            schema: "trace/1",
+            schema: "trace/2",
             verdict: analysis.verdict.as_str(),
             base: Parameters { k_per_s: base.K(), t_s: base.T(), delta_r_deg: base.rudder_bias().scaled(degree) },
             effects: analysis.effects.iter().map(EffectEntry::from).collect(),

@@ -174,6 +174,10 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     text += "Before is the best first-order base there is; after is the base with what was found. Heading and yaw rate are those of \
              the recorded rudder replayed over the whole record, *every 20 s* those of a heading that is restarted so often; \
              *overshoots* is the mean error of the overshoot angles. On held-out records nothing but the initial state is fitted.\n\n";
+    if analysis.validation.iter().any(|judged| judged.own_moment.is_some()) {
+        text += "A moment that depends on time alone belongs to one record: *after* leaves it out on held-out records, *after, own \
+                 moment* estimates it there anew, beside the initial state.\n\n";
+    }
     if let Some(table) = overshoots(report) {
         let _ = writeln!(text, "## Overshoots and period\n\n{}", table.to_markdown());
     }

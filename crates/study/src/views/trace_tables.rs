@@ -56,7 +56,8 @@ pub fn errors(report: &TraceReport) -> Table {
     let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
     let uses = fitted.chain(analysis.validation.iter().map(|judged| (judged, "held out")));
     for ((judged, used), name) in uses.zip(&report.names) {
-        for (model, on) in [("before", &judged.before), ("after", &judged.after)] {
+        let own = judged.own_moment.as_ref().map(|own| ("after, own moment", own));
+        for (model, on) in [("before", &judged.before), ("after", &judged.after)].into_iter().chain(own) {
             let errors = &on.errors;
             let mut cells =
                 if model == "before" { vec![name.clone(), used.to_owned()] } else { vec![String::new(); 2] };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::Value;
-use ship::effects::{Effect, SecondOrder};
+use ship::effects::{Effect, MomentDrift, SecondOrder};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ships};
 
@@ -11,18 +11,21 @@ use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
 
 /// The paper's ship with sway coupling that nobody declares.
 fn second_order() -> Ship {
+    with_effect(Arc::new(SecondOrder), &[2.5, 6.2])
+}
+
+fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     let mut ship = ships::find("yukun").expect("it is in the registry");
     let Model::Response(response) = &ship.model else { panic!("a response ship") };
     let mut parameters = response.parameters().to_vec();
-    parameters.extend([2.5, 6.2]);
-    let effect: Arc<dyn Effect> = Arc::new(SecondOrder);
+    parameters.extend(values);
     ship.model = Model::Response(ResponseModel::new(vec![effect]).with(parameters));
     ship
 }
 
 /// Every key of the contract, down to its parts.
 fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
-    assert_eq!(json["schema"], "trace/1");
+    assert_eq!(json["schema"], "trace/2");
     assert!(["clean", "traced", "unexplained"].contains(&json["verdict"].as_str().expect("a word")));
     for key in ["K_per_s", "T_s", "delta_r_deg"] {
         assert!(json["base"][key]["value"].is_f64() && json["base"][key]["sd"].is_f64(), "{key}");
@@ -174,4 +177,22 @@ fn effects_can_be_asked_for_and_excluded() {
     desk.run(&["trace", "run.csv", "--only", "sway_coupling_measured"]).is_refused(2, &["sway velocity", "run.csv"]);
     let both = ["trace", "run.csv", "--with", "speed_loss", "--without-effect", "speed_loss"];
     desk.run(&both).is_refused(2, &["without-effect", "speed_loss"]);
+}
+
+/// A drift belongs to one record: on another it is left out, and estimated anew beside that.
+#[test]
+fn a_held_out_record_has_a_moment_of_its_own() {
+    let desk = Desk::new();
+    for (name, slope) in [("run.csv", 7e-5), ("other.csv", -1.2e-4)] {
+        let drift: Arc<dyn Effect> = Arc::new(MomentDrift { reference_time: 0.0 });
+        desk.file(name, zig_zag_csv_of(&with_effect(drift, &[slope])));
+    }
+    let run = desk.run(&["trace", "run.csv", "--validate", "other.csv"]);
+    run.is_done();
+    assert!(run.out.contains("after, own moment"), "{}", run.out);
+    let error = desk.json("run-trace/trace.json")["error"].clone();
+    let after = &error["validation"][0]["after"];
+    let [plain, own] = [&after["heading_rmse_deg"], &after["with_own_moment"]["heading_rmse_deg"]].map(Value::as_f64);
+    assert!(own.is_some_and(|own| own < 0.1) && plain.is_some_and(|plain| plain > 1.0), "{after}");
+    assert!(error["identification"][0]["after"].get("with_own_moment").is_none());
 }

@@ -23,12 +23,11 @@ pub(super) fn believed_elsewhere(
         }
         let less = search.dropped(&model, place, true);
         let worse = if held_out.is_empty() {
-            held_out::is_worse_on_parts(
-                search.problem,
-                (&less.structure, &less.plain),
-                (&model.structure, &model.plain),
-            )
-            .then(|| String::from("the part of the record that was kept from the fit is predicted worse"))
+            let random = model.judged.colour.moment.is_some();
+            let of = |model: &Model| if random { model.judged.clone() } else { model.plain.clone() };
+            let (one, other) = (of(&less), of(&model));
+            held_out::is_worse_on_parts(search.problem, (&less.structure, &one), (&model.structure, &other))
+                .then(|| String::from("the part of the record that was kept from the fit is predicted worse"))
         } else {
             worse_on_others(held_out, &less, &model)
         };

@@ -111,7 +111,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
-        pairs.map(|(name, (before, after))| Judged { name, before, after }).collect()
+        pairs.map(|(name, (before, after))| Judged { name, before, after, own_moment: None }).collect()
     };
     let series =
         |(on, trial): (&OnRecord, &Trial)| Series::new(&on.replay.time, &on.replay.residual, trial.sampling_period());

@@ -9,6 +9,7 @@ use super::settings::TraceError;
 use crate::fit::Problem;
 use crate::held_out::{self, HeldOut};
 use crate::index::RecordNumber;
+use crate::own_moment;
 use crate::record::Record;
 use crate::replay_errors;
 use crate::search::Model;
@@ -100,7 +101,10 @@ pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Res
                 all.push(before.replay.initial());
                 on_record(held.trial, &held.record, &after, &all, None, true).ok_or_else(refuse)?
             };
-            Ok(Judged { name: held.trial.name().to_owned(), before, after })
+            let own = own_moment::response(held, &model.structure, &model.plain.theta);
+            let own = own.and_then(|(response, near)| held.judge(&response, Some(near)));
+            let own_moment = own.map(|(replay, errors)| OnRecord { replay, errors });
+            Ok(Judged { name: held.trial.name().to_owned(), before, after, own_moment })
         })
         .collect()
 }

@@ -178,6 +178,8 @@ pub struct Judged {
     pub before: OnRecord,
     /// Final model.
     pub after: OnRecord,
+    /// Final model with a moment of the record's own, where it was not fitted and the fitted records have such moments.
+    pub own_moment: Option<OnRecord>,
 }
 
 /// The result.

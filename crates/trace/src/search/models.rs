@@ -59,7 +59,7 @@ impl<'a> Search<'a> {
 }
 
 impl Search<'_> {
-    fn log_n(&self) -> f64 {
+    pub(super) fn log_n(&self) -> f64 {
         (self.problem.observations() as f64).ln()
     }
 
@@ -166,6 +166,24 @@ impl Search<'_> {
             }
         }
         Model { structure, plain, judged }
+    }
+
+    /// A model whose plain fit begins once more where the judged one ended: under a random moment a search is not
+    /// carried away by what the structure cannot follow yet, and ends in better valleys.
+    pub(super) fn settled(&self, model: Model) -> Model {
+        if model.judged.colour.moment.is_none() {
+            return model;
+        }
+        let Model { structure, plain, judged } = &model;
+        let again = self.problem.fit(structure, &judged.theta, &judged.initial, &plain.colour);
+        if again.deviance >= plain.deviance {
+            return model;
+        }
+        let mut settled = self.judge(structure.clone(), again);
+        if model.judged.bic < settled.judged.bic {
+            settled.judged = model.judged;
+        }
+        settled
     }
 
     /// A model without one of its terms, fitted anew.

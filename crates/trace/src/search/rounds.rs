@@ -7,6 +7,12 @@ use crate::index::TermPlace;
 /// Gain in BIC for which one term takes the place of another.
 const SWAP: f64 = 2.0;
 
+/// Difference in BIC up to which two sets cannot be told apart.
+const ALIKE: f64 = 10.0;
+
+/// Sets of effects that are looked at term by term.
+const PRUNED: usize = 3;
+
 impl Search<'_> {
     /// Whether a model gains over the base what all of its terms need together: two terms that are each other's reason
     /// explain nothing.
@@ -104,6 +110,17 @@ impl Search<'_> {
         if self.found(&model).next().is_none() { base.clone() } else { model }
     }
 
+    /// The better of a model and the best set of effects that pay together.
+    fn with_a_set(&self, model: Model, base: &Model) -> Model {
+        let sets = self.together(base).into_iter().take(PRUNED);
+        let pruned = sets.filter(|set| set.judged.bic < model.judged.bic).map(|set| self.prune(set, base, true));
+        let better: Vec<Model> = pruned.filter(|set| set.judged.bic < model.judged.bic).collect();
+        let lowest = better.iter().map(|set| set.judged.bic).fold(f64::INFINITY, f64::min);
+        // Of sets that cannot be told apart, the one that replays the record best.
+        let alike = better.into_iter().filter(|set| set.judged.bic < lowest + ALIKE);
+        alike.min_by(|one, other| one.plain.bic.total_cmp(&other.plain.bic)).unwrap_or(model)
+    }
+
     /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.
     pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
         let plain = self.add_plainly(base, first, false);
@@ -114,6 +131,9 @@ impl Search<'_> {
             if timeless.judged.bic < model.judged.bic {
                 model = timeless;
             }
+        }
+        if model.judged.colour.moment.is_some() {
+            model = self.with_a_set(model, base);
         }
         while self.found(&model).count() < self.thresholds.most_effects && model.judged.colour.moment.is_some() {
             let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };

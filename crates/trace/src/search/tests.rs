@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use ship::effects::{Effect, NonlinearDamping};
+use ship::effects::{Effect, NonlinearDamping, SecondOrder};
 
 use super::*;
 use crate::candidates::{self, Candidate, Sizes};
@@ -90,4 +90,20 @@ fn parts_that_were_not_fitted_speak_for_the_truth() {
     let (one, other) = ((&base.structure, &base.plain), (&rich.structure, &rich.plain));
     assert!(!held_out::is_worse_on_parts(&problem, one, other));
     assert!(held_out::is_worse_on_parts(&problem, other, one));
+}
+
+/// The set of lowest BIC holds what is missing, however many more it may hold: pruning is another's work.
+#[test]
+fn what_pays_together_is_found_together() {
+    let coupled: Arc<dyn Effect> = Arc::new(SecondOrder);
+    let (problem, candidates) =
+        prepared(vec![(coupled, vec![2.5, 6.2]), (Arc::new(NonlinearDamping::Cubic), vec![80.0])]);
+    let search = Search::new(&problem, &candidates, Thresholds::default());
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let sets = search.together(&base);
+    assert!(sets.is_sorted_by(|one, other| one.judged.bic <= other.judged.bic));
+    let ids = |model: &Model| model.structure.terms.iter().map(|term| term.effect.id()).collect::<Vec<_>>();
+    let both = ["second_order", "nonlinear_damping"];
+    assert!(both.iter().all(|id| ids(&sets[0]).contains(id)), "{:?}", ids(&sets[0]));
+    assert!(sets[0].judged.bic < base.judged.bic);
 }
