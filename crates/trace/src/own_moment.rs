@@ -11,12 +11,16 @@ use crate::structure::{Structure, Term};
 use crate::transient;
 use ship::Response;
 
-/// The response of a fitted structure on a held-out record with a moment of the record's own, and the initial state
-/// that goes with it: of the forms that the fitted records had, the one of lowest BIC. `None` when they had none, or
-/// when no fit is finite.
-pub fn response(held: &HeldOut, structure: &Structure, theta: &[f64]) -> Option<(Response, [f64; 2])> {
+/// The response of a structure on a held-out record with a moment of the record's own, and the initial state that goes
+/// with it: of the moments among the terms `of` a structure, the one of lowest BIC. `None` when there are none, or when
+/// no fit is finite.
+pub fn response(
+    held: &HeldOut,
+    (structure, theta): (&Structure, &[f64]),
+    of: &Structure,
+) -> Option<(Response, [f64; 2])> {
     let mut forms: Vec<&Term> = Vec::new();
-    for term in structure.terms.iter().filter(|term| term.effect.is_of_time()) {
+    for term in of.terms.iter().filter(|term| term.effect.is_of_time()) {
         if forms.iter().all(|form| form.effect.form() != term.effect.form()) {
             forms.push(term);
         }
@@ -79,11 +83,12 @@ mod tests {
             theta.extend(proposal.large.iter().map(|large| large * first));
             let structure = Structure::base(1, false).with(Candidate::new(proposal, None).term);
             let plain = held.judge(&held_out::portable(&structure, &theta), None).expect("finite").1.heading;
-            let (own, initial) = response(&held, &structure, &theta).expect("it has a moment of time");
+            let (own, initial) = response(&held, (&structure, &theta), &structure).expect("it has a moment of time");
             let with = held.judge(&own, Some(initial)).expect("finite").1.heading;
             assert!(with < 0.1 * plain && with.to_degrees() < 0.06, "{}: {plain}, {with}", effect.id());
             assert_eq!(own.parameters()[..3], BASE);
-            assert!(response(&held, &Structure::base(1, false), &BASE).is_none());
+            let base = Structure::base(1, false);
+            assert!(response(&held, (&base, &BASE), &base).is_none());
         }
     }
 }

@@ -10,6 +10,7 @@ pub mod publish;
 pub mod study_page;
 pub mod tables;
 pub mod trace_charts;
+pub mod trace_entries;
 pub mod trace_figures;
 pub mod trace_file;
 pub mod trace_page;

@@ -9,7 +9,7 @@ use ship::angle::to_deg;
 use trial::Trial;
 
 use super::trace_report::TraceReport;
-use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, uncertain};
+use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures, uncertain};
 
 /// How a random moment is called.
 pub fn moment(kind: Moment) -> &'static str {
@@ -95,7 +95,8 @@ fn effect_line(effect: &Traced) -> String {
         true => format!(" [asked for, not found: ΔBIC {}]", number::fixed(-effect.evidence.gain, 1)),
         false => String::new(),
     };
-    format!("{} ({}){only}{asked}: {}{alike}", effect.id, effect.form, parameters.join(", "))
+    let probability = number::fixed(effect.probability, 3);
+    format!("{} ({}){only}{asked}, probability {probability}: {}{alike}", effect.id, effect.form, parameters.join(", "))
 }
 
 /// The unexplained rest in one sentence.
@@ -174,8 +175,13 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     text += "Before is the best first-order base there is; after is the base with what was found. Heading and yaw rate are those of \
              the recorded rudder replayed over the whole record, *every 20 s* those of a heading that is restarted so often; \
              *overshoots* is the mean error of the overshoot angles. On held-out records nothing but the initial state is fitted.\n\n";
-    if analysis.validation.iter().any(|judged| judged.own_moment.is_some()) {
-        text += "A moment that depends on time alone belongs to one record: *after* leaves it out on held-out records, *after, own \
+    let left_out = || analysis.left_out.iter().flatten();
+    if left_out().next().is_some() {
+        text += "*Left out*: base and model are fitted to the other records, and this one is replayed. The structure was found on all \
+                 records and is kept; its parameters are fitted anew without the record.\n\n";
+    }
+    if analysis.validation.iter().chain(left_out()).any(|judged| judged.own_moment.is_some()) {
+        text += "A moment that depends on time alone belongs to one record: *after* leaves it out on records that were not fitted, *after, own \
                  moment* estimates it there anew, beside the initial state.\n\n";
     }
     if let Some(table) = overshoots(report) {
@@ -207,6 +213,18 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     }
     text += ".\n\n";
     let _ = writeln!(text, "## Candidates\n\n{}", candidates(report).to_markdown());
+    let weights = &analysis.weights;
+    let _ = writeln!(
+        text,
+        "The probability of an effect is the share of its structures in the weights exp(−BIC/2) × prior of all {} structures that \
+         were tried, each under the noise that suits it best, on the fitted records alone. A priori each of the {} places of the \
+         menu (an effect, in all its forms together; a moment of time in one record) is taken with probability {}. These \
+         structures cannot be told apart (at least a twentieth of the largest weight):\n\n{}",
+        weights.structures.len(),
+        weights.menu,
+        significant(weights.prior, 2),
+        structures(report).to_markdown()
+    );
     text += "ΔBIC is negative where a candidate helps. `alone` is on top of the base under white noise; `in the end` is on top of \
              the final model against the best random explanation (for an added one: of its removal). The last column is the \
              largest ΔBIC that an effect as large as can be expected would have in these records; what stays above the threshold \

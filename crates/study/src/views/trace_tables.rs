@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use ::trace::analysis::{Fitted, Prospect};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
+use ::trace::structure::TermName;
 use report::number::{self, MISSING, optional, significant, with_uncertainty};
 use report::{Column, Table};
 use ship::angle::to_deg;
@@ -55,7 +56,9 @@ pub fn errors(report: &TraceReport) -> Table {
     let analysis = report.analysis;
     let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
     let uses = fitted.chain(analysis.validation.iter().map(|judged| (judged, "held out")));
-    for ((judged, used), name) in uses.zip(&report.names) {
+    let left_out = analysis.left_out.iter().zip(&report.names);
+    let left_out = left_out.filter_map(|(judged, name)| Some(((judged.as_ref()?, "left out"), name)));
+    for ((judged, used), name) in uses.zip(&report.names).chain(left_out) {
         let own = judged.own_moment.as_ref().map(|own| ("after, own moment", own));
         for (model, on) in [("before", &judged.before), ("after", &judged.after)].into_iter().chain(own) {
             let errors = &on.errors;
@@ -140,6 +143,7 @@ pub fn candidates(report: &TraceReport) -> Table {
         Column::left("candidate"),
         Column::left("form"),
         Column::left("outcome"),
+        Column::decimal("probability"),
         Column::decimal("ΔBIC alone"),
         Column::decimal("ΔBIC in the end"),
         Column::left("p"),
@@ -159,11 +163,27 @@ pub fn candidates(report: &TraceReport) -> Table {
             one.id.to_owned(),
             form,
             outcome,
+            number::fixed(one.probability, 3),
             one.gain_alone.map_or_else(|| MISSING.into(), signed),
             one.evidence.map_or_else(|| MISSING.into(), |evidence| signed(evidence.gain)),
             one.evidence.map_or_else(|| MISSING.into(), |evidence| significant(evidence.p_value, 2)),
             one.visibility.map_or_else(|| MISSING.into(), |visibility| significant(-visibility, 3)),
         ]);
+    }
+    table
+}
+
+/// The structures that the records cannot tell apart.
+pub fn structures(report: &TraceReport) -> Table {
+    let mut table = Table::new([Column::left("structure"), Column::decimal("probability"), Column::decimal("ΔBIC")]);
+    for one in report.analysis.weights.alike() {
+        let term = |&(id, form, only): &TermName| {
+            let only = only.map_or_else(String::new, |only| format!(", {}", report.names[only.0]));
+            format!("{id} ({form}{only})")
+        };
+        let terms: Vec<String> = one.terms.iter().map(term).collect();
+        let name = if terms.is_empty() { "the base alone".into() } else { terms.join(" + ") };
+        table.push([name, number::fixed(one.weight, 3), number::fixed(one.bic, 1)]);
     }
     table
 }

@@ -32,7 +32,10 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
     }
     for effect in json["effects"].as_array().expect("a list") {
         assert!(effect["aliases"].is_array() && effect["parameters"].is_object());
-        assert!(["delta_bic", "p_value", "residual_share"].iter().all(|key| effect[*key].is_number()), "{effect}");
+        assert!(
+            ["probability", "delta_bic", "p_value", "residual_share"].iter().all(|key| effect[*key].is_number()),
+            "{effect}"
+        );
         assert!(effect["evidence"].as_str().is_some_and(|text| text.len() > 20));
     }
     let ids: Vec<&str> = json["candidates"]
@@ -46,6 +49,10 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
         })
         .collect();
     assert_eq!(ids.len(), 12, "{ids:?}");
+    let models = json["models"].as_array().expect("a list");
+    let weight = |model: &Value| model["weight"].as_f64().expect("a probability");
+    assert!(models.iter().all(|model| weight(model) >= 0.05 * weight(&models[0]) && model["effects"].is_array()));
+    assert!(json["prior"]["menu"].as_u64().is_some_and(|menu| menu > 0) && json["prior"]["structures"].is_u64());
     assert!(json["unexplained"]["present"].is_boolean());
     for (kind, count) in [("identification", trials), ("validation", others)] {
         let records = json["error"][kind].as_array().expect("a list");
@@ -195,4 +202,24 @@ fn a_held_out_record_has_a_moment_of_its_own() {
     let [plain, own] = [&after["heading_rmse_deg"], &after["with_own_moment"]["heading_rmse_deg"]].map(Value::as_f64);
     assert!(own.is_some_and(|own| own < 0.1) && plain.is_some_and(|plain| plain > 1.0), "{after}");
     assert!(error["identification"][0]["after"].get("with_own_moment").is_none());
+}
+
+/// Several records and none held out: each is left out in turn.
+#[test]
+fn runs_are_left_out_in_turn() {
+    let desk = Desk::new();
+    desk.file("one.csv", zig_zag_csv_of(&second_order()));
+    desk.file("two.csv", zig_zag_csv_of(&second_order()));
+    let run = desk.run(&["trace", "one.csv", "two.csv", "--out", "both"]);
+    run.is_done();
+    assert_eq!(run.out.matches("left out").count(), 2, "{}", run.out);
+    let json = desk.json("both/trace.json");
+    keeps_the_contract(&json, 2, 0);
+    let folds = json["error"]["leave_one_out"].as_array().expect("a list");
+    assert_eq!(folds.len(), 2);
+    let heading = |fold: &Value, when: &str| fold[when]["heading_rmse_deg"].as_f64().expect("a number");
+    assert!(folds.iter().all(|fold| heading(fold, "after") < 0.5 * heading(fold, "before")), "{folds:?}");
+    assert!(json["effects"][0]["probability"].as_f64().is_some_and(|probability| probability > 0.9));
+    desk.run(&["trace", "one.csv", "--validate", "two.csv", "--quiet"]).is_done();
+    assert!(desk.json("one-trace/trace.json")["error"].get("leave_one_out").is_none());
 }

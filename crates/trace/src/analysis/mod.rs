@@ -2,6 +2,7 @@
 
 mod elsewhere;
 mod fitted;
+mod left_out;
 mod parameters;
 mod prospects;
 mod replays;
@@ -25,6 +26,7 @@ use crate::structure::Structure;
 
 use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
+use left_out::leave_one_out;
 use parameters::{indices, parameter_covariance, parameters, randomness};
 use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
@@ -118,6 +120,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let residuals = |all: &[OnRecord]| -> Vec<Series> { all.iter().zip(trials).map(series).collect() };
     let whiteness = [diagnostics::whiteness(&residuals(&before)), diagnostics::whiteness(&residuals(&after))];
     let elsewhere = validate(&held_out, &start, &model)?;
+    let folds = settings.thorough && trials.len() > 1 && validation.is_empty();
+    let left_out = if folds { leave_one_out(trials, &method, &problem, &model) } else { Vec::new() };
 
     let covariance = parameter_covariance(&problem, &model, whiteness[1].lag1);
     let parameters = parameters(&problem, &model, covariance.as_ref(), &names);
@@ -131,8 +135,9 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         tried: &tried,
         predicted: &predicted,
     };
-    let effects = report.effects(&parameters);
-    let candidates = report.candidates(&effects);
+    let mut effects = report.effects(&parameters);
+    let mut candidates = report.candidates(&effects);
+    let weights = report.weigh(&mut effects, &mut candidates);
     let unexplained = report.unexplained(trials, &after);
     let empirical = match &unexplained {
         Some(_) if settings.discovery => report.discover(&sizes),
@@ -153,11 +158,13 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         verdict,
         effects,
         candidates,
+        weights,
         unexplained,
         empirical,
         randomness,
         identification,
         validation: elsewhere,
+        left_out,
         whiteness,
         refused,
         thresholds: settings.thresholds,

@@ -15,7 +15,7 @@ use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
 use crate::monomial::{LIBRARY, Monomial};
 use crate::record::Record;
-use crate::search::{Evidence, Model, Search, Tested, Tried};
+use crate::search::{Evidence, Model, Search, Tested, Tried, Weights};
 use crate::separation::Ground;
 use crate::structure::Term;
 
@@ -63,6 +63,7 @@ impl Reporter<'_> {
                     aliases,
                     parameters: parameters[structure.range(place)].to_vec(),
                     asked: self.search.wanted.keeps(term),
+                    probability: 0.0,
                     evidence,
                     residual_share: Some(share),
                     sentence,
@@ -177,6 +178,7 @@ impl Reporter<'_> {
             aliases: Vec::new(),
             parameters,
             asked: self.search.wanted.asks_for(effect.id()),
+            probability: 0.0,
             evidence,
             residual_share: None,
             sentence: format!(
@@ -233,6 +235,7 @@ impl Reporter<'_> {
                     id: term.effect.id(),
                     form: term.effect.form(),
                     only: self.only(term),
+                    probability: 0.0,
                     outcome,
                     evidence,
                     gain_alone: alone,
@@ -245,6 +248,22 @@ impl Reporter<'_> {
         list.extend(self.without_channel(&list));
         list.extend(self.random_considered(effects));
         list
+    }
+
+    /// Weights of all structures that the search and this report have tried; every effect and candidate gets its
+    /// probability.
+    pub fn weigh(&self, effects: &mut [Traced], considered: &mut [Considered]) -> Weights {
+        let weights = self.search.weights();
+        let terms = &self.model.structure.terms;
+        for (number, effect) in effects.iter_mut().enumerate() {
+            let only = terms.get(number).and_then(|term| term.only);
+            effect.probability = weights.of_place(effect.id, only);
+        }
+        for (number, one) in considered.iter_mut().enumerate() {
+            let only = self.search.candidates.get(number).and_then(|candidate| candidate.term.only);
+            one.probability = weights.of_term((one.id, one.form, only));
+        }
+        weights
     }
 
     /// Effects of which no form can be a candidate, because they need a channel that the records do not have.
@@ -291,6 +310,7 @@ impl Reporter<'_> {
             id: effect.id(),
             form: effect.form(),
             only: None,
+            probability: 0.0,
             outcome,
             evidence,
             gain_alone: None,

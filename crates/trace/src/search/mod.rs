@@ -9,14 +9,18 @@
 
 mod asked;
 mod evidence;
+mod ledger;
 mod models;
 mod rounds;
 #[cfg(test)]
 mod tests;
 mod together;
 mod trying;
+mod weights;
 
 pub use asked::NotFitted;
 pub use evidence::{Evidence, Thresholds};
+pub use ledger::Ledger;
 pub use models::{Model, Search, Tested};
 pub use trying::Tried;
+pub use weights::{Weighted, Weights};

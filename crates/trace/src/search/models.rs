@@ -6,6 +6,7 @@ use ship::narrow_band::NarrowBand;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::evidence::{Evidence, Thresholds};
+use super::ledger::Ledger;
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Linear, Problem};
 use crate::index::TermPlace;
@@ -38,6 +39,8 @@ pub struct Search<'a> {
     pub thresholds: Thresholds,
     /// What is asked for and what excluded.
     pub wanted: Wanted,
+    /// What was tried so far.
+    pub ledger: Ledger,
 }
 
 /// A term of a model, held against the model without it.
@@ -54,7 +57,7 @@ pub struct Tested {
 impl<'a> Search<'a> {
     /// A search for whatever may be missing.
     pub fn new(problem: &'a Problem, candidates: &'a [Candidate], thresholds: Thresholds) -> Self {
-        Self { problem, candidates, thresholds, wanted: Wanted::default() }
+        Self { problem, candidates, thresholds, wanted: Wanted::default(), ledger: Ledger::default() }
     }
 }
 
@@ -165,6 +168,7 @@ impl Search<'_> {
                 start = fit;
             }
         }
+        self.ledger.note(&structure, &judged);
         Model { structure, plain, judged }
     }
 
@@ -199,6 +203,7 @@ impl Search<'_> {
         if !model.judged.colour.is_white() {
             let theta = model.structure.drop_from(&model.judged.theta, place);
             let under = self.problem.fit(&less.structure, &theta, &model.judged.initial, &model.judged.colour);
+            self.ledger.note(&less.structure, &under);
             if under.bic < less.judged.bic {
                 less.judged = under;
             }

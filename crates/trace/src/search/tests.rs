@@ -4,7 +4,7 @@ use ship::effects::{Effect, NonlinearDamping, SecondOrder};
 
 use super::*;
 use crate::candidates::{self, Candidate, Sizes};
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 use crate::held_out;
 use crate::index::CandidatePlace;
 use crate::made_up::{BASE, Plan, record, ship};
@@ -106,4 +106,38 @@ fn what_pays_together_is_found_together() {
     let both = ["second_order", "nonlinear_damping"];
     assert!(both.iter().all(|id| ids(&sets[0]).contains(id)), "{:?}", ids(&sets[0]));
     assert!(sets[0].judged.bic < base.judged.bic);
+}
+
+/// The same structure counts once, with its lowest BIC, in whatever order its terms were found.
+#[test]
+fn a_structure_is_one_whatever_the_order_of_its_terms() {
+    let (problem, candidates) = damped();
+    let search = Search::new(&problem, &candidates, Thresholds::default());
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let [one, other] = [0, 1].map(|place| candidates[place].term.clone());
+    let ledger = Ledger::default();
+    for (first, second, bic) in [(&one, &other, 5.0), (&other, &one, 3.0), (&one, &other, f64::NAN)] {
+        let structure = base.structure.with(first.clone()).with(second.clone());
+        ledger.note(&structure, &Fit { bic, ..base.plain.clone() });
+    }
+    assert_eq!(ledger.known().values().copied().collect::<Vec<_>>(), [3.0]);
+}
+
+/// What is missing is nearly certain, what is not improbable; where nothing is missing, nothing is probable.
+#[test]
+fn probabilities_tell_what_is_missing() {
+    for (missing, (problem, candidates)) in [(true, damped()), (false, prepared(Vec::new()))] {
+        let search = Search::new(&problem, &candidates, Thresholds::default());
+        let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+        let found = search.run(&base, &search.try_all(&base, &base.plain, false));
+        search.tested(&found, found.structure.places(), true);
+        search.try_all(&found, &found.judged, false);
+        let weights = search.weights();
+        let sum: f64 = weights.structures.iter().map(|one| one.weight).sum();
+        assert!((sum - 1.0).abs() < 1e-12 && weights.menu > 8);
+        let damping = weights.of_effect("nonlinear_damping");
+        assert!(if missing { damping > 0.999 } else { damping < 0.1 }, "{damping}");
+        assert!(weights.of_effect("steering_lag") < 0.2 && weights.of_effect("moment_drift") < 0.2);
+        assert!(weights.structures.len() > candidates.len());
+    }
 }

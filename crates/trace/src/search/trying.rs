@@ -138,6 +138,7 @@ impl Search<'_> {
                 let candidate = self.candidate(place);
                 let (structure, with) = self.with_term(model, candidate, fit, known);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
+                self.ledger.note(&structure, &with);
                 Tried { candidate: place, structure, fit: with, evidence }
             })
             .collect();
