@@ -140,7 +140,8 @@ const SIGNIFICANT: f64 = 2.0;
 /// loss there is larger by more than two standard errors.
 ///
 /// The loss is what the fits were made for: the squared error of the replay, or, where one of them has a random
-/// moment, −2 log of the density of every heading after those before it. A replay alone would ask a model to foresee the moment.
+/// moment, −2 log of the density of every heading after those before it. A replay alone would ask a model to foresee
+/// the moment.
 pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&Structure, &Fit)) -> bool {
     let (mut differences, mut covariance) = (Vec::new(), 0.0);
     for part in PARTS {

@@ -1,8 +1,9 @@
 //! Effects that pay only together: all sets of a few candidates, judged at once by the sensitivities of one fit.
 //!
 //! To first order the heading is linear in the parameters of every candidate. With base and candidates whitened for
-//! one colour of noise, −2 log L of any set of them follows from products of columns that are computed once, so thousands
-//! of sets under dozens of colours cost less than one replay each. Only the few sets of lowest BIC are fitted.
+//! one colour of noise, −2 log L of any set of them follows from products of columns that are computed once, so
+//! thousands of sets under dozens of colours cost less than one replay each. Only the few sets of lowest BIC are
+//! fitted.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

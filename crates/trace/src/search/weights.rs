@@ -2,8 +2,8 @@
 //!
 //! The weight of a structure is exp(−BIC/2), which approximates the probability of the records under it (Schwarz 1978;
 //! Raftery 1995), times its prior. A priori every place of the menu (an effect; a moment of time in one record) is
-//! taken independently with probability π = 1/(size of the menu), by any of its forms alike: one effect is expected whatever
-//! the length of the list, so a longer list makes each of its entries less probable.
+//! taken independently with probability π = 1/(size of the menu), by any of its forms alike: one effect is expected
+//! whatever the length of the list, so a longer list makes each of its entries less probable.
 
 use std::collections::{BTreeMap, BTreeSet};
 
