@@ -172,24 +172,6 @@ impl Search<'_> {
         Model { structure, plain, judged }
     }
 
-    /// A model whose plain fit begins once more where the judged one ended: under a random moment a search is not
-    /// carried away by what the structure cannot follow yet, and ends in better valleys.
-    pub(super) fn settled(&self, model: Model) -> Model {
-        if model.judged.colour.moment.is_none() {
-            return model;
-        }
-        let Model { structure, plain, judged } = &model;
-        let again = self.problem.fit(structure, &judged.theta, &judged.initial, &plain.colour);
-        if again.deviance >= plain.deviance {
-            return model;
-        }
-        let mut settled = self.judge(structure.clone(), again);
-        if model.judged.bic < settled.judged.bic {
-            settled.judged = model.judged;
-        }
-        settled
-    }
-
     /// A model without one of its terms, fitted anew.
     pub fn dropped(&self, model: &Model, place: TermPlace, under_moment: bool) -> Model {
         let structure = model.structure.without(place);

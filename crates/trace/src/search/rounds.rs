@@ -7,11 +7,11 @@ use crate::index::TermPlace;
 /// Gain in BIC for which one term takes the place of another.
 const SWAP: f64 = 2.0;
 
-/// Difference in BIC up to which two sets cannot be told apart.
+/// Difference in BIC up to which two forms of a set cannot be told apart.
 const ALIKE: f64 = 10.0;
 
-/// Sets of effects that are looked at term by term.
-const PRUNED: usize = 3;
+/// Sets of different effects that are looked at term by term, until one stands.
+const PRUNED: usize = 2;
 
 impl Search<'_> {
     /// Whether a model gains over the base what all of its terms need together: two terms that are each other's reason
@@ -112,13 +112,20 @@ impl Search<'_> {
 
     /// The better of a model and the best set of effects that pay together.
     fn with_a_set(&self, model: Model, base: &Model) -> Model {
-        let sets = self.together(base).into_iter().take(PRUNED);
-        let pruned = sets.filter(|set| set.judged.bic < model.judged.bic).map(|set| self.prune(set, base, true));
-        let better: Vec<Model> = pruned.filter(|set| set.judged.bic < model.judged.bic).collect();
-        let lowest = better.iter().map(|set| set.judged.bic).fold(f64::INFINITY, f64::min);
-        // Of sets that cannot be told apart, the one that replays the record best.
-        let alike = better.into_iter().filter(|set| set.judged.bic < lowest + ALIKE);
-        alike.min_by(|one, other| one.plain.bic.total_cmp(&other.plain.bic)).unwrap_or(model)
+        let ids = |set: &Model| -> Vec<&str> { set.structure.terms.iter().map(|term| term.effect.id()).collect() };
+        let mut sets: Vec<Model> = Vec::new();
+        for set in self.together(base).into_iter().filter(|set| set.judged.bic < model.judged.bic) {
+            match sets.iter_mut().find(|other| ids(other) == ids(&set)) {
+                // Of forms that cannot be told apart, the one that replays the record best.
+                Some(other) if set.judged.bic < other.judged.bic + ALIKE && set.plain.bic < other.plain.bic => {
+                    *other = set;
+                }
+                Some(_) => {}
+                None => sets.push(set),
+            }
+        }
+        let pruned = sets.into_iter().take(PRUNED).map(|set| self.prune(set, base, true));
+        pruned.into_iter().find(|set| set.judged.bic < model.judged.bic).unwrap_or(model)
     }
 
     /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::models::{Model, Search};
-use crate::fit::{Column, Linearised, Normal};
+use crate::fit::{Column, Linearised, Normal, log_variance};
 use crate::index::CandidatePlace;
 use crate::noise::{Colour, Moment};
 
@@ -36,12 +36,12 @@ struct Reduced {
     gradient: DVector<f64>,
     rss: f64,
     log_variance: f64,
-    freedom: usize,
+    colour: Colour,
 }
 
 impl Reduced {
     /// Projects the first `own` unknowns out; `None` where they cannot be told apart.
-    fn new(normal: &Normal, own: usize, log_variance: f64, freedom: usize) -> Option<Self> {
+    fn new(normal: &Normal, own: usize, log_variance: f64, colour: Colour) -> Option<Self> {
         let all = normal.matrix.nrows();
         let more = all - own;
         let mut inner = normal.matrix.view((0, 0), (own, own)).into_owned();
@@ -57,7 +57,7 @@ impl Reduced {
             gradient: normal.gradient.rows(own, more) - cross.tr_mul(&explained),
             rss: normal.rss - gradient.dot(&explained),
             log_variance,
-            freedom,
+            colour,
         })
     }
 
@@ -100,35 +100,43 @@ impl Search<'_> {
                 let mut whitened = linear.whitened(&whiteners);
                 whitened.insert(own, &columns, &whiteners);
                 let normal = whitened.normal(&linear.whitened_residual(&whiteners));
-                Reduced::new(&normal, own, crate::fit::log_variance(&whiteners), colour.freedom())
+                Reduced::new(&normal, own, log_variance(&whiteners), colour)
             })
             .collect();
         let mut sets = self.sets(&blocks, MOST);
-        let mut judged: Vec<(f64, Vec<usize>)> = sets
+        let mut judged: Vec<(f64, Colour, Vec<usize>)> = sets
             .par_drain(..)
-            .map(|set| {
+            .filter_map(|set| {
                 let all: Vec<usize> = set.iter().flat_map(|&k| blocks[k].columns.clone()).collect();
                 let freedom: usize = set.iter().map(|&k| blocks[k].freedom).sum();
                 let bic = |reduced: &Reduced| {
                     let deviance = self.problem.deviance(reduced.rss_with(&all), reduced.log_variance);
-                    deviance + (freedom + reduced.freedom) as f64 * self.log_n()
+                    deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n()
                 };
-                (reduced.iter().map(bic).fold(f64::INFINITY, f64::min), set)
+                let under = reduced.iter().map(|reduced| (bic(reduced), reduced.colour));
+                let (bic, colour) = under.min_by(|one, other| one.0.total_cmp(&other.0))?;
+                Some((bic, colour, set))
             })
             .collect();
         judged.sort_by(|one, other| one.0.total_cmp(&other.0));
         let mut models: Vec<Model> = judged
             .into_par_iter()
             .take(FITTED)
-            .map(|(_, set)| {
+            .map(|(_, colour, set)| {
                 let mut structure = model.structure.clone();
                 let mut theta = fit.theta.clone();
                 for &k in &set {
                     structure = structure.with(self.candidate(blocks[k].place).term.clone());
                     theta.extend(&blocks[k].start);
                 }
-                let plain = self.problem.fit(&structure, &theta, &fit.initial, &fit.colour);
-                self.settled(self.judge(structure, plain))
+                // Under a random moment a search is not carried away by what the structure cannot follow yet.
+                let under = self.problem.fit(&structure, &theta, &fit.initial, &colour);
+                let plain = self.problem.fit(&structure, &under.theta, &under.initial, &fit.colour);
+                let mut found = self.judge(structure, plain);
+                if under.bic < found.judged.bic {
+                    found.judged = under;
+                }
+                found
             })
             .collect();
         models.sort_by(|one, other| one.judged.bic.total_cmp(&other.judged.bic));
@@ -201,7 +209,7 @@ mod tests {
             gradient: DVector::from_fn(chosen.len(), |i, _| product(&columns[chosen[i]], &measured)),
             rss: product(&measured, &measured),
         };
-        let reduced = Reduced::new(&normal(&[0, 1, 2, 3, 4]), 2, 0.0, 0).expect("independent columns");
+        let reduced = Reduced::new(&normal(&[0, 1, 2, 3, 4]), 2, 0.0, Colour::WHITE).expect("independent columns");
         for (set, chosen) in [(vec![0], vec![0, 1, 2]), (vec![0, 2], vec![0, 1, 2, 4]), (vec![], vec![0, 1])] {
             let whole = normal(&chosen).projected(chosen.len());
             let found = reduced.rss_with(&set);
