@@ -130,3 +130,19 @@ fn every_method_survives_every_record() {
         }
     }
 }
+
+/// Three effects of which none shows without the others, from a zig-zag and from its mirror image in the same tank.
+#[test]
+fn mirror_images_of_one_hull_tell_the_same_physics() {
+    let trials = ["kvlcc2_marin/zigzag_20.csv", "kvlcc2_marin/zigzag_-20.csv"].map(measured::record);
+    let [Some(starboard), Some(port)] = trials else { return };
+    for (trial, ratio) in [(starboard, 0.1), (port, 0.2)] {
+        let settings = trace::Settings { thorough: false, discovery: false, ..trace::Settings::default() };
+        let analysis = trace::trace(std::slice::from_ref(&trial), &[], &settings).expect("a zig-zag has a base");
+        let named: Vec<_> = analysis.effects.iter().map(|effect| effect.id).collect();
+        assert_eq!(named, ["second_order", "nonlinear_damping", "speed_loss"], "{}", trial.name());
+        let on = &analysis.identification[0];
+        let [before, after] = [&on.before, &on.after].map(|on| on.errors.heading);
+        assert!(after < ratio * before, "{}: {} of before", trial.name(), after / before);
+    }
+}

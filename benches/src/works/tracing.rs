@@ -25,7 +25,7 @@ fn all_candidates(trial: &Trial) -> usize {
     let sizes = Sizes::of(&problem.records, base.inverse_T, &problem.replay(&structure, &theta, &initial));
     let candidates = candidates::all(&problem.records, &sizes);
     let thresholds = Settings::default().thresholds;
-    let search = Search { problem: &problem, candidates: &candidates, thresholds };
+    let search = Search::new(&problem, &candidates, thresholds);
     let start = search.base(structure, &theta, &initial);
     search.try_all(&start, &start.plain, false).len()
 }

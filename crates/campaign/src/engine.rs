@@ -245,6 +245,7 @@ fn reason(error: &TraceError) -> &'static str {
     match error {
         TraceError::Settings(_) => "settings",
         TraceError::Base(error) => error.kind(),
+        TraceError::Asked { .. } => "settings",
         TraceError::Replay { .. } => "not-finite",
     }
 }

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use ::trace::{EffectId, Wanted};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
 use report::theme::{DPI, WIDTH_MM};
 use report::{Table, Theme};
 use scenario::failure::Failure;
+use scenario::problem::suggestion;
 
 /// How a scenario is run.
 #[derive(Debug, Clone, Args)]
@@ -174,9 +176,35 @@ pub struct TraceRequest {
     /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
     #[arg(long, value_name = "CHANNEL", value_enum)]
     pub without: Vec<Withheld>,
+    /// Effects that are in the model whatever the evidence says, by their ids in `study list effects`
+    #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect)]
+    pub with: Vec<EffectId>,
+    /// Exactly these effects and no search
+    #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect, conflicts_with_all = ["with", "without_effect"])]
+    pub only: Vec<EffectId>,
+    /// Effects that are no candidates
+    #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect)]
+    pub without_effect: Vec<EffectId>,
     /// How figures are drawn
     #[command(flatten)]
     pub style: Style,
+}
+
+impl TraceRequest {
+    /// What is asked for and what excluded.
+    pub fn wanted(&self) -> Wanted {
+        match self.only.as_slice() {
+            [] => Wanted { with: self.with.clone(), without: self.without_effect.clone(), search: true },
+            only => Wanted::only(only.to_vec()),
+        }
+    }
+}
+
+fn effect(name: &str) -> Result<EffectId, String> {
+    EffectId::find(name).ok_or_else(|| {
+        let known: Vec<&str> = EffectId::all().into_iter().map(EffectId::as_str).collect();
+        format!("there is no such effect; {}", suggestion(name, &known))
+    })
 }
 
 /// Channels that can be withheld from an analysis.

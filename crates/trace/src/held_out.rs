@@ -6,8 +6,9 @@ use rayon::prelude::*;
 use ship::Response;
 use trial::Trial;
 
-use crate::fit::{Fit, Problem};
+use crate::fit::{Fit, Problem, whiten};
 use crate::index::RecordNumber;
+use crate::noise::Colour;
 use crate::record::Record;
 use crate::replay_errors::{self, Errors};
 use crate::structure::Structure;
@@ -28,9 +29,10 @@ impl<'a> HeldOut<'a> {
         Self { trial, record: Record::whole(trial), starts }
     }
 
-    /// Replay and errors of a response; `None` when it is not finite.
-    pub fn judge(&self, response: &Response) -> Option<(Replay, Errors)> {
-        let replayed = replay_errors::full(response, &self.record, &self.starts)?;
+    /// Replay and errors of a response, looked for from the starts and another one; `None` when it is not finite.
+    pub fn judge(&self, response: &Response, near: Option<[f64; 2]>) -> Option<(Replay, Errors)> {
+        let starts: Vec<[f64; 2]> = self.starts.iter().copied().chain(near).collect();
+        let replayed = replay_errors::full(response, &self.record, &starts)?;
         let errors = replay_errors::errors(self.trial, &self.record, response, &replayed);
         Some((replayed, errors))
     }
@@ -39,11 +41,17 @@ impl<'a> HeldOut<'a> {
 /// Errors of a fitted structure on every held-out record; `None` when a replay is not finite.
 pub fn errors(held_out: &[HeldOut], structure: &Structure, fit: &Fit) -> Option<Vec<Errors>> {
     let response = portable(structure, &fit.theta);
-    held_out.par_iter().map(|record| Some(record.judge(&response)?.1)).collect()
+    held_out.par_iter().map(|record| Some(record.judge(&response, None)?.1)).collect()
 }
 
 /// What of a fitted structure holds on other records: without terms that belong to the weather of one record.
 pub fn portable(structure: &Structure, theta: &[f64]) -> Response {
+    let (kept, values) = portable_structure(structure, theta);
+    kept.response(RecordNumber(0), &values)
+}
+
+/// The same as a structure of one record with its parameters.
+pub fn portable_structure(structure: &Structure, theta: &[f64]) -> (Structure, Vec<f64>) {
     let mut kept = structure.clone();
     let mut values = theta.to_vec();
     for place in structure.places().rev() {
@@ -57,7 +65,8 @@ pub fn portable(structure: &Structure, theta: &[f64]) -> Response {
         values.splice(2..2 + kept.records, [mean]);
         kept.own_bias = false;
     }
-    kept.response(RecordNumber(0), &values)
+    kept.records = 1;
+    (kept, values)
 }
 
 /// How a model does against another one where neither was fitted.
@@ -128,7 +137,11 @@ const PARTS: [[f64; 2]; 2] = [[0.4, 0.7], [0.7, 1.0]];
 const SIGNIFICANT: f64 = 2.0;
 
 /// Whether a model predicts parts of its own records worse than a simpler one, each fitted to the rest: `true` when its
-/// squared error there is larger by more than two standard errors.
+/// loss there is larger by more than two standard errors.
+///
+/// The loss is what the fits were made for: the squared error of the replay, or, where one of them has a random
+/// moment, −2 log of the density of every heading after those before it. A replay alone would ask a model to foresee
+/// the moment.
 pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&Structure, &Fit)) -> bool {
     let (mut differences, mut covariance) = (Vec::new(), 0.0);
     for part in PARTS {
@@ -141,9 +154,11 @@ pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&
             })
             .collect();
         let fitted = problem.on(kept);
+        let random = [simple.1, rich.1].iter().any(|fit| fit.colour.moment.is_some());
         let predict = |(structure, start): (&Structure, &Fit)| {
             let fit = fitted.fit(structure, &start.theta, &start.initial, &start.colour);
-            problem.residual(structure, &fit.theta, &fit.initial)
+            let residual = problem.residual(structure, &fit.theta, &fit.initial);
+            if random { losses(problem, &residual, &fit.colour, fitted.variance(&fit)) } else { squares(residual) }
         };
         let (one, other) = (predict(simple), predict(rich));
         for (number, record) in problem.records.iter().enumerate() {
@@ -151,13 +166,30 @@ pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&
                 let share = (record.time[**row] - record.time[0]) / record.duration();
                 (part[0]..=part[1]).contains(&share)
             });
-            let part: Vec<f64> = numbers.map(|(k, _)| other[number][k].powi(2) - one[number][k].powi(2)).collect();
+            let part: Vec<f64> = numbers.map(|(k, _)| other[number][k] - one[number][k]).collect();
             covariance += long_run(&part);
             differences.extend(part);
         }
     }
     let sum: f64 = differences.iter().sum();
     !sum.is_finite() || sum > SIGNIFICANT * covariance.sqrt()
+}
+
+fn squares(mut residual: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    residual.iter_mut().flatten().for_each(|e| *e *= *e);
+    residual
+}
+
+/// −2 log of the density of every heading after those before it, up to a constant.
+fn losses(problem: &Problem, residual: &[Vec<f64>], colour: &Colour, variance: f64) -> Vec<Vec<f64>> {
+    let whiteners = problem.whiteners(colour);
+    let mut losses = squares(whiten(residual, &whiteners));
+    for (losses, whitener) in losses.iter_mut().zip(&whiteners) {
+        for (row, loss) in losses.iter_mut().enumerate() {
+            *loss = *loss / variance + variance.ln() + whitener.log_variance_of(row);
+        }
+    }
+    losses
 }
 
 /// Variance of the sum of a correlated series: windows of a tenth of it (Bartlett weights; Newey and West 1987).

@@ -8,10 +8,11 @@
 //! | the whole analysis and its result | [`analysis`] |
 //! | what may be missing, with bounds and starts | [`candidates`] |
 //! | how terms are added, tested and dropped | [`search`] |
+//! | what a user asks for or excludes | [`wanted`] |
 //! | random explanations that compete with effects | [`noise`] and [`waves`] |
 //! | the fit itself | [`fit`], [`structure`], [`record`] |
 //! | where a squall was | [`transient`] |
-//! | errors before and after | [`replay_errors`], [`held_out`] |
+//! | errors before and after | [`replay_errors`], [`held_out`], [`own_moment`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
 //! | what is left in the end | [`diagnostics`], [`monomial`] |
 
@@ -23,15 +24,18 @@ pub mod held_out;
 pub mod index;
 pub mod monomial;
 pub mod noise;
+pub mod own_moment;
 pub mod record;
 pub mod replay_errors;
 pub mod search;
 pub mod separation;
 pub mod structure;
 pub mod transient;
+pub mod wanted;
 pub mod waves;
 
 pub use analysis::{Analysis, Settings, TraceError, trace};
+pub use wanted::{EffectId, Wanted};
 
 #[cfg(test)]
 mod made_up;

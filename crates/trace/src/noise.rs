@@ -322,6 +322,11 @@ impl Whitener {
         self.count
     }
 
+    /// log S of an observed row.
+    pub fn log_variance_of(&self, row: usize) -> f64 {
+        self.rows.get(row).map_or(0.0, |(_, _, weight)| -2.0 * weight.ln())
+    }
+
     /// Makes columns white in place.
     pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
         match self.states {

@@ -65,6 +65,8 @@ pub struct Structure {
     pub records: usize,
     /// Whether every record has a rudder bias of its own.
     pub own_bias: bool,
+    /// Whether the ship is known: nothing is fitted but what depends on time alone, and initial states.
+    pub ship_known: bool,
     /// The terms, in the order in which the rudder passes through them.
     pub terms: Vec<Term>,
 }
@@ -105,7 +107,7 @@ pub fn fitted(entries: &[Entry]) -> Vec<ThetaPlace> {
 impl Structure {
     /// The base alone.
     pub fn base(records: usize, own_bias: bool) -> Self {
-        Self { records, own_bias, terms: Vec::new() }
+        Self { records, own_bias, ship_known: false, terms: Vec::new() }
     }
 
     /// Number of rudder biases.
@@ -120,7 +122,13 @@ impl Structure {
 
     /// Number of fitted parameters.
     pub fn free_count(&self) -> usize {
-        self.base_count() + self.terms.iter().map(Term::freedom).sum::<usize>()
+        let base = if self.ship_known { 0 } else { self.base_count() };
+        base + self.terms.iter().filter(|term| self.fits(term)).map(Term::freedom).sum::<usize>()
+    }
+
+    /// Whether the parameters of a term are fitted.
+    fn fits(&self, term: &Term) -> bool {
+        !self.ship_known || term.effect.is_of_time()
     }
 
     /// The same with one more term.
@@ -164,7 +172,7 @@ impl Structure {
     pub fn entries(&self, inverse_time_scale: f64, gain_scale: f64) -> Vec<Entry> {
         let base = |k: usize, scale: f64, only| Entry {
             parameter: &BASE[k],
-            fitted: true,
+            fitted: !self.ship_known,
             lowest: BASE[k].lowest,
             highest: BASE[k].highest,
             scale,
@@ -178,7 +186,7 @@ impl Structure {
             for (k, parameter) in term.effect.parameters().iter().enumerate() {
                 entries.push(Entry {
                     parameter,
-                    fitted: !term.held.contains(&k),
+                    fitted: self.fits(term) && !term.held.contains(&k),
                     lowest: term.lowest[k],
                     highest: term.highest[k],
                     scale: term.scale[k],

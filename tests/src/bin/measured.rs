@@ -153,6 +153,9 @@ fn trace_one(set: &Set, record: &str, without_wind: bool, out: &Path) -> Outcome
         columns: Some(sidecars),
         own_bias: false,
         without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
+        with: Vec::new(),
+        only: Vec::new(),
+        without_effect: Vec::new(),
         style: Style { paper: None, dpi: 600.0 },
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };

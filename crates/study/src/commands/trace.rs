@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use ::trace::Settings;
+use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
 use crate::commands::planned;
@@ -11,7 +11,7 @@ use crate::options::{Common, Format, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read, warn_of_repetition};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
-use crate::views::{trace_figures, trace_page};
+use crate::views::{trace_figures, trace_page, trace_tables};
 use crate::{progress, screen};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
@@ -35,13 +35,20 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = read_all(&request.trials)?;
     let others = read_all(&request.validate)?;
     warn_of_repetition(&trials, &others, &mut warnings);
-    let settings = Settings { own_bias: request.own_bias, ..Settings::default() };
+    let settings = Settings { own_bias: request.own_bias, wanted: request.wanted(), ..Settings::default() };
     let busy = progress::busy("tracing", common.quiet);
     let analysis = ::trace::trace(&trials, &others, &settings);
     busy.finish_and_clear();
     let analysis = analysis.map_err(|error| {
         let first = request.trials[0].display();
-        Failure::input(format!("{first}: {error}; the record cannot be traced because no base model fits it"))
+        let why = match error {
+            TraceError::Base(_) | TraceError::Replay { .. } => {
+                "; the record cannot be traced because no base model fits it"
+            }
+            TraceError::Asked { .. } => "; leave it out of the request",
+            TraceError::Settings(_) => "",
+        };
+        Failure::input(format!("{first}: {error}{why}"))
     })?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
     let planned = planned::trials(&analysis, &trials);
@@ -58,7 +65,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let drawn = trace_figures::draw(&report, &theme, &folder)?;
     folder.write("report.md", trace_page::page(&report, &drawn))?;
     if !common.quiet {
-        let table = common.format.render(&trace_page::errors(&report));
+        let table = common.format.render(&trace_tables::errors(&report));
         let words = trace_page::words(&report);
         let notes = format!("results: {}", path.display());
         if common.format == Format::Text {

@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::analysis::{Considered, Fitted, Judged, Outcome, Traced};
+use ::trace::analysis::Judged;
 use ::trace::replay_errors::{Errors, HORIZONS};
 use serde::Serialize;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial};
 
+use super::trace_entries::{
+    CandidateEntry, EffectEntry, ParameterEntry, PriorEntry, StructureEntry, candidates, is_false,
+};
 use super::trace_page;
 use super::trace_report::TraceReport;
 use crate::records::file_of;
@@ -16,7 +19,7 @@ use campaign::answer::Parameters;
 /// `trace.json`.
 #[derive(Debug, Serialize)]
 pub struct TraceFile {
-    /// `trace/1`.
+    /// `trace/2`.
     pub schema: &'static str,
     /// `clean`, `traced` or `unexplained`.
     pub verdict: &'static str,
@@ -26,6 +29,10 @@ pub struct TraceFile {
     pub effects: Vec<EffectEntry>,
     /// Every effect of the list and what became of it.
     pub candidates: Vec<CandidateEntry>,
+    /// The structures that the records cannot tell apart, the most probable first.
+    pub models: Vec<StructureEntry>,
+    /// What the probabilities rest on.
+    pub prior: PriorEntry,
     /// What is left.
     pub unexplained: UnexplainedEntry,
     /// Errors before and after on every record.
@@ -38,64 +45,6 @@ pub struct TraceFile {
     pub model: ModelEntry,
     /// Terms that explained the records but made the error elsewhere worse.
     pub refused: Vec<String>,
-}
-
-/// A parameter.
-#[derive(Debug, Clone, Serialize)]
-pub struct ParameterEntry {
-    /// Value, standard deviation and 95 % interval.
-    #[serde(flatten)]
-    pub quantity: Quantity,
-    /// Unit.
-    pub unit: &'static str,
-    /// The one record it belongs to.
-    pub only: Option<String>,
-    /// Whether it ends at an end of its range; left out where it does not.
-    #[serde(skip_serializing_if = "is_false")]
-    pub at_bound: bool,
-}
-
-fn is_false(flag: &bool) -> bool {
-    !flag
-}
-
-/// An effect that was found.
-#[derive(Debug, Serialize)]
-pub struct EffectEntry {
-    id: &'static str,
-    form: &'static str,
-    equation: &'static str,
-    only: Option<String>,
-    aliases: Vec<&'static str>,
-    alias_forms: Vec<String>,
-    parameters: BTreeMap<&'static str, ParameterEntry>,
-    delta_bic: f64,
-    p_value: f64,
-    residual_share: Option<f64>,
-    evidence: String,
-}
-
-/// An effect of the list.
-#[derive(Debug, Serialize)]
-pub struct CandidateEntry {
-    id: &'static str,
-    outcome: &'static str,
-    delta_bic: Option<f64>,
-    p_value: Option<f64>,
-    reason: Option<&'static str>,
-    forms: Vec<FormEntry>,
-}
-
-/// An effect in one form.
-#[derive(Debug, Serialize)]
-pub struct FormEntry {
-    form: &'static str,
-    only: Option<String>,
-    outcome: &'static str,
-    delta_bic: Option<f64>,
-    p_value: Option<f64>,
-    delta_bic_alone: Option<f64>,
-    visibility: Option<f64>,
 }
 
 /// What is left.
@@ -121,6 +70,9 @@ pub struct EmpiricalEntry {
 pub struct ErrorEntry {
     identification: Vec<BeforeAfter>,
     validation: Vec<BeforeAfter>,
+    /// Every record left out in turn, where there are several and none was held out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    leave_one_out: Vec<BeforeAfter>,
 }
 
 /// One record.
@@ -138,6 +90,9 @@ pub struct ErrorsEntry {
     yaw_rate_rmse_deg_s: Option<f64>,
     overshoot_error_deg: Option<f64>,
     horizon_rmse_deg: BTreeMap<String, Option<f64>>,
+    /// With a moment of the record's own, where it was held out and the fitted records have such moments.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with_own_moment: Option<Box<ErrorsEntry>>,
 }
 
 /// Residual before and after.
@@ -211,87 +166,23 @@ impl From<&Errors> for ErrorsEntry {
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
             overshoot_error_deg: errors.overshoot.map(to_deg),
             horizon_rmse_deg: horizon.collect(),
+            with_own_moment: None,
         }
     }
 }
 
-impl From<&Fitted> for ParameterEntry {
-    fn from(fitted: &Fitted) -> Self {
-        let Fitted { parameter, quantity, ref only, at_bound } = *fitted;
-        Self { quantity, unit: parameter.unit, only: only.clone(), at_bound }
-    }
-}
-
-impl From<&Traced> for EffectEntry {
-    fn from(effect: &Traced) -> Self {
-        let mut aliases: Vec<&'static str> =
-            effect.aliases.iter().map(|(id, _)| *id).filter(|id| *id != effect.id).collect();
-        aliases.dedup();
-        Self {
-            id: effect.id,
-            form: effect.form,
-            equation: effect.equation,
-            only: effect.only.clone(),
-            aliases,
-            alias_forms: effect.aliases.iter().map(|(id, form)| format!("{id} ({form})")).collect(),
-            parameters: effect.parameters.iter().map(|fitted| (fitted.parameter.symbol, fitted.into())).collect(),
-            delta_bic: -effect.evidence.gain,
-            p_value: effect.evidence.p_value,
-            residual_share: effect.residual_share,
-            evidence: effect.sentence.clone(),
-        }
-    }
-}
-
-/// Outcomes from the one that says most about an effect to the one that says least.
-const RANK: [Outcome; 4] = [Outcome::Added, Outcome::Alias, Outcome::Rejected, Outcome::NotObservable];
-
-/// One entry an effect: its best form speaks for it.
-fn candidates(all: &[Considered]) -> Vec<CandidateEntry> {
-    let mut ids: Vec<&'static str> = Vec::new();
-    for one in all {
-        if !ids.contains(&one.id) {
-            ids.push(one.id);
-        }
-    }
-    ids.into_iter()
-        .map(|id| {
-            let forms = || all.iter().filter(|one| one.id == id);
-            let place = |one: &Considered| RANK.iter().position(|outcome| *outcome == one.outcome);
-            let gain = |one: &Considered| one.evidence.map_or(f64::NEG_INFINITY, |evidence| evidence.gain);
-            let best = forms()
-                .min_by(|one, other| place(one).cmp(&place(other)).then(gain(other).total_cmp(&gain(one))))
-                .expect("every identifier was taken from a form");
-            CandidateEntry {
-                id,
-                outcome: best.outcome.as_str(),
-                delta_bic: best.evidence.map(|evidence| -evidence.gain),
-                p_value: best.evidence.map(|evidence| evidence.p_value),
-                reason: best.reason,
-                forms: forms()
-                    .map(|one| FormEntry {
-                        form: one.form,
-                        only: one.only.clone(),
-                        outcome: one.outcome.as_str(),
-                        delta_bic: one.evidence.map(|evidence| -evidence.gain),
-                        p_value: one.evidence.map(|evidence| evidence.p_value),
-                        delta_bic_alone: one.gain_alone.map(|gain| -gain),
-                        visibility: one.visibility,
-                    })
-                    .collect(),
-            }
-        })
-        .collect()
-}
-
-fn entries(trials: &[Trial], judged: &[Judged]) -> Vec<BeforeAfter> {
+fn entries<'a>(trials: &[Trial], judged: impl IntoIterator<Item = Option<&'a Judged>>) -> Vec<BeforeAfter> {
     trials
         .iter()
         .zip(judged)
+        .filter_map(|(trial, judged)| Some((trial, judged?)))
         .map(|(trial, judged)| BeforeAfter {
             file: file_of(trial).0.to_owned(),
             before: (&judged.before.errors).into(),
-            after: (&judged.after.errors).into(),
+            after: ErrorsEntry {
+                with_own_moment: judged.own_moment.as_ref().map(|own| Box::new((&own.errors).into())),
+                ..(&judged.after.errors).into()
+            },
         })
         .collect()
 }
@@ -310,11 +201,13 @@ impl TraceFile {
         let unknown = Quantity::bare(f64::NAN);
         let noise = &analysis.randomness;
         Self {
-            schema: "trace/1",
+            schema: "trace/2",
             verdict: analysis.verdict.as_str(),
             base: Parameters { k_per_s: base.K(), t_s: base.T(), delta_r_deg: base.rudder_bias().scaled(degree) },
             effects: analysis.effects.iter().map(EffectEntry::from).collect(),
-            candidates: candidates(&analysis.candidates),
+            candidates: candidates(&analysis.candidates, &analysis.weights),
+            models: analysis.weights.alike().iter().map(|one| StructureEntry::new(one, &report.names)).collect(),
+            prior: PriorEntry::new(&analysis.weights),
             unexplained: UnexplainedEntry {
                 present: analysis.unexplained.is_some(),
                 signature: trace_page::signature(report),
@@ -327,8 +220,9 @@ impl TraceFile {
                 }),
             },
             error: ErrorEntry {
-                identification: entries(report.trials, &analysis.identification),
-                validation: entries(report.others, &analysis.validation),
+                identification: entries(report.trials, analysis.identification.iter().map(Some)),
+                validation: entries(report.others, analysis.validation.iter().map(Some)),
+                leave_one_out: entries(report.trials, analysis.left_out.iter().map(Option::as_ref)),
             },
             residual: ResidualEntry { before: whiteness(0), after: whiteness(1) },
             next_trial: trace_page::next_trial(report),

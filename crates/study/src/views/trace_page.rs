@@ -1,17 +1,15 @@
-//! What is said about an analysis: the words on the screen, the tables, and `report.md`.
+//! What is said about an analysis: the words on the screen, and `report.md`.
 
 use std::fmt::Write as _;
 
-use ::trace::analysis::{Fitted, Judged, Outcome, Prospect, Traced, Verdict};
+use ::trace::analysis::{Fitted, Judged, Outcome, Traced, Verdict};
 use ::trace::noise::Moment;
-use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
-use report::number::{self, MISSING, optional, significant, with_uncertainty};
-use report::{Column, Table};
+use report::number::{self, significant};
 use ship::angle::to_deg;
-use ship::effects::Parameter;
-use trial::{Quantity, Trial, ZigZag};
+use trial::Trial;
 
 use super::trace_report::TraceReport;
+use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures, uncertain};
 
 /// How a random moment is called.
 pub fn moment(kind: Moment) -> &'static str {
@@ -19,24 +17,6 @@ pub fn moment(kind: Moment) -> &'static str {
         Moment::White => "white",
         Moment::Walk => "random walk",
     }
-}
-
-/// A parameter in degrees where its unit holds radians, and that unit; none where it is a plain number.
-fn in_degrees(fitted: &Fitted) -> (Quantity, String) {
-    let degree = to_deg(1.0);
-    let Parameter { symbol, unit, .. } = *fitted.parameter;
-    let factor = match unit {
-        unit if unit.contains("/rad²") => degree.powi(-2),
-        unit if unit.contains("/rad") => degree.recip(),
-        unit if unit.starts_with("rad") => degree,
-        _ => 1.0,
-    };
-    // Frequencies stay in radians.
-    let (factor, unit) = match symbol {
-        "ω₀" => (1.0, unit.to_owned()),
-        _ => (factor, unit.replace("rad", "deg")),
-    };
-    (fitted.quantity.scaled(factor), unit)
 }
 
 /// The words of one analysis.
@@ -49,6 +29,9 @@ pub fn words(report: &TraceReport) -> String {
     };
     let verdict = match analysis.verdict {
         Verdict::Clean => "clean: nothing is missing",
+        Verdict::Traced if analysis.effects.iter().all(|effect| effect.asked) => {
+            "traced: what is left beside the effects that were asked for is noise"
+        }
         Verdict::Traced => "traced: what is missing has a name, and what is left is noise",
         Verdict::Unexplained if analysis.effects.is_empty() => {
             "unexplained: structure is left, and no effect carries it"
@@ -108,21 +91,12 @@ fn effect_line(effect: &Traced) -> String {
         }
     };
     let only = effect.only.as_ref().map_or_else(String::new, |name| format!(" in {name}"));
-    format!("{} ({}){only}: {}{alike}", effect.id, effect.form, parameters.join(", "))
-}
-
-/// A value with its uncertainty, whatever its size.
-fn uncertain(value: f64, sd: Option<f64>) -> String {
-    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
-        let exponent = value.abs().log10().floor() as i32;
-        let unit = 10f64.powi(exponent);
-        return format!(
-            "({})×{}",
-            with_uncertainty(value / unit, sd.map(|sd| sd / unit)),
-            number::power_of_ten(exponent)
-        );
-    }
-    with_uncertainty(value, sd)
+    let asked = match effect.asked {
+        true => format!(" [asked for, not found: ΔBIC {}]", number::fixed(-effect.evidence.gain, 1)),
+        false => String::new(),
+    };
+    let probability = number::fixed(effect.probability, 3);
+    format!("{} ({}){only}{asked}, probability {probability}: {}{alike}", effect.id, effect.form, parameters.join(", "))
 }
 
 /// The unexplained rest in one sentence.
@@ -192,149 +166,6 @@ pub fn next_trial(report: &TraceReport) -> String {
     )
 }
 
-/// Errors before and after on every record.
-pub fn errors(report: &TraceReport) -> Table {
-    let mut columns = vec![Column::left("record"), Column::left("use"), Column::left("model")];
-    columns.push(Column::decimal("heading").unit("deg"));
-    columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
-    columns.push(Column::decimal("yaw rate").unit("deg/s"));
-    columns.push(Column::decimal("overshoots").unit("deg"));
-    let mut table = Table::new(columns);
-    let analysis = report.analysis;
-    let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
-    let uses = fitted.chain(analysis.validation.iter().map(|judged| (judged, "held out")));
-    for ((judged, used), name) in uses.zip(&report.names) {
-        for (model, on) in [("before", &judged.before), ("after", &judged.after)] {
-            let errors = &on.errors;
-            let mut cells =
-                if model == "before" { vec![name.clone(), used.to_owned()] } else { vec![String::new(); 2] };
-            cells.push(model.to_owned());
-            let numbers =
-                [Some(errors.heading)].into_iter().chain(errors.horizon).chain([errors.yaw_rate, errors.overshoot]);
-            cells.extend(
-                numbers.map(|value| value.map_or_else(|| MISSING.into(), |value| significant(to_deg(value), 3))),
-            );
-            table.push(cells);
-        }
-    }
-    table
-}
-
-/// Overshoots and period of the records and of both replays.
-fn overshoots(report: &TraceReport) -> Option<Table> {
-    let mut table = Table::new([
-        Column::left("record"),
-        Column::left("heading"),
-        Column::left("overshoots [deg]"),
-        Column::decimal("period").unit("s"),
-    ]);
-    let analysis = report.analysis;
-    let trials = report.trials.iter().chain(report.others);
-    let judged = analysis.identification.iter().chain(&analysis.validation);
-    for ((trial, judged), name) in trials.zip(judged).zip(&report.names) {
-        let Ok(measured) = ZigZag::of(trial) else { continue };
-        table.push(zigzag_cells(name, "measured", &measured));
-        for (label, on) in [("before", &judged.before), ("after", &judged.after)] {
-            if let Some(zigzag) = replayed_zigzag(trial, &on.replay) {
-                table.push(zigzag_cells("", label, &zigzag));
-            }
-        }
-    }
-    (!table.rows.is_empty()).then_some(table)
-}
-
-fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
-    let angles: Vec<String> =
-        zigzag.overshoots.iter().map(|overshoot| number::fixed(to_deg(overshoot.angle.value), 2)).collect();
-    [name.to_owned(), label.to_owned(), angles.join(", "), optional(zigzag.period.map(|period| period.value), 1)]
-}
-
-fn parameters(report: &TraceReport) -> Table {
-    let analysis = report.analysis;
-    let remarks = analysis.parameters.iter().any(|fitted| fitted.at_bound);
-    let mut columns = ["parameter", "value", "95 % interval", "unit", "record"].map(Column::left).to_vec();
-    columns.extend(remarks.then(|| Column::left("remark")));
-    let mut table = Table::new(columns);
-    let mut push = |cells: [String; 5], at_bound: bool| {
-        let remark = remarks.then(|| if at_bound { "at its bound".to_owned() } else { String::new() });
-        table.push(cells.into_iter().chain(remark));
-    };
-    let ([k, t], [k_ends, t_ends, _]) = (analysis.indices, analysis.indices_at_bound());
-    for (symbol, quantity, unit, ends) in [("K", k, "1/s", k_ends), ("T", t, "s", t_ends)] {
-        let [value, interval] = [uncertain(quantity.value, quantity.sd), number::interval(quantity.ci95)];
-        push([symbol.into(), value, interval, unit.into(), MISSING.into()], ends);
-    }
-    for fitted in &analysis.parameters {
-        let (Quantity { value, sd, ci95 }, unit) = in_degrees(fitted);
-        let only = fitted.only.clone().unwrap_or_else(|| MISSING.into());
-        push([fitted.parameter.symbol.into(), uncertain(value, sd), interval(ci95), unit, only], fitted.at_bound);
-    }
-    table
-}
-
-/// An interval, whatever its size.
-fn interval(ends: Option<[f64; 2]>) -> String {
-    match ends {
-        Some([lo, hi]) if lo.abs().max(hi.abs()) < 1e-3 => format!("[{}, {}]", significant(lo, 3), significant(hi, 3)),
-        _ => number::interval(ends),
-    }
-}
-
-fn candidates(report: &TraceReport) -> Table {
-    let mut table = Table::new([
-        Column::left("candidate"),
-        Column::left("form"),
-        Column::left("outcome"),
-        Column::decimal("ΔBIC alone"),
-        Column::decimal("ΔBIC in the end"),
-        Column::left("p"),
-        Column::decimal("visible ΔBIC at most"),
-    ]);
-    for one in &report.analysis.candidates {
-        let signed = |gain: f64| number::fixed(-gain, 1);
-        let mut form = one.form.to_owned();
-        if let Some(only) = &one.only {
-            let _ = write!(form, ", {only}");
-        }
-        let outcome = match (one.outcome, one.reason) {
-            (outcome, Some(reason)) => format!("{}: {reason}", outcome.as_str()),
-            (outcome, None) => outcome.as_str().to_owned(),
-        };
-        table.push([
-            one.id.to_owned(),
-            form,
-            outcome,
-            one.gain_alone.map_or_else(|| MISSING.into(), signed),
-            one.evidence.map_or_else(|| MISSING.into(), |evidence| signed(evidence.gain)),
-            one.evidence.map_or_else(|| MISSING.into(), |evidence| significant(evidence.p_value, 2)),
-            one.visibility.map_or_else(|| MISSING.into(), |visibility| significant(-visibility, 3)),
-        ]);
-    }
-    table
-}
-
-fn prospects(prospects: &[Prospect]) -> Table {
-    let mut table = Table::new([
-        Column::left("manoeuvre"),
-        Column::right("separated"),
-        Column::right("revealed"),
-        Column::decimal("information"),
-        Column::decimal("standard deviations").unit("%"),
-    ]);
-    for prospect in prospects {
-        let pairs = prospect.separated.len() + prospect.still_alike.len();
-        let hidden = prospect.revealed.len() + prospect.still_hidden.len();
-        table.push([
-            prospect.name.clone(),
-            format!("{} of {pairs}", prospect.separated.len()),
-            format!("{} of {hidden}", prospect.revealed.len()),
-            number::fixed(prospect.information, 1),
-            optional(prospect.sharpening.map(|change| 100.0 * (change.exp() - 1.0)), 0),
-        ]);
-    }
-    table
-}
-
 /// `report.md`. `figures` are the stems and captions of what was drawn.
 pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     let analysis = report.analysis;
@@ -344,6 +175,15 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     text += "Before is the best first-order base there is; after is the base with what was found. Heading and yaw rate are those of \
              the recorded rudder replayed over the whole record, *every 20 s* those of a heading that is restarted so often; \
              *overshoots* is the mean error of the overshoot angles. On held-out records nothing but the initial state is fitted.\n\n";
+    let left_out = || analysis.left_out.iter().flatten();
+    if left_out().next().is_some() {
+        text += "*Left out*: base and model are fitted to the other records, and this one is replayed. The structure was found on all \
+                 records and is kept; its parameters are fitted anew without the record.\n\n";
+    }
+    if analysis.validation.iter().chain(left_out()).any(|judged| judged.own_moment.is_some()) {
+        text += "A moment that depends on time alone belongs to one record: *after* leaves it out on records that were not fitted, *after, own \
+                 moment* estimates it there anew, beside the initial state.\n\n";
+    }
     if let Some(table) = overshoots(report) {
         let _ = writeln!(text, "## Overshoots and period\n\n{}", table.to_markdown());
     }
@@ -373,6 +213,18 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     }
     text += ".\n\n";
     let _ = writeln!(text, "## Candidates\n\n{}", candidates(report).to_markdown());
+    let weights = &analysis.weights;
+    let _ = writeln!(
+        text,
+        "The probability of an effect is the share of its structures in the weights exp(−BIC/2) × prior of all {} structures that \
+         were tried, each under the noise that suits it best, on the fitted records alone. A priori each of the {} places of the \
+         menu (an effect, in all its forms together; a moment of time in one record) is taken with probability {}. These \
+         structures cannot be told apart (at least a twentieth of the largest weight):\n\n{}",
+        weights.structures.len(),
+        weights.menu,
+        significant(weights.prior, 2),
+        structures(report).to_markdown()
+    );
     text += "ΔBIC is negative where a candidate helps. `alone` is on top of the base under white noise; `in the end` is on top of \
              the final model against the best random explanation (for an added one: of its removal). The last column is the \
              largest ΔBIC that an effect as large as can be expected would have in these records; what stays above the threshold \
@@ -423,6 +275,7 @@ pub fn title(judged: &Judged, name: &str, held_out: bool) -> String {
 #[cfg(test)]
 mod tests {
     use ship::response::BASE;
+    use trial::Quantity;
 
     use super::*;
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::Value;
-use ship::effects::{Effect, SecondOrder};
+use ship::effects::{Effect, MomentDrift, SecondOrder};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ships};
 
@@ -11,25 +11,31 @@ use crate::desk::{Desk, with_column, zig_zag_csv, zig_zag_csv_of};
 
 /// The paper's ship with sway coupling that nobody declares.
 fn second_order() -> Ship {
+    with_effect(Arc::new(SecondOrder), &[2.5, 6.2])
+}
+
+fn with_effect(effect: Arc<dyn Effect>, values: &[f64]) -> Ship {
     let mut ship = ships::find("yukun").expect("it is in the registry");
     let Model::Response(response) = &ship.model else { panic!("a response ship") };
     let mut parameters = response.parameters().to_vec();
-    parameters.extend([2.5, 6.2]);
-    let effect: Arc<dyn Effect> = Arc::new(SecondOrder);
+    parameters.extend(values);
     ship.model = Model::Response(ResponseModel::new(vec![effect]).with(parameters));
     ship
 }
 
 /// Every key of the contract, down to its parts.
 fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
-    assert_eq!(json["schema"], "trace/1");
+    assert_eq!(json["schema"], "trace/2");
     assert!(["clean", "traced", "unexplained"].contains(&json["verdict"].as_str().expect("a word")));
     for key in ["K_per_s", "T_s", "delta_r_deg"] {
         assert!(json["base"][key]["value"].is_f64() && json["base"][key]["sd"].is_f64(), "{key}");
     }
     for effect in json["effects"].as_array().expect("a list") {
         assert!(effect["aliases"].is_array() && effect["parameters"].is_object());
-        assert!(["delta_bic", "p_value", "residual_share"].iter().all(|key| effect[*key].is_number()), "{effect}");
+        assert!(
+            ["probability", "delta_bic", "p_value", "residual_share"].iter().all(|key| effect[*key].is_number()),
+            "{effect}"
+        );
         assert!(effect["evidence"].as_str().is_some_and(|text| text.len() > 20));
     }
     let ids: Vec<&str> = json["candidates"]
@@ -43,6 +49,10 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
         })
         .collect();
     assert_eq!(ids.len(), 12, "{ids:?}");
+    let models = json["models"].as_array().expect("a list");
+    let weight = |model: &Value| model["weight"].as_f64().expect("a probability");
+    assert!(models.iter().all(|model| weight(model) >= 0.05 * weight(&models[0]) && model["effects"].is_array()));
+    assert!(json["prior"]["menu"].as_u64().is_some_and(|menu| menu > 0) && json["prior"]["structures"].is_u64());
     assert!(json["unexplained"]["present"].is_boolean());
     for (kind, count) in [("identification", trials), ("validation", others)] {
         let records = json["error"][kind].as_array().expect("a list");
@@ -146,4 +156,70 @@ fn columns_can_be_withheld_and_described_in_a_folder() {
     );
     desk.file("sidecars/windy.trial.toml", "[part]\nfrom-s = 0.0\nuntil-s = 200.0\n");
     desk.run(&["trace", "windy.csv", "--columns", "sidecars", "--out", "cut"]).is_done();
+}
+
+#[test]
+fn effects_can_be_asked_for_and_excluded() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv_of(&second_order()));
+    let run = desk.run(&["trace", "run.csv", "--with", "speed_loss,moment_drift", "--out", "with"]);
+    run.is_done();
+    assert!(run.out.contains("asked for, not found"), "{}", run.out);
+    let effects = |name: &str| {
+        let json = desk.json(name);
+        let all = json["effects"].as_array().cloned().unwrap_or_default();
+        all.iter().map(|one| (one["id"].as_str().unwrap_or("").to_owned(), one["asked"] == true)).collect::<Vec<_>>()
+    };
+    let with = effects("with/trace.json");
+    assert_eq!(with[..2], ["speed_loss", "moment_drift"].map(|id| (id.to_owned(), true)));
+    assert!(with.contains(&("second_order".to_owned(), false)), "{with:?}");
+    desk.run(&["trace", "run.csv", "--only", "second_order", "--out", "only", "--quiet"]).is_done();
+    assert_eq!(effects("only/trace.json"), [("second_order".to_owned(), true)]);
+    keeps_the_contract(&desk.json("only/trace.json"), 1, 0);
+    desk.run(&["trace", "run.csv", "--without-effect", "second_order", "--out", "without", "--quiet"]).is_done();
+    assert!(effects("without/trace.json").iter().all(|(id, _)| id != "second_order"));
+    desk.run(&["trace", "run.csv", "--with", "sway"]).is_refused(2, &["sway", "second_order"]);
+    desk.run(&["trace", "run.csv", "--only", "speed_los"]).is_refused(2, &["did you mean `speed_loss`"]);
+    desk.run(&["trace", "run.csv", "--only", "wind_moment", "--with", "speed_loss"]).is_refused(2, &["--only"]);
+    desk.run(&["trace", "run.csv", "--only", "sway_coupling_measured"]).is_refused(2, &["sway velocity", "run.csv"]);
+    let both = ["trace", "run.csv", "--with", "speed_loss", "--without-effect", "speed_loss"];
+    desk.run(&both).is_refused(2, &["without-effect", "speed_loss"]);
+}
+
+/// A drift belongs to one record: on another it is left out, and estimated anew beside that.
+#[test]
+fn a_held_out_record_has_a_moment_of_its_own() {
+    let desk = Desk::new();
+    for (name, slope) in [("run.csv", 7e-5), ("other.csv", -1.2e-4)] {
+        let drift: Arc<dyn Effect> = Arc::new(MomentDrift { reference_time: 0.0 });
+        desk.file(name, zig_zag_csv_of(&with_effect(drift, &[slope])));
+    }
+    let run = desk.run(&["trace", "run.csv", "--validate", "other.csv"]);
+    run.is_done();
+    assert!(run.out.contains("after, own moment"), "{}", run.out);
+    let error = desk.json("run-trace/trace.json")["error"].clone();
+    let after = &error["validation"][0]["after"];
+    let [plain, own] = [&after["heading_rmse_deg"], &after["with_own_moment"]["heading_rmse_deg"]].map(Value::as_f64);
+    assert!(own.is_some_and(|own| own < 0.1) && plain.is_some_and(|plain| plain > 1.0), "{after}");
+    assert!(error["identification"][0]["after"].get("with_own_moment").is_none());
+}
+
+/// Several records and none held out: each is left out in turn.
+#[test]
+fn runs_are_left_out_in_turn() {
+    let desk = Desk::new();
+    desk.file("one.csv", zig_zag_csv_of(&second_order()));
+    desk.file("two.csv", zig_zag_csv_of(&second_order()));
+    let run = desk.run(&["trace", "one.csv", "two.csv", "--out", "both"]);
+    run.is_done();
+    assert_eq!(run.out.matches("left out").count(), 2, "{}", run.out);
+    let json = desk.json("both/trace.json");
+    keeps_the_contract(&json, 2, 0);
+    let folds = json["error"]["leave_one_out"].as_array().expect("a list");
+    assert_eq!(folds.len(), 2);
+    let heading = |fold: &Value, when: &str| fold[when]["heading_rmse_deg"].as_f64().expect("a number");
+    assert!(folds.iter().all(|fold| heading(fold, "after") < 0.5 * heading(fold, "before")), "{folds:?}");
+    assert!(json["effects"][0]["probability"].as_f64().is_some_and(|probability| probability > 0.9));
+    desk.run(&["trace", "one.csv", "--validate", "two.csv", "--quiet"]).is_done();
+    assert!(desk.json("one-trace/trace.json")["error"].get("leave_one_out").is_none());
 }

@@ -18,17 +18,16 @@ pub(super) fn believed_elsewhere(
         rest -= 1;
         let place = TermPlace(rest);
         let term = model.structure.term(place);
-        if term.effect.is_of_time() {
+        if term.effect.is_of_time() || search.wanted.keeps(term) {
             continue;
         }
         let less = search.dropped(&model, place, true);
         let worse = if held_out.is_empty() {
-            held_out::is_worse_on_parts(
-                search.problem,
-                (&less.structure, &less.plain),
-                (&model.structure, &model.plain),
-            )
-            .then(|| String::from("the part of the record that was kept from the fit is predicted worse"))
+            let random = model.judged.colour.moment.is_some();
+            let of = |model: &Model| if random { model.judged.clone() } else { model.plain.clone() };
+            let (one, other) = (of(&less), of(&model));
+            held_out::is_worse_on_parts(search.problem, (&less.structure, &one), (&model.structure, &other))
+                .then(|| String::from("the part of the record that was kept from the fit is predicted worse"))
         } else {
             worse_on_others(held_out, &less, &model)
         };
@@ -67,7 +66,7 @@ pub(super) struct Predicted {
 /// does not.
 pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
     let mut predicted = Vec::new();
-    if held_out.is_empty() || model.judged.colour.moment.is_none() {
+    if held_out.is_empty() || model.judged.colour.moment.is_none() || !search.wanted.search {
         return predicted;
     }
     while model.structure.terms.len() < search.thresholds.most_effects {

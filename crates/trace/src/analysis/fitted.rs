@@ -39,7 +39,8 @@ pub(super) fn no_larger_error(
             let less = search.dropped(&model, place, true);
             (place, judged(&less), less)
         };
-        let all = model.structure.places().map(without);
+        let found = model.structure.places().filter(|&place| !search.wanted.keeps(model.structure.term(place)));
+        let all = found.map(without);
         let Some((place, (smaller, replays), less)) = all.min_by(|one, other| one.1.0.total_cmp(&other.1.0)) else {
             break;
         };
@@ -87,7 +88,7 @@ mod tests {
         let headings = problem.replay(&Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let candidates = candidates::all(&problem.records, &Sizes::of(&problem.records, BASE[0], &headings));
         let thresholds = Thresholds::default();
-        let search = Search { problem: &problem, candidates: &candidates, thresholds };
+        let search = Search::new(&problem, &candidates, thresholds);
         let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let damped = search.run(&base, &search.try_all(&base, &base.plain, false));
         let place = candidates.iter().position(|one| one.term.effect.id() == "moment_drift").expect("listed");

@@ -2,6 +2,7 @@
 
 mod elsewhere;
 mod fitted;
+mod left_out;
 mod parameters;
 mod prospects;
 mod replays;
@@ -12,6 +13,7 @@ mod settings;
 mod tests;
 
 use identify::{Identifier, output_error};
+use ship::{Regressor, effects};
 use trial::Trial;
 
 use crate::candidates::{self, Sizes};
@@ -19,11 +21,12 @@ use crate::diagnostics::{self, Series};
 use crate::fit::Problem;
 use crate::held_out::HeldOut;
 use crate::record::Record;
-use crate::search::{Model, Search};
+use crate::search::{Model, NotFitted, Search};
 use crate::structure::Structure;
 
 use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
+use left_out::leave_one_out;
 use parameters::{indices, parameter_covariance, parameters, randomness};
 use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
@@ -31,6 +34,18 @@ use reporter::Reporter;
 pub use prospects::Prospect;
 pub use result::{Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, Traced, Verdict};
 pub use settings::{Settings, TraceError};
+
+/// Why an effect that was asked for is not in the model.
+fn cannot_be_held(NotFitted(effect): NotFitted) -> TraceError {
+    let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
+    let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
+    let random = forms.iter().any(|form| form.is_random());
+    let reason = match random {
+        true => "the heading shows no narrow band that is faster than the manoeuvre",
+        false => lacking.unwrap_or("the records leave no place for it"),
+    };
+    TraceError::Asked { effect, reason }
+}
 
 /// Analyses records of one ship.
 ///
@@ -60,6 +75,7 @@ pub use settings::{Settings, TraceError};
 /// ```
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
     settings.thresholds.check()?;
+    settings.wanted.check()?;
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(trials)?;
     let first = base.response;
@@ -71,12 +87,20 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     theta.extend(std::iter::repeat_n(first.rudder_bias, structure.base_count() - 2));
     let headings = problem.replay(&structure, &theta, &initial);
     let sizes = Sizes::of(&problem.records, first.inverse_T, &headings);
-    let candidate_terms = candidates::all(&problem.records, &sizes);
-    let search = Search { problem: &problem, candidates: &candidate_terms, thresholds: settings.thresholds };
+    let mut candidate_terms = candidates::all(&problem.records, &sizes);
+    candidate_terms.retain(|candidate| settings.wanted.allows(candidate.term.effect.id()));
+    let wanted = settings.wanted.clone();
+    let search = Search { wanted, ..Search::new(&problem, &candidate_terms, settings.thresholds) };
 
     let start = search.base(structure, &theta, &initial);
     let tried = search.try_all(&start, &start.plain, false);
-    let mut model = search.run(&start, &tried);
+    let mut model = search.with_asked(&start).map_err(cannot_be_held)?;
+    if settings.wanted.search {
+        model = match model.structure.terms.is_empty() {
+            true => search.run(&start, &tried),
+            false => search.run(&model, &search.try_all(&model, &model.plain, false)),
+        };
+    }
 
     let held_out: Vec<HeldOut> = validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
     let mut refused = Vec::new();
@@ -89,13 +113,15 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
-        pairs.map(|(name, (before, after))| Judged { name, before, after }).collect()
+        pairs.map(|(name, (before, after))| Judged { name, before, after, own_moment: None }).collect()
     };
     let series =
         |(on, trial): (&OnRecord, &Trial)| Series::new(&on.replay.time, &on.replay.residual, trial.sampling_period());
     let residuals = |all: &[OnRecord]| -> Vec<Series> { all.iter().zip(trials).map(series).collect() };
     let whiteness = [diagnostics::whiteness(&residuals(&before)), diagnostics::whiteness(&residuals(&after))];
     let elsewhere = validate(&held_out, &start, &model)?;
+    let folds = settings.thorough && trials.len() > 1 && validation.is_empty();
+    let left_out = if folds { leave_one_out(trials, &method, &problem, &model) } else { Vec::new() };
 
     let covariance = parameter_covariance(&problem, &model, whiteness[1].lag1);
     let parameters = parameters(&problem, &model, covariance.as_ref(), &names);
@@ -109,8 +135,9 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         tried: &tried,
         predicted: &predicted,
     };
-    let effects = report.effects(&parameters);
-    let candidates = report.candidates(&effects);
+    let mut effects = report.effects(&parameters);
+    let mut candidates = report.candidates(&effects);
+    let weights = report.weigh(&mut effects, &mut candidates);
     let unexplained = report.unexplained(trials, &after);
     let empirical = match &unexplained {
         Some(_) if settings.discovery => report.discover(&sizes),
@@ -131,11 +158,13 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         verdict,
         effects,
         candidates,
+        weights,
         unexplained,
         empirical,
         randomness,
         identification,
         validation: elsewhere,
+        left_out,
         whiteness,
         refused,
         thresholds: settings.thresholds,

@@ -9,9 +9,11 @@ use super::settings::TraceError;
 use crate::fit::Problem;
 use crate::held_out::{self, HeldOut};
 use crate::index::RecordNumber;
+use crate::own_moment;
 use crate::record::Record;
 use crate::replay_errors;
 use crate::search::Model;
+use crate::structure::Structure;
 
 /// Initial state of a base replay of all rows.
 pub(super) fn initial(trial: &Trial, response: &FirstOrder) -> Result<[f64; 2], TraceError> {
@@ -78,29 +80,38 @@ fn on_record(
     Some(OnRecord { replay, errors })
 }
 
+/// The models before and after on records that were held out.
 pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Result<Vec<Judged>, TraceError> {
     let first = FirstOrder {
         inverse_T: base.plain.theta[0],
         K_over_T: base.plain.theta[1],
         rudder_bias: base.plain.theta[2..].iter().sum::<f64>() / base.plain.theta[2..].len() as f64,
     };
-    let after = held_out::portable(&model.structure, &model.plain.theta);
-    let unchanged = after.model().effects().is_empty() && model.structure.terms.is_empty();
-    held_out
-        .iter()
-        .map(|held| {
-            let refuse = || TraceError::Replay { trial: held.trial.name().to_owned() };
-            let response = Response::first_order_ship(first);
-            let before =
-                on_record(held.trial, &held.record, &response, &held.starts, Some(&first), true).ok_or_else(refuse)?;
-            let after = if unchanged {
-                before.clone()
-            } else {
-                let mut all = held.starts.clone();
-                all.push(before.replay.initial());
-                on_record(held.trial, &held.record, &after, &all, None, true).ok_or_else(refuse)?
-            };
-            Ok(Judged { name: held.trial.name().to_owned(), before, after })
-        })
-        .collect()
+    let after = (&model.structure, model.plain.theta.as_slice());
+    held_out.iter().map(|held| judged(held, &first, after, &model.structure)).collect()
+}
+
+/// A base and a structure with its parameters on a record that neither was fitted to; `forms` has the moments of time
+/// that such a record may have of its own.
+pub(super) fn judged(
+    held: &HeldOut,
+    first: &FirstOrder,
+    (structure, theta): (&Structure, &[f64]),
+    forms: &Structure,
+) -> Result<Judged, TraceError> {
+    let refuse = || TraceError::Replay { trial: held.trial.name().to_owned() };
+    let base = Response::first_order_ship(*first);
+    let before = on_record(held.trial, &held.record, &base, &held.starts, Some(first), true).ok_or_else(refuse)?;
+    let after = if structure.terms.is_empty() {
+        before.clone()
+    } else {
+        let mut all = held.starts.clone();
+        all.push(before.replay.initial());
+        let response = held_out::portable(structure, theta);
+        on_record(held.trial, &held.record, &response, &all, None, true).ok_or_else(refuse)?
+    };
+    let own = own_moment::response(held, (structure, theta), forms);
+    let own = own.and_then(|(response, near)| held.judge(&response, Some(near)));
+    let own_moment = own.map(|(replay, errors)| OnRecord { replay, errors });
+    Ok(Judged { name: held.trial.name().to_owned(), before, after, own_moment })
 }

@@ -15,9 +15,12 @@ use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
 use crate::monomial::{LIBRARY, Monomial};
 use crate::record::Record;
-use crate::search::{Evidence, Model, Search, Tested, Tried};
+use crate::search::{Evidence, Model, Search, Tested, Tried, Weights};
 use crate::separation::Ground;
 use crate::structure::Term;
+
+/// Why an effect was no candidate, where the user did not want it.
+const EXCLUDED: &str = "excluded on request";
 
 /// What is said about a finished search.
 pub(super) struct Reporter<'a> {
@@ -39,7 +42,7 @@ impl Reporter<'_> {
 
     pub fn effects(&self, parameters: &[Fitted]) -> Vec<Traced> {
         let structure = &self.model.structure;
-        let tests = self.search.tested(self.model, true);
+        let tests = self.search.tested(self.model, structure.places(), true);
         let mut effects: Vec<Traced> = tests
             .into_par_iter()
             .zip(self.shares())
@@ -59,6 +62,8 @@ impl Reporter<'_> {
                     only: self.only(term),
                     aliases,
                     parameters: parameters[structure.range(place)].to_vec(),
+                    asked: self.search.wanted.keeps(term),
+                    probability: 0.0,
                     evidence,
                     residual_share: Some(share),
                     sentence,
@@ -125,13 +130,20 @@ impl Reporter<'_> {
             (Some(_), true) => "against the best model without it, while a random moment takes what neither explains",
             (_, false) => "against the best model without any of its aliases",
         };
-        format!(
-            "{} ({}) takes away {:.0} % of the mean square error of the base; BIC falls by {:.0} {whom}",
-            term.effect.id(),
-            term.effect.form(),
-            100.0 * share,
-            evidence.gain
-        )
+        let fall = match evidence.gain {
+            gain if gain < 0.0 => format!("BIC rises by {:.0}", -gain),
+            gain => format!("BIC falls by {gain:.0}"),
+        };
+        let (id, form, percent) = (term.effect.id(), term.effect.form(), 100.0 * share);
+        let takes =
+            format!("{id} ({form}) takes away {percent:.0} % of the mean square error of the base; {fall} {whom}");
+        match (self.search.wanted.keeps(term), self.search.believes(term, evidence)) {
+            (false, _) => takes,
+            (true, true) => format!("asked for, not found, but believed: {takes}"),
+            (true, false) => {
+                format!("asked for, not found: {takes}, and {:.0} are needed to believe it", self.search.needed(term))
+            }
+        }
     }
 
     fn prediction(&self, predicted: &Predicted, share: f64) -> String {
@@ -165,6 +177,8 @@ impl Reporter<'_> {
             only: None,
             aliases: Vec::new(),
             parameters,
+            asked: self.search.wanted.asks_for(effect.id()),
+            probability: 0.0,
             evidence,
             residual_share: None,
             sentence: format!(
@@ -221,6 +235,7 @@ impl Reporter<'_> {
                     id: term.effect.id(),
                     form: term.effect.form(),
                     only: self.only(term),
+                    probability: 0.0,
                     outcome,
                     evidence,
                     gain_alone: alone,
@@ -235,12 +250,31 @@ impl Reporter<'_> {
         list
     }
 
+    /// Weights of all structures that the search and this report have tried; every effect and candidate gets its
+    /// probability.
+    pub fn weigh(&self, effects: &mut [Traced], considered: &mut [Considered]) -> Weights {
+        let weights = self.search.weights();
+        let terms = &self.model.structure.terms;
+        for (number, effect) in effects.iter_mut().enumerate() {
+            let only = terms.get(number).and_then(|term| term.only);
+            effect.probability = weights.of_place(effect.id, only);
+        }
+        for (number, one) in considered.iter_mut().enumerate() {
+            let only = self.search.candidates.get(number).and_then(|candidate| candidate.term.only);
+            one.probability = weights.of_term((one.id, one.form, only));
+        }
+        weights
+    }
+
     /// Effects of which no form can be a candidate, because they need a channel that the records do not have.
     fn without_channel(&self, list: &[Considered]) -> Vec<Considered> {
         effects::all()
             .into_iter()
             .filter(|effect| !effect.is_random() && list.iter().all(|other| other.id != effect.id()))
             .map(|effect| {
+                if !self.search.wanted.allows(effect.id()) {
+                    return self.unfitted(effect.as_ref(), Outcome::Rejected, None, Some(EXCLUDED));
+                }
                 let lacking = effect.needs().map(Regressor::lacking);
                 self.unfitted(effect.as_ref(), Outcome::NotObservable, None, lacking)
             })
@@ -255,7 +289,9 @@ impl Reporter<'_> {
             .map(|effect| match traced.iter().find(|traced| traced.id == effect.id()) {
                 Some(found) => self.unfitted(effect.as_ref(), Outcome::Added, Some(found.evidence), None),
                 None => {
-                    let reason = "no band above five times the frequency of the manoeuvre";
+                    let allowed = self.search.wanted.allows(effect.id());
+                    let reason =
+                        if allowed { "no band above five times the frequency of the manoeuvre" } else { EXCLUDED };
                     self.unfitted(effect.as_ref(), Outcome::Rejected, None, Some(reason))
                 }
             })
@@ -274,6 +310,7 @@ impl Reporter<'_> {
             id: effect.id(),
             form: effect.form(),
             only: None,
+            probability: 0.0,
             outcome,
             evidence,
             gain_alone: None,
@@ -322,7 +359,7 @@ impl Reporter<'_> {
             .filter_map(|place| Monomial { place, size }.proposal(&about))
             .map(|proposal| Candidate::new(proposal, None))
             .collect();
-        let search = Search { problem: self.search.problem, candidates: &library, thresholds: self.search.thresholds };
+        let search = Search::new(self.search.problem, &library, self.search.thresholds);
         let tried = search.try_all(self.model, &self.model.judged, false);
         let best =
             tried.first().filter(|best| search.believes(&search.candidate(best.candidate).term, &best.evidence))?;

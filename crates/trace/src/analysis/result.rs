@@ -11,7 +11,7 @@ use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;
 use crate::noise::Moment;
 use crate::replay_errors::Errors;
-use crate::search::{Evidence, Model, Thresholds};
+use crate::search::{Evidence, Model, Thresholds, Weights};
 
 /// What the analysis says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,6 +99,10 @@ pub struct Traced {
     pub aliases: Vec<(&'static str, &'static str)>,
     /// Its parameters.
     pub parameters: Vec<Fitted>,
+    /// Whether it is in the model on request, whatever its evidence.
+    pub asked: bool,
+    /// Probability that the effect is present where this term acts, in any form, from the fitted records alone.
+    pub probability: f64,
     /// How much it explains, against the best model without it.
     pub evidence: Evidence,
     /// Share of the mean square of the residual of the base that it took away when it was added; `None` for waves,
@@ -117,6 +121,8 @@ pub struct Considered {
     pub form: &'static str,
     /// Name of the one record in which it would act.
     pub only: Option<String>,
+    /// Probability that it is present in this form, from the fitted records alone.
+    pub probability: f64,
     /// What became of it.
     pub outcome: Outcome,
     /// Evidence on top of the final model (for an added one: of its removal). `None` when the records lack its channel.
@@ -176,6 +182,8 @@ pub struct Judged {
     pub before: OnRecord,
     /// Final model.
     pub after: OnRecord,
+    /// Final model with a moment of the record's own, where it was not fitted and the fitted records have such moments.
+    pub own_moment: Option<OnRecord>,
 }
 
 /// The result.
@@ -194,6 +202,8 @@ pub struct Analysis {
     pub effects: Vec<Traced>,
     /// All candidates.
     pub candidates: Vec<Considered>,
+    /// All structures that were tried, with their probabilities from the fitted records alone.
+    pub weights: Weights,
     /// What is left, where structure is.
     pub unexplained: Option<Signature>,
     /// A proposal for it.
@@ -204,6 +214,9 @@ pub struct Analysis {
     pub identification: Vec<Judged>,
     /// Records that were not.
     pub validation: Vec<Judged>,
+    /// Each of several records as if it had been held out, where none was: parameters are those of the other records,
+    /// the structure is that of all. `None` where the others have no base or no finite replay.
+    pub left_out: Vec<Option<Judged>>,
     /// Whiteness of the residual before and after.
     pub whiteness: [Whiteness; 2],
     /// Terms that explained the records but made an error larger, there or elsewhere: a sentence each that says so.

@@ -5,12 +5,15 @@ use identify::settings::SettingsError;
 use thiserror::Error;
 
 use crate::search::Thresholds;
+use crate::wanted::{EffectId, Wanted};
 
 /// Settings of an analysis.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// What it takes to believe an effect.
     pub thresholds: Thresholds,
+    /// Effects that are in the model on request, and effects that are no candidates.
+    pub wanted: Wanted,
     /// Whether every record has a rudder bias of its own.
     pub own_bias: bool,
     /// Whether terms without a name are proposed for what no effect carries.
@@ -21,7 +24,8 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { thresholds: Thresholds::default(), own_bias: false, discovery: true, thorough: true }
+        let (thresholds, wanted) = (Thresholds::default(), Wanted::default());
+        Self { thresholds, wanted, own_bias: false, discovery: true, thorough: true }
     }
 }
 
@@ -34,6 +38,14 @@ pub enum TraceError {
     /// The base cannot be fitted.
     #[error(transparent)]
     Base(#[from] IdentifyError),
+    /// An effect was asked for that these records cannot hold.
+    #[error("{} was asked for, but {reason}", effect.as_str())]
+    Asked {
+        /// The effect.
+        effect: EffectId,
+        /// What is in its way.
+        reason: &'static str,
+    },
     /// The base cannot be replayed.
     #[error("{trial} cannot be replayed through the base model: its response leaves the range of numbers")]
     Replay {

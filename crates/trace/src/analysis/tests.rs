@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use ship::effects::NonlinearDamping;
+use ship::effects::{Effect, NonlinearDamping};
 
 use super::*;
 use crate::made_up::{Plan, record, ship};
+use crate::wanted::{EffectId, Wanted};
 
 /// K = 0.1 1/s, T = 16.3 s with damping of the third power.
 fn damped(plan: Plan) -> Analysis {
@@ -35,4 +36,73 @@ fn the_noise_is_that_of_one_reading() {
     let analysis = damped(Plan { rows: 4001, period: 0.1, noise_deg: 0.1, ..Plan::default() });
     assert!(analysis.problem.records[0].full_readings > 4);
     assert!((noise_deg(&analysis) / 0.1 - 1.0).abs() < 0.06, "{}", noise_deg(&analysis));
+}
+
+fn id(name: &str) -> EffectId {
+    EffectId::find(name).expect("on the list")
+}
+
+fn traced(truth: &ship::Response, wanted: Wanted) -> Result<Analysis, TraceError> {
+    let settings = Settings { wanted, thorough: false, ..Settings::default() };
+    trace(&[record(truth, Plan::default())], &[], &settings)
+}
+
+fn named(analysis: &Analysis) -> Vec<(&'static str, bool)> {
+    analysis.effects.iter().map(|effect| (effect.id, effect.asked)).collect()
+}
+
+/// What is asked for is in the model with its evidence, weak or not, and the search goes on beside it.
+#[test]
+fn an_effect_that_was_asked_for_stays_and_is_judged() {
+    let asked = |truth: &ship::Response| {
+        let wanted = Wanted { with: vec![id("port_starboard_asymmetry")], ..Wanted::default() };
+        traced(truth, wanted).expect("a base")
+    };
+    let plain = asked(&ship(Vec::new()));
+    assert_eq!(named(&plain), [("port_starboard_asymmetry", true)]);
+    assert!(plain.effects[0].evidence.gain < 10.0);
+    assert!(plain.effects[0].sentence.starts_with("asked for, not found:"), "{}", plain.effects[0].sentence);
+    let damped = asked(&ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])]));
+    assert_eq!(named(&damped), [("port_starboard_asymmetry", true), ("nonlinear_damping", false)]);
+}
+
+/// Exactly what was asked for, whatever is missing; of several forms the one of lowest BIC.
+#[test]
+fn only_what_was_asked_for_is_fitted() {
+    let truth = ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])]);
+    let analysis = traced(&truth, Wanted::only(vec![id("rudder_saturation")])).expect("a base");
+    assert_eq!(named(&analysis), [("rudder_saturation", true)]);
+    let reason = |name: &str| {
+        let one = analysis.candidates.iter().find(|one| one.id == name);
+        one.and_then(|one| one.reason)
+    };
+    assert_eq!(reason("speed_loss"), Some("excluded on request"));
+    assert_eq!(reason("wave_yaw"), Some("excluded on request"));
+    let analysis = traced(&truth, Wanted::only(vec![id("speed_loss"), id("nonlinear_damping")])).expect("a base");
+    assert_eq!(named(&analysis), [("speed_loss", true), ("nonlinear_damping", true)]);
+    assert_eq!(analysis.effects[1].form, NonlinearDamping::Cubic.form());
+}
+
+#[test]
+fn what_is_excluded_is_not_found_and_what_cannot_be_had_is_refused() {
+    let truth = ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])]);
+    let without = Wanted { without: vec![id("nonlinear_damping")], ..Wanted::default() };
+    let analysis = traced(&truth, without.clone()).expect("a base");
+    assert!(named(&analysis).iter().all(|(name, _)| *name != "nonlinear_damping"));
+    for (name, why) in [("sway_coupling_measured", "sway velocity"), ("wave_yaw", "narrow band")] {
+        let error = traced(&truth, Wanted::only(vec![id(name)])).err().expect("no such model").to_string();
+        assert!(error.contains(name) && error.contains(why), "{error}");
+    }
+    let both = Wanted { with: without.without.clone(), ..without };
+    assert!(matches!(traced(&truth, both), Err(TraceError::Settings(_))));
+}
+
+/// A squall belongs to one record: asked for, it is looked for in each.
+#[test]
+fn a_moment_of_time_that_was_asked_for_is_one_of_every_record() {
+    let trials = [1, 2].map(|seed| record(&ship(Vec::new()), Plan { seed, ..Plan::default() }));
+    let wanted = Wanted::only(vec![id("moment_drift")]);
+    let settings = Settings { wanted, thorough: false, ..Settings::default() };
+    let analysis = trace(&trials, &[], &settings).expect("a base");
+    assert_eq!(named(&analysis), [("moment_drift", true); 2]);
 }

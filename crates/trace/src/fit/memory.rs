@@ -41,7 +41,7 @@ pub(super) fn question(
     let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
     let moment = colour.moment.map_or([0.0; 3], |(kind, level)| [1.0, f64::from(kind == Moment::Walk), level]);
     let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
-    let shape = [f64::from(structure.own_bias), f64::from(start.is_some())];
+    let shape = [structure.own_bias, structure.ship_known, start.is_some()].map(f64::from);
     let own = start.unwrap_or_default();
     let numbers = shape
         .iter()

@@ -20,7 +20,7 @@ mod problem;
 mod tests;
 
 pub use linear::{Column, Columns, Linear};
-pub(crate) use linear::{acts, log_variance, whiten};
+pub(crate) use linear::{Normal, acts, log_variance, whiten};
 pub use linearised::Linearised;
 pub use outcome::Fit;
 pub use problem::Problem;

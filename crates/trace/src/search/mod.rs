@@ -4,15 +4,23 @@
 //! First as if the noise were white (or white with waves): the candidate with the lowest BIC is added while it gains
 //! more than the threshold. Then every term so found is confronted with the random moments of [`crate::noise`]: it
 //! stays if its likelihood ratio against the model without it, each with the noise that suits it best, passes the
-//! threshold. If a random moment is still needed, terms are looked for once more under it.
+//! threshold. If a random moment is still needed, sets of effects that pay only together are judged by the
+//! sensitivities of one fit, and terms are looked for once more under it.
 
+mod asked;
 mod evidence;
+mod ledger;
 mod models;
 mod rounds;
 #[cfg(test)]
 mod tests;
+mod together;
 mod trying;
+mod weights;
 
+pub use asked::NotFitted;
 pub use evidence::{Evidence, Thresholds};
+pub use ledger::Ledger;
 pub use models::{Model, Search, Tested};
 pub use trying::Tried;
+pub use weights::{Weighted, Weights};

@@ -1,15 +1,18 @@
 //! Models under the noise that suits them best, and their evidence against each other.
 
 use rayon::prelude::*;
+use ship::effects::{Effect, WaveYaw};
 use ship::narrow_band::NarrowBand;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::evidence::{Evidence, Thresholds};
+use super::ledger::Ledger;
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Linear, Problem};
 use crate::index::TermPlace;
 use crate::noise::{Colour, Moment};
 use crate::structure::{Structure, Term};
+use crate::wanted::{EffectId, Wanted};
 use crate::waves;
 
 /// A structure with its fit under the noise that suits it best.
@@ -34,6 +37,10 @@ pub struct Search<'a> {
     pub candidates: &'a [Candidate],
     /// When to believe it.
     pub thresholds: Thresholds,
+    /// What is asked for and what excluded.
+    pub wanted: Wanted,
+    /// What was tried so far.
+    pub ledger: Ledger,
 }
 
 /// A term of a model, held against the model without it.
@@ -47,8 +54,15 @@ pub struct Tested {
     pub less: Model,
 }
 
+impl<'a> Search<'a> {
+    /// A search for whatever may be missing.
+    pub fn new(problem: &'a Problem, candidates: &'a [Candidate], thresholds: Thresholds) -> Self {
+        Self { problem, candidates, thresholds, wanted: Wanted::default(), ledger: Ledger::default() }
+    }
+}
+
 impl Search<'_> {
-    fn log_n(&self) -> f64 {
+    pub(super) fn log_n(&self) -> f64 {
         (self.problem.observations() as f64).ln()
     }
 
@@ -76,8 +90,16 @@ impl Search<'_> {
         self.with_waves(self.judge(structure, plain))
     }
 
-    /// A model with the waves that its residual shows, if they are worth their three parameters.
+    /// Whether an effect is a colour of the noise.
+    pub(super) fn is_of_noise(&self, id: EffectId) -> bool {
+        id.as_str() == WaveYaw.id()
+    }
+
+    /// A model with the waves that its residual shows, if they are worth their three parameters or asked for.
     fn with_waves(&self, model: Model) -> Model {
+        if !self.wanted.allows(WaveYaw.id()) {
+            return model;
+        }
         // A random moment imitates waves badly but well enough to hide them: they are looked for without one, too.
         let mut besides = vec![Colour::WHITE];
         besides.extend(Some(Colour { waves: None, ..model.judged.colour }).filter(|moment| !moment.is_white()));
@@ -87,9 +109,14 @@ impl Search<'_> {
             .map(|waves| self.coloured(&model, Some(waves)))
             .min_by(|one, other| one.judged.bic.total_cmp(&other.judged.bic));
         match best {
-            Some(with) if model.judged.bic - with.judged.bic > self.thresholds.gain => with,
+            Some(with) if self.needs_waves(&with, &model) => with,
             _ => model,
         }
+    }
+
+    /// Whether a model with waves stands against the same without them, or has them on request.
+    fn needs_waves(&self, with: &Model, calm: &Model) -> bool {
+        self.wanted.asks_for(WaveYaw.id()) || calm.judged.bic - with.judged.bic > self.thresholds.gain
     }
 
     /// A model fitted anew with or without waves.
@@ -105,7 +132,7 @@ impl Search<'_> {
             return if model.structure.terms.is_empty() { model } else { self.with_waves(model) };
         }
         let calm = self.coloured(&model, None);
-        if calm.judged.bic - model.judged.bic > self.thresholds.gain { model } else { calm }
+        if self.needs_waves(&model, &calm) { model } else { calm }
     }
 
     fn linear(&self, structure: &Structure, fit: &Fit) -> Linear {
@@ -141,6 +168,7 @@ impl Search<'_> {
                 start = fit;
             }
         }
+        self.ledger.note(&structure, &judged);
         Model { structure, plain, judged }
     }
 
@@ -157,6 +185,7 @@ impl Search<'_> {
         if !model.judged.colour.is_white() {
             let theta = model.structure.drop_from(&model.judged.theta, place);
             let under = self.problem.fit(&less.structure, &theta, &model.judged.initial, &model.judged.colour);
+            self.ledger.note(&less.structure, &under);
             if under.bic < less.judged.bic {
                 less.judged = under;
             }
@@ -164,9 +193,14 @@ impl Search<'_> {
         less
     }
 
-    /// Every term of a model, tested against the model without it.
-    pub fn tested(&self, model: &Model, under_moment: bool) -> Vec<Tested> {
-        let places: Vec<TermPlace> = model.structure.places().collect();
+    /// Some terms of a model, each tested against the model without it.
+    pub fn tested(
+        &self,
+        model: &Model,
+        places: impl IntoIterator<Item = TermPlace>,
+        under_moment: bool,
+    ) -> Vec<Tested> {
+        let places: Vec<TermPlace> = places.into_iter().collect();
         places
             .into_par_iter()
             .map(|place| {

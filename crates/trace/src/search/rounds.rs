@@ -2,22 +2,35 @@
 
 use super::models::{Model, Search, Tested};
 use super::trying::Tried;
+use crate::index::TermPlace;
 
 /// Gain in BIC for which one term takes the place of another.
 const SWAP: f64 = 2.0;
+
+/// Difference in BIC up to which two forms of a set cannot be told apart.
+const ALIKE: f64 = 10.0;
+
+/// Sets of different effects that are looked at term by term, until one stands.
+const PRUNED: usize = 2;
 
 impl Search<'_> {
     /// Whether a model gains over the base what all of its terms need together: two terms that are each other's reason
     /// explain nothing.
     fn pays(&self, model: &Model, base: &Model) -> bool {
-        let needed: f64 = model.structure.terms.iter().map(|term| self.needed(term)).sum();
+        let found = model.structure.terms.iter().filter(|term| !self.wanted.keeps(term));
+        let needed: f64 = found.map(|term| self.needed(term)).sum();
         base.judged.bic - model.judged.bic > needed
+    }
+
+    /// Places of the terms that were not asked for: what a search may drop.
+    fn found<'b>(&'b self, model: &'b Model) -> impl DoubleEndedIterator<Item = TermPlace> + use<'b> {
+        model.structure.places().filter(|&place| !self.wanted.keeps(model.structure.term(place)))
     }
 
     /// Drops terms that are not believed, the weakest first.
     fn prune(&self, mut model: Model, base: &Model, under_moment: bool) -> Model {
         while !model.structure.terms.is_empty() {
-            let tests = self.tested(&model, under_moment);
+            let tests = self.tested(&model, self.found(&model), under_moment);
             let surplus = |tested: &Tested| tested.evidence.gain - self.needed(model.structure.term(tested.place));
             let weakest = tests.into_iter().min_by(|one, other| surplus(one).total_cmp(&surplus(other)));
             match weakest {
@@ -35,7 +48,7 @@ impl Search<'_> {
     /// Drops terms that do not lower the heading error itself: what helps only under a random moment mends no replay.
     fn helpful(&self, mut model: Model) -> Model {
         while !model.structure.terms.is_empty() && model.judged.colour.moment.is_some() {
-            let all = model.structure.places().map(|place| (place, self.dropped(&model, place, true)));
+            let all = self.found(&model).map(|place| (place, self.dropped(&model, place, true)));
             let gain = |less: &Model| less.plain.bic - model.plain.bic;
             match all.min_by(|one, other| gain(&one.1).total_cmp(&gain(&other.1))) {
                 Some((place, less)) if gain(&less) < self.needed(model.structure.term(place)) => model = less,
@@ -77,7 +90,7 @@ impl Search<'_> {
         if model.structure.terms.len() < 2 {
             return model;
         }
-        for place in model.structure.places() {
+        for place in self.found(&model) {
             let less = self.dropped(&model, place, false);
             let tried = self.try_all(&less, &less.plain, true);
             let Some(best) = self.best(tried).filter(|best| best.fit.bic < model.plain.bic - SWAP) else { continue };
@@ -89,26 +102,47 @@ impl Search<'_> {
 
     /// The terms of a plain search that stand against random moments.
     fn confirmed(&self, base: &Model, plain: &Model) -> Model {
-        if plain.structure.terms.is_empty() {
+        if self.found(plain).next().is_none() {
             return base.clone();
         }
         let judged = self.judge(plain.structure.clone(), plain.plain.clone());
         let model = self.prune(judged, base, true);
-        if model.structure.terms.is_empty() { base.clone() } else { model }
+        if self.found(&model).next().is_none() { base.clone() } else { model }
     }
 
-    /// The whole search. `first` are all candidates tried on the base.
+    /// The better of a model and the best set of effects that pay together.
+    fn with_a_set(&self, model: Model, base: &Model) -> Model {
+        let ids = |set: &Model| -> Vec<&str> { set.structure.terms.iter().map(|term| term.effect.id()).collect() };
+        let mut sets: Vec<Model> = Vec::new();
+        for set in self.together(base).into_iter().filter(|set| set.judged.bic < model.judged.bic) {
+            match sets.iter_mut().find(|other| ids(other) == ids(&set)) {
+                // Of forms that cannot be told apart, the one that replays the record best.
+                Some(other) if set.judged.bic < other.judged.bic + ALIKE && set.plain.bic < other.plain.bic => {
+                    *other = set;
+                }
+                Some(_) => {}
+                None => sets.push(set),
+            }
+        }
+        let pruned = sets.into_iter().take(PRUNED).map(|set| self.prune(set, base, true));
+        pruned.into_iter().find(|set| set.judged.bic < model.judged.bic).unwrap_or(model)
+    }
+
+    /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.
     pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
         let plain = self.add_plainly(base, first, false);
         let mut model = self.confirmed(base, &plain);
         // A moment for a while is so flexible that it may come first and send the search astray.
-        if plain.structure.terms.len() > 1 && plain.structure.terms.iter().any(|term| term.effect.is_of_time()) {
+        if self.found(&plain).count() > 1 && plain.structure.terms.iter().any(|term| term.effect.is_of_time()) {
             let timeless = self.confirmed(base, &self.add_plainly(base, first, true));
             if timeless.judged.bic < model.judged.bic {
                 model = timeless;
             }
         }
-        while model.structure.terms.len() < self.thresholds.most_effects && model.judged.colour.moment.is_some() {
+        if model.judged.colour.moment.is_some() {
+            model = self.with_a_set(model, base);
+        }
+        while self.found(&model).count() < self.thresholds.most_effects && model.judged.colour.moment.is_some() {
             let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };
             let before = model.structure.terms.len();
             let next = self.prune(self.adopted(&best), base, true);

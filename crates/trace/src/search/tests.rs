@@ -1,10 +1,10 @@
 use std::sync::Arc;
 
-use ship::effects::{Effect, NonlinearDamping};
+use ship::effects::{Effect, NonlinearDamping, SecondOrder};
 
 use super::*;
 use crate::candidates::{self, Candidate, Sizes};
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 use crate::held_out;
 use crate::index::CandidatePlace;
 use crate::made_up::{BASE, Plan, record, ship};
@@ -29,7 +29,7 @@ fn damped() -> (Problem, Vec<Candidate>) {
 #[test]
 fn what_is_missing_is_found_and_nothing_else() {
     for (missing, (problem, candidates)) in [(true, damped()), (false, prepared(Vec::new()))] {
-        let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+        let search = Search::new(&problem, &candidates, Thresholds::default());
         let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
         let tried = search.try_all(&base, &base.plain, false);
         assert_eq!(tried.len(), candidates.len());
@@ -49,7 +49,7 @@ fn what_is_missing_is_found_and_nothing_else() {
 #[test]
 fn evidence_is_a_likelihood_ratio_among_many() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+    let search = Search::new(&problem, &candidates, Thresholds::default());
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let mut better = base.plain.clone();
     // χ²₁ exceeds 10.828 with a probability of 0.001.
@@ -65,7 +65,7 @@ fn evidence_is_a_likelihood_ratio_among_many() {
 #[test]
 fn a_moment_of_time_needs_more_and_stands_alone() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+    let search = Search::new(&problem, &candidates, Thresholds::default());
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let place = |id: &str| {
         CandidatePlace(candidates.iter().position(|candidate| candidate.term.effect.id() == id).expect("listed"))
@@ -84,10 +84,60 @@ fn a_moment_of_time_needs_more_and_stands_alone() {
 #[test]
 fn parts_that_were_not_fitted_speak_for_the_truth() {
     let (problem, candidates) = damped();
-    let search = Search { problem: &problem, candidates: &candidates, thresholds: Thresholds::default() };
+    let search = Search::new(&problem, &candidates, Thresholds::default());
     let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
     let rich = search.run(&base, &search.try_all(&base, &base.plain, false));
     let (one, other) = ((&base.structure, &base.plain), (&rich.structure, &rich.plain));
     assert!(!held_out::is_worse_on_parts(&problem, one, other));
     assert!(held_out::is_worse_on_parts(&problem, other, one));
+}
+
+/// The set of lowest BIC holds what is missing, however many more it may hold: pruning is another's work.
+#[test]
+fn what_pays_together_is_found_together() {
+    let coupled: Arc<dyn Effect> = Arc::new(SecondOrder);
+    let (problem, candidates) =
+        prepared(vec![(coupled, vec![2.5, 6.2]), (Arc::new(NonlinearDamping::Cubic), vec![80.0])]);
+    let search = Search::new(&problem, &candidates, Thresholds::default());
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let sets = search.together(&base);
+    assert!(sets.is_sorted_by(|one, other| one.judged.bic <= other.judged.bic));
+    let ids = |model: &Model| model.structure.terms.iter().map(|term| term.effect.id()).collect::<Vec<_>>();
+    let both = ["second_order", "nonlinear_damping"];
+    assert!(both.iter().all(|id| ids(&sets[0]).contains(id)), "{:?}", ids(&sets[0]));
+    assert!(sets[0].judged.bic < base.judged.bic);
+}
+
+/// The same structure counts once, with its lowest BIC, in whatever order its terms were found.
+#[test]
+fn a_structure_is_one_whatever_the_order_of_its_terms() {
+    let (problem, candidates) = damped();
+    let search = Search::new(&problem, &candidates, Thresholds::default());
+    let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+    let [one, other] = [0, 1].map(|place| candidates[place].term.clone());
+    let ledger = Ledger::default();
+    for (first, second, bic) in [(&one, &other, 5.0), (&other, &one, 3.0), (&one, &other, f64::NAN)] {
+        let structure = base.structure.with(first.clone()).with(second.clone());
+        ledger.note(&structure, &Fit { bic, ..base.plain.clone() });
+    }
+    assert_eq!(ledger.known().values().copied().collect::<Vec<_>>(), [3.0]);
+}
+
+/// What is missing is nearly certain, what is not improbable; where nothing is missing, nothing is probable.
+#[test]
+fn probabilities_tell_what_is_missing() {
+    for (missing, (problem, candidates)) in [(true, damped()), (false, prepared(Vec::new()))] {
+        let search = Search::new(&problem, &candidates, Thresholds::default());
+        let base = search.base(Structure::base(1, false), &BASE, &[[0.0; 2]]);
+        let found = search.run(&base, &search.try_all(&base, &base.plain, false));
+        search.tested(&found, found.structure.places(), true);
+        search.try_all(&found, &found.judged, false);
+        let weights = search.weights();
+        let sum: f64 = weights.structures.iter().map(|one| one.weight).sum();
+        assert!((sum - 1.0).abs() < 1e-12 && weights.menu > 8);
+        let damping = weights.of_effect("nonlinear_damping");
+        assert!(if missing { damping > 0.999 } else { damping < 0.1 }, "{damping}");
+        assert!(weights.of_effect("steering_lag") < 0.2 && weights.of_effect("moment_drift") < 0.2);
+        assert!(weights.structures.len() > candidates.len());
+    }
 }

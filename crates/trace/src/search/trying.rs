@@ -8,7 +8,7 @@ use ship::effects::{Effect, NonlinearDamping};
 use super::evidence::Evidence;
 use super::models::{Model, Search};
 use crate::candidates::Candidate;
-use crate::fit::{Fit, Linearised, acts};
+use crate::fit::{Column, Fit, Linearised, acts};
 use crate::index::CandidatePlace;
 use crate::noise::Colour;
 use crate::structure::{Structure, Term};
@@ -39,7 +39,7 @@ impl Search<'_> {
     /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands
     /// beside any other damping), or another moment that depends on time. Several of those would be a random moment,
     /// written as a sum.
-    fn excludes(&self, structure: &Structure, term: &Term) -> bool {
+    pub(super) fn excludes(&self, structure: &Structure, term: &Term) -> bool {
         let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
         structure.terms.iter().any(|other| {
             other.only == term.only
@@ -73,24 +73,38 @@ impl Search<'_> {
 
     /// Approximate gain in −2 log L of a candidate from the sensitivities at a fit: a score test that needs no refit.
     fn score(&self, model: &Model, fit: &Fit, known: &Linearised, candidate: &Candidate) -> f64 {
-        let structure = model.structure.with(candidate.term.clone());
-        let own = known.columns.unknowns();
         self.starts(candidate, fit, known)
             .iter()
-            .map(|start| {
-                let theta = [fit.theta.as_slice(), start].concat();
-                let (presence, mut new) =
-                    self.problem.columns_of_last(&structure, &theta, &fit.initial, &known.headings);
-                if acts(&presence) {
-                    new.insert(0, presence);
-                }
-                let mut columns = known.columns.clone();
-                columns.insert(own, &new, &known.whiteners);
-                let normal = columns.normal(&known.white);
-                let deviance = |unknowns| self.problem.deviance(normal.projected(unknowns), 0.0);
-                deviance(own) - deviance(columns.unknowns())
-            })
+            .map(|start| self.gain_of(known, &self.columns_at(model, fit, known, &candidate.term, start)))
             .fold(0.0, f64::max)
+    }
+
+    /// What a term at a start does to the heading, and how that changes with its parameters.
+    pub(super) fn columns_at(
+        &self,
+        model: &Model,
+        fit: &Fit,
+        known: &Linearised,
+        term: &Term,
+        start: &[f64],
+    ) -> Vec<Column> {
+        let structure = model.structure.with(term.clone());
+        let theta = [fit.theta.as_slice(), start].concat();
+        let (presence, mut new) = self.problem.columns_of_last(&structure, &theta, &fit.initial, &known.headings);
+        if acts(&presence) {
+            new.insert(0, presence);
+        }
+        new
+    }
+
+    /// Fall of −2 log L that columns promise beside the sensitivities of a fit.
+    pub(super) fn gain_of(&self, known: &Linearised, new: &[Column]) -> f64 {
+        let own = known.columns.unknowns();
+        let mut columns = known.columns.clone();
+        columns.insert(own, new, &known.whiteners);
+        let normal = columns.normal(&known.white);
+        let deviance = |unknowns| self.problem.deviance(normal.projected(unknowns), 0.0);
+        deviance(own) - deviance(columns.unknowns())
     }
 
     /// Tries candidates on one fit of a model, all under the colour of that fit; with `short_list` only those with the
@@ -109,12 +123,22 @@ impl Search<'_> {
             scored.sort_by(|one, other| other.0.total_cmp(&one.0));
             places = scored.into_iter().take(SHORT_LIST).map(|(_, place)| place).collect();
         }
+        self.try_on(model, fit, places, &known)
+    }
+
+    /// Tries some candidates on one fit of a model, lowest BIC first.
+    pub(super) fn try_these(&self, model: &Model, fit: &Fit, places: Vec<CandidatePlace>) -> Vec<Tried> {
+        self.try_on(model, fit, places, &Linearised::new(self.problem, &model.structure, fit))
+    }
+
+    fn try_on(&self, model: &Model, fit: &Fit, places: Vec<CandidatePlace>, known: &Linearised) -> Vec<Tried> {
         let mut tried: Vec<Tried> = places
             .into_par_iter()
             .map(|place| {
                 let candidate = self.candidate(place);
-                let (structure, with) = self.with_term(model, candidate, fit, &known);
+                let (structure, with) = self.with_term(model, candidate, fit, known);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
+                self.ledger.note(&structure, &with);
                 Tried { candidate: place, structure, fit: with, evidence }
             })
             .collect();

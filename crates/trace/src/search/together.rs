@@ -1,0 +1,219 @@
+//! Effects that pay only together: all sets of a few candidates, judged at once by the sensitivities of one fit.
+//!
+//! To first order the heading is linear in the parameters of every candidate. With base and candidates whitened for
+//! one colour of noise, −2 log L of any set of them follows from products of columns that are computed once, so
+//! thousands of sets under dozens of colours cost less than one replay each. Only the few sets of lowest BIC are
+//! fitted.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::models::{Model, Search};
+use crate::fit::{Column, Linearised, Normal, log_variance};
+use crate::index::CandidatePlace;
+use crate::noise::{Colour, Moment};
+
+/// Most effects of a set.
+const MOST: usize = 3;
+
+/// Levels of a random moment that are tried: e-fold steps are finer than the likelihood resolves.
+const LEVELS: [f64; 9] = [1e-2, 1.0, 1e1, 1e2, 1e3, 1e4, 1e6, 1e8, 1e10];
+
+/// Sets that are fitted.
+const FITTED: usize = 6;
+
+/// A candidate with the place of its columns among those of all.
+struct Block {
+    place: CandidatePlace,
+    start: Vec<f64>,
+    columns: std::ops::Range<usize>,
+    freedom: usize,
+}
+
+/// What is left of the normal equations when the unknowns of the model have taken their share.
+struct Reduced {
+    matrix: DMatrix<f64>,
+    gradient: DVector<f64>,
+    rss: f64,
+    log_variance: f64,
+    colour: Colour,
+}
+
+impl Reduced {
+    /// Projects the first `own` unknowns out; `None` where they cannot be told apart.
+    fn new(normal: &Normal, own: usize, log_variance: f64, colour: Colour) -> Option<Self> {
+        let all = normal.matrix.nrows();
+        let more = all - own;
+        let mut inner = normal.matrix.view((0, 0), (own, own)).into_owned();
+        for k in 0..own {
+            inner[(k, k)] += 1e-11 * inner[(k, k)] + f64::MIN_POSITIVE;
+        }
+        let factor = inner.cholesky()?;
+        let cross = normal.matrix.view((0, own), (own, more)).into_owned();
+        let gradient = normal.gradient.rows(0, own).into_owned();
+        let (shared, explained) = (factor.solve(&cross), factor.solve(&gradient));
+        Some(Self {
+            matrix: normal.matrix.view((own, own), (more, more)) - cross.tr_mul(&shared),
+            gradient: normal.gradient.rows(own, more) - cross.tr_mul(&explained),
+            rss: normal.rss - gradient.dot(&explained),
+            log_variance,
+            colour,
+        })
+    }
+
+    /// Sum of squares after the best linear step in some columns.
+    fn rss_with(&self, columns: &[usize]) -> f64 {
+        let n = columns.len();
+        let scale = |k: usize| {
+            let length = self.matrix[(columns[k], columns[k])].sqrt();
+            if length > 0.0 && length.is_finite() { length.recip() } else { 0.0 }
+        };
+        // Parallel columns are nothing new: 1e-9 keeps them from promising anything.
+        let matrix = DMatrix::from_fn(n, n, |i, j| {
+            let own = if i == j { 1e-9 + if scale(i) == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
+            self.matrix[(columns[i], columns[j])] * scale(i) * scale(j) + own
+        });
+        let gradient = DVector::from_fn(n, |k, _| self.gradient[columns[k]] * scale(k));
+        let gain = matrix.cholesky().map_or(0.0, |factor| factor.solve(&gradient).dot(&gradient));
+        (self.rss - gain).max(0.0)
+    }
+}
+
+impl Search<'_> {
+    /// Sets of up to three effects of different names that promise the lowest BIC on a model, each under the noise that
+    /// suits it best: fitted and judged, not pruned, the lowest BIC
+    /// first.
+    pub(super) fn together(&self, model: &Model) -> Vec<Model> {
+        let fit = &model.plain;
+        let known = Linearised::new(self.problem, &model.structure, fit);
+        let (blocks, columns) = self.blocks(model, &known);
+        let linear = self.problem.linear(&model.structure, &fit.theta, &fit.initial);
+        let own = known.columns.unknowns();
+        let waves = fit.colour.waves;
+        let moments = [Moment::White, Moment::Walk].into_iter().flat_map(|kind| LEVELS.map(|level| (kind, level)));
+        let colours: Vec<Option<(Moment, f64)>> = std::iter::once(None).chain(moments.map(Some)).collect();
+        let reduced: Vec<Reduced> = colours
+            .into_par_iter()
+            .filter_map(|moment| {
+                let colour = Colour { moment, waves };
+                let whiteners = self.problem.whiteners(&colour);
+                let mut whitened = linear.whitened(&whiteners);
+                whitened.insert(own, &columns, &whiteners);
+                let normal = whitened.normal(&linear.whitened_residual(&whiteners));
+                Reduced::new(&normal, own, log_variance(&whiteners), colour)
+            })
+            .collect();
+        let mut sets = self.sets(&blocks, MOST);
+        let mut judged: Vec<(f64, Colour, Vec<usize>)> = sets
+            .par_drain(..)
+            .filter_map(|set| {
+                let all: Vec<usize> = set.iter().flat_map(|&k| blocks[k].columns.clone()).collect();
+                let freedom: usize = set.iter().map(|&k| blocks[k].freedom).sum();
+                let bic = |reduced: &Reduced| {
+                    let deviance = self.problem.deviance(reduced.rss_with(&all), reduced.log_variance);
+                    deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n()
+                };
+                let under = reduced.iter().map(|reduced| (bic(reduced), reduced.colour));
+                let (bic, colour) = under.min_by(|one, other| one.0.total_cmp(&other.0))?;
+                Some((bic, colour, set))
+            })
+            .collect();
+        judged.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut models: Vec<Model> = judged
+            .into_par_iter()
+            .take(FITTED)
+            .map(|(_, colour, set)| {
+                let mut structure = model.structure.clone();
+                let mut theta = fit.theta.clone();
+                for &k in &set {
+                    structure = structure.with(self.candidate(blocks[k].place).term.clone());
+                    theta.extend(&blocks[k].start);
+                }
+                // Under a random moment a search is not carried away by what the structure cannot follow yet.
+                let under = self.problem.fit(&structure, &theta, &fit.initial, &colour);
+                let plain = self.problem.fit(&structure, &under.theta, &under.initial, &fit.colour);
+                let mut found = self.judge(structure, plain);
+                if under.bic < found.judged.bic {
+                    found.judged = under;
+                }
+                found
+            })
+            .collect();
+        models.sort_by(|one, other| one.judged.bic.total_cmp(&other.judged.bic));
+        models
+    }
+
+    /// Columns of every candidate that holds in all time, at the start of largest score.
+    fn blocks(&self, model: &Model, known: &Linearised) -> (Vec<Block>, Vec<Column>) {
+        let (mut blocks, mut columns): (Vec<Block>, Vec<Column>) = (Vec::new(), Vec::new());
+        for (place, candidate) in self.candidates.iter().enumerate() {
+            let term = &candidate.term;
+            if term.effect.is_of_time() || self.excludes(&model.structure, term) {
+                continue;
+            }
+            let best = candidate
+                .starts
+                .iter()
+                .map(|start| {
+                    let new = self.columns_at(model, &model.plain, known, term, start);
+                    (self.gain_of(known, &new), start, new)
+                })
+                .max_by(|one, other| one.0.total_cmp(&other.0));
+            if let Some((_, start, new)) = best {
+                let range = columns.len()..columns.len() + new.len();
+                let place = CandidatePlace(place);
+                blocks.push(Block { place, start: start.clone(), columns: range, freedom: term.freedom() });
+                columns.extend(new);
+            }
+        }
+        (blocks, columns)
+    }
+
+    /// All sets of one to `most` blocks that may stand beside each other.
+    fn sets(&self, blocks: &[Block], most: usize) -> Vec<Vec<usize>> {
+        let id = |k: usize| self.candidate(blocks[k].place).term.effect.id();
+        let mut sets: Vec<Vec<usize>> = Vec::new();
+        let mut last: Vec<Vec<usize>> = vec![Vec::new()];
+        for _ in 0..most {
+            let mut longer = Vec::new();
+            for set in &last {
+                for k in set.last().map_or(0, |last| last + 1)..blocks.len() {
+                    if set.iter().all(|&other| id(other) != id(k)) {
+                        longer.push(set.iter().copied().chain([k]).collect());
+                    }
+                }
+            }
+            sets.extend(longer.iter().cloned());
+            last = longer;
+        }
+        sets
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Projecting the model out first and a set of columns afterwards is projecting all of them out at once.
+    #[test]
+    fn a_set_is_judged_as_if_it_were_solved_whole() {
+        let rows = 40;
+        let column = |k: usize| -> Vec<f64> { (0..rows).map(|t| ((k + 1) as f64 * 0.17 * t as f64).sin()).collect() };
+        let columns: Vec<Vec<f64>> = (0..5).map(column).collect();
+        let measured: Vec<f64> = (0..rows).map(|t| 0.3 * (0.2 * t as f64).cos() + 0.01 * t as f64).collect();
+        let product = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(x, y)| x * y).sum::<f64>();
+        let normal = |chosen: &[usize]| Normal {
+            matrix: DMatrix::from_fn(chosen.len(), chosen.len(), |i, j| {
+                product(&columns[chosen[i]], &columns[chosen[j]])
+            }),
+            gradient: DVector::from_fn(chosen.len(), |i, _| product(&columns[chosen[i]], &measured)),
+            rss: product(&measured, &measured),
+        };
+        let reduced = Reduced::new(&normal(&[0, 1, 2, 3, 4]), 2, 0.0, Colour::WHITE).expect("independent columns");
+        for (set, chosen) in [(vec![0], vec![0, 1, 2]), (vec![0, 2], vec![0, 1, 2, 4]), (vec![], vec![0, 1])] {
+            let whole = normal(&chosen).projected(chosen.len());
+            let found = reduced.rss_with(&set);
+            assert!((found / whole - 1.0).abs() < 1e-6, "{set:?}: {found} against {whole}");
+        }
+    }
+}
