@@ -10,8 +10,8 @@ use kempf_tests::records::Case;
 use scenario::Scenario;
 
 /// Method, evaluations, share by which they may differ on another machine, why it stopped. Counts of methods without a
-/// search are exact. The search for the Fourier fundamental and the polish of output error end where steps drown in
-/// rounding, and another mathematical library rounds otherwise.
+/// search are exact. The search for the Fourier fundamental and the polish of output error, with which maximum
+/// likelihood begins, end where steps drown in rounding, and another mathematical library rounds otherwise.
 const WORK: &[(&str, usize, f64, &str)] = &[
     ("fourier-published", 181, 0.1, "converged"),
     ("fourier-projected", 2, 0.0, "direct"),
@@ -20,6 +20,7 @@ const WORK: &[(&str, usize, f64, &str)] = &[
     ("integral-least-squares", 1, 0.0, "direct"),
     ("output-error", 122, 0.3, "converged"),
     ("srivc", 5, 0.0, "converged"),
+    ("maximum-likelihood", 134, 0.3, "converged"),
 ];
 
 #[test]

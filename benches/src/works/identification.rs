@@ -34,6 +34,8 @@ fn reach(method: &str) -> Option<Reach> {
         "integral-least-squares" => 0.1,
         "fourier-projected" => 4.0,
         "fourier-published" | MANY_TRIPLES => 8.0,
+        // Four kinds of noise, the gyro among the readings.
+        "maximum-likelihood" => return Some(Reach::Time(5e-3)),
         _ => return None,
     };
     Some(Reach::Ratio(share))

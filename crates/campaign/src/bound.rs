@@ -1,7 +1,7 @@
 //! How well a trial could be identified at best, from what chance really does to it.
 
-use identify::likelihood::{Moment, Noise};
 use identify::{maximum_likelihood, output_error};
+use likelihood::{Moment, Noise};
 use nalgebra::{Matrix2, Matrix2x3};
 use ship::FirstOrder;
 use ship::first_order::State;

@@ -25,7 +25,6 @@ mod gaps;
 pub mod identifier;
 pub mod integral_least_squares;
 pub mod least_squares;
-pub mod likelihood;
 pub mod linear;
 pub mod maximum_likelihood;
 pub mod output_error;
@@ -40,7 +39,6 @@ pub mod settings;
 pub mod srivc;
 #[cfg(test)]
 mod testing;
-mod track;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};

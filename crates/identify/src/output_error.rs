@@ -19,9 +19,10 @@ use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
 use crate::profile::{Profile, Step, invert};
 use crate::robust;
+use crate::samples::track;
 use crate::scan::{self, Fit};
 use crate::settings::{SettingsError, check_iterations};
-use crate::track::{Coefficients, Track};
+use likelihood::track::{Coefficients, Track};
 
 /// Settings of [`OutputError`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -200,8 +201,7 @@ impl Identifier for OutputError {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        let tracks =
-            trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let tracks = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         self.fit(tracks, finest)
     }
@@ -333,9 +333,9 @@ pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freed
 /// `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row. `None` when the record does not
 /// determine the parameters. Source: Cramér (1946), Rao (1945).
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd: f64) -> Option<Covariance> {
-    let track = Track::unchecked(trial);
+    let track = Track::new(trial);
     let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
-    if crate::track::is_backward(truth.inverse_T) {
+    if likelihood::track::is_backward(truth.inverse_T) {
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
     }
     let mut profile = Profile::new(vec![track]);

@@ -8,7 +8,7 @@ use lanes::column::{Removed, dot, gram, project, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
-use crate::track::{Coefficients, Columns, Track};
+use likelihood::track::{Coefficients, Columns, Track};
 
 /// Workspace of one trial: columns after projection on the complement of (1, φ₁).
 #[derive(Debug)]

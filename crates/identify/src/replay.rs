@@ -8,7 +8,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use trial::Trial;
 
-use crate::track::{Coefficients, Columns, Track};
+use likelihood::track::{Coefficients, Columns, Track};
 
 /// Condition number above which no initial yaw rate is fitted: it is taken to be zero.
 const CONDITION_LIMIT: f64 = 1e9;
@@ -53,7 +53,7 @@ impl Replay {
 /// `None` when the replay is not finite, as for a response with infinite or undefined parameters.
 pub fn replay(trial: &Trial, response: &FirstOrder) -> Option<Replay> {
     let a = response.inverse_T;
-    let track = Track::unchecked(trial);
+    let track = Track::new(trial);
     let mut columns = Columns::default();
     track.fill(a, &mut columns);
     let mut coefficients = Coefficients::of(response);

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use lanes::column::extremes;
+use likelihood::Track;
 use ship::angle::to_deg;
 use trial::Trial;
 
@@ -94,6 +95,12 @@ impl Samples {
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
+}
+
+/// The track of a trial that is excited and holds `needed` headings; fails as [`Samples::new`] does.
+pub(crate) fn track(trial: &Trial, needed: usize) -> Result<Track, IdentifyError> {
+    check(trial, needed)?;
+    Ok(Track::new(trial))
 }
 
 /// What every method asks of a trial; fails as [`Samples::new`] does.

@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 use ship::first_order::Transition;
 
 use crate::profile::solve2;
-use crate::track::{Track, differs, is_backward};
+use likelihood::track::{Track, differs, is_backward};
 
 /// Values of 1/T side by side.
 const LANES: usize = 8;
@@ -186,7 +186,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn track(case: Case) -> Track {
-        Track::unchecked(&case.trial()).thinned(200)
+        Track::new(&case.trial()).thinned(200)
     }
 
     #[test]

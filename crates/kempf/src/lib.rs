@@ -33,7 +33,7 @@
 //! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
-pub use {campaign, identify, scenario, ship, simulate, trace, trial};
+pub use {campaign, identify, likelihood, scenario, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {

@@ -1,7 +1,7 @@
 //! The likelihood under process noise, and what the method that maximises it reaches.
 
-use identify::likelihood::{Moment, Noise, log_likelihood};
 use identify::{Identifier, maximum_likelihood, output_error};
+use likelihood::{Moment, Noise, log_likelihood};
 use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::from_deg;

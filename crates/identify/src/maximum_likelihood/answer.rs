@@ -11,11 +11,12 @@ use super::point::{Point, Record, SHARED};
 use super::search::Found;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
-use crate::likelihood::{Moment, Noise, Place, RUDDER};
 use crate::output_error::{CONDITION_LIMIT, SIGNIFICANT, to_response};
 use crate::profile::invert;
 use crate::robust;
-use crate::track::{Coefficients, Track, is_backward};
+use likelihood::law::RUDDER;
+use likelihood::track::{Coefficients, Track, is_backward};
+use likelihood::{Moment, Noise, Place};
 
 /// Step in a logarithm over which the change of a variance is taken.
 const DIFFERENCE: f64 = 0.05;
@@ -41,8 +42,8 @@ fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
     invert(&reduced, CONDITION_LIMIT)
 }
 
-/// Degrees of freedom of the variances of K, T and δ_r, the fewest of the three: what the sizes of the noise are not known
-/// to makes the variances uncertain, dof = 2/Var(log v) (Satterthwaite 1946; Kenward and Roger 1997).
+/// Degrees of freedom of the variances of K, T and δ_r, the fewest of the three: what the sizes of the noise are not
+/// known to makes the variances uncertain, dof = 2/Var(log v) (Satterthwaite 1946; Kenward and Roger 1997).
 fn degrees_of_freedom(records: &[Record], found: &Found) -> f64 {
     let Point { inverse_time, gain, offset, ref places, ref parts, .. } = found.point;
     let motion = |number: usize, place: &Place| {
@@ -253,7 +254,7 @@ fn described(trial: &Trial, noise: &Noise, gain: f64) -> Option<String> {
 /// itself tells of 1/T is left out. `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row.
 /// `None` when the record does not determine the parameters. Source: Cramér (1946), Rao (1945).
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &Noise) -> Option<Covariance> {
-    let track = Track::unchecked(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
+    let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
     if is_backward(truth.inverse_T) {
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);

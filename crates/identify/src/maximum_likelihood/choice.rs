@@ -6,14 +6,16 @@ use trial::Trial;
 use super::outliers::{self, LARGEST_SHARE, Suspects};
 use super::point::{Point, Record, evaluate};
 use super::search::{Found, Ranges, Search, gyro_start};
-use super::{CompassChoice, RudderChoice, Settings};
+use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
-use crate::likelihood::{COMPASS, Moment, Place, RUDDER};
 use crate::output_error::{self, CONDITION_LIMIT, FEWEST_ROWS};
 use crate::replay::best_start;
 use crate::robust;
-use crate::track::{Coefficients, Columns, Track};
+use crate::samples::track;
+use likelihood::law::{COMPASS, RUDDER};
+use likelihood::track::{Coefficients, Columns, Track};
+use likelihood::{Moment, Place};
 
 /// Rounds in which outliers are looked for again in the fit without the last ones.
 const ROUNDS: usize = 12;
@@ -63,8 +65,7 @@ pub(super) struct Chosen {
 impl Prepared {
     /// Takes the records, looks for outliers, and fits `output-error` to the rest. Fails as it does.
     pub fn new(settings: &Settings, trials: &[Trial]) -> Result<Self, IdentifyError> {
-        let whole =
-            trials.iter().map(|trial| Track::new(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
+        let whole = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let method = output_error::Settings::default().build().expect("default settings are valid");
         let mut suspects = vec![Suspects::default(); trials.len()];

@@ -5,7 +5,7 @@
 //! a level that changes from one reading to the next and stays is a jump. Both are looked for again in the fit without
 //! them until nothing changes, so an honest reading that stood beside a spike comes back.
 
-use crate::track::Track;
+use likelihood::track::Track;
 
 /// Neighbours on either side that a reading is held against: runs of up to three spikes are told from them.
 const NEIGHBOURS: usize = 7;
@@ -139,7 +139,7 @@ mod tests {
     #[test]
     fn what_stands_alone_is_found_and_nothing_else() {
         let trial = Case { noise_deg: 0.1, ..Case::default() }.trial();
-        let track = Track::unchecked(&trial);
+        let track = Track::new(&trial);
         // Noise alone, as a good fit leaves it.
         let truth = Case::default().truth();
         let noise: Vec<f64> = track.heading.iter().zip(&truth.heading).map(|(psi, truth)| psi - truth).collect();

@@ -9,9 +9,10 @@ use lanes::column::{dot, gram};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
-use crate::likelihood::{Law, Place, RUDDER, SIDE_BY_SIDE, Schedule, Whitener, differentiated};
 use crate::profile::solve2;
-use crate::track::{Coefficients, Columns, Track};
+use likelihood::law::RUDDER;
+use likelihood::track::{Coefficients, Columns, Track};
+use likelihood::{Law, Place, Schedule, Whitener};
 
 /// Unknowns that all records share: 1/T, K/T and (K/T) δ_r.
 pub(super) const SHARED: usize = 3;
@@ -37,30 +38,30 @@ pub(super) struct Record {
 /// Columns of one record before they are white: motions of its own start and jumps, responses to rudder and constant,
 /// and the readings.
 #[derive(Debug, Clone)]
-struct Raw {
-    own: Vec<Vec<f64>>,
-    rest: [Vec<f64>; 3],
+pub(super) struct Raw {
+    pub own: Vec<Vec<f64>>,
+    pub rest: [Vec<f64>; 3],
 }
 
 /// The same, white; the own ones are orthonormal and taken out of the others.
 #[derive(Debug, Clone)]
-struct White {
+pub(super) struct White {
     filter: Whitener,
-    own: Vec<Vec<f64>>,
+    pub own: Vec<Vec<f64>>,
     /// Leads from the orthonormal columns back to those of the start and the jumps.
-    triangle: DMatrix<f64>,
-    rest: [Vec<f64>; 3],
+    pub triangle: DMatrix<f64>,
+    pub rest: [Vec<f64>; 3],
     /// Parts of the others along the own columns.
-    shares: [Vec<f64>; 3],
+    pub shares: [Vec<f64>; 3],
 }
 
 /// How the readings change with 1/T.
 #[derive(Debug, Clone)]
-struct ByTime {
-    raw: Vec<f64>,
+pub(super) struct ByTime {
+    pub raw: Vec<f64>,
     /// White, the own columns taken out, and its parts along them.
-    white: Vec<f64>,
-    shares: Vec<f64>,
+    pub white: Vec<f64>,
+    pub shares: Vec<f64>,
 }
 
 /// What a record says at a point.
@@ -75,9 +76,9 @@ pub(super) struct Part {
     pub jumps: Vec<f64>,
     /// Innovations over √S, rad.
     pub innovations: Vec<f64>,
-    raw: Raw,
-    white: White,
-    by_time: ByTime,
+    pub raw: Raw,
+    pub white: White,
+    pub by_time: ByTime,
 }
 
 /// The best fit for one 1/T and one noise of every record.
@@ -92,19 +93,6 @@ pub(super) struct Point {
     pub gain: f64,
     pub offset: f64,
     pub parts: Vec<Part>,
-}
-
-/// Score and information at a point; unknowns are 1/T, b, b δ_r and then the entries of the places, record by record.
-pub(super) struct Linearised {
-    /// ∂(−log L) by 1/T, and that of the restricted likelihood by the entries; zero for b and b δ_r, which are at their
-    /// best.
-    pub score: DVector<f64>,
-    /// Fisher information, the sizes of the compass errors eliminated.
-    pub information: DMatrix<f64>,
-    /// Scores of (1/T, b, b δ_r) reading by reading, for every record.
-    pub scores: Vec<[Vec<f64>; 3]>,
-    /// Σ ∂ log S/∂θ over the readings of every record, by its entries; zero where the size of the compass error is tied.
-    pub totals: Vec<DVector<f64>>,
 }
 
 impl Record {
@@ -130,7 +118,7 @@ impl Record {
     }
 
     /// Declared rudder error of a place, rad.
-    fn tied(&self, place: &Place) -> Option<f64> {
+    pub fn tied(&self, place: &Place) -> Option<f64> {
         self.declared.filter(|_| place.rudder)
     }
 
@@ -189,13 +177,13 @@ impl Record {
 }
 
 /// Divides a column by its length; a start that is over before the first row is not seen.
-fn shrink(column: &mut [f64], length: f64) {
+pub(super) fn shrink(column: &mut [f64], length: f64) {
     let per = if length > 0.0 { length.recip() } else { 0.0 };
     column.iter_mut().for_each(|x| *x *= per);
 }
 
 /// Takes a unit column out of another one and returns its part along it.
-fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
+pub(super) fn take_out(unit: &[f64], column: &mut [f64]) -> f64 {
     let share = dot(unit, column);
     column.iter_mut().zip(unit).for_each(|(x, u)| *x -= share * u);
     share
@@ -341,140 +329,4 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) 
     let restricted = deviance + determinant + motion.determinant().ln();
     let ship = gain > 0.0 && restricted.is_finite();
     ship.then(|| Point { inverse_time, places: places.to_vec(), deviance, restricted, gain, offset, parts })
-}
-
-/// Score and information at a point.
-pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised> {
-    let entries: Vec<usize> =
-        (records.iter().zip(&point.places)).map(|(record, place)| place.entries(record.has_gyro()).count()).collect();
-    let unknowns = SHARED + entries.iter().sum::<usize>();
-    let mut score = DVector::zeros(unknowns);
-    let mut information = DMatrix::zeros(unknowns, unknowns);
-    let (mut scores, mut all_totals) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
-    let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion() / part.variance).sum();
-    let factor = motion.cholesky()?.l().try_inverse()?.transpose();
-    let mut first = SHARED;
-    for (number, record) in records.iter().enumerate() {
-        let (part, place, count) = (&point.parts[number], &point.places[number], entries[number]);
-        let filter = differentiated(&record.schedule, place, point.inverse_time, record.has_gyro());
-        let lanes = 1 + count;
-        let mut slopes = filter.slopes(&record.schedule, &part.left_over(point), lanes);
-        let tied = record.tied(place).is_some();
-        let lane_of = |entry| place.entries(record.has_gyro()).position(|other| other == entry).map(|k| k + 1);
-        if let Some(lane) = lane_of(RUDDER).filter(|_| tied) {
-            // A smaller compass error makes the same rudder error larger in its units.
-            slopes.log_variance[lane].iter_mut().for_each(|by| *by -= 2.0);
-        }
-        let at: Vec<usize> = std::iter::once(0).chain(first..first + count).collect();
-        let mut columns = slopes.innovation;
-        for column in &mut columns {
-            part.white.own.iter().for_each(|unit| _ = take_out(unit, column));
-        }
-        columns[0].iter_mut().zip(&part.by_time.white).for_each(|(by_noise, by_motion)| *by_noise -= by_motion);
-        let minus = |column: &[f64]| column.iter().map(|x| -x).collect::<Vec<f64>>();
-        let [rudder, constant, _] = &part.white.rest;
-        columns.extend([minus(rudder), minus(constant)]);
-        let all: Vec<usize> = at.iter().copied().chain([1, 2]).collect();
-
-        let per = part.variance.recip();
-        for (i, &row) in all.iter().enumerate() {
-            for (j, &column) in all.iter().enumerate().take(i + 1) {
-                let product = dot(&columns[i], &columns[j]) * per;
-                information[(row, column)] += product;
-                if i != j {
-                    information[(column, row)] += product;
-                }
-            }
-        }
-        let mut totals = Vec::with_capacity(lanes);
-        for (lane, logs) in slopes.log_variance.iter().enumerate() {
-            let surprise: f64 = logs.iter().zip(&part.innovations).map(|(by, nu)| by * (1.0 - nu * nu * per)).sum();
-            score[at[lane]] += dot(&part.innovations, &columns[lane]) * per + 0.5 * surprise;
-            totals.push(if tied { 0.0 } else { logs.iter().sum::<f64>() });
-        }
-        for i in 0..lanes {
-            for j in 0..lanes {
-                let product = dot(&slopes.log_variance[i], &slopes.log_variance[j]);
-                information[(at[i], at[j])] += 0.5 * (product - totals[i] * totals[j] / part.readings as f64);
-            }
-        }
-        if count > 0 {
-            let fitted = part.fitted(&(factor * per.sqrt()));
-            for columns in fitted.chunks(SIDE_BY_SIDE) {
-                let raw = std::array::from_fn(|k| columns.get(k).map_or(&[][..], |(_, raw)| raw.as_slice()));
-                let white = std::array::from_fn(|k| columns.get(k).map_or(&[][..], |(white, _)| white.as_slice()));
-                let turned = filter.turned(&record.schedule, raw, white);
-                for lane in 1..lanes {
-                    let logs = &slopes.log_variance[lane];
-                    let shrunk: f64 = columns.iter().map(|(white, _)| weighted_square(white, logs)).sum();
-                    score[at[lane]] += turned[lane] - 0.5 * shrunk;
-                }
-            }
-        }
-        let times = |column: &[f64]| column.iter().zip(&part.innovations).map(|(x, nu)| x * nu).collect::<Vec<f64>>();
-        scores.push([times(&part.by_time.white), times(rudder), times(constant)]);
-        all_totals.push(DVector::from_row_slice(&totals[1..]));
-        first += count;
-    }
-    let finite = score.iter().chain(information.iter()).all(|value: &f64| value.is_finite());
-    finite.then_some(Linearised { score, information, scores, totals: all_totals })
-}
-
-/// Σ w q².
-fn weighted_square(column: &[f64], weights: &[f64]) -> f64 {
-    column.iter().zip(weights).map(|(q, w)| q * q * w).sum()
-}
-
-/// A column times a factor taken out of another one.
-fn less(column: &mut [f64], factor: f64, other: &[f64]) {
-    column.iter_mut().zip(other).for_each(|(x, y)| *x -= factor * y);
-}
-
-impl Part {
-    /// Measured less fitted readings.
-    fn left_over(&self, point: &Point) -> Vec<f64> {
-        let [rudder, constant, readings] = &self.raw.rest;
-        let mut left = readings.clone();
-        let start = [self.anchor.heading, self.anchor.yaw_rate];
-        let own = start.iter().chain(&self.jumps).zip(&self.raw.own);
-        own.for_each(|(size, column)| less(&mut left, *size, column));
-        less(&mut left, point.gain, rudder);
-        less(&mut left, point.offset, constant);
-        left
-    }
-
-    /// Products of what changes with 1/T, b and b δ_r.
-    fn motion(&self) -> Matrix3<f64> {
-        let [rudder, constant, _] = &self.white.rest;
-        Matrix3::from(gram([self.by_time.white.as_slice(), rudder, constant]))
-    }
-
-    /// All columns that are fitted, orthonormal and white, each with what it was before; `factor` makes those that all
-    /// records share so.
-    fn fitted(&self, factor: &Matrix3<f64>) -> Vec<(Vec<f64>, Vec<f64>)> {
-        // What made the white columns orthonormal makes the others follow.
-        let mut own = self.raw.own.clone();
-        for k in 0..own.len() {
-            let (before, column) = own.split_at_mut(k);
-            for (j, unit) in before.iter().enumerate() {
-                less(&mut column[0], self.white.triangle[(j, k)], unit);
-            }
-            shrink(&mut column[0], self.white.triangle[(k, k)]);
-        }
-        let [rudder, constant, _] = &self.raw.rest;
-        let mut raw = [self.by_time.raw.clone(), rudder.clone(), constant.clone()];
-        for (column, shares) in raw.iter_mut().zip([&self.by_time.shares, &self.white.shares[0], &self.white.shares[1]])
-        {
-            own.iter().zip(shares).for_each(|(unit, share)| less(column, *share, unit));
-        }
-        let [rudder, constant, _] = &self.white.rest;
-        let white = [&self.by_time.white, rudder, constant];
-        let combined = |[x, y, z]: [&[f64]; 3], k: usize| -> Vec<f64> {
-            let [fx, fy, fz] = [0, 1, 2].map(|j| factor[(j, k)]);
-            x.iter().zip(y).zip(z).map(|((x, y), z)| fx * x + fy * y + fz * z).collect()
-        };
-        let shared =
-            (0..3).map(|k| (combined(white.map(Vec::as_slice), k), combined(raw.each_ref().map(Vec::as_slice), k)));
-        self.white.own.iter().cloned().zip(own).chain(shared).collect()
-    }
 }

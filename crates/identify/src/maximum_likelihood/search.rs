@@ -2,8 +2,10 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::point::{Linearised, Point, Record, SHARED, evaluate, linearise};
-use crate::likelihood::{COMPASS, CORRELATION, GYRO, LEVEL, Moment, Place, RUDDER};
+use super::point::{Point, Record, SHARED, evaluate};
+use super::score::{Linearised, linearise};
+use likelihood::law::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
+use likelihood::{Moment, Place};
 
 /// Steps end when they promise less than this in −log L: a hundredth of a standard deviation of the noise. Where there
 /// is none to find, 1/T alone has to be as exact as that of `output-error`.
@@ -149,7 +151,8 @@ impl Search<'_> {
 
     /// The largest likelihood near a point: quasi-Newton steps (BFGS) with exact slopes that begin as Fisher scoring.
     ///
-    /// 1/T follows the likelihood and the noise the restricted one, so steps need not lower the latter to the last digit.
+    /// 1/T follows the likelihood and the noise the restricted one, so steps need not lower the latter to the last
+    /// digit.
     pub fn maximise(&mut self, start: Point) -> Option<Found> {
         let mut point = start;
         let mut linearised = linearise(self.records, &point)?;

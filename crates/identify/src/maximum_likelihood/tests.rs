@@ -5,12 +5,15 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use trial::{Channel, Columns, Noise, Origin};
 
 use super::choice::Prepared;
-use super::point::{Record, evaluate, linearise};
+use super::point::{Record, evaluate};
+use super::score::linearise;
+use likelihood::Moment;
+
 use super::*;
-use crate::likelihood::Place;
 use crate::output_error;
 use crate::testing::{Case, record};
-use crate::track::Track;
+use likelihood::Place;
+use likelihood::track::Track;
 use trial::Trial;
 
 /// Independent normal numbers.
@@ -113,10 +116,8 @@ fn the_score_is_the_derivative() {
         Trial::new("gyro", origin, columns).expect("valid")
     };
     let trials = [disturbed(&noisy(), &Beside::Walk(0.1)), gyro(&Case { seed: 6, ..noisy() }.trial())];
-    let records: Vec<Record> = trials
-        .iter()
-        .map(|trial| Record::new(Track::unchecked(trial).with_rates(trial.yaw_rate(), trial), true))
-        .collect();
+    let records: Vec<Record> =
+        trials.iter().map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true)).collect();
     for moment in Moment::ALL {
         let places = [
             Place { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
@@ -253,13 +254,13 @@ fn the_bound_knows_the_noise() {
     let case = noisy();
     let (trial, truth) = (case.trial(), case.ship());
     let initial = ship::first_order::State { heading: case.truth().heading[0], yaw_rate: case.truth().yaw_rate[0] };
-    let noise = crate::likelihood::Noise::compass(from_deg(0.1));
+    let noise = likelihood::Noise::compass(from_deg(0.1));
     let calm = output_error::cramer_rao(&trial, &truth, initial, from_deg(0.1)).expect("known").matrix;
     let same = cramer_rao(&trial, &truth, initial, &noise).expect("known").matrix;
     for (one, other) in same.iter().zip(calm.iter()) {
         assert_relative_eq!(one, other, max_relative = 1e-6, epsilon = 1e-18);
     }
-    let walking = |degrees: f64| crate::likelihood::Noise {
+    let walking = |degrees: f64| likelihood::Noise {
         moment: Moment::Walk,
         moment_level: truth.K_over_T * from_deg(degrees),
         ..noise

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A number that a filter can be written in.
-pub(crate) trait Variable:
+pub trait Variable:
     Copy
     + Debug
     + From<f64>
@@ -55,8 +55,10 @@ impl Variable for f64 {
 
 /// A value and its derivatives in some lanes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Dual<const LANES: usize> {
+pub struct Dual<const LANES: usize> {
+    /// The value.
     pub value: f64,
+    /// Its derivatives.
     pub by: [f64; LANES],
 }
 

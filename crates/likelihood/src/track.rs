@@ -10,15 +10,12 @@ use ship::FirstOrder;
 use ship::first_order::{State, TangentTransition, Transition};
 use trial::Trial;
 
-use crate::error::IdentifyError;
-use crate::samples;
-
 /// Steps whose lengths differ by less than this share use the same transition: far below any clock.
 const SAME_STEP: f64 = 1e-9;
 
 /// One trial, from its first to its last row with a heading.
 #[derive(Debug, Clone)]
-pub(crate) struct Track {
+pub struct Track {
     time: Vec<f64>,
     rudder: Vec<f64>,
     /// Interval after every row but the last, and the rudder rate in it; s and rad/s.
@@ -35,7 +32,7 @@ pub(crate) struct Track {
 
 /// What lies between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Interval {
+pub struct Interval {
     /// Length, s.
     pub length: f64,
     /// Rudder rate, rad/s.
@@ -44,7 +41,7 @@ pub(crate) struct Interval {
 
 /// The columns beside the constant one, at the observed rows.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Columns {
+pub struct Columns {
     /// φ₁(t − t₁), s.
     pub homogeneous: Vec<f64>,
     /// G, rad s².
@@ -57,7 +54,7 @@ pub(crate) struct Columns {
 
 /// The yaw rates of the columns.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct RateColumns {
+pub struct RateColumns {
     /// exp(−a (t − t₁)).
     pub homogeneous: Vec<f64>,
     /// G', rad s.
@@ -68,7 +65,7 @@ pub(crate) struct RateColumns {
 
 /// Coefficients of the four columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Coefficients {
+pub struct Coefficients {
     /// Heading (rad) and yaw rate (rad/s) at the anchor.
     pub anchor: State,
     /// b = K/T, 1/s².
@@ -85,20 +82,13 @@ impl Coefficients {
 }
 
 /// Whether the anchor of the columns is the last row.
-pub(crate) fn is_backward(inverse_time: f64) -> bool {
+pub fn is_backward(inverse_time: f64) -> bool {
     inverse_time < 0.0
 }
 
 impl Track {
-    /// Takes the part of a trial that has headings; the record must be excited and hold `needed` of them.
-    pub fn new(trial: &Trial, needed: usize) -> Result<Self, IdentifyError> {
-        // The checks are those of every method.
-        samples::check(trial, needed)?;
-        Ok(Self::unchecked(trial))
-    }
-
     /// Takes the part of a trial that has headings, without asking whether the ship was steered.
-    pub fn unchecked(trial: &Trial) -> Self {
+    pub fn new(trial: &Trial) -> Self {
         let first = trial.observed_rows().next().unwrap_or(0);
         let last = trial.observed_rows().last().unwrap_or(0);
         let heading = &trial.heading()[first..=last];
@@ -152,6 +142,11 @@ impl Track {
     /// Number of observed rows.
     pub fn len(&self) -> usize {
         self.heading.len()
+    }
+
+    /// Whether no row has a heading.
+    pub fn is_empty(&self) -> bool {
+        self.heading.is_empty()
     }
 
     /// Time of every row, s.
@@ -360,6 +355,6 @@ fn keep(rows: &[usize], column: &mut Vec<f64>) {
 
 /// Whether a step needs another transition than the last one.
 #[inline(always)]
-pub(crate) fn differs(last: f64, h: f64) -> bool {
+pub fn differs(last: f64, h: f64) -> bool {
     (last - h).abs() > SAME_STEP * h.abs()
 }

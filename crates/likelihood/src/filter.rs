@@ -2,10 +2,10 @@
 //!
 //! With readings of one kind at even times the gain settles; from there on no covariance is computed.
 
-use super::law::{Law, Place};
-use super::number::{Dual, Variable};
-use super::schedule::{Of, Reading, Schedule};
-use super::transition::Step;
+use crate::law::{Law, Place};
+use crate::number::{Dual, Variable};
+use crate::schedule::{Of, Reading, Schedule};
+use crate::transition::Step;
 
 /// Most states: heading, rate, moment, rudder error, compass error.
 const MOST: usize = 5;
@@ -45,7 +45,7 @@ impl<R: Variable, const N: usize> Filter<R, N> {
         for (place, variance) in initial.into_iter().enumerate() {
             covariance[place][place] = R::from(variance);
         }
-        if law.moment == super::Moment::OrnsteinUhlenbeck {
+        if law.moment == crate::noise::Moment::OrnsteinUhlenbeck {
             covariance[2][2] = law.level * law.level;
         }
         for place in [law.rudder_state(), compass].into_iter().flatten() {
@@ -155,7 +155,7 @@ macro_rules! with_states {
 
 /// A filter that makes columns of one record white: innovations in units of their standard deviation over σ.
 #[derive(Debug, Clone)]
-pub(crate) struct Whitener {
+pub struct Whitener {
     states: usize,
     compass: Option<usize>,
     transitions: Vec<[[f64; MOST]; MOST]>,
@@ -242,7 +242,7 @@ impl Whitener {
 
 /// How innovations and their variances change with 1/T and the entries of a place, by lane.
 #[derive(Debug, Clone)]
-pub(crate) struct Slopes {
+pub struct Slopes {
     /// ∂ν/∂θ over √S of every reading.
     pub innovation: Vec<Vec<f64>>,
     /// ∂ log S/∂θ of every reading.
@@ -250,25 +250,20 @@ pub(crate) struct Slopes {
 }
 
 /// Columns whose slopes are computed side by side.
-pub(crate) const SIDE_BY_SIDE: usize = 6;
+pub const SIDE_BY_SIDE: usize = 6;
 
 /// A filter that knows its derivatives.
-pub(crate) trait Differentiated {
+pub trait Differentiated {
     /// How the innovations of a residual change, in the first `lanes`.
     fn slopes(&self, schedule: &Schedule, residual: &[f64], lanes: usize) -> Slopes;
 
-    /// Σ over columns of q·∂ν/∂θ/√S, by lane, where ∂ν/∂θ is what the filter makes of a column that is not white yet and
-    /// q one that is. A column that is not there is empty.
+    /// Σ over columns of q·∂ν/∂θ/√S, by lane, where ∂ν/∂θ is what the filter makes of a column that is not white yet
+    /// and q one that is. A column that is not there is empty.
     fn turned(&self, schedule: &Schedule, raw: [&[f64]; SIDE_BY_SIDE], white: [&[f64]; SIDE_BY_SIDE]) -> Vec<f64>;
 }
 
 /// The filter of a place from a known initial state, and the same with its derivatives.
-pub(crate) fn differentiated(
-    schedule: &Schedule,
-    place: &Place,
-    inverse_time: f64,
-    gyro: bool,
-) -> Box<dyn Differentiated> {
+pub fn differentiated(schedule: &Schedule, place: &Place, inverse_time: f64, gyro: bool) -> Box<dyn Differentiated> {
     match place.entries(gyro).count() {
         0 | 1 => of_lanes::<2>(schedule, &place.law(inverse_time, gyro)),
         2 => of_lanes::<3>(schedule, &place.law(inverse_time, gyro)),

@@ -1,9 +1,9 @@
 //! The exact step of the state over a time in which the noise goes on, with its derivatives.
 
-use super::Moment;
-use super::law::Law;
-use super::number::Variable;
-use super::schedule::Span;
+use crate::law::Law;
+use crate::noise::Moment;
+use crate::number::Variable;
+use crate::schedule::Span;
 use ship::first_order::TangentTransition;
 
 /// Terms of the series of the matrix exponential over one scaled step.
@@ -26,7 +26,7 @@ const NODES: [(f64, f64); 8] = [
 
 /// Transition F and added covariance Q over a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step<R, const N: usize> {
+pub(crate) struct Step<R, const N: usize> {
     pub transition: [[R; N]; N],
     pub added: [[R; N]; N],
 }

@@ -5,8 +5,14 @@ use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
 use trial::{Channel, Columns, Origin, Trial};
 
-use super::law::{Law, Place};
 use super::*;
+use crate::law::{Law, Place};
+
+fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
+    let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
+    let origin = Origin::Simulated { scenario: name.into(), cell: 0, replicate: 0 };
+    Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("valid")
+}
 
 /// The record of the published values: uneven rows, a clipped sine of the rudder, a sine of the heading.
 fn published() -> Trial {
@@ -26,7 +32,7 @@ fn published() -> Trial {
     let rudder = time.iter().map(|&t| from_deg(10.0) * (3.0 * wave(t)).clamp(-1.0, 1.0)).collect();
     let heading =
         time.iter().map(|&t| from_deg(8.0) * wave(t - 9.0) + from_deg(0.05) * (5.1 * t + 1.0).cos()).collect();
-    crate::testing::record("published", time, heading, rudder)
+    record("published", time, heading, rudder)
 }
 
 const SIGMA_DEG: f64 = 0.1;
@@ -209,7 +215,7 @@ fn the_filter_is_the_dense_gaussian() {
 #[test]
 fn slopes_are_derivatives() {
     let trial = with_gyro();
-    let track = Track::unchecked(&trial).with_rates(trial.yaw_rate(), &trial);
+    let track = Track::new(&trial).with_rates(trial.yaw_rate(), &trial);
     let residual: Vec<f64> = (0..track.heading.len() + track.rates.len()).map(|k| (0.7 * k as f64).sin()).collect();
     for moment in Moment::ALL {
         for a in [0.06, -0.02] {
@@ -254,8 +260,8 @@ fn even_rows_settle() {
     let time: Vec<f64> = (0..400).map(f64::from).collect();
     let heading = time.iter().map(|t| 0.2 * (0.1 * t).sin()).collect();
     let rudder = time.iter().map(|t| 0.2 * (0.1 * t).cos()).collect();
-    let trial = crate::testing::record("even", time, heading, rudder);
-    let track = Track::unchecked(&trial);
+    let trial = record("even", time, heading, rudder);
+    let track = Track::new(&trial);
     let schedule = Schedule::new(&track, false);
     let place = Place { moment: Moment::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
     let law: Law<f64> = place.law(0.06, false);

@@ -3,16 +3,17 @@
 
 use ship::FirstOrder;
 
-use super::number::Variable;
-use super::{Moment, Noise};
+use crate::noise::{Moment, Noise};
+use crate::number::Variable;
 
 /// Entries of a [`Place`].
-pub(crate) const ENTRIES: usize = 5;
+pub const ENTRIES: usize = 5;
 
 /// Where the noise is: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time
 /// of the compass error and of σ_r/σ, with which of them there are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub struct Place {
+    /// Which yaw moment.
     pub moment: Moment,
     /// Whether the rudder has an error.
     pub rudder: bool,
@@ -22,12 +23,16 @@ pub(crate) struct Place {
     pub log: [f64; ENTRIES],
 }
 
-/// Names for the entries.
-pub(crate) const LEVEL: usize = 0;
-pub(crate) const CORRELATION: usize = 1;
-pub(crate) const RUDDER: usize = 2;
-pub(crate) const COMPASS: usize = 3;
-pub(crate) const GYRO: usize = 4;
+/// Entry of q/σ.
+pub const LEVEL: usize = 0;
+/// Entry of τ.
+pub const CORRELATION: usize = 1;
+/// Entry of the rudder error.
+pub const RUDDER: usize = 2;
+/// Entry of the correlation time of the compass error.
+pub const COMPASS: usize = 3;
+/// Entry of σ_r/σ.
+pub const GYRO: usize = 4;
 
 impl Place {
     /// The place of a known noise on a known ship.
@@ -74,8 +79,8 @@ impl Place {
         (0..ENTRIES).filter(move |&entry| there[entry])
     }
 
-    /// The law of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of the entries
-    /// that are there.
+    /// The law of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of the
+    /// entries that are there.
     pub fn law<R: Variable>(&self, inverse_time: f64, gyro: bool) -> Law<R> {
         let lane = |entry: usize| self.entries(gyro).position(|other| other == entry).map(|place| place + 1);
         let exponential = |entry: usize, sign: f64| {
@@ -99,9 +104,10 @@ impl Place {
 
 /// How the noise moves the state, in units of the compass error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Law<R> {
+pub struct Law<R> {
     /// a = 1/T, 1/s.
     pub inverse_time: R,
+    /// Which yaw moment.
     pub moment: Moment,
     /// q/σ.
     pub level: R,

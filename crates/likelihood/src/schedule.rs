@@ -4,23 +4,25 @@ use crate::track::{Track, differs};
 
 /// What is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Of {
+pub enum Of {
     /// The compass.
     Heading,
     /// The gyro.
     YawRate,
 }
 
-/// A reading: the step that leads to it (`None` when no time passes), and the instrument.
+/// A reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Reading {
+pub struct Reading {
+    /// The kind of step that leads to it; `None` when no time passes.
     pub step: Option<usize>,
+    /// The instrument.
     pub of: Of,
 }
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Span {
+pub struct Span {
     /// Lengths, s.
     pub pieces: Vec<f64>,
 }
@@ -38,8 +40,10 @@ impl Span {
 
 /// Readings of a record in order.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Schedule {
+pub struct Schedule {
+    /// The kinds of steps.
     pub spans: Vec<Span>,
+    /// The readings.
     pub readings: Vec<Reading>,
     /// For every reading, its number among those of its instrument.
     numbers: Vec<usize>,

@@ -1,0 +1,91 @@
+//! What may be asked of the method.
+
+use likelihood::Moment;
+use serde::{Deserialize, Serialize};
+
+/// Which yaw moment is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MomentChoice {
+    /// The one with the lowest BIC.
+    #[default]
+    Chosen,
+    /// None.
+    None,
+    /// White.
+    White,
+    /// Ornstein–Uhlenbeck.
+    OrnsteinUhlenbeck,
+    /// Random walk.
+    Walk,
+}
+
+impl MomentChoice {
+    /// The kinds that are tried.
+    pub(super) fn kinds(self) -> &'static [Moment] {
+        match self {
+            Self::Chosen => &Moment::ALL,
+            Self::None => &[Moment::None],
+            Self::White => &[Moment::White],
+            Self::OrnsteinUhlenbeck => &[Moment::OrnsteinUhlenbeck],
+            Self::Walk => &[Moment::Walk],
+        }
+    }
+}
+
+/// Which compass error is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompassChoice {
+    /// White, or with a correlation time where that has the lower BIC.
+    #[default]
+    Chosen,
+    /// White.
+    White,
+    /// With a correlation time.
+    Coloured,
+}
+
+/// Which error of the recorded rudder is fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RudderChoice {
+    /// The one that the record declares, if it makes the record more likely.
+    #[default]
+    Declared,
+    /// None.
+    None,
+    /// A white one whose size is estimated.
+    Estimated,
+}
+
+/// Settings of [`MaximumLikelihood`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct Settings {
+    /// The yaw moment: `chosen`, `none`, `white`, `ornstein-uhlenbeck` or `walk`.
+    pub moment: MomentChoice,
+    /// The compass error: `chosen`, `white` or `coloured`.
+    pub compass: CompassChoice,
+    /// The error of the recorded rudder: `declared`, `none` or `estimated`.
+    pub rudder: RudderChoice,
+    /// Whether the yaw rate is used where every record has one.
+    pub yaw_rate: bool,
+    /// Whether spikes are left out and jumps of the compass estimated.
+    pub outliers: bool,
+    /// Largest number of scoring steps for one kind of noise.
+    pub iterations: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            moment: MomentChoice::default(),
+            compass: CompassChoice::default(),
+            rudder: RudderChoice::default(),
+            yaw_rate: true,
+            outliers: true,
+            iterations: 40,
+        }
+    }
+}

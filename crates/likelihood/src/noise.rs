@@ -1,0 +1,68 @@
+//! What is random in a record.
+
+use serde::{Deserialize, Serialize};
+
+/// The random yaw moment.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Moment {
+    /// None.
+    #[default]
+    None,
+    /// White: the yaw rate wanders.
+    White,
+    /// Ornstein–Uhlenbeck: gusts with a correlation time.
+    OrnsteinUhlenbeck,
+    /// Random walk: the moment itself wanders.
+    Walk,
+}
+
+impl Moment {
+    /// All of them, from the fewest parameters to the most.
+    pub const ALL: [Self; 4] = [Self::None, Self::White, Self::Walk, Self::OrnsteinUhlenbeck];
+
+    /// The word used in tables and JSON.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::White => "white",
+            Self::OrnsteinUhlenbeck => "ornstein-uhlenbeck",
+            Self::Walk => "walk",
+        }
+    }
+}
+
+/// All that is random in a record, in SI units and radians.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Standard deviation of the compass error, rad.
+    pub heading_sd: f64,
+    /// Correlation time of the compass error, s; `None` for white.
+    pub heading_correlation: Option<f64>,
+    /// Standard deviation of the white gyro error, rad/s; of use where a record has a yaw rate.
+    pub yaw_rate_sd: Option<f64>,
+    /// Which yaw moment.
+    pub moment: Moment,
+    /// Its size q as yaw acceleration: (rad/s²)√s for white, the stationary standard deviation in rad/s² for
+    /// Ornstein–Uhlenbeck, (rad/s²)/√s for a walk.
+    pub moment_level: f64,
+    /// Correlation time τ of an Ornstein–Uhlenbeck moment, s.
+    pub moment_correlation: f64,
+    /// Standard deviation of the white error of the recorded rudder, rad; 0 for none.
+    pub rudder_sd: f64,
+}
+
+impl Noise {
+    /// A white compass error and nothing else.
+    pub fn compass(heading_sd: f64) -> Self {
+        Self {
+            heading_sd,
+            heading_correlation: None,
+            yaw_rate_sd: None,
+            moment: Moment::None,
+            moment_level: 0.0,
+            moment_correlation: f64::INFINITY,
+            rudder_sd: 0.0,
+        }
+    }
+}
