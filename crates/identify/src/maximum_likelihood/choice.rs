@@ -251,30 +251,36 @@ fn contest(
         }
         all.extend(ranked(found).filter(|_| kinds.contains(&kind)));
     }
-    // A compass error with a memory is only looked for where the innovations have one.
-    if let Some((_, found)) = lowest(&all) {
-        let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());
+    // A compass error with a memory is looked for where innovations have one: beside the best noise, and alone, since a
+    // white moment may be large enough to make anything white.
+    let has_memory = |found: &Found| {
         let readings: usize = found.point.parts.iter().map(|part| part.readings).sum();
-        let wanted = match settings.compass {
+        let whites = found.point.parts.iter().map(|part| part.innovations.as_slice());
+        match settings.compass {
             CompassChoice::Chosen => robust::lag1_autocorrelation(whites).abs() > 3.0 / (readings as f64).sqrt(),
             CompassChoice::White => false,
             CompassChoice::Coloured => true,
-        };
-        if wanted {
-            let mut froms = vec![(found.point.inverse_time, found.point.places.clone())];
-            if kinds.contains(&Moment::None) && found.point.places[0].moment != Moment::None {
-                froms.push((a, none.clone()));
-            }
-            if settings.compass == CompassChoice::Coloured {
-                all.clear();
-            }
-            for (a, places) in froms {
-                let coloured: Vec<Place> = places.iter().map(|place| Place { coloured: true, ..*place }).collect();
-                let starts = search.spread(a, &coloured, COMPASS);
-                let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
-                all.extend(ranked(found));
-            }
         }
+    };
+    let best = lowest(&all).map(|(_, found)| found);
+    let alone = all.iter().map(|(_, found)| found).find(|found| found.point.places[0].moment == Moment::None);
+    let alone = alone.filter(|_| best.is_some_and(|best| best.point.places[0].moment != Moment::None));
+    let froms: Vec<(f64, Vec<Place>)> = [best, alone]
+        .into_iter()
+        .flatten()
+        .filter(|found| has_memory(found))
+        .map(|found| {
+            let coloured = found.point.places.iter().map(|place| Place { coloured: true, ..*place });
+            (found.point.inverse_time, coloured.collect())
+        })
+        .collect();
+    if settings.compass == CompassChoice::Coloured {
+        all.clear();
+    }
+    for (a, places) in froms {
+        let starts = search.spread(a, &places, COMPASS);
+        let found = search.best(starts, |point| point.restricted).and_then(|start| search.maximise(start));
+        all.extend(ranked(found));
     }
     // Under the noise that was found another 1/T may be better.
     if let Some((_, found)) = lowest(&all) {
