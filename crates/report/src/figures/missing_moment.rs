@@ -1,5 +1,6 @@
 //! The yaw moment that a model lacks, as the rudder angle with the same moment: over time with its band, and below over
-//! what it may depend on, each with a smooth curve and the band that holds all of it.
+//! what it may depend on, each with a smooth curve and the band that holds all of it. The smoothed rows scatter about a
+//! curve by what it does not carry.
 
 use serde::{Deserialize, Serialize};
 
@@ -54,7 +55,7 @@ pub struct MissingMoment {
     pub panels: Vec<MomentPanel>,
 }
 
-const TITLE: &str = "missing moment [° of rudder]";
+const TITLE: &str = "moment [° rudder]";
 
 /// Draws time above and the channels below in two columns, in one where the figure is narrow.
 pub fn missing_moment(data: &MissingMoment, theme: &Theme) -> Figure {

@@ -104,7 +104,11 @@ fn title_of(over: Over) -> String {
 }
 
 fn percent(share: Option<f64>) -> String {
-    share.map_or_else(|| String::from("nothing to explain"), |share| format!("explains {:.0} %", 100.0 * share))
+    match share {
+        None => String::from("nothing to explain"),
+        Some(share) if share > 0.99 => String::from("explains more than 99 %"),
+        Some(share) => format!("explains {:.0} %", 100.0 * share),
+    }
 }
 
 /// The figure of one record.
@@ -154,40 +158,49 @@ fn moment_panel(missing: &MissingMoment, panel: &Panel, known: bool) -> MomentPa
     }
 }
 
-/// Whether the shape is that of no effect on the list.
-fn is_unlisted(report: &TraceReport, panel: &Panel) -> bool {
-    report.analysis.verdict == Verdict::Unexplained && panel.inside.is_empty()
+/// Curves that are not zero throughout, the most likely first.
+fn telling(missing: &MissingMoment) -> impl Iterator<Item = &Panel> + Clone {
+    missing.panels.iter().filter(|panel| panel.share.is_some() && !panel.curve.holds_nothing())
 }
 
-/// The panel that explains most, of those that show something.
-fn most(missing: &MissingMoment) -> Option<&Panel> {
-    missing.panels.iter().find(|panel| panel.share.is_some() && !panel.curve.holds_nothing())
+/// Explanations inside the bands of all curves that tell something.
+fn inside_all(missing: &MissingMoment) -> Vec<usize> {
+    let holds = |place: &usize| telling(missing).all(|panel| panel.inside.contains(place));
+    (0..missing.explanations.len()).filter(holds).collect()
 }
 
-/// One sentence on the moment of one record.
+/// Whether something is left unexplained and has the shape of no effect on the list.
+fn is_unlisted(report: &TraceReport, missing: &MissingMoment) -> bool {
+    let shows = telling(missing).next().is_some();
+    shows && report.analysis.verdict == Verdict::Unexplained && inside_all(missing).is_empty()
+}
+
+/// What is said of the moment of one record.
 pub fn sentence(report: &TraceReport, shown: &Shown) -> String {
     let missing = shown.missing;
     let mean_square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;
-    let size = significant(to_deg(mean_square.sqrt()), 2);
-    let name = &report.names[shown.number];
+    let (name, size) = (&report.names[shown.number], significant(to_deg(mean_square.sqrt()), 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
-    let Some(panel) = most(missing) else {
-        return format!("{begin}; over no channel does it leave the band about zero.");
+    let Some(best) = telling(missing).next() else {
+        return format!("{begin}; over no channel does its curve leave the band about zero.");
     };
-    let share = percent(panel.share);
-    let over = panel.over.as_str();
-    let listed = identifiers(missing, panel.inside.iter().copied());
-    match (listed, is_unlisted(report, panel)) {
-        (_, true) => format!(
-            "{begin}; unlisted, looks like this: its curve over the {over} {share} of its variance, and no known effect lies inside the band."
-        ),
-        (None, false) => format!(
-            "{begin}; its curve over the {over} {share} of its variance, and no single candidate lies inside the band."
-        ),
-        (Some(ids), false) => {
-            format!("{begin}; its curve over the {over} {share} of its variance, and inside the band lie {ids}.")
-        }
+    let list = |places: &[usize]| {
+        identifiers(missing, places.iter().copied()).unwrap_or_else(|| String::from("no effect on the list"))
+    };
+    let (over, share) = (best.over.as_str(), percent(best.share));
+    let mut text = format!(
+        "{begin}; its curve over the {over} {share} of its variance, and inside the band: {}",
+        list(&best.inside)
+    );
+    let count = telling(missing).count();
+    if count > 1 {
+        let _ = write!(
+            text,
+            "; inside the bands of all {count} channels that show something: {}",
+            list(&inside_all(missing))
+        );
     }
+    text + if is_unlisted(report, missing) { ". Unlisted, looks like this." } else { "." }
 }
 
 /// The moment of one record in `trace.json`.
@@ -197,9 +210,9 @@ pub struct MissingMomentEntry {
     file: String,
     /// The table of the smoothed moment.
     moment: String,
-    /// Whether the verdict is unexplained and no known effect lies inside the band of the best panel.
+    /// Whether the verdict is unexplained and no effect lies inside the bands of all curves that show something.
     unlisted: bool,
-    /// Curves over the channels, the one that explains most first.
+    /// Curves over the channels, the most likely first.
     over: Vec<PanelEntry>,
 }
 
@@ -207,7 +220,7 @@ pub struct MissingMomentEntry {
 #[derive(Debug, Serialize)]
 pub struct PanelEntry {
     channel: &'static str,
-    /// Share of the variance of the smoothed moment.
+    /// Share of the variance of its walk that the curve takes away.
     variance_share: Option<f64>,
     /// Whether the band leaves zero.
     shows: bool,
@@ -235,7 +248,7 @@ pub fn entries(report: &TraceReport) -> Vec<MissingMomentEntry> {
     let entry = |one: Shown| MissingMomentEntry {
         file: file_of(&report.trials[one.number]).0.to_owned(),
         moment: format!("{}.csv", one.stem),
-        unlisted: most(one.missing).is_some_and(|panel| is_unlisted(report, panel)),
+        unlisted: is_unlisted(report, one.missing),
         over: one.missing.panels.iter().map(|panel| of_panel(one.missing, panel)).collect(),
     };
     shown(report).into_iter().map(entry).collect()

@@ -138,8 +138,10 @@ pub struct Curve {
     /// The curves of other explanations, in the order in which they were asked for, found in the same way from what
     /// they do to the heading.
     pub others: Vec<Vec<f64>>,
-    /// The moment that the curve gives every row, rad of rudder.
-    pub at_rows: Vec<f64>,
+    /// Variance per second of the walk that is left beside the curve, rad² of rudder per s.
+    pub left: f64,
+    /// −2 log L with the curve, up to a constant of the record.
+    pub deviance: f64,
 }
 
 impl Curve {
@@ -159,7 +161,8 @@ impl Curve {
             let (_, left) = Normal::new(filter, &splines)?.solve(&filter.whitened(record));
             Some(deviance(left, filter, count))
         };
-        let filter = rows.filter(likeliest(rows, gain, value).exp());
+        let intensity = likeliest(rows, gain, value).exp();
+        let filter = rows.filter(intensity);
         let normal = Normal::new(&filter, &splines)?;
         let (coefficients, left) = normal.solve(&filter.whitened(record));
         let variance = variance(left, count, COEFFICIENTS);
@@ -179,7 +182,8 @@ impl Curve {
             moment: of_grid.iter().map(|values| along(&coefficients, values)).collect(),
             half_width: of_grid.iter().map(half_width).collect(),
             others: others.iter().map(other).collect(),
-            at_rows: values.iter().map(|values| along(&coefficients, values)).collect(),
+            left: intensity * variance,
+            deviance: deviance(left, &filter, count),
             x: grid,
         })
     }

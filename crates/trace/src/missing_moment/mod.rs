@@ -67,8 +67,8 @@ pub struct Panel {
     pub over: Over,
     /// The curve with its band; the others are those of the explanations.
     pub curve: Curve,
-    /// Share of the variance of the smoothed moment that is gone when the curve is taken for known; `None` where the
-    /// smoothed moment does not vary.
+    /// Share of the variance with which the moment wanders (that of its walk per second) that the curve takes away;
+    /// `None` where the moment does not wander.
     pub share: Option<f64>,
     /// Places of the explanations that lie inside the band everywhere; none where no moment at all does, too.
     pub inside: Vec<usize>,
@@ -89,7 +89,7 @@ pub struct MissingMoment {
     pub explanations: Vec<Explanation>,
     /// The moment of every explanation as the same smoother sees it, rad of rudder.
     pub explained: Vec<Vec<f64>>,
-    /// Curves over the channels that vary, the one with the largest share first.
+    /// Curves over the channels that vary, the most likely first.
     pub panels: Vec<Panel>,
 }
 
@@ -103,16 +103,16 @@ fn spread(values: &[f64]) -> f64 {
     values.iter().map(|value| (value - mean).powi(2)).sum()
 }
 
-/// A share of a spread below this one (rad² of rudder, mean square) is that of a constant.
+/// A moment whose mean square distance from its mean, rad² of rudder, is below this one does not wander.
 const STILL: f64 = 1e-12;
 
 impl MissingMoment {
     /// The moment that a base with these parameters lacks on a record whose heading noise is about `sd`, rad; `None`
-    /// for a record of too few headings.
+    /// for a record of too few headings, and for a rudder without effect.
     pub fn new(record: &Record, base: &FirstOrder, sd: f64, explanations: Vec<Explanation>) -> Option<Self> {
         let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
         let count = time.len();
-        if count < FEWEST {
+        if count < FEWEST || !base.K_over_T.is_normal() {
             return None;
         }
         let noise = |&row: &usize| record.full_readings as f64 / record.readings[row] as f64;
@@ -141,18 +141,12 @@ impl MissingMoment {
         let still = vec![[0.0; 2]; count];
         let others: Vec<Column> =
             explanations.iter().map(|one| Column { heading: one.heading.clone(), forced: still.clone() }).collect();
-        let all = spread(&moment);
+        let wanders = spread(&moment) > STILL * count as f64;
         let mut panels: Vec<Panel> = channels
             .iter()
             .filter_map(|(over, x)| {
                 let curve = Curve::new(&rows, gain, &own, x, &others)?;
-                let mut rest = own.clone();
-                for (step, pushed) in rest.forced.iter_mut().zip(rows.pushed(&curve.at_rows)) {
-                    (step[0], step[1]) = (step[0] + pushed[0], step[1] + pushed[1]);
-                }
-                let left: Vec<f64> = filter.smoothed(&rest).iter().map(|state| state[2]).collect();
-                let varies = all > STILL * count as f64;
-                let share = varies.then(|| (1.0 - spread(&left) / all).max(0.0));
+                let share = wanders.then(|| (1.0 - curve.left / (intensity * unit)).max(0.0));
                 let inside = match curve.holds_nothing() {
                     true => Vec::new(),
                     false => (0..others.len()).filter(|&k| curve.holds(&curve.others[k])).collect(),
@@ -160,7 +154,7 @@ impl MissingMoment {
                 Some(Panel { over: *over, curve, share, inside })
             })
             .collect();
-        panels.sort_by(|one, other| other.share.unwrap_or(0.0).total_cmp(&one.share.unwrap_or(0.0)));
+        panels.sort_by(|one, other| one.curve.deviance.total_cmp(&other.curve.deviance));
         Some(Self {
             sd: filter.moment_variance().iter().map(|variance| (variance * unit).sqrt()).collect(),
             explained: others

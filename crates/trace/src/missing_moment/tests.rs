@@ -4,10 +4,10 @@ use approx::assert_relative_eq;
 use nalgebra::{DMatrix, DVector};
 use ship::angle::from_deg;
 use ship::effects::NonlinearDamping;
-use ship::first_order::Transition;
+use ship::first_order::{State, Transition};
 
 use super::*;
-use crate::made_up::{BASE, Plan, record, ship};
+use crate::made_up::{BASE, Plan, of_columns, record, ship};
 
 fn base() -> FirstOrder {
     FirstOrder { inverse_T: BASE[0], K_over_T: BASE[1], rudder_bias: BASE[2] }
@@ -103,6 +103,35 @@ fn nothing_is_missing_where_nothing_is() {
         shown += missing.panels.iter().filter(|panel| !panel.curve.holds_nothing()).count();
     }
     assert!(10 * inside >= 9 * all && shown <= 2, "{inside} of {all} rows, {shown} of 60 panels");
+}
+
+/// A course-unstable base on a long record: the smoothed heading follows the record, and a step of the moment is found.
+#[test]
+fn an_unstable_base_is_smoothed_as_well() {
+    let unstable = FirstOrder { inverse_T: -0.02, K_over_T: 0.01, rudder_bias: 0.0 };
+    let count = 1500;
+    let time: Vec<f64> = (0..count).map(f64::from).collect();
+    // Steered so that it stays on course; the moment comes at half time.
+    let moment = |t: f64| if t < 750.0 { 0.0 } else { from_deg(2.0) };
+    let (mut heading, mut rudder, mut state) = (Vec::new(), Vec::new(), State::default());
+    for &t in &time {
+        let order = 0.2 * (0.05 * t).sin() - 2.0 * state.heading - 8.0 * state.yaw_rate;
+        heading.push(state.heading + from_deg(0.02) * (1.7 * t * t).sin());
+        rudder.push(order);
+        let input = |delta: f64| 0.01 * (delta + moment(t));
+        let ahead = Transition::new(-0.02, 1.0);
+        // The next order is where a fixed-point iteration comes to rest.
+        let next = (0..200).fold(order, |next, _| {
+            let to = ahead.advance(state, input(order), input(next) - input(order));
+            0.5 * (next + 0.2 * (0.05 * (t + 1.0)).sin() - 2.0 * to.heading - 8.0 * to.yaw_rate)
+        });
+        state = ahead.advance(state, input(order), input(next) - input(order));
+    }
+    let record = Record::whole(&of_columns(time, heading, rudder));
+    let missing = MissingMoment::new(&record, &unstable, from_deg(0.02), Vec::new()).expect("enough rows");
+    for (row, expected) in [(300, 0.0), (600, 0.0), (900, from_deg(2.0)), (1300, from_deg(2.0))] {
+        assert!((missing.moment[row] - expected).abs() < 4.0 * missing.sd[row].min(from_deg(0.3)), "{row}");
+    }
 }
 
 /// Cubic damping is seen as what it is: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
