@@ -147,7 +147,10 @@ fn moment_panel(missing: &MissingMoment, panel: &Panel, known: bool) -> MomentPa
     let others = panel.curve.others.first().filter(|_| known);
     MomentPanel {
         x_title: title_of(panel.over),
-        head: percent(panel.share),
+        head: match panel.curve.holds_nothing() {
+            true => String::from("zero lies inside the band"),
+            false => percent(panel.share),
+        },
         rows: Curve::new(rows, degrees(missing.moment.iter().copied())),
         curve: Banded {
             middle: curve(&mut panel.curve.moment.iter().copied()),

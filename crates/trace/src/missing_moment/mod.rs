@@ -1,5 +1,5 @@
-//! The yaw moment that the base lacks, seen: smoothed over the time of a record, and as a function of what it may depend
-//! on.
+//! The yaw moment that the base lacks, seen: smoothed over the time of a record, and as a function of what it may
+//! depend on.
 //!
 //! The suspect term is a random state (Kristensen, Madsen and Jørgensen 2004): a moment that walks, beside the heading
 //! and the yaw rate of the fitted base. Smoothed, it is what the base lacks, as the rudder angle with the same moment.
@@ -89,7 +89,7 @@ pub struct MissingMoment {
     pub explanations: Vec<Explanation>,
     /// The moment of every explanation as the same smoother sees it, rad of rudder.
     pub explained: Vec<Vec<f64>>,
-    /// Curves over the channels that vary, the most likely first.
+    /// Curves over the channels that vary: first those whose band leaves zero, the most likely of them first.
     pub panels: Vec<Panel>,
 }
 
@@ -154,7 +154,11 @@ impl MissingMoment {
                 Some(Panel { over: *over, curve, share, inside })
             })
             .collect();
-        panels.sort_by(|one, other| one.curve.deviance.total_cmp(&other.curve.deviance));
+        let rank = |panel: &Panel| (panel.curve.holds_nothing(), panel.curve.deviance);
+        panels.sort_by(|one, other| {
+            let ((one, first), (other, second)) = (rank(one), rank(other));
+            one.cmp(&other).then(first.total_cmp(&second))
+        });
         Some(Self {
             sd: filter.moment_variance().iter().map(|variance| (variance * unit).sqrt()).collect(),
             explained: others

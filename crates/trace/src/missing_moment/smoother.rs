@@ -21,7 +21,8 @@ const LARGE: f64 = 1.0;
 /// States that are not known in the beginning.
 pub(super) const STATES: usize = 3;
 
-/// Headings of all rows, rad, and what a known input adds to heading (rad) and yaw rate (rad/s) in the step before each.
+/// Headings of all rows, rad, and what a known input adds to heading (rad) and yaw rate (rad/s) in the step before
+/// each.
 #[derive(Debug, Clone)]
 pub(super) struct Column {
     pub heading: Vec<f64>,
