@@ -78,7 +78,8 @@ pub const DOTTED: Dash = &[1.4, 1.8];
 pub const DASH_DOT: Dash = &[6.0, 2.0, 1.4, 2.0];
 const LONG_DASH: Dash = &[10.0, 2.5];
 const DASH_DOT_DOT: Dash = &[6.0, 1.8, 1.4, 1.8, 1.4, 1.8];
-const SHORT_DASH: Dash = &[3.0, 1.6];
+/// A line of short dashes.
+pub const SHORT_DASH: Dash = &[3.0, 1.6];
 const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 
 /// Text, frames and the truth.

@@ -14,6 +14,7 @@
 //! | where a squall was | [`transient`] |
 //! | errors before and after | [`replay_errors`], [`held_out`], [`own_moment`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
+//! | the yaw moment that the base lacks, over time and over what it may depend on | [`missing_moment`] |
 //! | what is left in the end | [`diagnostics`], [`monomial`] |
 
 pub mod analysis;
@@ -22,6 +23,7 @@ pub mod diagnostics;
 pub mod fit;
 pub mod held_out;
 pub mod index;
+pub mod missing_moment;
 pub mod monomial;
 pub mod noise;
 pub mod own_moment;

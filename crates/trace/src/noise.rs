@@ -18,7 +18,7 @@ use crate::record::Record;
 const MOST: usize = 5;
 
 type Vector = [f64; MOST];
-type Matrix = [[f64; MOST]; MOST];
+pub(crate) type Matrix = [[f64; MOST]; MOST];
 
 /// What the filter does with a row: gain, log S, weight.
 type Correction<const N: usize> = ([f64; N], f64, f64);
@@ -96,7 +96,7 @@ impl Drift {
 }
 
 /// Transition and added covariance over h for white noise of the given intensity on the last state (Van Loan 1978).
-fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix) {
+pub(crate) fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix) {
     let m = generator.nrows();
     let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
     block.view_mut((0, 0), (m, m)).copy_from(&(-generator * h));

@@ -151,9 +151,19 @@ impl Record {
         }
     }
 
-    /// Rudder angle of the rows, rad.
+    /// Values of the rudder angle, rad.
     pub fn rudder(&self) -> &[f64] {
         self.rudder.values()
+    }
+
+    /// Rudder angle, rad, as a signal.
+    pub fn rudder_signal(&self) -> &Polyline {
+        &self.rudder
+    }
+
+    /// Direction from which the relative wind comes, rad from the bow, as a signal, where its speed is there as well.
+    pub fn wind_from(&self) -> Option<&Polyline> {
+        self.wind_from.as_ref().filter(|_| self.wind_speed.is_some())
     }
 
     /// Speed, m/s, as a signal.

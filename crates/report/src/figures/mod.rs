@@ -9,6 +9,7 @@ mod error_curves;
 mod evidence;
 mod heat_map;
 mod intervals;
+mod missing_moment;
 mod power;
 mod record_fit;
 mod replays;
@@ -26,6 +27,7 @@ pub use error_curves::{ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, er
 pub use evidence::{Evidence, EvidenceBar, Fate, evidence};
 pub use heat_map::{HeatMap, HeatPanel, heat_map};
 pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
+pub use missing_moment::{Banded, MissingMoment, MomentPanel, missing_moment};
 pub use power::{Power, PowerSeries, power};
 pub use record_fit::{Fit, RecordFit, record_fit};
 pub use replays::{Replay, Replays, replays};

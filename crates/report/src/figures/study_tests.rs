@@ -3,6 +3,7 @@
 use super::tests::check;
 use super::*;
 use crate::Theme;
+use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::palette::{self, Origin};
 
@@ -86,7 +87,27 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         reference: band,
         ..ErrorCurves::default()
     };
+    let line = |scale: f64| {
+        Curve::new(
+            (0..n).map(|k| k as f64).collect::<Vec<_>>(),
+            (0..n).map(|k| scale * if k == 1 { wild } else { (0.3 * k as f64).sin() }).collect::<Vec<_>>(),
+        )
+    };
+    let banded = Banded { middle: line(1.0), lower: line(0.8), upper: line(1.2), known: Some(line(1.1)) };
+    let moment_panel = MomentPanel {
+        x_title: "yaw rate [°/s]".into(),
+        head: "explains 93 %".into(),
+        rows: line(1.05),
+        curve: banded.clone(),
+    };
+    let moment = MissingMoment {
+        title: Some("a record".into()),
+        time: banded,
+        known: Some("nonlinear_damping".into()),
+        panels: vec![moment_panel; 3],
+    };
     vec![
+        ("missing moment", missing_moment(&moment, theme)),
         ("dots", super::dots(&dot_plot, theme)),
         ("ecdf", ecdf(&Ecdf { title: None, panels: vec![ecdf_panel.clone(), ecdf_panel] }, theme)),
         ("violins", violins(&Violins { title: None, panels: vec![violin_panel.clone(), violin_panel] }, theme)),
@@ -117,12 +138,13 @@ fn nothing_is_nothing() {
     check("violins", &violins(&Violins::default(), &theme));
     check("scatter", &scatter(&KtScatter::default(), &theme));
     check("heat map", &heat_map(&HeatMap::default(), &theme));
+    check("missing moment", &missing_moment(&MissingMoment::default(), &theme));
 }
 
 #[test]
 fn methods_keep_their_colours() {
     for (name, figure) in all(40, 0.3, &Theme::screen()) {
-        let coloured = name == "heat map" || figure.svg().contains("#009E73");
+        let coloured = ["heat map", "missing moment"].contains(&name) || figure.svg().contains("#009E73");
         assert!(coloured, "output-error in {name}");
     }
 }

@@ -11,7 +11,7 @@ use crate::options::{Common, Format, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read, warn_of_repetition};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
-use crate::views::{trace_figures, trace_page, trace_tables};
+use crate::views::{missing_moment, trace_figures, trace_page, trace_tables};
 use crate::{progress, screen};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
@@ -55,6 +55,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let report = TraceReport {
         names: names(trials.iter().chain(&others).map(Trial::name)),
         prospects: analysis.prospects(&planned),
+        missing: analysis.missing_moments(),
         trials: &trials,
         others: &others,
         analysis: &analysis,
@@ -62,6 +63,9 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let path = folder.path().join(TRACE);
     let json = serde_json::to_string_pretty(&TraceFile::of(&report)).on("describe", &path)?;
     folder.keep(TRACE, json + "\n")?;
+    for shown in missing_moment::shown(&report) {
+        folder.write(&format!("{}.csv", shown.stem), missing_moment::table(shown.missing))?;
+    }
     let drawn = trace_figures::draw(&report, &theme, &folder)?;
     folder.write("report.md", trace_page::page(&report, &drawn))?;
     if !common.quiet {

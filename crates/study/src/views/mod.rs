@@ -5,6 +5,7 @@ pub mod drawings;
 pub mod fit_figures;
 pub mod fit_file;
 pub mod method_table;
+pub mod missing_moment;
 pub mod picture;
 pub mod publish;
 pub mod study_page;

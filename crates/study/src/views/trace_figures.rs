@@ -1,5 +1,5 @@
-//! Figures of an analysis: every record with the model before and after, the residuals from several sides, and the
-//! candidates with the threshold.
+//! Figures of an analysis: every record with the model before and after, the residuals from several sides, the moment
+//! that the base lacks, and the candidates with the threshold.
 
 use ::trace::analysis::{Judged, Outcome};
 use ::trace::diagnostics::{Series, autocorrelation, spectrum};
@@ -10,6 +10,7 @@ use report::{Curve, Figure, Origin, Theme};
 use ship::angle::to_deg;
 use trial::Trial;
 
+use super::missing_moment;
 use super::picture::{first_failure, slug, write_figure};
 use super::trace_page;
 use super::trace_report::TraceReport;
@@ -56,6 +57,12 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
         );
         let name = name.clone();
         drawings.push((format!("residual{suffix}"), caption, Box::new(move || residual(trial, judged, &name, theme))));
+    }
+    for shown in missing_moment::shown(report) {
+        let caption = missing_moment::sentence(report, &shown);
+        let stem = shown.stem.clone();
+        let draw = move || missing_moment::figure(report, &shown, theme);
+        drawings.push((stem, caption, Box::new(draw)));
     }
     let caption =
         "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";

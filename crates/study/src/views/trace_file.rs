@@ -8,6 +8,7 @@ use serde::Serialize;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial};
 
+use super::missing_moment::{self, MissingMomentEntry};
 use super::trace_entries::{
     CandidateEntry, EffectEntry, ParameterEntry, PriorEntry, StructureEntry, candidates, is_false,
 };
@@ -39,6 +40,8 @@ pub struct TraceFile {
     pub error: ErrorEntry,
     /// Whiteness of the residual before and after.
     pub residual: ResidualEntry,
+    /// The yaw moment that the base lacks on every fitted record.
+    pub missing_moment: Vec<MissingMomentEntry>,
     /// The trial that would tell most.
     pub next_trial: String,
     /// The augmented model.
@@ -225,6 +228,7 @@ impl TraceFile {
                 leave_one_out: entries(report.trials, analysis.left_out.iter().map(Option::as_ref)),
             },
             residual: ResidualEntry { before: whiteness(0), after: whiteness(1) },
+            missing_moment: missing_moment::entries(report),
             next_trial: trace_page::next_trial(report),
             model: ModelEntry {
                 equations: match analysis.effects.is_empty() {

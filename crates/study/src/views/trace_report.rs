@@ -1,6 +1,7 @@
 //! What the words, tables, figures and JSON of one analysis are made from.
 
 use ::trace::Analysis;
+use ::trace::missing_moment::MissingMoment;
 use trial::Trial;
 
 /// Everything that is said about one analysis.
@@ -15,4 +16,6 @@ pub struct TraceReport<'a> {
     pub analysis: &'a Analysis,
     /// What planned trials would tell, best first.
     pub prospects: Vec<::trace::analysis::Prospect>,
+    /// The yaw moment that the base lacks on every fitted record; `None` where it has too few headings.
+    pub missing: Vec<Option<MissingMoment>>,
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::Value;
-use ship::effects::{Effect, MomentDrift, SecondOrder};
+use ship::effects::{Effect, MomentDrift, NonlinearDamping, SecondOrder};
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, ships};
 
@@ -99,6 +99,38 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
     }
+}
+
+/// The moment that the base lacks is a table and a figure for every fitted record, and none for those held out.
+#[test]
+fn the_missing_moment_is_written() {
+    let desk = Desk::new();
+    desk.file("Run 1.csv", zig_zag_csv_of(&with_effect(Arc::new(NonlinearDamping::Cubic), &[60.0])));
+    desk.file("other.csv", zig_zag_csv());
+    desk.run(&["trace", "Run 1.csv", "--validate", "other.csv", "--out", "here", "--quiet"]).is_done();
+    let json = desk.json("here/trace.json");
+    let records = json["missing_moment"].as_array().expect("a list");
+    assert_eq!((records.len(), records[0]["file"].as_str()), (1, Some("Run 1.csv")));
+    assert_eq!(records[0]["moment"], "missing-moment-run-1.csv");
+    let best = &records[0]["over"][0];
+    assert_eq!((&best["channel"], &best["shows"]), (&Value::from("yaw rate"), &Value::from(true)), "{records:?}");
+    assert!(best["inside"].as_array().is_some_and(|inside| inside.contains(&"nonlinear_damping".into())), "{best}");
+    let table = String::from_utf8(desk.bytes("here/missing-moment-run-1.csv")).expect("UTF-8");
+    let mut lines = table.lines();
+    assert_eq!(
+        lines.next(),
+        Some(
+            "t_s,moment_rudder_deg,sd_rudder_deg,lower95_rudder_deg,upper95_rudder_deg,yaw_rate_deg_s,rudder_deg,heading_deg"
+        )
+    );
+    let rows: Vec<Vec<f64>> =
+        lines.map(|line| line.split(',').map(|value| value.parse().expect("a number")).collect()).collect();
+    assert!(rows.len() > 100 && rows.iter().all(|row| row.len() == 8 && row[3] <= row[1] && row[1] <= row[4]));
+    let report = String::from_utf8(desk.bytes("here/report.md")).expect("UTF-8");
+    for ending in ["png", "svg"] {
+        assert!(desk.path(&format!("here/missing-moment-run-1.{ending}")).exists(), "{ending}");
+    }
+    assert!(report.contains("(missing-moment-run-1.png)") && report.contains("its curve over the yaw rate explains"));
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod elsewhere;
 mod fitted;
 mod left_out;
+mod missing;
 mod parameters;
 mod prospects;
 mod replays;
@@ -168,6 +169,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         whiteness,
         refused,
         thresholds: settings.thresholds,
+        tried,
+        start,
         candidate_terms,
         model,
         problem,

@@ -11,7 +11,7 @@ use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;
 use crate::noise::Moment;
 use crate::replay_errors::Errors;
-use crate::search::{Evidence, Model, Thresholds, Weights};
+use crate::search::{Evidence, Model, Thresholds, Tried, Weights};
 
 /// What the analysis says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -224,6 +224,10 @@ pub struct Analysis {
     /// The thresholds it was judged by.
     pub thresholds: Thresholds,
     pub(super) problem: Problem,
+    /// The base.
+    pub(super) start: Model,
+    /// All candidates on the base, lowest BIC first.
+    pub(super) tried: Vec<Tried>,
     pub(super) candidate_terms: Vec<Candidate>,
     pub(super) model: Model,
 }

@@ -22,5 +22,6 @@ mod tests;
 pub use linear::{Column, Columns, Linear};
 pub(crate) use linear::{Normal, acts, log_variance, whiten};
 pub use linearised::Linearised;
+pub(crate) use moments::minimum;
 pub use outcome::Fit;
 pub use problem::Problem;

@@ -23,7 +23,7 @@ impl Problem {
 }
 
 /// Smallest value on a range: a grid, then golden sections about its lowest point.
-fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
+pub(crate) fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
     let at = |k: usize| lo + (hi - lo) * k as f64 / points as f64;
     let heights: Vec<f64> = (0..=points).map(|k| value(at(k))).collect();
     let best = (0..=points).min_by(|&i, &j| heights[i].total_cmp(&heights[j])).unwrap_or(0);

@@ -1,0 +1,201 @@
+//! The missing moment as a smooth function of one channel, with a simultaneous band.
+//!
+//! m(t) = f(x(t)) + walk, with f a cubic spline of two inner knots at the thirds of the range that the record visits.
+//! Its coefficients are found by generalised least squares on the headings: what every spline does to the heading goes
+//! through the same filter as the record, whose walk carries what f does not, and the size of that walk is chosen by
+//! likelihood together with f. So the neighbourhood of rows is counted as what it is, and not as so many independent
+//! values of m. The walk begins anywhere, so f is determined up to a constant: its mean over the rows is zero.
+//!
+//! The band is that of Scheffé (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::smoother::{Column, Filter, Rows, STATES};
+use crate::fit::minimum;
+
+/// Inner knots, on a range from −1 to 1.
+const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
+
+/// Coefficients of a curve without its constant.
+const COEFFICIENTS: usize = 3 + KNOTS.len();
+
+/// Points of a curve.
+const POINTS: usize = 61;
+
+/// Smallest share of its largest magnitude over which a channel has to vary.
+const VARIES: f64 = 5e-3;
+
+/// Smallest pivot of the normalised normal equations: below it the rows do not determine the curve.
+const SINGULAR: f64 = 1e-10;
+
+/// No heading is believed to be better than this, rad.
+const FINEST: f64 = 1.75e-5;
+
+/// Sizes of the walk that are tried: variance of the heading that it would leave at the end of the record of a ship
+/// without damping, over σ².
+const LEVELS: [f64; 2] = [1e-3, 1e13];
+
+/// Points of the grid of sizes.
+const GRID: usize = 12;
+
+/// The logarithm of λ of largest likelihood, by −2 log L of a filter.
+pub(super) fn likeliest(rows: &Rows, gain: f64, value: impl Fn(&Filter) -> Option<f64>) -> f64 {
+    let length = rows.time[rows.count() - 1] - rows.time[0];
+    let unit = 20.0 / (length.powi(5) * gain * gain);
+    let [low, high] = LEVELS.map(|level| (level * unit).ln());
+    minimum(low, high, GRID, |log| value(&rows.filter(log.exp())).unwrap_or(f64::INFINITY)).0
+}
+
+/// −2 log L up to a constant, with σ² at its best value.
+pub(super) fn deviance(square: f64, filter: &Filter, rows: usize) -> f64 {
+    let n = (rows - STATES) as f64;
+    n * (square / n + FINEST * FINEST).ln() + filter.log_variance
+}
+
+/// σ² from a whitened sum of squares after `coefficients` were fitted, rad².
+pub(super) fn variance(square: f64, rows: usize, coefficients: usize) -> f64 {
+    square / (rows - STATES - coefficients) as f64 + FINEST * FINEST
+}
+
+/// Fewest rows for a curve.
+pub(super) const FEWEST: usize = 4 * (STATES + COEFFICIENTS);
+
+/// The splines on the range of a channel, each with mean zero over the rows.
+struct Basis {
+    middle: f64,
+    half: f64,
+    means: [f64; COEFFICIENTS],
+}
+
+impl Basis {
+    fn new(x: &[f64]) -> Option<Self> {
+        let (low, high) = x.iter().fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x)));
+        let largest = low.abs().max(high.abs());
+        let varies = high - low > VARIES * largest;
+        let mut basis = Self { middle: 0.5 * (low + high), half: 0.5 * (high - low), means: [0.0; COEFFICIENTS] };
+        let mut sums = [0.0; COEFFICIENTS];
+        for &x in x {
+            sums.iter_mut().zip(basis.at(x)).for_each(|(sum, value)| *sum += value);
+        }
+        basis.means = sums.map(|sum| sum / x.len() as f64);
+        varies.then_some(basis)
+    }
+
+    fn at(&self, x: f64) -> [f64; COEFFICIENTS] {
+        let z = (x - self.middle) / self.half;
+        let [one, other] = KNOTS.map(|knot| (z - knot).max(0.0).powi(3));
+        let values = [z, z * z, z * z * z, one, other];
+        std::array::from_fn(|k| values[k] - self.means[k])
+    }
+
+    fn grid(&self) -> Vec<f64> {
+        let share = |k: usize| 2.0 * k as f64 / (POINTS - 1) as f64 - 1.0;
+        (0..POINTS).map(|k| self.middle + share(k) * self.half).collect()
+    }
+}
+
+/// Normal equations of the coefficients of a curve under one filter.
+struct Normal {
+    columns: Vec<Vec<f64>>,
+    inverse: DMatrix<f64>,
+}
+
+fn dot(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(x, y)| x * y).sum()
+}
+
+impl Normal {
+    fn new(filter: &Filter, splines: &[Column]) -> Option<Self> {
+        let columns: Vec<Vec<f64>> = splines.iter().map(|spline| filter.whitened(spline)).collect();
+        let matrix = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| dot(&columns[i], &columns[j]));
+        let scale = DVector::from_fn(COEFFICIENTS, |i, _| matrix[(i, i)].sqrt().recip());
+        let scaled = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| matrix[(i, j)] * scale[i] * scale[j]);
+        let factor = scaled.cholesky().filter(|factor| factor.l_dirty().diagonal().min().powi(2) > SINGULAR)?;
+        let inverse = factor.inverse();
+        let inverse = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| inverse[(i, j)] * scale[i] * scale[j]);
+        Some(Self { columns, inverse })
+    }
+
+    /// Coefficients, and the sum of squares that is left.
+    fn solve(&self, whitened: &[f64]) -> (DVector<f64>, f64) {
+        let side = DVector::from_iterator(COEFFICIENTS, self.columns.iter().map(|column| dot(column, whitened)));
+        let coefficients = &self.inverse * &side;
+        let left = dot(whitened, whitened) - side.dot(&coefficients);
+        (coefficients, left.max(0.0))
+    }
+}
+
+/// A curve over one channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Values of the channel, SI units and rad, over the range that the record visits.
+    pub x: Vec<f64>,
+    /// The moment there, rad of rudder, with mean zero over the rows of the record.
+    pub moment: Vec<f64>,
+    /// Half the width of the band that holds the whole curve with 95 %, rad of rudder.
+    pub half_width: Vec<f64>,
+    /// The curves of other explanations, in the order in which they were asked for, found in the same way from what
+    /// they do to the heading.
+    pub others: Vec<Vec<f64>>,
+    /// Variance per second of the walk that is left beside the curve, rad² of rudder per s.
+    pub left: f64,
+    /// −2 log L with the curve, up to a constant of the record.
+    pub deviance: f64,
+}
+
+impl Curve {
+    /// The curve of a record over a channel, and what it makes of the headings (rad) that other explanations add to
+    /// those of the base. `None` where the channel does not vary or the rows do not determine the curve.
+    pub(super) fn new(rows: &Rows, gain: f64, record: &Column, x: &[f64], others: &[Column]) -> Option<Self> {
+        let count = rows.count();
+        let basis = Basis::new(x).filter(|_| count >= FEWEST)?;
+        let values: Vec<[f64; COEFFICIENTS]> = x.iter().map(|&x| basis.at(x)).collect();
+        // A moment adds to the heading as the record has it: with the opposite sign it would be an input.
+        let spline = |k: usize| {
+            let moment: Vec<f64> = values.iter().map(|values| -values[k]).collect();
+            Column { heading: vec![0.0; count], forced: rows.pushed(&moment) }
+        };
+        let splines: Vec<Column> = (0..COEFFICIENTS).map(spline).collect();
+        let value = |filter: &Filter| {
+            let (_, left) = Normal::new(filter, &splines)?.solve(&filter.whitened(record));
+            Some(deviance(left, filter, count))
+        };
+        let intensity = likeliest(rows, gain, value).exp();
+        let filter = rows.filter(intensity);
+        let normal = Normal::new(&filter, &splines)?;
+        let (coefficients, left) = normal.solve(&filter.whitened(record));
+        let variance = variance(left, count, COEFFICIENTS);
+        let width = ChiSquared::new(COEFFICIENTS as f64).ok()?.inverse_cdf(0.95).sqrt();
+        let along = |coefficients: &DVector<f64>, values: &[f64; COEFFICIENTS]| dot(coefficients.as_slice(), values);
+        let grid = basis.grid();
+        let of_grid: Vec<[f64; COEFFICIENTS]> = grid.iter().map(|&x| basis.at(x)).collect();
+        let half_width = |values: &[f64; COEFFICIENTS]| {
+            let values = DVector::from_row_slice(values);
+            width * (variance * values.dot(&(&normal.inverse * &values))).max(0.0).sqrt()
+        };
+        let other = |column: &Column| {
+            let (coefficients, _) = normal.solve(&filter.whitened(column));
+            of_grid.iter().map(|values| along(&coefficients, values)).collect()
+        };
+        Some(Self {
+            moment: of_grid.iter().map(|values| along(&coefficients, values)).collect(),
+            half_width: of_grid.iter().map(half_width).collect(),
+            others: others.iter().map(other).collect(),
+            left: intensity * variance,
+            deviance: deviance(left, &filter, count),
+            x: grid,
+        })
+    }
+
+    /// Whether another curve lies inside the band everywhere.
+    pub fn holds(&self, other: &[f64]) -> bool {
+        let rows = self.moment.iter().zip(&self.half_width).zip(other);
+        rows.fold(true, |all, ((own, half), other)| all && (own - other).abs() <= *half)
+    }
+
+    /// Whether no moment at all lies inside the band.
+    pub fn holds_nothing(&self) -> bool {
+        self.holds(&[0.0; POINTS])
+    }
+}

@@ -1,0 +1,172 @@
+use std::sync::Arc;
+
+use approx::assert_relative_eq;
+use nalgebra::{DMatrix, DVector};
+use ship::angle::from_deg;
+use ship::effects::NonlinearDamping;
+use ship::first_order::{State, Transition};
+
+use super::*;
+use crate::made_up::{BASE, Plan, of_columns, record, ship};
+
+fn base() -> FirstOrder {
+    FirstOrder { inverse_T: BASE[0], K_over_T: BASE[1], rudder_bias: BASE[2] }
+}
+
+/// Mean and variance given all rows are those of one large normal vector, of a ship of either sign of 1/T.
+#[test]
+fn the_smoother_is_the_conditional_mean() {
+    for inverse in [0.06, 0.0, -0.03] {
+        let ship = FirstOrder { inverse_T: inverse, K_over_T: 0.02, rudder_bias: 0.0 };
+        let time = (0..14).map(|k| 1.3 * f64::from(k) + 0.4 * f64::from(k % 3) + if k > 8 { 7.0 } else { 0.0 });
+        let time: Vec<f64> = time.collect();
+        let n = time.len();
+        let noise: Vec<f64> = (0..n).map(|k| if k % 4 == 0 { 2.0 } else { 1.0 }).collect();
+        let (sd, intensity) = (0.05, 0.7);
+        let rows = Rows::new(ship, time.clone(), noise.clone(), sd);
+        let heading: Vec<f64> = time.iter().map(|t| (0.21 * t).sin() + 0.02 * t).collect();
+        let column = Column { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
+
+        // Heading a time after the state was one; the walk is integrated over.
+        let slope = |t: f64| Transition::new(inverse, t);
+        let of = |t: f64| -> [f64; 3] { [1.0, slope(t).phi1, 0.02 * slope(t).phi2] };
+        let prior = sd.powi(-2);
+        let (mut seen, mut cross) = (DMatrix::<f64>::from_diagonal(&DVector::from_vec(noise)), DMatrix::zeros(n, n));
+        let mut own = DMatrix::<f64>::zeros(n, n);
+        let since = |row: usize| time[row] - time[0];
+        for i in 0..n {
+            for j in 0..n {
+                let (one, other) = (of(since(i)), of(since(j)));
+                seen[(i, j)] += prior * (0..3).map(|k| one[k] * other[k]).sum::<f64>();
+                cross[(i, j)] = prior * other[2];
+                own[(i, j)] = prior + intensity * since(i.min(j));
+                let until = since(i.min(j));
+                let both = |s: f64| of(since(i) - s)[2] * of(since(j) - s)[2];
+                seen[(i, j)] += intensity * integral(until, both);
+                // The moment of row i and the heading of row j.
+                cross[(i, j)] += intensity * integral(until, |s| of(since(j) - s)[2]);
+            }
+        }
+        let factor = seen.cholesky().expect("a covariance");
+        let mean = &cross * factor.solve(&DVector::from_vec(heading));
+        let left = &own - &cross * factor.solve(&cross.transpose());
+        let filter = rows.filter(intensity);
+        let (states, variances) = (filter.smoothed(&column), filter.moment_variance());
+        for row in 0..n {
+            assert_relative_eq!(states[row][2], mean[row], epsilon = 1e-8, max_relative = 1e-8);
+            assert_relative_eq!(variances[row], left[(row, row)], max_relative = 1e-8);
+        }
+    }
+}
+
+/// ∫₀ᵗ by the rule of Gauss and Legendre with five points on forty pieces.
+fn integral(until: f64, value: impl Fn(f64) -> f64) -> f64 {
+    let nodes = [(0.0, 128.0 / 225.0), (1.0, 0.0), (-1.0, 0.0)];
+    let root = |sign: f64| (5.0 + sign * 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0;
+    let weight = |sign: f64| (322.0 - sign * 13.0 * 70.0_f64.sqrt()) / 900.0;
+    let inner =
+        [(root(-1.0), weight(-1.0)), (-root(-1.0), weight(-1.0)), (root(1.0), weight(1.0)), (-root(1.0), weight(1.0))];
+    let half = until / 80.0;
+    let piece = |k: usize| {
+        let middle = (2 * k + 1) as f64 * half;
+        nodes.iter().chain(&inner).map(|(x, w)| w * half * value(middle + x * half)).sum::<f64>()
+    };
+    (0..40).map(piece).sum()
+}
+
+/// Steps forced by the rudder and by a moment are those of the exact response.
+#[test]
+fn a_known_input_acts_between_rows() {
+    let truth = base();
+    let record = Record::whole(&record(&ship(Vec::new()), Plan { noise_deg: 0.0, ..Plan::default() }));
+    let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+    let rows = Rows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
+    let steered = rows.steered(record.rudder_signal());
+    let rudder: Vec<f64> = at_rows(record.rudder_signal(), &time).iter().map(|delta| delta + BASE[2]).collect();
+    for (one, other) in steered.iter().zip(rows.pushed(&rudder)) {
+        assert_relative_eq!(one[0], other[0], epsilon = 1e-14);
+        assert_relative_eq!(one[1], other[1], epsilon = 1e-14);
+    }
+}
+
+/// Of a ship without secrets the band holds zero, and no panel shows anything.
+#[test]
+fn nothing_is_missing_where_nothing_is() {
+    let (mut inside, mut all, mut shown) = (0, 0, 0);
+    for seed in 1..=20 {
+        let record = Record::whole(&record(&ship(Vec::new()), Plan { seed, ..Plan::default() }));
+        let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
+        let holds = |row: &usize| missing.interval(*row)[0] <= 0.0 && 0.0 <= missing.interval(*row)[1];
+        inside += (0..missing.time.len()).filter(holds).count();
+        all += missing.time.len();
+        assert_eq!(missing.panels.len(), 3);
+        shown += missing.panels.iter().filter(|panel| !panel.curve.holds_nothing()).count();
+    }
+    assert!(10 * inside >= 9 * all && shown <= 2, "{inside} of {all} rows, {shown} of 60 panels");
+}
+
+/// A course-unstable base on a long record: the smoothed heading follows the record, and a step of the moment is found.
+#[test]
+fn an_unstable_base_is_smoothed_as_well() {
+    let unstable = FirstOrder { inverse_T: -0.02, K_over_T: 0.01, rudder_bias: 0.0 };
+    let count = 1500;
+    let time: Vec<f64> = (0..count).map(f64::from).collect();
+    // Steered so that it stays on course; the moment comes at half time.
+    let moment = |t: f64| if t < 750.0 { 0.0 } else { from_deg(2.0) };
+    let (mut heading, mut rudder, mut state) = (Vec::new(), Vec::new(), State::default());
+    for &t in &time {
+        let order = 0.2 * (0.05 * t).sin() - 2.0 * state.heading - 8.0 * state.yaw_rate;
+        heading.push(state.heading + from_deg(0.02) * (1.7 * t * t).sin());
+        rudder.push(order);
+        let input = |delta: f64| 0.01 * (delta + moment(t));
+        let ahead = Transition::new(-0.02, 1.0);
+        // The next order is where a fixed-point iteration comes to rest.
+        let next = (0..200).fold(order, |next, _| {
+            let to = ahead.advance(state, input(order), input(next) - input(order));
+            0.5 * (next + 0.2 * (0.05 * (t + 1.0)).sin() - 2.0 * to.heading - 8.0 * to.yaw_rate)
+        });
+        state = ahead.advance(state, input(order), input(next) - input(order));
+    }
+    let record = Record::whole(&of_columns(time, heading, rudder));
+    let missing = MissingMoment::new(&record, &unstable, from_deg(0.02), Vec::new()).expect("enough rows");
+    for (row, expected) in [(300, 0.0), (600, 0.0), (900, from_deg(2.0)), (1300, from_deg(2.0))] {
+        assert!((missing.moment[row] - expected).abs() < 4.0 * missing.sd[row].min(from_deg(0.3)), "{row}");
+    }
+}
+
+/// Cubic damping is seen as what it is: odd, and −n₃ r³/K over the yaw rate, in units of rudder.
+#[test]
+fn cubic_damping_has_its_shape() {
+    const CUBE: f64 = 80.0;
+    let damped = ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![CUBE])]);
+    let record = Record::whole(&record(&damped, Plan::default()));
+    let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
+    let panel = &missing.panels[0];
+    assert_eq!(panel.over, Over::YawRate, "{:?}", missing.panels.iter().map(|p| (p.over, p.share)).collect::<Vec<_>>());
+    assert!(panel.share.is_some_and(|share| share > 0.8), "{:?}", panel.share);
+    assert!(!panel.curve.holds_nothing());
+    // r' = … − c r³ is that of a rudder angle of −c r³ T/K.
+    let per = CUBE / BASE[1];
+    let rates = &missing.channels[0].1;
+    let mean = rates.iter().map(|r| -per * r.powi(3)).sum::<f64>() / rates.len() as f64;
+    let truth: Vec<f64> = panel.curve.x.iter().map(|r| -per * r.powi(3) - mean).collect();
+    assert!(panel.curve.holds(&truth));
+    let (x, moment) = (&panel.curve.x, &panel.curve.moment);
+    let at = |r: f64| {
+        let place = (1..x.len()).find(|&k| x[k] >= r).unwrap_or(x.len() - 1);
+        moment[place - 1] + (moment[place] - moment[place - 1]) * (r - x[place - 1]) / (x[place] - x[place - 1])
+    };
+    let reach = 0.9 * x[0].abs().min(x[x.len() - 1]);
+    let size = moment.iter().fold(0.0_f64, |most, m| most.max(m.abs()));
+    for share in [0.3, 0.6, 1.0] {
+        let sum = at(share * reach) + at(-share * reach) - 2.0 * at(0.0);
+        assert!(sum.abs() < 0.15 * size, "{sum} against {size}");
+    }
+    assert!(at(reach) < -0.2 * size && at(-reach) > 0.2 * size);
+}
+
+#[test]
+fn few_rows_have_no_moment() {
+    let record = Record::whole(&record(&ship(Vec::new()), Plan { rows: 20, ..Plan::default() }));
+    assert_eq!(MissingMoment::new(&record, &base(), 1e-3, Vec::new()), None);
+}
