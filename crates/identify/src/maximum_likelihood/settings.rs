@@ -59,7 +59,7 @@ pub enum RudderChoice {
     Estimated,
 }
 
-/// Settings of [`MaximumLikelihood`].
+/// Settings of [`MaximumLikelihood`](super::MaximumLikelihood).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {

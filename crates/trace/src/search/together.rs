@@ -16,7 +16,7 @@ use crate::noise::{Colour, Moment};
 /// Most effects of a set.
 const MOST: usize = 3;
 
-/// Levels of a random moment that are tried: e-fold steps are finer than the likelihood resolves.
+/// Levels of a random moment that are tried, over the decades a record can tell apart; the few that lead are refined.
 const LEVELS: [f64; 9] = [1e-2, 1.0, 1e1, 1e2, 1e3, 1e4, 1e6, 1e8, 1e10];
 
 /// Sets that are fitted.
@@ -81,8 +81,7 @@ impl Reduced {
 
 impl Search<'_> {
     /// Sets of up to three effects of different names that promise the lowest BIC on a model, each under the noise that
-    /// suits it best: fitted and judged, not pruned, the lowest BIC
-    /// first.
+    /// suits it best: fitted and judged, not pruned, the lowest BIC first.
     pub(super) fn together(&self, model: &Model) -> Vec<Model> {
         let fit = &model.plain;
         let known = Linearised::new(self.problem, &model.structure, fit);
