@@ -282,8 +282,8 @@ impl<const LANES: usize, const N: usize> Differentiated for Filter<Dual<LANES>, 
         let mut slopes = Slopes { innovation: empty(), log_variance: empty() };
         self.run(
             schedule,
-            |row, _| [residual[row]],
-            |_, place, _, by: [[f64; 1]; LANES]| {
+            |row| [residual[row]],
+            |_, place, by: [[f64; 1]; LANES]| {
                 let variance = &self.gains[place].variance;
                 let weight = self.weights[place];
                 let columns = slopes.innovation.iter_mut().zip(&mut slopes.log_variance);
@@ -303,8 +303,8 @@ impl<const LANES: usize, const N: usize> Differentiated for Filter<Dual<LANES>, 
         };
         self.run(
             schedule,
-            |row, _| at(&raw, row),
-            |row, place, _, by: [[f64; SIDE_BY_SIDE]; LANES]| {
+            |row| at(&raw, row),
+            |row, place, by: [[f64; SIDE_BY_SIDE]; LANES]| {
                 let q = at(&white, row);
                 let weight = self.weights[place];
                 for (sums, by) in sums.iter_mut().zip(&by) {
@@ -319,14 +319,14 @@ impl<const LANES: usize, const N: usize> Differentiated for Filter<Dual<LANES>, 
 }
 
 impl<const LANES: usize, const N: usize> Filter<Dual<LANES>, N> {
-    /// Runs columns through the filter and visits every reading with the number of its gain, the innovations and their
-    /// derivatives.
+    /// Runs columns through the filter and visits every reading with the number of its gain and the derivatives of the
+    /// innovations.
     #[inline(always)]
     fn run<const COLUMNS: usize>(
         &self,
         schedule: &Schedule,
-        column: impl Fn(usize, usize) -> [f64; COLUMNS],
-        mut visit: impl FnMut(usize, usize, [f64; COLUMNS], [[f64; COLUMNS]; LANES]),
+        column: impl Fn(usize) -> [f64; COLUMNS],
+        mut visit: impl FnMut(usize, usize, [[f64; COLUMNS]; LANES]),
     ) {
         let mut x = [[0.0; COLUMNS]; N];
         let mut by = [[[0.0; COLUMNS]; N]; LANES];
@@ -352,7 +352,7 @@ impl<const LANES: usize, const N: usize> Filter<Dual<LANES>, N> {
             let place = place as usize;
             let gain = &self.gains[place].gain;
             let seen = self.read(&x, of);
-            let reading = column(row, place);
+            let reading = column(row);
             let innovation: [f64; COLUMNS] = std::array::from_fn(|k| reading[k] - seen[k]);
             let mut innovation_by = [[0.0; COLUMNS]; LANES];
             for (innovation_by, by) in innovation_by.iter_mut().zip(&by) {
@@ -370,7 +370,7 @@ impl<const LANES: usize, const N: usize> Filter<Dual<LANES>, N> {
                     }
                 }
             }
-            visit(row, place, innovation, innovation_by);
+            visit(row, place, innovation_by);
         }
     }
 }

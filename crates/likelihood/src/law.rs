@@ -10,8 +10,8 @@ use crate::number::Variable;
 pub const ENTRIES: usize = 5;
 
 /// Where the noise is: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time
-/// of the compass error and of σ_r/σ, with which of them there are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// of the compass error and of σ_r/σ, with which of them there are. The default is a white compass error alone.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Place {
     /// Which yaw moment.
     pub moment: Moment,

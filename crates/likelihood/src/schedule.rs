@@ -99,21 +99,13 @@ impl Schedule {
 
     /// One column from those of the two instruments.
     pub fn stacked(&self, heading: &[f64], yaw_rate: &[f64]) -> Vec<f64> {
-        let mut column = Vec::with_capacity(self.readings.len());
-        self.stack_into(heading, yaw_rate, &mut column);
-        column
-    }
-
-    /// The same into a column that is there.
-    pub fn stack_into(&self, heading: &[f64], yaw_rate: &[f64], column: &mut Vec<f64>) {
-        column.clear();
         if self.readings.len() == heading.len() {
-            column.extend_from_slice(heading);
-            return;
+            return heading.to_vec();
         }
-        column.extend(self.readings.iter().zip(&self.numbers).map(|(reading, &number)| match reading.of {
+        let of = |(reading, &number): (&Reading, &usize)| match reading.of {
             Of::Heading => heading[number],
             Of::YawRate => yaw_rate[number],
-        }));
+        };
+        self.readings.iter().zip(&self.numbers).map(of).collect()
     }
 }

@@ -38,8 +38,6 @@ const LOOKED_AT: usize = 200;
 /// Records ready to be fitted, with the answer of `output-error` to begin with.
 pub(super) struct Prepared {
     records: Vec<Record>,
-    /// Whether every record declares a rudder error.
-    declared: bool,
     start: FirstOrder,
     pub outliers: Vec<Suspects>,
     too_many: bool,
@@ -110,31 +108,29 @@ impl Prepared {
                 Record { declared: of_rudder(trial).filter(|_| declared), ..Record::new(track, by_row) }
             })
             .collect();
-        Ok(Self { records, declared, start: first.response, outliers: suspects, too_many, evaluations })
+        Ok(Self { records, start: first.response, outliers: suspects, too_many, evaluations })
     }
 
     /// Fits every kind of noise and takes the one with the lowest BIC.
     pub fn choose(self, settings: &Settings) -> Result<Chosen, IdentifyError> {
-        let Self { mut records, declared, start, outliers, too_many, evaluations } = self;
+        let Self { mut records, start, outliers, too_many, evaluations } = self;
         let ranges: Vec<Ranges> = records.iter().map(|record| ranges(record, &start)).collect();
         let a = start.inverse_T;
-        let blank = Place {
-            moment: Moment::None,
-            rudder: settings.rudder == RudderChoice::Estimated,
-            coloured: false,
-            log: [0.0; 5],
+        let estimated = settings.rudder == RudderChoice::Estimated;
+        let blank = |(record, ranges): (&Record, &Ranges)| {
+            gyro_start(ranges, &Place { rudder: estimated || record.declared.is_some(), ..Place::default() })
         };
-        let none: Vec<Place> = ranges.iter().map(|ranges| gyro_start(ranges, &blank)).collect();
+        let none: Vec<Place> = records.iter().zip(&ranges).map(blank).collect();
 
         let mut spent = evaluations;
-        let mut all = contest(&records, &ranges, settings, a, &none, declared, &mut spent);
+        let mut all = contest(&records, &ranges, settings, a, &none, &mut spent);
         // Jumps are believed where they pay under the noise that was found.
         let suspected: usize = outliers.iter().map(|found| found.jumps.len()).sum();
         let mut kept = outliers;
         if let Some((_, found)) = all.first().filter(|_| suspected > 0) {
             believe_jumps(&mut records, &mut kept, &found.point);
             if records.iter().any(|record| !record.jumps.is_empty()) {
-                all = contest(&records, &ranges, settings, a, &none, declared, &mut spent);
+                all = contest(&records, &ranges, settings, a, &none, &mut spent);
             }
         }
         kept.iter_mut().zip(&records).for_each(|(found, record)| found.jumps.clone_from(&record.jumps));
@@ -172,11 +168,7 @@ fn left_over(track: &Track, fitted: Option<&Estimate>, known: &[usize]) -> Vec<f
 
 fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
     let track = &record.track;
-    let plain = evaluate(
-        std::slice::from_ref(record),
-        start.inverse_T,
-        &[Place { moment: Moment::None, rudder: false, coloured: false, log: [0.0; 5] }],
-    );
+    let plain = evaluate(std::slice::from_ref(record), start.inverse_T, &[Place::default()]);
     let spacing = track.duration() / (track.len() - 1) as f64;
     let residual = plain.map_or(1.0, |point| {
         let part = &point.parts[0];
@@ -212,14 +204,13 @@ fn contest(
     settings: &Settings,
     a: f64,
     none: &[Place],
-    declared: bool,
     evaluations: &mut usize,
 ) -> Ranked {
     let coarse: Option<Vec<Record>> = records.iter().map(|record| record.thinned(LOOKED_AT)).collect();
     let iterations = settings.iterations;
     let mut search = Search { records, ranges, coarse: coarse.as_deref(), iterations, evaluations: 0 };
     let kinds = settings.moment.kinds();
-    let mut none: Vec<Place> = none.iter().map(|place| Place { rudder: place.rudder || declared, ..*place }).collect();
+    let mut none = none.to_vec();
     let mut all: Vec<(f64, Found)> = Vec::new();
     let ranked = |found: Option<Found>| found.map(|found| (bic(records, &found.point), found));
     // Gusts begin where a white moment and a walk end.

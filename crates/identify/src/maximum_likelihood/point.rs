@@ -76,6 +76,8 @@ pub(super) struct Part {
     pub jumps: Vec<f64>,
     /// Innovations over √S, rad.
     pub innovations: Vec<f64>,
+    /// Products of what changes with 1/T, b and b δ_r.
+    pub motion: Matrix3<f64>,
     pub raw: Raw,
     pub white: White,
     pub by_time: ByTime,
@@ -170,8 +172,7 @@ impl Record {
         let law: Law<f64> = place.law(inverse_time, self.has_gyro());
         let white = White::new(&self.raw(inverse_time), Whitener::new(&self.schedule, &law, [0.0; 2]))?;
         let by_time = self.by_time(&white, inverse_time, coefficients);
-        let [rudder, constant, _] = &white.rest;
-        let products = Matrix3::from(gram([by_time.white.as_slice(), rudder, constant]));
+        let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
     }
 }
@@ -214,6 +215,12 @@ impl White {
         }
         let shares = rest.each_mut().map(|column| own.iter().map(|unit| take_out(unit, column)).collect());
         Some(Self { filter, own, triangle, rest, shares })
+    }
+
+    /// Products of what changes with 1/T, b and b δ_r.
+    fn motion(&self, by_time: &ByTime) -> Matrix3<f64> {
+        let [rudder, constant, _] = &self.rest;
+        Matrix3::from(gram([by_time.white.as_slice(), rudder, constant]))
     }
 
     /// Readings less what steering explains.
@@ -321,10 +328,10 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) 
         let seen = lengths.iter().filter(|&&length| length > 0.0);
         determinant += seen.map(|length| (length * length / variance).ln()).sum::<f64>();
         let by_time = record.by_time(&white, inverse_time, &Coefficients { anchor, gain, offset });
-        let [rudder, constant, _] = &white.rest;
-        motion += Matrix3::from(gram([by_time.white.as_slice(), rudder, constant])) / variance;
+        let own = white.motion(&by_time);
+        motion += own / variance;
         let (readings, innovations) = (record.len(), white.residual(gain, offset));
-        parts.push(Part { variance, readings, anchor, jumps, innovations, raw, white, by_time });
+        parts.push(Part { variance, readings, anchor, jumps, innovations, motion: own, raw, white, by_time });
     }
     let restricted = deviance + determinant + motion.determinant().ln();
     let ship = gain > 0.0 && restricted.is_finite();

@@ -1,6 +1,6 @@
 //! How the likelihood changes at a point: score, information, and what the fitted columns take from the noise.
 
-use lanes::column::{dot, gram};
+use lanes::column::dot;
 use likelihood::differentiated;
 use likelihood::filter::SIDE_BY_SIDE;
 use likelihood::law::RUDDER;
@@ -30,7 +30,7 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
     let mut score = DVector::zeros(unknowns);
     let mut information = DMatrix::zeros(unknowns, unknowns);
     let (mut scores, mut all_totals) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
-    let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion() / part.variance).sum();
+    let motion: Matrix3<f64> = point.parts.iter().map(|part| part.motion / part.variance).sum();
     let factor = motion.cholesky()?.l().try_inverse()?.transpose();
     let mut first = SHARED;
     for (number, record) in records.iter().enumerate() {
@@ -120,12 +120,6 @@ impl Part {
         less(&mut left, point.gain, rudder);
         less(&mut left, point.offset, constant);
         left
-    }
-
-    /// Products of what changes with 1/T, b and b δ_r.
-    fn motion(&self) -> Matrix3<f64> {
-        let [rudder, constant, _] = &self.white.rest;
-        Matrix3::from(gram([self.by_time.white.as_slice(), rudder, constant]))
     }
 
     /// All columns that are fitted, orthonormal and white, each with what it was before; `factor` makes those that all
