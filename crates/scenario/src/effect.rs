@@ -32,7 +32,7 @@ pub fn keys(effect: &dyn Effect) -> Option<&'static str> {
         ("rudder_deadband", _) => "dead-band-deg",
         ("port_starboard_asymmetry", _) => "gain-share",
         ("moment_drift", _) => "rudder-deg-per-s",
-        ("transient_disturbance", _) => "rudder-deg, centre-s, duration-s",
+        ("transient_disturbance", _) if effect.parameters().len() == 3 => "rudder-deg, centre-s, duration-s",
         ("wave_yaw", _) => "sd-deg, frequency-rad-s, damping",
         _ => return None,
     })
@@ -163,7 +163,7 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
             (Arc::new(MomentDrift { reference_time: 0.0 }), vec![setting("rudder-deg-per-s", rudder_deg_per_s, DEGREE)])
         }
         EffectWire::TransientDisturbance(TransientWire { rudder_deg, centre_s, duration_s }) => (
-            Arc::new(TransientDisturbance),
+            Arc::new(TransientDisturbance::Passing),
             vec![
                 setting("rudder-deg", rudder_deg, DEGREE),
                 setting("centre-s", centre_s, 1.0),

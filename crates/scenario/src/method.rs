@@ -130,7 +130,7 @@ fn refused(table: &KeyPath, error: &SettingsError) -> Problem {
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
 fn tracing(thresholds: Thresholds) -> Result<::trace::Settings, SettingsError> {
     thresholds.check()?;
-    Ok(::trace::Settings { thresholds, discovery: false, thorough: false, ..::trace::Settings::default() })
+    Ok(::trace::Settings { thresholds, thorough: false, ..::trace::Settings::default() })
 }
 
 /// The key of a method in a scenario.

@@ -11,6 +11,7 @@
 //! | what a user asks for or excludes | [`wanted`] |
 //! | random explanations that compete with effects | [`noise`] and [`waves`] |
 //! | the fit itself | [`fit`], [`structure`], [`record`] |
+//! | whether a noise model holds | [`innovations`] |
 //! | where a squall was | [`transient`] |
 //! | errors before and after | [`replay_errors`], [`held_out`], [`own_moment`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
@@ -23,6 +24,7 @@ pub mod diagnostics;
 pub mod fit;
 pub mod held_out;
 pub mod index;
+pub mod innovations;
 pub mod missing_moment;
 pub mod monomial;
 pub mod noise;

@@ -9,6 +9,8 @@
 //! Sources: Åström and Källström (1976) for maximum likelihood on ship records; Harvey (1989) for the prediction error
 //! decomposition.
 
+use std::sync::OnceLock;
+
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
@@ -28,8 +30,42 @@ type Correction<const N: usize> = ([f64; N], f64, f64);
 pub enum Moment {
     /// r' = −a r + w: the yaw rate of a ship in a white moment wanders.
     White,
+    /// r' = −a r + d, d' = −d/τ + w: gusts, whose correlation time τ is this one of [`GUSTS`].
+    OrnsteinUhlenbeck(usize),
     /// r' = −a r + d, d' = w: the moment itself wanders.
     Walk,
+}
+
+/// Correlation times of gusts that are told apart, as shares of the longest record.
+pub const GUSTS: [f64; 4] = [0.015, 0.03, 0.06, 0.12];
+
+impl Moment {
+    /// Number of parameters: the level, and the correlation time where there is one.
+    pub fn freedom(self) -> usize {
+        if matches!(self, Self::OrnsteinUhlenbeck(_)) { 2 } else { 1 }
+    }
+
+    /// Correlation time, s, where the longest record lasts so long; `None` where the moment has none.
+    pub fn correlation(self, longest: f64) -> Option<f64> {
+        if let Self::OrnsteinUhlenbeck(number) = self { Some(GUSTS[number] * longest) } else { None }
+    }
+
+    /// Intensity of w for level 1. Gusts have that of the white moment they are to slow motions.
+    fn intensity(self, longest: f64) -> f64 {
+        let white = 3.0 / longest.powi(3);
+        match self {
+            Self::White => white,
+            Self::OrnsteinUhlenbeck(number) => white / (GUSTS[number] * longest).powi(2),
+            Self::Walk => 20.0 / longest.powi(5),
+        }
+    }
+
+    /// Size of the yaw acceleration of a level (rad², in heading) in a record: of a white moment the root of its
+    /// spectral density, rad/s² √s; of gusts the standard deviation, rad/s²; of a walk that after one second.
+    pub fn size(self, level: f64, longest: f64) -> f64 {
+        let square = level * self.intensity(longest);
+        self.correlation(longest).map_or(square, |time| 0.5 * time * square).sqrt()
+    }
 }
 
 /// Colour of the noise beside the white heading noise, whose variance is the unit of everything here.
@@ -48,7 +84,7 @@ impl Colour {
 
     /// Number of parameters beside σ.
     pub fn freedom(&self) -> usize {
-        usize::from(self.moment.is_some()) + if self.waves.is_some() { 3 } else { 0 }
+        self.moment.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
     }
 
     /// Whether it is white.
@@ -61,6 +97,8 @@ impl Colour {
 #[derive(Debug, Clone)]
 struct Drift {
     states: usize,
+    /// Variance of the moment at the beginning, for level 1.
+    beginning: f64,
     /// Transition and added covariance of every distinct step.
     steps: Vec<(Matrix, Matrix)>,
     /// The step before every observed row.
@@ -69,16 +107,18 @@ struct Drift {
 
 impl Drift {
     fn new(kind: Moment, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
-        let (states, intensity) = match kind {
-            Moment::White => (2, 3.0 / longest.powi(3)),
-            Moment::Walk => (3, 20.0 / longest.powi(5)),
-        };
+        let states = if kind == Moment::White { 2 } else { 3 };
+        let intensity = kind.intensity(longest);
         let mut generator = DMatrix::<f64>::zeros(states, states);
         generator[(0, 1)] = 1.0;
         generator[(1, 1)] = -inverse_time;
         if states == 3 {
             generator[(1, 2)] = 1.0;
         }
+        let beginning = kind.correlation(longest).map_or(0.0, |time| {
+            generator[(2, 2)] = -time.recip();
+            0.5 * time * intensity
+        });
         let mut known: Vec<f64> = Vec::new();
         let mut steps = Vec::new();
         let of_row = durations
@@ -91,7 +131,7 @@ impl Drift {
                 })
             })
             .collect();
-        Self { states, steps, of_row }
+        Self { states, beginning, steps, of_row }
     }
 }
 
@@ -122,8 +162,10 @@ pub struct RecordNoise {
     /// Variance of the white noise of every observed row, in units of that of a full one.
     variances: Vec<f64>,
     longest: f64,
+    damping: f64,
     white: Drift,
     walk: Drift,
+    gusts: [OnceLock<Drift>; GUSTS.len()],
 }
 
 impl RecordNoise {
@@ -139,6 +181,8 @@ impl RecordNoise {
         Self {
             white: Drift::new(Moment::White, damping, &durations, longest),
             walk: Drift::new(Moment::Walk, damping, &durations, longest),
+            gusts: Default::default(),
+            damping,
             variances: record.observed.iter().map(variance).collect(),
             durations,
             longest,
@@ -163,6 +207,10 @@ impl RecordNoise {
         let drift = colour.moment.map(|(kind, level)| match kind {
             Moment::White => (&self.white, level),
             Moment::Walk => (&self.walk, level),
+            Moment::OrnsteinUhlenbeck(number) => {
+                let new = || Drift::new(kind, self.damping, &self.durations, self.longest);
+                (self.gusts[number].get_or_init(new), level)
+            }
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);
         match own + if colour.waves.is_some() { 2 } else { 0 } {
@@ -179,6 +227,9 @@ impl RecordNoise {
         let mut observe = [0.0; N];
         observe[0] = 1.0;
         let mut covariance = [[0.0; N]; N];
+        if let Some((drift, level)) = drift {
+            covariance[own - 1][own - 1] = level * drift.beginning;
+        }
         if let Some(waves) = waves {
             observe[own] = 1.0;
             let [p0, p1] = waves.stationary_sd().map(|sd| sd * sd);

@@ -71,7 +71,7 @@ mod tests {
     fn a_held_out_record_has_a_moment_of_its_own() {
         let moments: [(Arc<dyn Effect>, Vec<f64>, f64); 2] = [
             (Arc::new(MomentDrift { reference_time: 0.0 }), vec![-7e-5], 3e-5),
-            (Arc::new(TransientDisturbance), vec![0.04, 150.0, 30.0], -0.03),
+            (Arc::new(TransientDisturbance::Passing), vec![0.04, 150.0, 30.0], -0.03),
         ];
         for (effect, values, first) in moments {
             let trial = record(&ship(vec![(Arc::clone(&effect), values)]), Plan::default());

@@ -1,5 +1,6 @@
-//! Where in a record a moment may have been present for a while: boxes of several lengths are tried at every place,
-//! with the response of the base to a box in closed form, and the best places are handed on as starts of a fit.
+//! Where in a record a moment may have been present for a while, or have set in: boxes of several lengths, or steps, are
+//! tried at every place, with the response of the base in closed form, and the best places are handed on as starts of a
+//! fit.
 
 use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};
@@ -14,7 +15,10 @@ const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 /// Places that are handed on.
 const STARTS: usize = 2;
 
-/// Starts (m, t_c, d) for a transient on top of a fit, the most promising first.
+/// Lengths of time between steps that are tried, as a share of the record.
+const BETWEEN_STEPS: f64 = 1.0 / 80.0;
+
+/// Starts (m, t_c, d) of a passing moment or (m, t₀) of a lasting one on top of a fit, the most promising first.
 ///
 /// `known` are the whitened residual and sensitivities at that fit.
 pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> Vec<Vec<f64>> {
@@ -35,9 +39,18 @@ pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> 
     let (start, duration) = (record.time[0], record.duration());
     let mut found: Vec<(f64, [f64; 3])> = Vec::new();
     let mut column = vec![0.0; times.len()];
-    for length in LENGTHS.map(|share| share * duration).into_iter().filter(|&length| length >= term.lowest[2]) {
-        let mut from = start;
-        while from + length <= start + duration {
+    let lasts = term.effect.parameters().len() == 2;
+    // Length of a box and the step from one to the next; a lasting moment is a box that outlasts the record.
+    let boxes: Vec<[f64; 2]> = match lasts {
+        true => vec![[2.0 * duration, BETWEEN_STEPS * duration]],
+        false => {
+            let lengths = LENGTHS.map(|share| share * duration).into_iter();
+            lengths.filter(|&length| length >= term.lowest[2]).map(|length| [length, 0.5 * length]).collect()
+        }
+    };
+    for [length, step] in boxes {
+        let (mut from, end) = (start, start + duration - if lasts { 0.0 } else { length });
+        while from <= end {
             for (value, &t) in column.iter_mut().zip(&times) {
                 *value = b * (step_response(a, t - from) - step_response(a, t - from - length));
             }
@@ -46,9 +59,10 @@ pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> 
             let own = dot(&column, &column) - cross.dot(&factor.solve(&cross));
             let with = dot(&column, residual) - cross.dot(&explained);
             if own > 1e-9 * dot(&column, &column) {
-                found.push((with * with / own, [with / own, from + 0.5 * length, length]));
+                let place = if lasts { from } else { from + 0.5 * length };
+                found.push((with * with / own, [with / own, place, if lasts { step } else { length }]));
             }
-            from += 0.5 * length;
+            from += step;
         }
     }
     found.sort_by(|one, other| other.0.total_cmp(&one.0));
@@ -62,7 +76,7 @@ pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> 
             break;
         }
     }
-    starts.into_iter().map(Vec::from).collect()
+    starts.into_iter().map(|start| start[..term.effect.parameters().len()].to_vec()).collect()
 }
 
 /// Heading after a unit yaw acceleration has acted for t seconds.

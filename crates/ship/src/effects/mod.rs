@@ -41,7 +41,7 @@ use std::sync::Arc;
 /// Every effect in every form, in the order of reports.
 ///
 /// Forms that need a constant of the record have it at a neutral value: approach speed 1 m/s, propeller
-/// 1/s, reference time 0.
+/// 1/s, reference time 0, edge of a lasting moment 1 s.
 pub fn all() -> Vec<Arc<dyn Effect>> {
     vec![
         Arc::new(SecondOrder),
@@ -60,7 +60,8 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(RudderDeadband::DeadBand),
         Arc::new(PortStarboardAsymmetry),
         Arc::new(MomentDrift { reference_time: 0.0 }),
-        Arc::new(TransientDisturbance),
+        Arc::new(TransientDisturbance::Passing),
+        Arc::new(TransientDisturbance::Lasting { edge: 1.0 }),
         Arc::new(WaveYaw),
         Arc::new(SwayCouplingMeasured),
     ]

@@ -3,22 +3,31 @@
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use crate::number::Real;
 
-/// m over a span of time with smooth edges, as an equivalent rudder angle: m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c
-/// − d/2)/w)], w = d/10.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TransientDisturbance;
-
-const PARAMETERS: [Parameter; 3] = [
-    Parameter {
-        key: "m",
-        symbol: "m",
-        unit: "rad",
-        neutral: 0.0,
-        typical: 0.03,
-        lowest: -0.6,
-        highest: 0.6,
-        odd: true,
+/// A moment m, as an equivalent rudder angle, in one of two forms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TransientDisturbance {
+    /// m over a span of time with smooth edges: m/2 [tanh((t − t_c + d/2)/w) − tanh((t − t_c − d/2)/w)], w = d/10.
+    Passing,
+    /// m from an instant on: m/2 [1 + tanh((t − t₀)/w)]; another loading, a change of the wind, a pump that starts.
+    Lasting {
+        /// Width w of the edge, s.
+        edge: f64,
     },
+}
+
+const MOMENT: Parameter = Parameter {
+    key: "m",
+    symbol: "m",
+    unit: "rad",
+    neutral: 0.0,
+    typical: 0.03,
+    lowest: -0.6,
+    highest: 0.6,
+    odd: true,
+};
+
+const PASSING: [Parameter; 3] = [
+    MOMENT,
     Parameter {
         key: "t_c",
         symbol: "t_c",
@@ -32,11 +41,31 @@ const PARAMETERS: [Parameter; 3] = [
     Parameter { key: "d", symbol: "d", unit: "s", neutral: 30.0, typical: 30.0, lowest: 0.5, highest: 1e5, odd: false },
 ];
 
+const LASTING: [Parameter; 2] = [
+    MOMENT,
+    Parameter {
+        key: "t_0",
+        symbol: "t₀",
+        unit: "s",
+        neutral: 100.0,
+        typical: 100.0,
+        lowest: -1e7,
+        highest: 1e7,
+        odd: false,
+    },
+];
+
 /// Width of an edge as a share of the duration.
 const EDGE: f64 = 0.1;
 
 /// Longest squall that is looked for, as a share of its record.
 const LONGEST: f64 = 0.2;
+
+/// Share of a record at either end in which no lasting moment is looked for: it would be a matter of a few rows.
+const SOONEST: f64 = 0.05;
+
+/// Width of the edge of a lasting moment, in rows.
+const EDGE_ROWS: f64 = 2.0;
 
 impl Effect for TransientDisturbance {
     fn id(&self) -> &'static str {
@@ -44,15 +73,31 @@ impl Effect for TransientDisturbance {
     }
 
     fn form(&self) -> &'static str {
-        "moment for a while"
+        match self {
+            Self::Passing => "moment for a while",
+            Self::Lasting { .. } => "moment that stays",
+        }
     }
 
     fn equation(&self) -> &'static str {
-        "T r' + r = K (δ + δ_r + m s(t; t_c, d))"
+        match self {
+            Self::Passing => "T r' + r = K (δ + δ_r + m s(t; t_c, d))",
+            Self::Lasting { .. } => "T r' + r = K (δ + δ_r + m s(t; t₀))",
+        }
     }
 
     fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+        match self {
+            Self::Passing => &PASSING,
+            Self::Lasting { .. } => &LASTING,
+        }
+    }
+
+    fn constants(&self) -> Vec<f64> {
+        match self {
+            Self::Passing => Vec::new(),
+            Self::Lasting { edge } => vec![*edge],
+        }
     }
 
     fn is_of_time(&self) -> bool {
@@ -62,9 +107,15 @@ impl Effect for TransientDisturbance {
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
         let Manoeuvres { duration, spacing, span: [start, end], .. } = *about;
         let length = end - start;
+        if let Self::Lasting { .. } = self {
+            let instants = [start + SOONEST * length, end - SOONEST * length];
+            let lasting = Self::Lasting { edge: EDGE_ROWS * spacing };
+            let large = vec![0.05, 0.5 * (start + end)];
+            return Some(Proposal::new(lasting, vec![0.02, 0.05 * duration], Vec::new(), large).within(1, instants));
+        }
         let scale = vec![0.02, 0.05 * duration, 0.05 * duration];
         let proposal = Proposal::new(*self, scale, Vec::new(), vec![0.05, 0.5 * (start + end), 0.1 * length]);
-        // A squall comes and goes within the record; what lasts longer is a trend or a change of the ship.
+        // A squall comes and goes within the record.
         let margin = LONGEST * 0.25 * length;
         let proposal = proposal.within(1, [start + margin, end - margin]);
         Some(proposal.within(2, [(3.0 * spacing).max(0.5), LONGEST * length]))
@@ -75,19 +126,32 @@ impl Effect for TransientDisturbance {
     }
 
     fn shortest_time(&self, p: &[f64]) -> f64 {
-        EDGE * p[2]
+        match self {
+            Self::Passing => EDGE * p[2],
+            Self::Lasting { edge } => *edge,
+        }
     }
 
     /// Fifteen widths beyond the edges: tanh is there one to 10⁻¹³.
     fn fast_span(&self, p: &[f64]) -> [f64; 2] {
-        let reach = (0.5 + 15.0 * EDGE) * p[2];
+        let reach = match self {
+            Self::Passing => (0.5 + 15.0 * EDGE) * p[2],
+            Self::Lasting { edge } => 15.0 * edge,
+        };
         [p[1] - reach, p[1] + reach]
     }
 }
 
 impl<R: Real> Acts<R> for TransientDisturbance {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
-        let (from_centre, half, width) = (R::from(now.t) - p[1], p[2] * 0.5, p[2] * EDGE);
-        now.gain * 0.5 * p[0] * (((from_centre + half) / width).tanh() - ((from_centre - half) / width).tanh())
+        let since = R::from(now.t) - p[1];
+        let shape = match self {
+            Self::Passing => {
+                let (half, width) = (p[2] * 0.5, p[2] * EDGE);
+                ((since + half) / width).tanh() - ((since - half) / width).tanh()
+            }
+            Self::Lasting { edge } => (since / R::from(*edge)).tanh() + R::from(1.0),
+        };
+        now.gain * 0.5 * p[0] * shape
     }
 }

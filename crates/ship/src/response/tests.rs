@@ -187,7 +187,7 @@ fn small_steps_are_taken_where_motion_is_fast() {
     };
     let base = error(&ResponseModel::first_order().with(BASE_VALUES.to_vec()));
     let values = [BASE_VALUES.as_slice(), &[0.05, 47.3, 1.5]].concat();
-    let squall = error(&ResponseModel::new(vec![Arc::new(effects::TransientDisturbance)]).with(values));
+    let squall = error(&ResponseModel::new(vec![Arc::new(effects::TransientDisturbance::Passing)]).with(values));
     assert!(squall < 1.5 * base, "{squall:e} rad, {base:e} rad without the squall");
 }
 

@@ -15,6 +15,7 @@ use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters
 pub fn moment(kind: Moment) -> &'static str {
     match kind {
         Moment::White => "white",
+        Moment::OrnsteinUhlenbeck(_) => "gusts",
         Moment::Walk => "random walk",
     }
 }
@@ -114,6 +115,7 @@ pub fn signature(report: &TraceReport) -> Option<String> {
     let [port, starboard] = signature.side;
     let random = report.analysis.randomness.moment.map_or("", |kind| match kind {
         Moment::White => "; it looks like a white random yaw moment",
+        Moment::OrnsteinUhlenbeck(_) => "; it looks like gusts",
         Moment::Walk => "; it looks like a yaw moment that wanders",
     });
     Some(format!(

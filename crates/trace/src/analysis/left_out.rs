@@ -7,11 +7,9 @@ use trial::Trial;
 
 use super::replays::{judged, starts};
 use super::result::Judged;
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 use crate::held_out::HeldOut;
 use crate::index::RecordNumber;
-use crate::noise::Colour;
-use crate::search::Model;
 use crate::structure::Structure;
 
 /// Errors before and after on every record that the fit of a fold has not seen. The structure was found on all records
@@ -20,17 +18,16 @@ pub(super) fn leave_one_out(
     trials: &[Trial],
     method: &dyn Identifier,
     problem: &Problem,
-    model: &Model,
+    (structure, told): (&Structure, &Fit),
 ) -> Vec<Option<Judged>> {
     let fold = |left: usize| {
         let rest = |all: &[[f64; 2]]| -> Vec<[f64; 2]> { without(all, left) };
         let first = method.identify(&without(trials, left)).ok()?.response;
-        let (structure, theta) = on_others(&model.structure, &model.plain.theta, RecordNumber(left));
+        let (kept, theta) = on_others(structure, &told.theta, RecordNumber(left));
         let others = problem.on(without(&problem.records, left));
-        let colour = Colour { moment: None, ..model.plain.colour };
-        let fit = others.fit(&structure, &theta, &rest(&model.plain.initial), &colour);
+        let fit = others.fit(&kept, &theta, &rest(&told.initial), &told.colour);
         let held = HeldOut::new(&trials[left], starts(&trials[left], &first));
-        judged(&held, &first, (&structure, &fit.theta), &model.structure).ok()
+        judged(&held, &first, (&kept, &fit.theta), structure).ok()
     };
     (0..trials.len()).into_par_iter().map(fold).collect()
 }

@@ -12,14 +12,15 @@ mod result;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod told;
 
 use identify::{Identifier, output_error};
-use ship::{Regressor, effects};
+use ship::{FirstOrder, Regressor, effects};
 use trial::Trial;
 
 use crate::candidates::{self, Sizes};
 use crate::diagnostics::{self, Series};
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 use crate::held_out::HeldOut;
 use crate::record::Record;
 use crate::search::{Model, NotFitted, Search};
@@ -29,12 +30,13 @@ use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
 use left_out::leave_one_out;
 use parameters::{indices, parameter_covariance, parameters, randomness};
-use replays::{initial, on_records, starts, validate};
+use replays::{first_order, initial, on_records, starts, validate};
 use reporter::Reporter;
 
 pub use prospects::Prospect;
 pub use result::{Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, Traced, Verdict};
 pub use settings::{Settings, TraceError};
+use told::Told;
 
 /// Why an effect that was asked for is not in the model.
 fn cannot_be_held(NotFitted(effect): NotFitted) -> TraceError {
@@ -90,8 +92,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let sizes = Sizes::of(&problem.records, first.inverse_T, &headings);
     let mut candidate_terms = candidates::all(&problem.records, &sizes);
     candidate_terms.retain(|candidate| settings.wanted.allows(candidate.term.effect.id()));
-    let wanted = settings.wanted.clone();
-    let search = Search { wanted, ..Search::new(&problem, &candidate_terms, settings.thresholds) };
+    let mut search = Search::new(&problem, &candidate_terms, settings.thresholds);
+    search.wanted = settings.wanted.clone();
 
     let start = search.base(structure, &theta, &initial);
     let tried = search.try_all(&start, &start.plain, false);
@@ -108,9 +110,29 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 
-    let replay = |model: &Model| on_records(trials, &problem, model, &first, settings.thorough);
-    let before: Vec<OnRecord> = replay(&start)?;
-    let (model, after) = no_larger_error(&search, model, &before, replay, &mut refused);
+    // The base that is nearest to the records, whatever the noise: no first-order response makes "before" smaller.
+    let of_base = (!settings.own_bias).then_some(&first);
+    let replay = |structure: &Structure, fit: &Fit, closed: Option<&FirstOrder>| {
+        on_records(trials, (structure, fit), &first, closed, settings.thorough)
+    };
+    let nearest = |model: &Model| {
+        let is_base = model.structure.terms.is_empty();
+        replay(&model.structure, &model.plain, of_base.filter(|_| is_base))
+    };
+    let before: Vec<OnRecord> = nearest(&start)?;
+    let (model, after) = no_larger_error(&search, model, &before, nearest, &mut refused);
+    let told = Told::new(&problem, &model);
+    let (base_response, before, after) = match (told.noise_holds, model.structure.terms.is_empty()) {
+        (false, _) => (first_order(&start.plain.theta, &start.structure), before, after),
+        (true, false) => {
+            (first_order(&start.plain.theta, &start.structure), before, replay(&model.structure, &told.fit, None)?)
+        }
+        (true, true) => {
+            let response = first_order(&told.fit.theta, &model.structure);
+            let on = replay(&model.structure, &told.fit, of_base.map(|_| &response))?;
+            (response, on.clone(), on)
+        }
+    };
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
@@ -120,13 +142,15 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         |(on, trial): (&OnRecord, &Trial)| Series::new(&on.replay.time, &on.replay.residual, trial.sampling_period());
     let residuals = |all: &[OnRecord]| -> Vec<Series> { all.iter().zip(trials).map(series).collect() };
     let whiteness = [diagnostics::whiteness(&residuals(&before)), diagnostics::whiteness(&residuals(&after))];
-    let elsewhere = validate(&held_out, &start, &model)?;
+    let elsewhere = validate(&held_out, &base_response, (&model.structure, &told.fit))?;
     let folds = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let left_out = if folds { leave_one_out(trials, &method, &problem, &model) } else { Vec::new() };
+    let left_out =
+        if folds { leave_one_out(trials, &method, &problem, (&model.structure, &told.fit)) } else { Vec::new() };
 
-    let covariance = parameter_covariance(&problem, &model, whiteness[1].lag1);
-    let parameters = parameters(&problem, &model, covariance.as_ref(), &names);
-    let (indices, rudder_bias) = indices(&model, covariance.as_ref());
+    let fitted = (&model.structure, &told.fit);
+    let covariance = parameter_covariance(&problem, fitted, told.is_coloured(whiteness[1].lag1));
+    let parameters = parameters(&problem, fitted, covariance.as_ref(), &names);
+    let (indices, rudder_bias) = indices(fitted, covariance.as_ref());
     let report = Reporter {
         search: &search,
         settings,
@@ -139,11 +163,12 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let mut effects = report.effects(&parameters);
     let mut candidates = report.candidates(&effects);
     let weights = report.weigh(&mut effects, &mut candidates);
-    let unexplained = report.unexplained(trials, &after);
-    let empirical = match &unexplained {
-        Some(_) if settings.discovery => report.discover(&sizes),
-        _ => None,
+    let nameless = if told.random { report.nameless(&sizes) } else { None };
+    let unexplained = match report.is_unexplained(&told, nameless.as_ref()) {
+        true => report.signature(trials, &after),
+        false => None,
     };
+    let empirical = nameless.filter(|_| unexplained.is_some());
     let verdict = match (&unexplained, effects.is_empty()) {
         (Some(_), _) => Verdict::Unexplained,
         (None, true) => Verdict::Clean,
@@ -173,6 +198,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         start,
         candidate_terms,
         model,
+        told,
         problem,
     })
 }

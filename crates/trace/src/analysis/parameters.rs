@@ -11,22 +11,23 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use trial::Quantity;
 
 use super::result::{Fitted, Randomness};
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 use crate::search::Model;
+use crate::structure::Structure;
 
-/// Autocorrelation above which a residual is called coloured.
-const COLOURED: f64 = 0.2;
-
-/// Covariance of the fitted parameters of the final model; from the scores where the residual is coloured.
-pub(super) fn parameter_covariance(problem: &Problem, model: &Model, lag1: f64) -> Option<DMatrix<f64>> {
-    let fit = &model.plain;
+/// Covariance of the fitted parameters: from the information matrix of the likelihood, or from the scores (Newey and
+/// West 1987) where the noise is coloured in a way that the fit does not know.
+pub(super) fn parameter_covariance(
+    problem: &Problem,
+    (structure, fit): (&Structure, &Fit),
+    coloured: bool,
+) -> Option<DMatrix<f64>> {
     let whiteners = problem.whiteners(&fit.colour);
-    let linear = problem.linear(&model.structure, &fit.theta, &fit.initial);
+    let linear = problem.linear(structure, &fit.theta, &fit.initial);
     let columns = linear.whitened(&whiteners);
     let inverse = columns.covariance()?;
     let observations = problem.observations() as f64;
     let freedom = observations - columns.unknowns() as f64;
-    let coloured = model.judged.colour.moment.is_some() || (fit.colour.is_white() && lag1.abs() > COLOURED);
     if !coloured {
         return Some(inverse * (fit.rss / freedom));
     }
@@ -35,8 +36,7 @@ pub(super) fn parameter_covariance(problem: &Problem, model: &Model, lag1: f64) 
 }
 
 /// The first-order part of a model with rudder bias number `bias`, and what is known of its error.
-fn first_order(model: &Model, bias: usize, covariance: Option<&DMatrix<f64>>) -> Estimate {
-    let theta = &model.plain.theta;
+fn first_order(theta: &[f64], bias: usize, covariance: Option<&DMatrix<f64>>) -> Estimate {
     let places = [0, 1, 2 + bias];
     let [inverse_T, K_over_T, rudder_bias] = places.map(|place| theta[place]);
     let uncertainty = match covariance {
@@ -60,24 +60,24 @@ fn first_order(model: &Model, bias: usize, covariance: Option<&DMatrix<f64>>) ->
 /// All parameters of a model, in the order of its entries.
 pub(super) fn parameters(
     problem: &Problem,
-    model: &Model,
+    (structure, fit): (&Structure, &Fit),
     covariance: Option<&DMatrix<f64>>,
     names: &[String],
 ) -> Vec<Fitted> {
-    let biases = 2..model.structure.base_count();
+    let biases = 2..structure.base_count();
     let quantile = Normal::standard().inverse_cdf(0.975);
     let mut fitted = 0..;
     problem
-        .entries(&model.structure)
+        .entries(structure)
         .iter()
-        .zip(&model.plain.theta)
+        .zip(&fit.theta)
         .enumerate()
         .map(|(number, (entry, &value))| {
             let place = entry.fitted.then(|| fitted.next()).flatten();
             let sd = place.zip(covariance).map(|(place, all)| all[(place, place)].max(0.0).sqrt());
             let sd = sd.filter(|sd| sd.is_finite());
             let ci95 = if biases.contains(&number) {
-                first_order(model, number - 2, covariance).rudder_bias().ci95
+                first_order(&fit.theta, number - 2, covariance).rudder_bias().ci95
             } else {
                 sd.map(|sd| [value - quantile * sd, value + quantile * sd])
             };
@@ -93,9 +93,12 @@ pub(super) fn parameters(
 }
 
 /// K and T of a model, and the rudder bias of the ship; `None` when every one of several records has its own.
-pub(super) fn indices(model: &Model, covariance: Option<&DMatrix<f64>>) -> ([Quantity; 2], Option<Quantity>) {
-    let estimate = first_order(model, 0, covariance);
-    let bias = (model.structure.base_count() == 3).then(|| estimate.rudder_bias());
+pub(super) fn indices(
+    (structure, fit): (&Structure, &Fit),
+    covariance: Option<&DMatrix<f64>>,
+) -> ([Quantity; 2], Option<Quantity>) {
+    let estimate = first_order(&fit.theta, 0, covariance);
+    let bias = (structure.base_count() == 3).then(|| estimate.rudder_bias());
     ([estimate.K(), estimate.T()], bias)
 }
 
@@ -116,11 +119,9 @@ mod tests {
     use crate::made_up::{BASE, Plan, record, ship};
     use crate::noise::Colour;
     use crate::record::Record;
-    use crate::search::Model;
-    use crate::structure::Structure;
 
     /// Two records whose rudders are off by different angles.
-    fn with_own_biases() -> (Problem, Model) {
+    fn with_own_biases() -> (Problem, Structure, Fit) {
         let records = [-0.02, 0.03].map(|bias| {
             let ship = ship::ResponseModel::first_order().with(vec![BASE[0], BASE[1], bias]);
             Record::whole(&record(&ship, Plan::default()))
@@ -128,18 +129,18 @@ mod tests {
         let problem = Problem::new(records.into(), BASE[0], BASE[1]);
         let structure = Structure::base(2, true);
         let fit = problem.fit(&structure, &[BASE[0], BASE[1], 0.0, 0.0], &[[0.0; 2]; 2], &Colour::WHITE);
-        (problem, Model { structure, plain: fit.clone(), judged: fit })
+        (problem, structure, fit)
     }
 
     #[test]
     fn a_bias_of_one_record_is_not_that_of_the_ship() {
-        let (problem, model) = with_own_biases();
-        let covariance = parameter_covariance(&problem, &model, 0.0);
+        let (problem, structure, fit) = with_own_biases();
+        let covariance = parameter_covariance(&problem, (&structure, &fit), false);
         let names = ["one", "other"].map(String::from);
-        let all = parameters(&problem, &model, covariance.as_ref(), &names);
+        let all = parameters(&problem, (&structure, &fit), covariance.as_ref(), &names);
         assert!((all[2].quantity.value + 0.02).abs() < 1e-3 && (all[3].quantity.value - 0.03).abs() < 1e-3, "{all:?}");
         assert_eq!([all[2].only.as_deref(), all[3].only.as_deref()], [Some("one"), Some("other")]);
-        assert_eq!(indices(&model, covariance.as_ref()).1, None);
+        assert_eq!(indices((&structure, &fit), covariance.as_ref()).1, None);
     }
 
     /// A ship that answers faster than the base can: its 1/T stops where the range of the base does.
@@ -152,8 +153,7 @@ mod tests {
             let problem = Problem::new(vec![Record::whole(&record(&ship, plan))], theta[0], theta[1]);
             let structure = Structure::base(1, false);
             let fit = problem.fit(&structure, &theta, &[[0.0; 2]], &Colour::WHITE);
-            let model = Model { structure, plain: fit.clone(), judged: fit };
-            let all = parameters(&problem, &model, None, &[String::from("one")]);
+            let all = parameters(&problem, (&structure, &fit), None, &[String::from("one")]);
             (all[0].quantity.value, all.iter().map(|fitted| fitted.at_bound).collect::<Vec<_>>())
         };
         assert_eq!(ends(30.0), (ship::response::BASE[0].highest, vec![true, false, false]));
@@ -168,14 +168,14 @@ mod tests {
         let problem = Problem::new(vec![Record::whole(&record(&truth, Plan::default()))], BASE[0], BASE[1]);
         let structure = Structure::base(1, false);
         let fit = problem.fit(&structure, &BASE, &[[0.0; 2]], &Colour::WHITE);
-        let model = Model { structure, plain: fit.clone(), judged: fit };
-        let mut covariance = parameter_covariance(&problem, &model, 0.0).expect("a zig-zag tells them apart");
+        let mut covariance =
+            parameter_covariance(&problem, (&structure, &fit), false).expect("a zig-zag tells them apart");
         covariance[(1, 1)] = (0.3 * BASE[1]).powi(2);
         covariance[(1, 2)] = 0.5 * (covariance[(1, 1)] * covariance[(2, 2)]).sqrt();
         covariance[(2, 1)] = covariance[(1, 2)];
-        let (_, bias) = indices(&model, Some(&covariance));
+        let (_, bias) = indices((&structure, &fit), Some(&covariance));
         let bias = bias.expect("of one record");
-        let listed = &parameters(&problem, &model, Some(&covariance), &[String::from("one")])[2];
+        let listed = &parameters(&problem, (&structure, &fit), Some(&covariance), &[String::from("one")])[2];
         assert_eq!(listed.quantity, bias);
         let [low, high] = bias.ci95.expect("bounded");
         assert!((high - bias.value) / (bias.value - low) > 1.2 || (bias.value - low) / (high - bias.value) > 1.2);

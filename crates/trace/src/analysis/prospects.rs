@@ -36,14 +36,14 @@ pub struct Prospect {
 impl Analysis {
     /// The fitted ship, without terms that belong to the weather of one record: what a next trial would be run with.
     pub fn ship(&self) -> Response {
-        held_out::portable(&self.model.structure, &self.model.plain.theta)
+        held_out::portable(&self.model.structure, &self.told.fit.theta)
     }
 
     /// What each of some planned trials would tell beside the records, best first.
     ///
     /// A planned trial is a record of the fitted ship itself, made by the caller; only its rudder and its times count.
     pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
-        let now = self.ground(&self.problem, &self.model.structure, &self.model.plain).uncertainty();
+        let now = self.ground(&self.problem, &self.model.structure, &self.told.fit).uncertainty();
         let mut prospects: Vec<Prospect> =
             planned.par_iter().map(|(name, trial)| self.prospect(name, trial, now)).collect();
         let rank = |prospect: &Prospect| prospect.separated.len() + prospect.revealed.len();
@@ -56,7 +56,7 @@ impl Analysis {
     }
 
     fn ground<'a>(&self, problem: &'a Problem, structure: &'a Structure, fit: &'a Fit) -> Ground<'a> {
-        Ground::new(problem, structure, fit, self.problem.variance(&self.model.plain))
+        Ground::new(problem, structure, fit, self.problem.variance(&self.told.fit))
     }
 
     fn prospect(&self, name: &str, trial: &Trial, now: Option<f64>) -> Prospect {
@@ -76,7 +76,7 @@ impl Analysis {
             }
         };
         structure.terms.iter_mut().for_each(of_first);
-        let mut fit = self.model.plain.clone();
+        let mut fit = self.told.fit.clone();
         if structure.own_bias {
             fit.theta.insert(2 + count, ship.parameters()[2]);
         }

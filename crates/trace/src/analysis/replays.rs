@@ -6,13 +6,12 @@ use trial::Trial;
 
 use super::result::{Judged, OnRecord};
 use super::settings::TraceError;
-use crate::fit::Problem;
+use crate::fit::Fit;
 use crate::held_out::{self, HeldOut};
 use crate::index::RecordNumber;
 use crate::own_moment;
 use crate::record::Record;
 use crate::replay_errors;
-use crate::search::Model;
 use crate::structure::Structure;
 
 /// Initial state of a base replay of all rows.
@@ -31,29 +30,34 @@ pub(super) fn starts(trial: &Trial, response: &FirstOrder) -> Vec<[f64; 2]> {
     starts
 }
 
-/// A model on the records it was fitted to, all rows.
+/// The first-order response of fitted parameters: their base, with the mean of several rudder biases.
+pub(super) fn first_order(theta: &[f64], structure: &Structure) -> FirstOrder {
+    let biases = &theta[2..structure.base_count()];
+    let rudder_bias = biases.iter().sum::<f64>() / biases.len() as f64;
+    FirstOrder { inverse_T: theta[0], K_over_T: theta[1], rudder_bias }
+}
+
+/// A fitted structure on the records it was fitted to, all rows; `first` where it is a first-order response with one
+/// rudder bias.
 pub(super) fn on_records(
     trials: &[Trial],
-    problem: &Problem,
-    model: &Model,
-    first: &FirstOrder,
+    (structure, fit): (&Structure, &Fit),
+    base: &FirstOrder,
+    first: Option<&FirstOrder>,
     thorough: bool,
 ) -> Result<Vec<OnRecord>, TraceError> {
-    let is_base =
-        model.structure.terms.is_empty() && !model.structure.own_bias && problem.records.len() == trials.len();
     trials
         .iter()
         .enumerate()
         .map(|(number, trial)| {
             let record = Record::whole(trial);
-            let response = if is_base {
-                Response::first_order_ship(*first)
-            } else {
-                model.structure.response(RecordNumber(number), &model.plain.theta)
+            let response = match first {
+                Some(first) => Response::first_order_ship(*first),
+                None => structure.response(RecordNumber(number), &fit.theta),
             };
-            let mut all = starts(trial, first);
-            all.push(model.plain.initial[number]);
-            on_record(trial, &record, &response, &all, is_base.then_some(first), thorough)
+            let mut all = starts(trial, base);
+            all.push(fit.initial[number]);
+            on_record(trial, &record, &response, &all, first, thorough)
                 .ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })
         })
         .collect()
@@ -80,15 +84,13 @@ fn on_record(
     Some(OnRecord { replay, errors })
 }
 
-/// The models before and after on records that were held out.
-pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Result<Vec<Judged>, TraceError> {
-    let first = FirstOrder {
-        inverse_T: base.plain.theta[0],
-        K_over_T: base.plain.theta[1],
-        rudder_bias: base.plain.theta[2..].iter().sum::<f64>() / base.plain.theta[2..].len() as f64,
-    };
-    let after = (&model.structure, model.plain.theta.as_slice());
-    held_out.iter().map(|held| judged(held, &first, after, &model.structure)).collect()
+/// A base and a fitted structure on records that were held out.
+pub(super) fn validate(
+    held_out: &[HeldOut],
+    first: &FirstOrder,
+    (structure, fit): (&Structure, &Fit),
+) -> Result<Vec<Judged>, TraceError> {
+    held_out.iter().map(|held| judged(held, first, (structure, &fit.theta), structure)).collect()
 }
 
 /// A base and a structure with its parameters on a record that neither was fitted to; `forms` has the moments of time

@@ -9,6 +9,7 @@ use trial::Trial;
 use super::elsewhere::Predicted;
 use super::result::{ALIAS, Considered, Empirical, Fitted, OnRecord, Outcome, Traced};
 use super::settings::Settings;
+use super::told::Told;
 use crate::candidates::{Candidate, Sizes};
 use crate::diagnostics::{self, Signature};
 use crate::fit::Fit;
@@ -320,13 +321,15 @@ impl Reporter<'_> {
         }
     }
 
-    /// What is left, where a random moment is needed to explain it.
-    pub fn unexplained(&self, trials: &[Trial], after: &[OnRecord]) -> Option<Signature> {
-        self.model.judged.colour.moment?;
+    /// Whether structure is left: a random moment is needed, and either it is no description of what is left, or a
+    /// term without a name gains beside it.
+    pub fn is_unexplained(&self, told: &Told, nameless: Option<&Empirical>) -> bool {
         let gain = self.model.plain.bic - self.model.judged.bic;
-        if gain <= self.settings.thresholds.gain {
-            return None;
-        }
+        told.random && gain > self.settings.thresholds.gain && (!told.noise_holds || nameless.is_some())
+    }
+
+    /// Where what is left lives, in the record with the largest error.
+    pub fn signature(&self, trials: &[Trial], after: &[OnRecord]) -> Option<Signature> {
         let worst = (0..trials.len())
             .max_by(|&one, &other| after[one].errors.heading.total_cmp(&after[other].errors.heading))?;
         let (trial, replayed) = (&trials[worst], &after[worst].replay);
@@ -343,7 +346,7 @@ impl Reporter<'_> {
     }
 
     /// The monomial that carries most of what is left, with those that cannot be told from it.
-    pub fn discover(&self, sizes: &Sizes) -> Option<Empirical> {
+    pub fn nameless(&self, sizes: &Sizes) -> Option<Empirical> {
         let records = &self.search.problem.records;
         let rms = |values: &mut dyn Iterator<Item = f64>| {
             let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));

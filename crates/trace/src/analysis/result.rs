@@ -6,6 +6,7 @@ use ship::effects::Parameter;
 use ship::narrow_band::NarrowBand;
 use trial::Quantity;
 
+use super::told::Told;
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;
@@ -230,6 +231,8 @@ pub struct Analysis {
     pub(super) tried: Vec<Tried>,
     pub(super) candidate_terms: Vec<Candidate>,
     pub(super) model: Model,
+    /// Which of its fits is told, and how its innovations agree with its noise model.
+    pub(super) told: Told,
 }
 
 impl Analysis {

@@ -16,8 +16,6 @@ pub struct Settings {
     pub wanted: Wanted,
     /// Whether every record has a rudder bias of its own.
     pub own_bias: bool,
-    /// Whether terms without a name are proposed for what no effect carries.
-    pub discovery: bool,
     /// Whether errors of restarted replays, overshoots and separations are computed; a benchmark may leave them out.
     pub thorough: bool,
 }
@@ -25,7 +23,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         let (thresholds, wanted) = (Thresholds::default(), Wanted::default());
-        Self { thresholds, wanted, own_bias: false, discovery: true, thorough: true }
+        Self { thresholds, wanted, own_bias: false, thorough: true }
     }
 }
 

@@ -39,7 +39,14 @@ pub(super) fn question(
     let names = structure.terms.iter().map(|term| (term.name(), term.held)).collect();
     let constants: Vec<f64> = structure.terms.iter().flat_map(|term| term.effect.constants()).collect();
     let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
-    let moment = colour.moment.map_or([0.0; 3], |(kind, level)| [1.0, f64::from(kind == Moment::Walk), level]);
+    let moment = colour.moment.map_or([0.0; 2], |(kind, level)| {
+        let number = match kind {
+            Moment::White => 1,
+            Moment::Walk => 2,
+            Moment::OrnsteinUhlenbeck(number) => 3 + number,
+        };
+        [number as f64, level]
+    });
     let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
     let shape = [structure.own_bias, structure.ship_known, start.is_some()].map(f64::from);
     let own = start.unwrap_or_default();

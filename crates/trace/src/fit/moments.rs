@@ -4,7 +4,7 @@ use ship::narrow_band::NarrowBand;
 
 use super::linear::{Linear, log_variance};
 use super::problem::Problem;
-use crate::noise::{Colour, Moment};
+use crate::noise::{Colour, GUSTS, Moment};
 
 impl Problem {
     /// The random moment of the given kind that explains best what a fit leaves, if it is worth its parameter.
@@ -19,6 +19,21 @@ impl Problem {
         let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
         let (level, deviance) = minimum(lo, hi, 12, value);
         (Colour { moment: Some((kind, level.exp())), waves }, deviance)
+    }
+
+    /// The one of some kinds of random moment with the lowest BIC.
+    pub fn best_of(&self, linear: &Linear, kinds: &[Moment], waves: Option<NarrowBand>) -> Option<(Colour, f64)> {
+        let log_n = (self.observations() as f64).ln();
+        let found = kinds.iter().map(|&kind| self.best_moment(linear, kind, waves));
+        let bic = |(colour, deviance): &(Colour, f64)| deviance + colour.freedom() as f64 * log_n;
+        found.min_by(|one, other| bic(one).total_cmp(&bic(other)))
+    }
+
+    /// Kinds of random moment that are worth a look: white, a walk, and the gusts that explain best what a fit leaves.
+    pub fn kinds(&self, linear: &Linear, waves: Option<NarrowBand>) -> Vec<Moment> {
+        let gusts: Vec<Moment> = (0..GUSTS.len()).map(Moment::OrnsteinUhlenbeck).collect();
+        let best = self.best_of(linear, &gusts, waves).and_then(|(colour, _)| colour.moment);
+        [Moment::White, Moment::Walk].into_iter().chain(best.map(|(kind, _)| kind)).collect()
     }
 }
 

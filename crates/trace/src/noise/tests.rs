@@ -15,11 +15,25 @@ fn covariance(time: &[f64], a: f64, colour: &Colour, longest: f64) -> DMatrix<f6
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
     if let Some((kind, level)) = colour.moment {
-        let (intensity, impulse): (f64, fn(f64, f64) -> f64) = match kind {
-            // Heading after a unit impulse of yaw acceleration, and after a unit step.
-            Moment::White => (3.0 / longest.powi(3), |a, t| (1.0 - (-a * t).exp()) / a),
-            Moment::Walk => (20.0 / longest.powi(5), |a, t| (t - (1.0 - (-a * t).exp()) / a) / a),
+        // Heading after a unit impulse of yaw acceleration, after a unit step, and after one that dies away.
+        let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
+        let tau = kind.correlation(longest).unwrap_or(f64::NAN);
+        let impulse = |a: f64, t: f64| match kind {
+            Moment::White => faded(a, t),
+            Moment::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
+            Moment::Walk => (t - faded(a, t)) / a,
         };
+        let white = 3.0 / longest.powi(3);
+        let intensity = match kind {
+            Moment::White => white,
+            Moment::OrnsteinUhlenbeck(_) => white / (tau * tau),
+            Moment::Walk => 20.0 / longest.powi(5),
+        };
+        if kind.correlation(longest).is_some() {
+            // Gusts that have always blown.
+            let g = DVector::from_fn(n, |i, _| impulse(a, time[i] - time[0]));
+            total += &g * g.transpose() * (0.5 * level * intensity * tau);
+        }
         let (first, h) = (time[0], 0.02);
         let steps = ((time[n - 1] - first) / h).round() as usize;
         for k in 0..steps {
@@ -57,6 +71,7 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
         let colours = [
             Colour { moment: Some((Moment::White, 50.0)), waves: None },
             Colour { moment: Some((Moment::Walk, 400.0)), waves: None },
+            Colour { moment: Some((Moment::OrnsteinUhlenbeck(3), 80.0)), waves: None },
             Colour { moment: None, waves: Some(waves) },
             Colour { moment: Some((Moment::Walk, 100.0)), waves: Some(waves) },
         ];

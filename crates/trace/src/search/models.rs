@@ -1,5 +1,7 @@
 //! Models under the noise that suits them best, and their evidence against each other.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 use ship::effects::{Effect, WaveYaw};
 use ship::narrow_band::NarrowBand;
@@ -41,6 +43,8 @@ pub struct Search<'a> {
     pub wanted: Wanted,
     /// What was tried so far.
     pub ledger: Ledger,
+    /// Kinds of random moment that are worth a look, from the first model that was judged.
+    kinds: OnceLock<Vec<Moment>>,
 }
 
 /// A term of a model, held against the model without it.
@@ -57,7 +61,14 @@ pub struct Tested {
 impl<'a> Search<'a> {
     /// A search for whatever may be missing.
     pub fn new(problem: &'a Problem, candidates: &'a [Candidate], thresholds: Thresholds) -> Self {
-        Self { problem, candidates, thresholds, wanted: Wanted::default(), ledger: Ledger::default() }
+        Self {
+            problem,
+            candidates,
+            thresholds,
+            wanted: Wanted::default(),
+            ledger: Ledger::default(),
+            kinds: OnceLock::new(),
+        }
     }
 }
 
@@ -139,11 +150,15 @@ impl Search<'_> {
         self.problem.linear(structure, &fit.theta, &fit.initial)
     }
 
-    /// The better of the two random moments, and its deviance after a linear step.
+    /// The best random moment of the kinds that are worth a look, and its deviance after a linear step.
     fn best_moment(&self, linear: &Linear, waves: Option<NarrowBand>) -> (Colour, f64) {
-        let one = self.problem.best_moment(linear, Moment::White, waves);
-        let other = self.problem.best_moment(linear, Moment::Walk, waves);
-        if one.1 <= other.1 { one } else { other }
+        let kinds = self.kinds.get_or_init(|| self.problem.kinds(linear, waves));
+        self.problem.best_of(linear, kinds, waves).unwrap_or((Colour { moment: None, waves }, f64::INFINITY))
+    }
+
+    /// Kinds of random moment that are worth a look, once a first model was judged.
+    pub(super) fn kinds(&self) -> &[Moment] {
+        self.kinds.get().map_or(&[Moment::White, Moment::Walk], Vec::as_slice)
     }
 
     /// Finds the noise that suits a plainly fitted structure best.
@@ -157,7 +172,8 @@ impl Search<'_> {
             // Level and parameters are found in turn. A random moment that does not pay for its one parameter is not
             // tried.
             for _ in 0..2 {
-                if reached + self.log_n() >= plain.deviance {
+                if reached + colour.moment.map_or(0, |(kind, _)| kind.freedom()) as f64 * self.log_n() >= plain.deviance
+                {
                     break;
                 }
                 let fit = self.problem.fit(&structure, &start.theta, &start.initial, &colour);

@@ -3,6 +3,7 @@
 use super::models::{Model, Search, Tested};
 use super::trying::Tried;
 use crate::index::TermPlace;
+use crate::innovations::Innovations;
 
 /// Gain in BIC for which one term takes the place of another.
 const SWAP: f64 = 2.0;
@@ -110,7 +111,8 @@ impl Search<'_> {
         if self.found(&model).next().is_none() { base.clone() } else { model }
     }
 
-    /// The better of a model and the best set of effects that pay together.
+    /// The better of a model and the best set of effects that pay together: every term of either stands against a random
+    /// moment, so a set has to be better under one and nearer to the records without.
     fn with_a_set(&self, model: Model, base: &Model) -> Model {
         let ids = |set: &Model| -> Vec<&str> { set.structure.terms.iter().map(|term| term.effect.id()).collect() };
         let mut sets: Vec<Model> = Vec::new();
@@ -124,12 +126,24 @@ impl Search<'_> {
                 None => sets.push(set),
             }
         }
-        let pruned = sets.into_iter().take(PRUNED).map(|set| self.prune(set, base, true));
-        pruned.into_iter().find(|set| set.judged.bic < model.judged.bic).unwrap_or(model)
+        let mut pruned = sets.into_iter().take(PRUNED).map(|set| self.prune(set, base, true));
+        let better = |set: &Model| set.judged.bic < model.judged.bic && set.plain.bic < model.plain.bic;
+        pruned.find(better).unwrap_or(model)
+    }
+
+    /// Whether a base is all there is: a random moment describes what is left, and no candidate promises to pay beside
+    /// it.
+    fn is_enough(&self, base: &Model) -> bool {
+        base.judged.colour.moment.is_some()
+            && Innovations::of(self.problem, &base.judged).agree()
+            && !self.promises_anything(base)
     }
 
     /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.
     pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
+        if self.is_enough(base) {
+            return base.clone();
+        }
         let plain = self.add_plainly(base, first, false);
         let mut model = self.confirmed(base, &plain);
         // A moment for a while is so flexible that it may come first and send the search astray.

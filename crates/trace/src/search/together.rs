@@ -16,6 +16,9 @@ use crate::noise::{Colour, Moment};
 /// Most effects of a set.
 const MOST: usize = 3;
 
+/// Most effects of a set that has to promise something before a search begins.
+const PROMISED: usize = 2;
+
 /// Levels of a random moment that are tried, over the decades a record can tell apart; the few that lead are refined.
 const LEVELS: [f64; 9] = [1e-2, 1.0, 1e1, 1e2, 1e3, 1e4, 1e6, 1e8, 1e10];
 
@@ -28,6 +31,12 @@ struct Block {
     start: Vec<f64>,
     columns: std::ops::Range<usize>,
     freedom: usize,
+}
+
+/// Candidates with their columns, and the normal equations under every colour.
+struct Promises {
+    blocks: Vec<Block>,
+    reduced: Vec<Reduced>,
 }
 
 /// What is left of the normal equations when the unknowns of the model have taken their share.
@@ -84,36 +93,12 @@ impl Search<'_> {
     /// suits it best: fitted and judged, not pruned, the lowest BIC first.
     pub(super) fn together(&self, model: &Model) -> Vec<Model> {
         let fit = &model.plain;
-        let known = Linearised::new(self.problem, &model.structure, fit);
-        let (blocks, columns) = self.blocks(model, &known);
-        let linear = self.problem.linear(&model.structure, &fit.theta, &fit.initial);
-        let own = known.columns.unknowns();
-        let waves = fit.colour.waves;
-        let moments = [Moment::White, Moment::Walk].into_iter().flat_map(|kind| LEVELS.map(|level| (kind, level)));
-        let colours: Vec<Option<(Moment, f64)>> = std::iter::once(None).chain(moments.map(Some)).collect();
-        let reduced: Vec<Reduced> = colours
-            .into_par_iter()
-            .filter_map(|moment| {
-                let colour = Colour { moment, waves };
-                let whiteners = self.problem.whiteners(&colour);
-                let mut whitened = linear.whitened(&whiteners);
-                whitened.insert(own, &columns, &whiteners);
-                let normal = whitened.normal(&linear.whitened_residual(&whiteners));
-                Reduced::new(&normal, own, log_variance(&whiteners), colour)
-            })
-            .collect();
+        let Promises { blocks, reduced } = self.promises(model, false);
         let mut sets = self.sets(&blocks, MOST);
         let mut judged: Vec<(f64, Colour, Vec<usize>)> = sets
             .par_drain(..)
             .filter_map(|set| {
-                let all: Vec<usize> = set.iter().flat_map(|&k| blocks[k].columns.clone()).collect();
-                let freedom: usize = set.iter().map(|&k| blocks[k].freedom).sum();
-                let bic = |reduced: &Reduced| {
-                    let deviance = self.problem.deviance(reduced.rss_with(&all), reduced.log_variance);
-                    deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n()
-                };
-                let under = reduced.iter().map(|reduced| (bic(reduced), reduced.colour));
-                let (bic, colour) = under.min_by(|one, other| one.0.total_cmp(&other.0))?;
+                let (bic, colour) = self.promised(&blocks, &reduced, &set)?;
                 Some((bic, colour, set))
             })
             .collect();
@@ -142,26 +127,74 @@ impl Search<'_> {
         models
     }
 
-    /// Columns of every candidate that holds in all time, at the start of largest score.
-    fn blocks(&self, model: &Model, known: &Linearised) -> (Vec<Block>, Vec<Column>) {
+    /// Whether any effect, or two together, promise to gain what they need on a model, each under the noise that suits
+    /// it best.
+    pub(super) fn promises_anything(&self, model: &Model) -> bool {
+        let Promises { blocks, reduced } = self.promises(model, true);
+        let Some((without, _)) = self.promised(&blocks, &reduced, &[]) else { return true };
+        let pays = |set: &Vec<usize>| {
+            let needed: f64 = set.iter().map(|&k| self.needed(&self.candidate(blocks[k].place).term)).sum();
+            self.promised(&blocks, &reduced, set).is_none_or(|(bic, _)| without - bic > needed)
+        };
+        self.sets(&blocks, PROMISED).par_iter().any(pays)
+    }
+
+    /// Columns of the candidates, and the normal equations under every colour.
+    fn promises(&self, model: &Model, of_time: bool) -> Promises {
+        let fit = &model.plain;
+        let known = Linearised::new(self.problem, &model.structure, fit);
+        let (blocks, columns) = self.blocks(model, &known, of_time);
+        let linear = self.problem.linear(&model.structure, &fit.theta, &fit.initial);
+        let own = known.columns.unknowns();
+        let waves = fit.colour.waves;
+        let moments = self.kinds().iter().flat_map(|&kind| LEVELS.map(|level| (kind, level)));
+        let colours: Vec<Option<(Moment, f64)>> = std::iter::once(None).chain(moments.map(Some)).collect();
+        let reduced: Vec<Reduced> = colours
+            .into_par_iter()
+            .filter_map(|moment| {
+                let colour = Colour { moment, waves };
+                let whiteners = self.problem.whiteners(&colour);
+                let mut whitened = linear.whitened(&whiteners);
+                whitened.insert(own, &columns, &whiteners);
+                let normal = whitened.normal(&linear.whitened_residual(&whiteners));
+                Reduced::new(&normal, own, log_variance(&whiteners), colour)
+            })
+            .collect();
+        Promises { blocks, reduced }
+    }
+
+    /// The lowest BIC that a set promises under any colour, less what every model has, with that colour.
+    fn promised(&self, blocks: &[Block], reduced: &[Reduced], set: &[usize]) -> Option<(f64, Colour)> {
+        let all: Vec<usize> = set.iter().flat_map(|&k| blocks[k].columns.clone()).collect();
+        let freedom: usize = set.iter().map(|&k| blocks[k].freedom).sum();
+        let bic = |reduced: &Reduced| {
+            let deviance = self.problem.deviance(reduced.rss_with(&all), reduced.log_variance);
+            deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n()
+        };
+        let under = reduced.iter().map(|reduced| (bic(reduced), reduced.colour));
+        under.min_by(|one, other| one.0.total_cmp(&other.0))
+    }
+
+    /// Columns of every candidate at the start of largest score, moments of time only where they are wanted.
+    fn blocks(&self, model: &Model, known: &Linearised, of_time: bool) -> (Vec<Block>, Vec<Column>) {
         let (mut blocks, mut columns): (Vec<Block>, Vec<Column>) = (Vec::new(), Vec::new());
         for (place, candidate) in self.candidates.iter().enumerate() {
             let term = &candidate.term;
-            if term.effect.is_of_time() || self.excludes(&model.structure, term) {
+            if (term.effect.is_of_time() && !of_time) || self.excludes(&model.structure, term) {
                 continue;
             }
-            let best = candidate
-                .starts
+            let best = self
+                .starts(candidate, &model.plain, known)
                 .iter()
                 .map(|start| {
                     let new = self.columns_at(model, &model.plain, known, term, start);
-                    (self.gain_of(known, &new), start, new)
+                    (self.gain_of(known, &new), start.clone(), new)
                 })
                 .max_by(|one, other| one.0.total_cmp(&other.0));
             if let Some((_, start, new)) = best {
                 let range = columns.len()..columns.len() + new.len();
                 let place = CandidatePlace(place);
-                blocks.push(Block { place, start: start.clone(), columns: range, freedom: term.freedom() });
+                blocks.push(Block { place, start, columns: range, freedom: term.freedom() });
                 columns.extend(new);
             }
         }
