@@ -90,6 +90,18 @@ impl Columns {
         Normal { matrix: self.matrix.clone(), gradient, rss }
     }
 
+    /// Logarithm of the determinant of the normal equations, without unknowns that do not act.
+    pub fn log_determinant(&self) -> f64 {
+        let scale = scales(&self.matrix);
+        let n = self.unknowns();
+        let scaled = DMatrix::from_fn(n, n, |i, j| {
+            let own = if i == j { 1e-11 + if scale[i] == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
+            self.matrix[(i, j)] * scale[i] * scale[j] + own
+        });
+        let of_scales: f64 = scale.iter().filter(|scale| **scale > 0.0).map(|scale| scale.ln()).sum();
+        scaled.cholesky().map_or(0.0, |factor| factor.ln_determinant()) - 2.0 * of_scales
+    }
+
     /// Covariance of the unknowns for unit variance of the whitened residual; `None` when they cannot be told apart.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let scale = scales(&self.matrix);

@@ -9,16 +9,24 @@ use crate::noise::{Colour, GUSTS, Moment};
 impl Problem {
     /// The random moment of the given kind that explains best what a fit leaves, if it is worth its parameter.
     ///
-    /// Level and parameters are found together: for every level the linearised fit is solved anew.
+    /// Level and parameters are found together: for every level the linearised fit is solved anew. The level is that of
+    /// the restricted likelihood, −2 log L_R = (n − p) log(RSS/(n − p)) + Σ log S + log det XᵀX of the whitened
+    /// sensitivities X, which knows that p unknowns were fitted as well (Patterson and Thompson 1971).
     pub fn best_moment(&self, linear: &Linear, kind: Moment, waves: Option<NarrowBand>) -> (Colour, f64) {
-        let value = |level: f64| {
+        let at = |level: f64| {
             let colour = Colour { moment: Some((kind, level.exp())), waves };
             let whiteners = self.whiteners(&colour);
-            self.deviance(linear.projected(&whiteners), log_variance(&whiteners))
+            let columns = linear.whitened(&whiteners);
+            let rss = columns.normal(&linear.whitened_residual(&whiteners)).projected(columns.unknowns());
+            (colour, rss, log_variance(&whiteners), columns.log_determinant())
         };
         let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
-        let (level, deviance) = minimum(lo, hi, 12, value);
-        (Colour { moment: Some((kind, level.exp())), waves }, deviance)
+        let restricted = |level: f64| {
+            let (_, rss, log_variance, log_determinant) = at(level);
+            self.restricted(rss, linear.unknowns, log_variance + log_determinant)
+        };
+        let (colour, rss, log_variance, _) = at(minimum(lo, hi, 12, restricted).0);
+        (colour, self.deviance(rss, log_variance))
     }
 
     /// The one of some kinds of random moment with the lowest BIC.

@@ -80,6 +80,13 @@ impl Problem {
         if rss.is_finite() && rss >= 0.0 { n * (rss / n + self.floor).ln() + log_variance } else { f64::INFINITY }
     }
 
+    /// −2 log of the restricted likelihood of a whitened sum of squares (rad²) in which `unknowns` were fitted, with the
+    /// logarithms of its determinants.
+    pub(super) fn restricted(&self, rss: f64, unknowns: usize, logarithms: f64) -> f64 {
+        let n = (self.observations() as f64 - unknowns as f64).max(1.0);
+        if rss.is_finite() && rss >= 0.0 { n * (rss / n + self.floor).ln() + logarithms } else { f64::INFINITY }
+    }
+
     /// Variance of one whitened heading, rad².
     pub fn variance(&self, fit: &Fit) -> f64 {
         fit.rss / self.observations() as f64 + self.floor

@@ -131,17 +131,24 @@ impl Search<'_> {
         pruned.find(better).unwrap_or(model)
     }
 
-    /// Whether a base is all there is: a random moment describes what is left, and no candidate promises to pay beside
-    /// it.
-    fn is_enough(&self, base: &Model) -> bool {
+    /// Whether a base is all there is: a random moment describes what is left, no candidate promises to pay beside it,
+    /// and no moment of time pays, which a linear promise does not tell.
+    fn is_enough(&self, base: &Model, first: &[Tried]) -> bool {
+        let stands = |tried: &&Tried| {
+            let with = self.judge(tried.structure.clone(), tried.fit.clone());
+            let term = &self.candidate(tried.candidate).term;
+            self.believes(term, &self.evidence(&base.judged, &with.judged, term.freedom()))
+        };
+        let mut of_time = first.iter().filter(|tried| self.candidate(tried.candidate).term.effect.is_of_time());
         base.judged.colour.moment.is_some()
             && Innovations::of(self.problem, &base.judged).agree()
             && !self.promises_anything(base)
+            && !of_time.any(|tried| stands(&tried))
     }
 
     /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.
     pub fn run(&self, base: &Model, first: &[Tried]) -> Model {
-        if self.is_enough(base) {
+        if self.is_enough(base, first) {
             return base.clone();
         }
         let plain = self.add_plainly(base, first, false);

@@ -93,7 +93,7 @@ impl Search<'_> {
     /// suits it best: fitted and judged, not pruned, the lowest BIC first.
     pub(super) fn together(&self, model: &Model) -> Vec<Model> {
         let fit = &model.plain;
-        let Promises { blocks, reduced } = self.promises(model, false);
+        let Promises { blocks, reduced } = self.promises(model);
         let mut sets = self.sets(&blocks, MOST);
         let mut judged: Vec<(f64, Colour, Vec<usize>)> = sets
             .par_drain(..)
@@ -130,7 +130,7 @@ impl Search<'_> {
     /// Whether any effect, or two together, promise to gain what they need on a model, each under the noise that suits
     /// it best.
     pub(super) fn promises_anything(&self, model: &Model) -> bool {
-        let Promises { blocks, reduced } = self.promises(model, true);
+        let Promises { blocks, reduced } = self.promises(model);
         let Some((without, _)) = self.promised(&blocks, &reduced, &[]) else { return true };
         let pays = |set: &Vec<usize>| {
             let needed: f64 = set.iter().map(|&k| self.needed(&self.candidate(blocks[k].place).term)).sum();
@@ -140,10 +140,10 @@ impl Search<'_> {
     }
 
     /// Columns of the candidates, and the normal equations under every colour.
-    fn promises(&self, model: &Model, of_time: bool) -> Promises {
+    fn promises(&self, model: &Model) -> Promises {
         let fit = &model.plain;
         let known = Linearised::new(self.problem, &model.structure, fit);
-        let (blocks, columns) = self.blocks(model, &known, of_time);
+        let (blocks, columns) = self.blocks(model, &known);
         let linear = self.problem.linear(&model.structure, &fit.theta, &fit.initial);
         let own = known.columns.unknowns();
         let waves = fit.colour.waves;
@@ -175,26 +175,26 @@ impl Search<'_> {
         under.min_by(|one, other| one.0.total_cmp(&other.0))
     }
 
-    /// Columns of every candidate at the start of largest score, moments of time only where they are wanted.
-    fn blocks(&self, model: &Model, known: &Linearised, of_time: bool) -> (Vec<Block>, Vec<Column>) {
+    /// Columns of every candidate that holds in all time, at the start of largest score.
+    fn blocks(&self, model: &Model, known: &Linearised) -> (Vec<Block>, Vec<Column>) {
         let (mut blocks, mut columns): (Vec<Block>, Vec<Column>) = (Vec::new(), Vec::new());
         for (place, candidate) in self.candidates.iter().enumerate() {
             let term = &candidate.term;
-            if (term.effect.is_of_time() && !of_time) || self.excludes(&model.structure, term) {
+            if term.effect.is_of_time() || self.excludes(&model.structure, term) {
                 continue;
             }
-            let best = self
-                .starts(candidate, &model.plain, known)
+            let best = candidate
+                .starts
                 .iter()
                 .map(|start| {
                     let new = self.columns_at(model, &model.plain, known, term, start);
-                    (self.gain_of(known, &new), start.clone(), new)
+                    (self.gain_of(known, &new), start, new)
                 })
                 .max_by(|one, other| one.0.total_cmp(&other.0));
             if let Some((_, start, new)) = best {
                 let range = columns.len()..columns.len() + new.len();
                 let place = CandidatePlace(place);
-                blocks.push(Block { place, start, columns: range, freedom: term.freedom() });
+                blocks.push(Block { place, start: start.clone(), columns: range, freedom: term.freedom() });
                 columns.extend(new);
             }
         }

@@ -63,7 +63,7 @@ impl Search<'_> {
         }
     }
 
-    pub(super) fn starts<'b>(&self, candidate: &'b Candidate, from: &Fit, known: &Linearised) -> Cow<'b, [Vec<f64>]> {
+    fn starts<'b>(&self, candidate: &'b Candidate, from: &Fit, known: &Linearised) -> Cow<'b, [Vec<f64>]> {
         if candidate.starts.is_empty() {
             Cow::Owned(transient::starts(self.problem, from, known, &candidate.term))
         } else {
