@@ -7,6 +7,7 @@ use trial::Trial;
 
 use super::replays::{judged, starts};
 use super::result::Judged;
+use crate::band::{Elsewhere, Noise};
 use crate::fit::Problem;
 use crate::held_out::HeldOut;
 use crate::index::RecordNumber;
@@ -15,22 +16,26 @@ use crate::search::Model;
 use crate::structure::Structure;
 
 /// Errors before and after on every record that the fit of a fold has not seen. The structure was found on all records
-/// and is kept; its parameters are those of the fold. `None` where a fold has no base, or no finite replay.
+/// and is kept, as is the noise; its parameters are those of the fold. `None` where a fold has no base, or no finite replay.
 pub(super) fn leave_one_out(
     trials: &[Trial],
     method: &dyn Identifier,
     problem: &Problem,
-    model: &Model,
+    models: [&Model; 2],
 ) -> Vec<Option<Judged>> {
+    let noises = models.map(|model| Noise::of(problem, &model.structure, &model.judged));
     let fold = |left: usize| {
-        let rest = |all: &[[f64; 2]]| -> Vec<[f64; 2]> { without(all, left) };
         let first = method.identify(&without(trials, left)).ok()?.response;
-        let (structure, theta) = on_others(&model.structure, &model.plain.theta, RecordNumber(left));
         let others = problem.on(without(&problem.records, left));
-        let colour = Colour { moment: None, ..model.plain.colour };
-        let fit = others.fit(&structure, &theta, &rest(&model.plain.initial), &colour);
+        let fitted = models.map(|model| {
+            let (structure, theta) = on_others(&model.structure, &model.plain.theta, RecordNumber(left));
+            let colour = Colour { moment: None, ..model.plain.colour };
+            let fit = others.fit(&structure, &theta, &without(&model.plain.initial, left), &colour);
+            (structure, fit)
+        });
+        let known = [0, 1].map(|k| Elsewhere::new(&others, &fitted[k].0, &fitted[k].1, noises[k]));
         let held = HeldOut::new(&trials[left], starts(&trials[left], &first));
-        judged(&held, &first, (&structure, &fit.theta), &model.structure).ok()
+        judged(&held, &first, &known, &models[1].structure).ok()
     };
     (0..trials.len()).into_par_iter().map(fold).collect()
 }

@@ -29,7 +29,7 @@ use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
 use left_out::leave_one_out;
 use parameters::{indices, parameter_covariance, parameters, randomness};
-use replays::{initial, on_records, starts, validate};
+use replays::{add_bands, initial, on_records, starts, validate};
 use reporter::Reporter;
 
 pub use prospects::Prospect;
@@ -109,8 +109,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 
     let replay = |model: &Model| on_records(trials, &problem, model, &first, settings.thorough);
-    let before: Vec<OnRecord> = replay(&start)?;
-    let (model, after) = no_larger_error(&search, model, &before, replay, &mut refused);
+    let mut before: Vec<OnRecord> = replay(&start)?;
+    let (model, mut after) = no_larger_error(&search, model, &before, replay, &mut refused);
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
@@ -120,9 +120,14 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         |(on, trial): (&OnRecord, &Trial)| Series::new(&on.replay.time, &on.replay.residual, trial.sampling_period());
     let residuals = |all: &[OnRecord]| -> Vec<Series> { all.iter().zip(trials).map(series).collect() };
     let whiteness = [diagnostics::whiteness(&residuals(&before)), diagnostics::whiteness(&residuals(&after))];
-    let elsewhere = validate(&held_out, &start, &model)?;
+    add_bands(&problem, &model, &mut after);
+    if settings.thorough {
+        add_bands(&problem, &start, &mut before);
+    }
+    let models = [&start, &model];
+    let elsewhere = if held_out.is_empty() { Vec::new() } else { validate(&held_out, &problem, models)? };
     let folds = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let left_out = if folds { leave_one_out(trials, &method, &problem, &model) } else { Vec::new() };
+    let left_out = if folds { leave_one_out(trials, &method, &problem, models) } else { Vec::new() };
 
     let covariance = parameter_covariance(&problem, &model, whiteness[1].lag1);
     let parameters = parameters(&problem, &model, covariance.as_ref(), &names);

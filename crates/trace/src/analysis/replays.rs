@@ -4,9 +4,10 @@ use identify::replay::replay;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use super::result::{Judged, OnRecord};
+use super::result::{Analysis, Judged, OnRecord};
 use super::settings::TraceError;
-use crate::fit::Problem;
+use crate::band::{self, Elsewhere, Noise};
+use crate::fit::{Fit, Problem};
 use crate::held_out::{self, HeldOut};
 use crate::index::RecordNumber;
 use crate::own_moment;
@@ -77,18 +78,33 @@ fn on_record(
     } else {
         replay_errors::in_brief(&replay)
     };
-    Some(OnRecord { replay, errors })
+    Some(OnRecord { replay, errors, band: None })
+}
+
+/// Gives replays of the records that a model was fitted to their bands, under the noise that it was judged by.
+pub(super) fn add_bands(problem: &Problem, model: &Model, on_records: &mut [OnRecord]) {
+    let noise = Noise::of(problem, &model.structure, &model.judged);
+    let spreads = band::of_fitted(problem, &model.structure, &model.plain, &noise);
+    for (on, spread) in on_records.iter_mut().zip(spreads.into_iter().flatten()) {
+        on.band = spread.band(&on.replay.time);
+    }
 }
 
 /// The models before and after on records that were held out.
-pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Result<Vec<Judged>, TraceError> {
+pub(super) fn validate(
+    held_out: &[HeldOut],
+    problem: &Problem,
+    [base, model]: [&Model; 2],
+) -> Result<Vec<Judged>, TraceError> {
     let first = FirstOrder {
         inverse_T: base.plain.theta[0],
         K_over_T: base.plain.theta[1],
         rudder_bias: base.plain.theta[2..].iter().sum::<f64>() / base.plain.theta[2..].len() as f64,
     };
-    let after = (&model.structure, model.plain.theta.as_slice());
-    held_out.iter().map(|held| judged(held, &first, after, &model.structure)).collect()
+    let known = [base, model].map(|Model { structure, plain, judged }| {
+        Elsewhere::new(problem, structure, plain, Noise::of(problem, structure, judged))
+    });
+    held_out.iter().map(|held| judged(held, &first, &known, &model.structure)).collect()
 }
 
 /// A base and a structure with its parameters on a record that neither was fitted to; `forms` has the moments of time
@@ -96,22 +112,47 @@ pub(super) fn validate(held_out: &[HeldOut], base: &Model, model: &Model) -> Res
 pub(super) fn judged(
     held: &HeldOut,
     first: &FirstOrder,
-    (structure, theta): (&Structure, &[f64]),
+    known: &[Elsewhere; 2],
     forms: &Structure,
 ) -> Result<Judged, TraceError> {
+    let Elsewhere { structure, theta, .. } = known[1];
     let refuse = || TraceError::Replay { trial: held.trial.name().to_owned() };
     let base = Response::first_order_ship(*first);
     let before = on_record(held.trial, &held.record, &base, &held.starts, Some(first), true).ok_or_else(refuse)?;
+    let banded = |known: &Elsewhere, on: OnRecord| {
+        let band = known.band(held.averaged(known.theta[0]), on.replay.initial(), &on.replay.time);
+        OnRecord { band, ..on }
+    };
+    let before = banded(&known[0], before);
     let after = if structure.terms.is_empty() {
         before.clone()
     } else {
         let mut all = held.starts.clone();
         all.push(before.replay.initial());
         let response = held_out::portable(structure, theta);
-        on_record(held.trial, &held.record, &response, &all, None, true).ok_or_else(refuse)?
+        banded(&known[1], on_record(held.trial, &held.record, &response, &all, None, true).ok_or_else(refuse)?)
     };
-    let own = own_moment::response(held, (structure, theta), forms);
-    let own = own.and_then(|(response, near)| held.judge(&response, Some(near)));
-    let own_moment = own.map(|(replay, errors)| OnRecord { replay, errors });
+    let with_own = |(structure, fit): (Structure, Fit)| -> Option<OnRecord> {
+        let response = structure.response(RecordNumber(0), &fit.theta);
+        let (replay, errors) = held.judge(&response, Some(fit.initial[0]))?;
+        let spread = known[1].spread_with_own(held.averaged(theta[0]), &structure, &fit);
+        let band = spread.and_then(|spread| spread.band(&replay.time));
+        Some(OnRecord { replay, errors, band })
+    };
+    let own_moment = own_moment::fitted(held, (structure, theta), forms).and_then(with_own);
     Ok(Judged { name: held.trial.name().to_owned(), before, after, own_moment })
+}
+
+impl Analysis {
+    /// The final model on a further trial, in a calm and perfectly recorded, from the best initial state near `start`:
+    /// its band is that of the errors of the parameters alone. `None` when the replay is not finite.
+    pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<OnRecord> {
+        let replay = replay_errors::full(&self.ship(), &Record::whole(trial), &[start])?;
+        let (errors, initial) = (replay_errors::in_brief(&replay), replay.initial());
+        let Model { structure, plain, judged } = &self.model;
+        let known = Elsewhere::new(&self.problem, structure, plain, Noise::of(&self.problem, structure, judged));
+        let known = Elsewhere { noise: Noise::NONE, ..known };
+        let band = known.band(Record::averaged(trial, plain.theta[0].abs().recip()), initial, &replay.time);
+        Some(OnRecord { replay, errors, band })
+    }
 }

@@ -35,9 +35,9 @@ impl Columns {
         self.matrix.nrows()
     }
 
-    /// Whitened columns of one record.
-    pub fn of_record(&self, record: usize) -> impl Iterator<Item = &[f64]> {
-        self.blocks[record].iter().map(|(_, column)| column.as_slice())
+    /// Places of the unknowns that act in one record, with their whitened columns.
+    pub fn of_record(&self, record: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        self.blocks[record].iter().map(|(place, column)| (*place, column.as_slice()))
     }
 
     /// Makes room for unknowns at a place and fills it with columns, which are whitened first.
@@ -99,6 +99,14 @@ impl Columns {
         Some(DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * scale[i] * scale[j]))
     }
 
+    /// Logarithm of the determinant of the products of all pairs; infinite when the unknowns cannot be told apart.
+    pub fn log_determinant(&self) -> f64 {
+        let scale = scales(&self.matrix);
+        let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| self.matrix[(i, j)] * scale[i] * scale[j]);
+        let lengths: f64 = scale.iter().map(|scale| scale.ln()).sum();
+        scaled.cholesky().map_or(f64::INFINITY, |factor| factor.ln_determinant() - 2.0 * lengths)
+    }
+
     /// Whitened residual times whitened columns, one column an unknown, for every record: the scores of the likelihood.
     pub fn scores(&self, white: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
         let of_record = |(columns, white): (&Vec<(usize, Vec<f64>)>, &Vec<f64>)| {
@@ -133,6 +141,13 @@ impl Linear {
     /// The residual of every record.
     pub fn into_residual(self) -> Vec<Vec<f64>> {
         self.blocks.into_iter().map(|block| block.residual).collect()
+    }
+
+    /// The column of an unknown in one record; zeros where it does not act.
+    pub fn column(&self, record: usize, place: usize) -> Vec<f64> {
+        let Block { residual, columns } = &self.blocks[record];
+        let found = columns.iter().find(|(at, _)| *at == place);
+        found.map_or_else(|| vec![0.0; residual.len()], |(_, column)| column.clone())
     }
 
     /// The residual of every record, whitened.

@@ -22,6 +22,61 @@ impl Problem {
     }
 }
 
+/// Range about the level of highest likelihood, in its logarithm, that the means of a level are taken over, and points
+/// in it.
+const RANGE: [f64; 2] = [-3.0, 6.0];
+const POINTS: usize = 24;
+
+/// The size of the noise under the restricted likelihood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Restricted {
+    /// Variance of the white noise of a full row, rad².
+    pub row: f64,
+    /// Level of the random moment, where there is one: its geometric mean.
+    pub level: f64,
+    /// Its mean over the geometric one.
+    pub mean: f64,
+}
+
+impl Problem {
+    /// The size of the noise of a colour that a fit has found, at the mean over the restricted likelihood, every level
+    /// being as likely before as its multiple.
+    ///
+    /// The likelihood of the fit counts what the unknowns have taken from the noise as if it had not been there, and of
+    /// a slow moment they take much: its level is too small. The restricted one is that of all contrasts without the
+    /// unknowns, −2 log L = (n − u) log(RSS/(n − u)) + Σ log S + log det XᵀΣ⁻¹X.
+    ///
+    /// Source: Patterson and Thompson (1971); Harville (1974) for its reading as a posterior.
+    pub fn restricted(&self, linear: &Linear, colour: &Colour) -> Restricted {
+        let free = (self.observations() as f64 - linear.unknowns as f64).max(1.0);
+        // −2 log L, and the variance of a row.
+        let at = |colour: &Colour| {
+            let whiteners = self.whiteners(colour);
+            let columns = linear.whitened(&whiteners);
+            let rss = columns.normal(&linear.whitened_residual(&whiteners)).projected(linear.unknowns);
+            let row = rss / free;
+            (free * (row + self.floor()).ln() + log_variance(&whiteners) + columns.log_determinant(), row)
+        };
+        let Some((kind, level)) = colour.moment else {
+            return Restricted { row: at(colour).1, level: 0.0, mean: 1.0 };
+        };
+        let [lo, hi] = RANGE;
+        let points = (0..=POINTS).map(|k| level * (lo + (hi - lo) * k as f64 / POINTS as f64).exp());
+        let points: Vec<(f64, (f64, f64))> =
+            points.map(|level| (level, at(&Colour { moment: Some((kind, level)), ..*colour }))).collect();
+        let lowest = points.iter().map(|(_, (deviance, _))| *deviance).fold(f64::INFINITY, f64::min);
+        let mut sums = [0.0; 4];
+        for (level, (deviance, row)) in points {
+            let weight = (0.5 * (lowest - deviance)).exp();
+            let values = [1.0, row, level * row, (level * row).max(f64::MIN_POSITIVE).ln()];
+            values.iter().zip(&mut sums).for_each(|(value, sum)| *sum += weight * value);
+        }
+        let [row, mean, logarithm] = [1, 2, 3].map(|k| sums[k] / sums[0]);
+        let moment = logarithm.exp();
+        Restricted { row, level: moment / row, mean: mean / moment }
+    }
+}
+
 /// Smallest value on a range: a grid, then golden sections about its lowest point.
 pub(crate) fn minimum(lo: f64, hi: f64, points: usize, mut value: impl FnMut(f64) -> f64) -> (f64, f64) {
     let at = |k: usize| lo + (hi - lo) * k as f64 / points as f64;
