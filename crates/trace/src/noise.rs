@@ -16,14 +16,8 @@ use crate::record::Record;
 
 mod system;
 
-use system::joint;
-pub(crate) use system::{System, propagate, transposed};
-
-/// Most states: heading, rate, moment, and two of the waves.
-pub(crate) const MOST: usize = 5;
-
-pub(crate) type Vector = [f64; MOST];
-pub(crate) type Matrix = [[f64; MOST]; MOST];
+pub(crate) use system::{MOST, Matrix, System, propagate, transposed};
+use system::{Vector, joint};
 
 /// What the filter does with a row: gain, log S, weight.
 type Correction<const N: usize> = ([f64; N], f64, f64);

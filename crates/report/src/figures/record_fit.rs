@@ -67,9 +67,9 @@ pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
     }));
     entries.push(Entry::new(Sample::Line(Stroke::solid(RUDDER, theme.line)), "recorded rudder"));
     sheet.legend(&entries);
-    let ends = |of: fn(&FitBand) -> &[Curve; 2]| bands().flat_map(move |(_, band)| of(band));
-    let headings = || data.fits.iter().map(|f| &f.heading).chain([&data.heading]).chain(ends(|band| &band.heading));
-    let residuals = || data.fits.iter().map(|f| &f.residual).chain(ends(|band| &band.residual));
+    // A band that is wider than everything else is cut at the frame: it would flatten the record.
+    let headings = || data.fits.iter().map(|f| &f.heading).chain([&data.heading]);
+    let residuals = || data.fits.iter().map(|f| &f.residual);
     let rows = vec![
         (angle_side(headings(), heading_title()), theme.tall(0.28)),
         (angle_side(residuals(), "residual [°]".into()), theme.tall(0.14)),

@@ -52,9 +52,13 @@ pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &
 /// How dense the area of a band is.
 pub(super) const OPACITY: f64 = 0.2;
 
-/// The area between two curves.
+/// The area between two curves, as far as it lies in the frame.
 pub(super) fn area(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Colour) {
-    let edge = |curve: &Curve| -> Vec<(f64, f64)> { curve.finite().filter_map(|pair| panel.place(pair)).collect() };
+    let Rect { y, .. } = panel.rect;
+    let inside = |(across, up): (f64, f64)| (across, up.clamp(y, panel.rect.bottom()));
+    let edge = |curve: &Curve| -> Vec<(f64, f64)> {
+        curve.finite().filter_map(|pair| panel.place(pair)).map(inside).collect()
+    };
     let outline = edge(lower).into_iter().chain(edge(upper).into_iter().rev());
     scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, OPACITY);
 }

@@ -16,7 +16,8 @@ use crate::search::Model;
 use crate::structure::Structure;
 
 /// Errors before and after on every record that the fit of a fold has not seen. The structure was found on all records
-/// and is kept, as is the noise; its parameters are those of the fold. `None` where a fold has no base, or no finite replay.
+/// and is kept, as is the noise; its parameters are those of the fold. `None` where a fold has no base, or no finite
+/// replay.
 pub(super) fn leave_one_out(
     trials: &[Trial],
     method: &dyn Identifier,

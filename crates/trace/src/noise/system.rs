@@ -2,7 +2,11 @@
 
 use ship::narrow_band::NarrowBand;
 
-use super::{MOST, Matrix, Vector};
+/// Most states: heading, rate, moment, and two of the waves.
+pub(crate) const MOST: usize = 5;
+
+pub(crate) type Vector = [f64; MOST];
+pub(crate) type Matrix = [[f64; MOST]; MOST];
 
 /// x ← F x + q before every observed row but the first, heading h·x.
 #[derive(Debug, Clone)]
