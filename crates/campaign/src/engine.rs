@@ -6,9 +6,8 @@
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use ::trace::analysis::Traced;
-use ::trace::record::Record;
-use ::trace::{Analysis, TraceError, replay_errors};
+use ::trace::analysis::{OnRecord, Traced};
+use ::trace::{Analysis, TraceError};
 use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
 use nalgebra::Matrix2;
@@ -258,13 +257,7 @@ fn traced(
     missing: &[String],
     expected: Option<f64>,
 ) -> Row {
-    let elsewhere = |trial: &Trial| {
-        let start = [trial.heading()[0], 0.0];
-        let record = Record::whole(trial);
-        let replayed = replay_errors::full(&analysis.ship(), &record, &[start])?;
-        let square = replayed.residual.iter().map(|e| e * e).sum::<f64>() / replayed.residual.len() as f64;
-        finite(to_deg(square.sqrt()))
-    };
+    let elsewhere = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
     let named = |effect: &Traced| {
         let mut ids = vec![effect.id];
         ids.extend(effect.aliases.iter().map(|(id, _)| *id));
@@ -275,13 +268,15 @@ fn traced(
     let bias = analysis.rudder_bias.expect("one record has one rudder bias");
     Row {
         heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
-        validation_rmse_deg: validation.and_then(elsewhere),
+        validation_rmse_deg: elsewhere.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
         stop: Some(StopReason::Converged.as_str()),
         traced: Some(Box::new(TraceAnswer {
             verdict: analysis.verdict,
             named: analysis.effects.iter().map(named).collect(),
             margin: margin(analysis, missing),
             expected,
+            band_fitted: analysis.identification[0].after.coverage(),
+            band_held_out: elsewhere.as_ref().and_then(OnRecord::coverage),
         })),
         ..with_indices(blank, [k, t, bias])
     }

@@ -285,6 +285,7 @@ fn record_figure(theme: &Theme) -> Figure {
             rms_deg: Some(rms(&residual)),
             heading: Curve::new(run.t.clone(), heading),
             residual: Curve::new(run.t.clone(), residual),
+            band: None,
         }
     };
     record_fit(

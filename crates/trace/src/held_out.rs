@@ -2,6 +2,7 @@
 //! kept from the fit.
 
 use identify::replay::Replay;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use ship::Response;
 use trial::Trial;
@@ -27,6 +28,11 @@ impl<'a> HeldOut<'a> {
     /// Takes a trial; `starts` are initial states from which the best is looked for.
     pub fn new(trial: &'a Trial, starts: Vec<[f64; 2]>) -> Self {
         Self { trial, record: Record::whole(trial), starts }
+    }
+
+    /// Its rows averaged for a ship of the given 1/T, as those of the records that are fitted.
+    pub fn averaged(&self, inverse_time: f64) -> Record {
+        Record::averaged(self.trial, inverse_time.abs().recip())
     }
 
     /// Replay and errors of a response, looked for from the starts and another one; `None` when it is not finite.
@@ -67,6 +73,28 @@ pub fn portable_structure(structure: &Structure, theta: &[f64]) -> (Structure, V
     }
     kept.records = 1;
     (kept, values)
+}
+
+/// Covariance of the fitted parameters of [`portable_structure`], in order, from that of all fitted ones.
+pub fn portable_covariance(problem: &Problem, structure: &Structure, covariance: &DMatrix<f64>) -> DMatrix<f64> {
+    let entries = problem.entries(structure);
+    let mut place = 0..;
+    // The place among the fitted ones of every entry that is.
+    let places: Vec<Option<usize>> = entries.iter().map(|entry| entry.fitted.then(|| place.next()).flatten()).collect();
+    // What is kept is a mean of some of them.
+    let mut kept: Vec<&[Option<usize>]> = vec![&places[0..1], &places[1..2], &places[2..structure.base_count()]];
+    for of in structure.places().filter(|&of| !structure.term(of).effect.is_of_time()) {
+        kept.extend(places[structure.range(of)].chunks(1));
+    }
+    let kept: Vec<Vec<usize>> = kept
+        .into_iter()
+        .map(|places| places.iter().copied().flatten().collect::<Vec<usize>>())
+        .filter(|places| !places.is_empty())
+        .collect();
+    DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+        let pairs = kept[i].iter().flat_map(|&one| kept[j].iter().map(move |&other| covariance[(one, other)]));
+        pairs.sum::<f64>() / (kept[i].len() * kept[j].len()) as f64
+    })
 }
 
 /// How a model does against another one where neither was fitted.

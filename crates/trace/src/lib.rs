@@ -14,11 +14,13 @@
 //! | whether a noise model holds | [`innovations`] |
 //! | where a squall was | [`transient`] |
 //! | errors before and after | [`replay_errors`], [`held_out`], [`own_moment`] |
+//! | how far a record may be from a replay by chance | [`band`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
 //! | the yaw moment that the base lacks, over time and over what it may depend on | [`missing_moment`] |
 //! | what is left in the end | [`diagnostics`], [`monomial`] |
 
 pub mod analysis;
+pub mod band;
 pub mod candidates;
 pub mod diagnostics;
 pub mod fit;

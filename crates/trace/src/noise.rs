@@ -16,11 +16,10 @@ use ship::narrow_band::NarrowBand;
 
 use crate::record::Record;
 
-/// Most states: heading, rate, moment, and two of the waves.
-const MOST: usize = 5;
+mod system;
 
-type Vector = [f64; MOST];
-pub(crate) type Matrix = [[f64; MOST]; MOST];
+pub(crate) use system::{MOST, Matrix, System, propagate, transposed};
+use system::{Vector, joint};
 
 /// What the filter does with a row: gain, log S, weight.
 type Correction<const N: usize> = ([f64; N], f64, f64);
@@ -204,6 +203,17 @@ impl RecordNoise {
             let rows_of = if even { Vec::new() } else { weights.collect() };
             return Whitener { states: 0, steps: Vec::new(), rows: rows_of, count: rows, log_variance };
         }
+        let system = self.system(colour);
+        match system.states {
+            2 => self.filter::<2>(system, colour),
+            3 => self.filter::<3>(system, colour),
+            4 => self.filter::<4>(system, colour),
+            _ => self.filter::<5>(system, colour),
+        }
+    }
+
+    /// Random moment and waves of this colour as one linear system, without the white noise of the rows.
+    pub(crate) fn system(&self, colour: &Colour) -> System {
         let drift = colour.moment.map(|(kind, level)| match kind {
             Moment::White => (&self.white, level),
             Moment::Walk => (&self.walk, level),
@@ -213,50 +223,51 @@ impl RecordNoise {
             }
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);
-        match own + if colour.waves.is_some() { 2 } else { 0 } {
-            2 => self.filter::<2>(drift, own, &colour.waves),
-            3 => self.filter::<3>(drift, own, &colour.waves),
-            4 => self.filter::<4>(drift, own, &colour.waves),
-            _ => self.filter::<5>(drift, own, &colour.waves),
-        }
-    }
-
-    /// The filter of N states, of which the first `own` are those of a random moment.
-    fn filter<const N: usize>(&self, drift: Option<(&Drift, f64)>, own: usize, waves: &Option<NarrowBand>) -> Whitener {
-        let rows = self.durations.len();
-        let mut observe = [0.0; N];
+        let mut observe = [0.0; MOST];
         observe[0] = 1.0;
-        let mut covariance = [[0.0; N]; N];
+        let mut initial = [[0.0; MOST]; MOST];
         if let Some((drift, level)) = drift {
-            covariance[own - 1][own - 1] = level * drift.beginning;
+            initial[own - 1][own - 1] = level * drift.beginning;
         }
-        if let Some(waves) = waves {
+        if let Some(waves) = &colour.waves {
             observe[own] = 1.0;
             let [p0, p1] = waves.stationary_sd().map(|sd| sd * sd);
-            (covariance[own][own], covariance[own + 1][own + 1]) = (p0, p1);
+            (initial[own][own], initial[own + 1][own + 1]) = (p0, p1);
         }
-        let mut steps: Vec<(f64, usize, Matrix, Matrix)> = Vec::new();
+        let mut known: Vec<(f64, usize)> = Vec::new();
+        let mut steps: Vec<(Matrix, Matrix)> = Vec::new();
+        let of_row = self.durations.iter().enumerate().map(|(row, &h)| {
+            let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
+            let place = known.iter().rposition(|step| step.1 == key && (step.0 - h).abs() <= 1e-6 * h.max(1e-300));
+            place.unwrap_or_else(|| {
+                known.push((h, key));
+                steps.push(joint(drift.map(|(drift, level)| (&drift.steps[key], level, own)), &colour.waves, h));
+                steps.len() - 1
+            })
+        });
+        let of_row = of_row.collect();
+        System { states: own + if colour.waves.is_some() { 2 } else { 0 }, own, steps, of_row, observe, initial }
+    }
+
+    /// The filter of a system of N states.
+    fn filter<const N: usize>(&self, system: System, colour: &Colour) -> Whitener {
+        let rows = self.durations.len();
+        let observe: [f64; N] = std::array::from_fn(|i| system.observe[i]);
+        let mut covariance: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| system.initial[i][j]));
         let mut filter = Vec::with_capacity(rows);
         let mut log_variance = 0.0;
         let mut settled = false;
         // Of the last row: place of its transition and variance of its noise; gain, log S, weight.
         let mut last: Option<((usize, f64), Correction<N>)> = None;
-        for row in 0..rows {
-            let h = self.durations[row];
-            let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
-            let place = steps.iter().rposition(|step| step.1 == key && (step.0 - h).abs() <= 1e-6 * h.max(1e-300));
-            let place = place.unwrap_or_else(|| {
-                let (f, q) = joint(drift.map(|(drift, level)| (&drift.steps[key], level, own)), waves, h);
-                steps.push((h, key, f, q));
-                steps.len() - 1
-            });
+        for (row, &place) in system.of_row.iter().enumerate() {
             // Even rows lead to a filter that no longer changes.
             let kind = (place, self.variances[row]);
             let (gain, log, weight) = match last {
                 Some((before, known)) if settled && before == kind => known,
                 _ => {
                     if row > 0 {
-                        covariance = propagate(&steps[place].2, &covariance, &steps[place].3);
+                        let (f, q) = &system.steps[place];
+                        covariance = propagate(f, &covariance, q);
                     }
                     let (gain, variance) = correct(&mut covariance, &observe, kind.1);
                     settled = last.is_some_and(|(before, (old, ..))| {
@@ -271,52 +282,10 @@ impl RecordNoise {
             all[..N].copy_from_slice(&gain);
             filter.push((place, all, weight));
         }
-        let steps = steps.into_iter().map(|(_, _, f, _)| f).collect();
-        Whitener { states: N, steps, rows: filter, count: rows, log_variance }.observing(own, waves.is_some())
+        let steps = system.steps.into_iter().map(|(f, _)| f).collect();
+        let waves = colour.waves.is_some();
+        Whitener { states: N, steps, rows: filter, count: rows, log_variance }.observing(system.own, waves)
     }
-}
-
-/// Transition and added covariance of moment and waves together.
-fn joint(drift: Option<(&(Matrix, Matrix), f64, usize)>, waves: &Option<NarrowBand>, h: f64) -> (Matrix, Matrix) {
-    let (mut f, mut q): (Matrix, Matrix) = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
-    let mut own = 0;
-    if let Some(((transition, added), level, states)) = drift {
-        own = states;
-        for i in 0..states {
-            for j in 0..states {
-                (f[i][j], q[i][j]) = (transition[i][j], level * added[i][j]);
-            }
-        }
-    }
-    if let Some(waves) = waves {
-        let step = waves.step(h);
-        let (a, b) = (step.advance([1.0, 0.0], [0.0; 2]), step.advance([0.0, 1.0], [0.0; 2]));
-        let (c, d) = (step.advance([0.0; 2], [1.0, 0.0]), step.advance([0.0; 2], [0.0, 1.0]));
-        for i in 0..2 {
-            (f[own + i][own], f[own + i][own + 1]) = (a[i], b[i]);
-            for j in 0..2 {
-                q[own + i][own + j] = c[i] * c[j] + d[i] * d[j];
-            }
-        }
-    }
-    (f, q)
-}
-
-/// Covariance a step later: F P Fᵀ + Q.
-fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64; N]; N] {
-    let mut half = [[0.0; N]; N];
-    let mut result = [[0.0; N]; N];
-    for i in 0..N {
-        for j in 0..N {
-            half[i][j] = (0..N).map(|k| f[i][k] * p[k][j]).sum();
-        }
-    }
-    for i in 0..N {
-        for j in 0..N {
-            result[i][j] = q[i][j] + (0..N).map(|k| half[i][k] * f[j][k]).sum::<f64>();
-        }
-    }
-    result
 }
 
 /// Takes a heading with white noise of variance `own` into account: the gain, and the variance S that was predicted for
@@ -400,6 +369,17 @@ impl Whitener {
         let (twos, rest) = rest.as_chunks_mut::<2>();
         twos.iter_mut().for_each(|columns| self.run::<N, 2>(columns));
         rest.as_chunks_mut::<1>().0.iter_mut().for_each(|columns| self.run::<N, 1>(columns));
+    }
+
+    /// Applies the transpose of what makes a column white, so that both together are Σ⁻¹ of the noise.
+    pub fn apply_transposed(&self, column: &mut [f64]) {
+        let mut later = [0.0; MOST];
+        for (value, (step, gain, weight)) in column.iter_mut().zip(&self.rows).rev() {
+            *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
+            let Some(f) = self.steps.get(*step) else { continue };
+            later[0] -= *value;
+            later = transposed(f, &later);
+        }
     }
 
     fn run<const N: usize, const COLUMNS: usize>(&self, columns: &mut [&mut Vec<f64>; COLUMNS]) {

@@ -4,21 +4,14 @@
 use crate::candidates::{Candidate, Sizes};
 use crate::fit::{Fit, Linearised, Problem};
 use crate::held_out::{self, HeldOut};
-use crate::index::RecordNumber;
 use crate::noise::Colour;
-use crate::record::Record;
 use crate::structure::{Structure, Term};
 use crate::transient;
-use ship::Response;
 
-/// The response of a structure on a held-out record with a moment of the record's own, and the initial state that goes
-/// with it: of the moments among the terms `of` a structure, the one of lowest BIC. `None` when there are none, or when
-/// no fit is finite.
-pub fn response(
-    held: &HeldOut,
-    (structure, theta): (&Structure, &[f64]),
-    of: &Structure,
-) -> Option<(Response, [f64; 2])> {
+/// What is portable of a structure on a held-out record, the ship being known, with a moment of the record's own fitted
+/// as its last term: of the moments among the terms `of` a structure, the one of lowest BIC. `None` when there are
+/// none, or when no fit is finite.
+pub fn fitted(held: &HeldOut, (structure, theta): (&Structure, &[f64]), of: &Structure) -> Option<(Structure, Fit)> {
     let mut forms: Vec<&Term> = Vec::new();
     for term in of.terms.iter().filter(|term| term.effect.is_of_time()) {
         if forms.iter().all(|form| form.effect.form() != term.effect.form()) {
@@ -28,10 +21,9 @@ pub fn response(
     forms.first()?;
     let (mut ship, values) = held_out::portable_structure(structure, theta);
     ship.ship_known = true;
-    let record = Record::averaged(held.trial, values[0].abs().recip());
-    let problem = Problem::new(vec![record], values[0], values[1]);
-    let fitted = |initial: &[f64; 2]| problem.fit(&ship, &values, &[*initial], &Colour::WHITE);
-    let plain = best(held.starts.iter().map(fitted))?;
+    let problem = Problem::new(vec![held.averaged(values[0])], values[0], values[1]);
+    let from = |initial: &[f64; 2]| problem.fit(&ship, &values, &[*initial], &Colour::WHITE);
+    let plain = best(held.starts.iter().map(from))?;
     let sizes = Sizes::of(&problem.records, values[0], &problem.replay(&ship, &values, &plain.initial));
     let about = sizes.manoeuvres(&problem.records, &problem.records[0]);
     let known = Linearised::new(&problem, &ship, &plain);
@@ -46,8 +38,7 @@ pub fn response(
         let fit = best(looked_for.iter().map(fit))?;
         Some((with, fit))
     };
-    let found = forms.into_iter().filter_map(with_form).min_by(|one, other| one.1.bic.total_cmp(&other.1.bic));
-    found.map(|(with, fit)| (with.response(RecordNumber(0), &fit.theta), fit.initial[0]))
+    forms.into_iter().filter_map(with_form).min_by(|one, other| one.1.bic.total_cmp(&other.1.bic))
 }
 
 /// The fit of lowest deviance, if it is finite.
@@ -63,7 +54,9 @@ mod tests {
     use ship::effects::{Effect, MomentDrift, TransientDisturbance};
 
     use super::*;
+    use crate::index::RecordNumber;
     use crate::made_up::{BASE, Plan, record, ship};
+    use crate::record::Record;
 
     /// Fitted on a record with one drift and replayed on a record with another: the drift of the second is found, and
     /// the ship is not touched.
@@ -83,12 +76,13 @@ mod tests {
             theta.extend(proposal.large.iter().map(|large| large * first));
             let structure = Structure::base(1, false).with(Candidate::new(proposal, None).term);
             let plain = held.judge(&held_out::portable(&structure, &theta), None).expect("finite").1.heading;
-            let (own, initial) = response(&held, (&structure, &theta), &structure).expect("it has a moment of time");
-            let with = held.judge(&own, Some(initial)).expect("finite").1.heading;
+            let (with, fit) = fitted(&held, (&structure, &theta), &structure).expect("it has a moment of time");
+            let own = with.response(RecordNumber(0), &fit.theta);
+            let with = held.judge(&own, Some(fit.initial[0])).expect("finite").1.heading;
             assert!(with < 0.1 * plain && with.to_degrees() < 0.06, "{}: {plain}, {with}", effect.id());
             assert_eq!(own.parameters()[..3], BASE);
             let base = Structure::base(1, false);
-            assert!(response(&held, (&base, &BASE), &base).is_none());
+            assert!(fitted(&held, (&base, &BASE), &base).is_none());
         }
     }
 }

@@ -25,7 +25,7 @@ pub fn starts(problem: &Problem, fit: &Fit, known: &Linearised, term: &Term) -> 
     let number = term.only.map_or(0, |only| only.0);
     let record = &problem.records[number];
     let whitener = &known.whiteners[number];
-    let columns: Vec<&[f64]> = known.columns.of_record(number).collect();
+    let columns: Vec<&[f64]> = known.columns.of_record(number).map(|(_, column)| column).collect();
     let residual = &known.white[number];
     let p = columns.len();
     let gram = DMatrix::from_fn(p, p, |i, j| dot(columns[i], columns[j]));

@@ -166,7 +166,14 @@ pub const COLUMNS: [Column; 22] = [
 
 /// What a trace said, begun with the first of its columns that is read.
 fn answer(row: &mut Row) -> &mut TraceAnswer {
-    let blank = || TraceAnswer { verdict: Verdict::Clean, named: Vec::new(), margin: None, expected: None };
+    let blank = || TraceAnswer {
+        verdict: Verdict::Clean,
+        named: Vec::new(),
+        margin: None,
+        expected: None,
+        band_fitted: None,
+        band_held_out: None,
+    };
     row.traced.get_or_insert_with(|| Box::new(blank()))
 }
 
@@ -237,7 +244,7 @@ pub const OWN_COLUMNS: [Column; 2] = [
 ];
 
 /// Columns that follow in a study with a trace.
-pub const TRACE_COLUMNS: [Column; 5] = [
+pub const TRACE_COLUMNS: [Column; 7] = [
     Column {
         name: "trace_verdict",
         meaning: "clean, traced or unexplained",
@@ -264,5 +271,17 @@ pub const TRACE_COLUMNS: [Column; 5] = [
         "likelihood ratio of the truth against the nearest first-order response, on average over the noise",
         |row| row.traced.as_ref()?.expected,
         |row, value| answer(row).expected = Some(value),
+    ),
+    number(
+        "trace_band_fitted",
+        "share of the headings of the trial inside the 95 % band of the traced model; null where there is no band",
+        |row| row.traced.as_ref()?.band_fitted,
+        |row, value| answer(row).band_fitted = Some(value),
+    ),
+    number(
+        "trace_band_held_out",
+        "the same on the validation manoeuvre, which has no noise: the band is that of the parameters alone",
+        |row| row.traced.as_ref()?.band_held_out,
+        |row, value| answer(row).band_held_out = Some(value),
     ),
 ];

@@ -42,6 +42,10 @@ pub struct TraceAnswer {
     pub margin: Option<f64>,
     /// Likelihood ratio of the truth against the nearest first-order response, on average.
     pub expected: Option<f64>,
+    /// Share of the headings of the trial inside the 95 % band of the traced model.
+    pub band_fitted: Option<f64>,
+    /// The same on the validation manoeuvre.
+    pub band_held_out: Option<f64>,
 }
 
 /// The result of one method on one trial. Units are in the names; `None` is "not defined".

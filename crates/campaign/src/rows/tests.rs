@@ -103,7 +103,14 @@ fn traces_have_columns_of_their_own() {
         aliases: aliases.iter().map(|&alias| alias.into()).collect(),
     };
     let answer = |verdict: Verdict, named: Vec<NamedEffect>| {
-        let answer = TraceAnswer { verdict, named, margin: Some(31.5), expected: None };
+        let answer = TraceAnswer {
+            verdict,
+            named,
+            margin: Some(31.5),
+            expected: None,
+            band_fitted: Some(0.95),
+            band_held_out: None,
+        };
         Row { method: 1, traced: Some(Box::new(answer)), ..good(7) }
     };
     let named = vec![effect("wind_moment", &["port_starboard_asymmetry"]), effect("speed_loss", &[])];

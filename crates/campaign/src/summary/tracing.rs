@@ -36,6 +36,8 @@ pub struct TraceSummary {
     pub clear: [u64; 2],
     /// Mean expected likelihood ratio.
     pub expected: Option<f64>,
+    /// Mean share of the headings inside the band: of the trial, and of the validation manoeuvre.
+    pub band: [Option<f64>; 2],
 }
 
 impl TraceSummary {
@@ -65,7 +67,25 @@ impl TraceSummary {
 pub struct TraceTally {
     missing: Vec<Vec<String>>,
     cells: Vec<TraceSummary>,
-    expected: (f64, u64),
+    expected: Mean,
+    band: [Mean; 2],
+}
+
+/// The mean of the numbers that there are.
+#[derive(Debug, Default, Clone, Copy)]
+struct Mean {
+    sum: f64,
+    count: u64,
+}
+
+impl Mean {
+    fn add(&mut self, value: Option<f64>) -> Option<f64> {
+        if let Some(value) = value {
+            self.sum += value;
+            self.count += 1;
+        }
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
 }
 
 impl TraceTally {
@@ -79,7 +99,7 @@ impl TraceTally {
         let Some(answer) = &row.traced else { return };
         let cell = row.cell as usize;
         if self.cells.last().is_none_or(|last| last.cell != cell) {
-            self.expected = (0.0, 0);
+            (self.expected, self.band) = Default::default();
             self.cells.push(TraceSummary { cell, missing: self.missing[cell].clone(), ..TraceSummary::default() });
         }
         let summary = self.cells.last_mut().expect("one was pushed");
@@ -97,11 +117,8 @@ impl TraceTally {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
         }
-        if let Some(expected) = answer.expected {
-            self.expected.0 += expected;
-            self.expected.1 += 1;
-            summary.expected = Some(self.expected.0 / self.expected.1 as f64);
-        }
+        summary.expected = self.expected.add(answer.expected);
+        summary.band = [self.band[0].add(answer.band_fitted), self.band[1].add(answer.band_held_out)];
     }
 
     /// All cells with traces, in order.
@@ -122,7 +139,14 @@ mod tests {
             aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
         };
         let named = groups.iter().map(effect).collect();
-        let cells = TraceAnswer { verdict: Verdict::Traced, named, margin, expected: Some(4.0) };
+        let cells = TraceAnswer {
+            verdict: Verdict::Traced,
+            named,
+            margin,
+            expected: Some(4.0),
+            band_fitted: Some(0.9),
+            band_held_out: None,
+        };
         Row { traced: Some(Box::new(cells)), ..Row::default() }
     }
 
@@ -136,7 +160,7 @@ mod tests {
         assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
         assert_eq!(summary.clear, [5, 3]);
         assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
-        assert_eq!(summary.expected, Some(4.0));
+        assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
     }
 
     #[test]

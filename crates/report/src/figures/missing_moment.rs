@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shared::{PAD, time_side, zero_line};
+use super::shared::{OPACITY, PAD, area, time_side, zero_line};
 use crate::axis::Axis;
 use crate::curve::Curve;
 use crate::figure::Figure;
@@ -12,7 +12,7 @@ use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use crate::panel::Panel;
-use crate::scene::{Layer, Stroke};
+use crate::scene::Stroke;
 use crate::theme::Theme;
 use crate::ticks::Steps;
 
@@ -105,8 +105,6 @@ fn known(theme: &Theme) -> Stroke {
     Stroke::solid(RUDDER, theme.line).dashed(SHORT_DASH)
 }
 
-const OPACITY: f64 = 0.2;
-
 fn band_entry(theme: &Theme) -> Entry {
     let stroke = Stroke { opacity: OPACITY, ..Stroke::solid(HEADING, 0.8 * theme.small_font) };
     Entry::new(Sample::Line(stroke), "95 % band")
@@ -118,14 +116,7 @@ fn y_axis<'a>(curves: impl Iterator<Item = &'a Curve>) -> Axis {
 
 fn draw(panel: &Panel, banded: &Banded, sheet: &mut Sheet, theme: &Theme) {
     zero_line(panel, &mut sheet.scene, theme);
-    let edge = |curve: &Curve| -> Vec<(f64, f64)> { curve.finite().filter_map(|pair| panel.place(pair)).collect() };
-    let (lower, upper) = (edge(&banded.lower), edge(&banded.upper));
-    sheet.scene.fill(
-        Layer::Grid,
-        lower.into_iter().chain(upper.into_iter().rev()).collect::<Vec<_>>(),
-        HEADING,
-        OPACITY,
-    );
+    area(panel, &mut sheet.scene, [&banded.lower, &banded.upper], HEADING);
     panel.line(&mut sheet.scene, banded.middle.pairs(), own(theme));
     if let Some(curve) = &banded.known {
         panel.line(&mut sheet.scene, curve.pairs(), known(theme));

@@ -29,7 +29,7 @@ pub use heat_map::{HeatMap, HeatPanel, heat_map};
 pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
 pub use missing_moment::{Banded, MissingMoment, MomentPanel, missing_moment};
 pub use power::{Power, PowerSeries, power};
-pub use record_fit::{Fit, RecordFit, record_fit};
+pub use record_fit::{Fit, FitBand, RecordFit, record_fit};
 pub use replays::{Replay, Replays, replays};
 pub use residual_panels::{ResidualPanel, ResidualPanels, residual_panels};
 pub use scatter::{Ellipse, KtPanel, KtScatter, scatter};

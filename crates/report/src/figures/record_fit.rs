@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shared::{angle_side, heading_title, record, record_entry, rudder_title, time_side, zero_line};
+use super::shared::{
+    OPACITY, angle_side, area, heading_title, record, record_entry, rudder_title, time_side, zero_line,
+};
 use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet};
@@ -24,6 +26,17 @@ pub struct Fit {
     pub residual: Curve,
     /// Root mean square of the residual, degrees.
     pub rms_deg: Option<f64>,
+    /// The 95 % band of a record of this fit, drawn as a light area.
+    pub band: Option<FitBand>,
+}
+
+/// The lower and upper ends of a band.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitBand {
+    /// About the heading, degrees over seconds.
+    pub heading: [Curve; 2],
+    /// About no residual.
+    pub residual: [Curve; 2],
 }
 
 /// What [`record_fit`] draws.
@@ -47,8 +60,14 @@ pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
         let rms = fit.rms_deg.map_or_else(String::new, |rms| format!(", rms {}°", number::significant(rms, 2)));
         Entry { label: format!("{}{rms}", fit.origin.label()), ..Entry::line_of(&fit.origin, theme) }
     }));
+    let bands = || data.fits.iter().filter_map(|fit| Some((fit.origin.look().colour, fit.band.as_ref()?)));
+    entries.extend(bands().map(|(colour, _)| {
+        let stroke = Stroke { opacity: OPACITY, ..Stroke::solid(colour, 0.8 * theme.small_font) };
+        Entry::new(Sample::Line(stroke), "95 % band")
+    }));
     entries.push(Entry::new(Sample::Line(Stroke::solid(RUDDER, theme.line)), "recorded rudder"));
     sheet.legend(&entries);
+    // A band that is wider than everything else is cut at the frame: it would flatten the record.
     let headings = || data.fits.iter().map(|f| &f.heading).chain([&data.heading]);
     let residuals = || data.fits.iter().map(|f| &f.residual);
     let rows = vec![
@@ -59,6 +78,10 @@ pub fn record_fit(data: &RecordFit, theme: &Theme) -> Figure {
     let panels = sheet.grid(Grid::stack(time_side(headings().chain(residuals()).chain([&data.rudder])), rows));
     let [upper, middle, lower] = &panels[..] else { return sheet.finish() };
 
+    for (colour, band) in bands() {
+        area(upper, &mut sheet.scene, band.heading.each_ref(), colour);
+        area(middle, &mut sheet.scene, band.residual.each_ref(), colour);
+    }
     record(upper, &mut sheet.scene, theme, &data.heading, 1.5 * theme.dot);
     zero_line(middle, &mut sheet.scene, theme);
     for fit in &data.fits {

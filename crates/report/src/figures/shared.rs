@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
 use crate::clip::Rect;
+use crate::colour::Colour;
 use crate::curve::Curve;
 use crate::layout::Side;
 use crate::legend::{Entry, Sample};
@@ -46,6 +47,20 @@ pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &
     } else {
         panel.dots(scene, heading.finite(), size, RECORD);
     }
+}
+
+/// How dense the area of a band is.
+pub(super) const OPACITY: f64 = 0.2;
+
+/// The area between two curves, as far as it lies in the frame.
+pub(super) fn area(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Colour) {
+    let Rect { y, .. } = panel.rect;
+    let inside = |(across, up): (f64, f64)| (across, up.clamp(y, panel.rect.bottom()));
+    let edge = |curve: &Curve| -> Vec<(f64, f64)> {
+        curve.finite().filter_map(|pair| panel.place(pair)).map(inside).collect()
+    };
+    let outline = edge(lower).into_iter().chain(edge(upper).into_iter().rev());
+    scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, OPACITY);
 }
 
 /// How [`record`] looks in a legend.

@@ -94,7 +94,8 @@ fn all(n: usize, gap: usize, theme: &Theme) -> Vec<(&'static str, Figure)> {
         cells: if has_data { vec![cell(0), cell(7)] } else { vec![] },
         ..ErrorCurves::default()
     };
-    let fits = [Fit { origin: Origin::Truth, heading: curve.clone(), residual: curve.clone(), rms_deg: None }];
+    let fits =
+        [Fit { origin: Origin::Truth, heading: curve.clone(), residual: curve.clone(), rms_deg: None, band: None }];
     let record = RecordFit { heading: curve.clone(), rudder: curve.clone(), fits: fits.into(), title: None };
     let (replays_of, estimates): (Vec<_>, Vec<_>) = if has_data {
         (methods().map(replay).collect(), methods().enumerate().map(estimate).collect())

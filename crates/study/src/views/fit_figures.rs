@@ -66,6 +66,7 @@ fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {
         heading: replay.heading.clone(),
         residual: replay.residual.clone(),
         rms_deg: replay.rms_deg,
+        band: None,
     });
     let trial = record.trial;
     let data = RecordFit {

@@ -1,11 +1,11 @@
 //! Figures of an analysis: every record with the model before and after, the residuals from several sides, the moment
 //! that the base lacks, and the candidates with the threshold.
 
-use ::trace::analysis::{Judged, Outcome};
+use ::trace::analysis::{Judged, OnRecord, Outcome};
 use ::trace::diagnostics::{Series, autocorrelation, spectrum};
 use identify::replay::Replay;
 use rayon::prelude::*;
-use report::figures::{self, Evidence, EvidenceBar, Fate, Fit, RecordFit, ResidualPanel, ResidualPanels};
+use report::figures::{self, Evidence, EvidenceBar, Fate, Fit, FitBand, RecordFit, ResidualPanel, ResidualPanels};
 use report::{Curve, Figure, Origin, Theme};
 use ship::angle::to_deg;
 use trial::Trial;
@@ -41,7 +41,7 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
         let held_out = number >= report.trials.len();
         let suffix = if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
         let title = trace_page::title(judged, name, held_out);
-        let caption = format!("{title}: heading, residual and rudder.");
+        let caption = format!("{title}: heading, residual and rudder, with the 95 % band of the model after.");
         let record_title = title.clone();
         drawings.push((
             format!("record{suffix}"),
@@ -72,21 +72,32 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
 }
 
 fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {
-    let fit = |origin: Origin, replayed: &Replay, error: f64| Fit {
-        origin,
-        heading: curve(&replayed.time, &replayed.heading),
-        residual: curve(&replayed.time, &replayed.residual),
-        rms_deg: Some(to_deg(error)),
+    let fit = |origin: Origin, on: &OnRecord| {
+        let Replay { time, heading, residual, .. } = &on.replay;
+        Fit {
+            origin,
+            heading: curve(time, heading),
+            residual: curve(time, residual),
+            rms_deg: Some(to_deg(on.errors.heading)),
+            band: None,
+        }
+    };
+    // The ends of the band about some headings.
+    let about = |middle: &dyn Fn(usize) -> f64| -> Option<[Curve; 2]> {
+        let OnRecord { replay, band, .. } = &judged.after;
+        let end = |side: f64, band: &[f64]| -> Vec<f64> {
+            band.iter().enumerate().map(|(row, half)| middle(row) + side * half).collect()
+        };
+        band.as_ref().map(|band| [-1.0, 1.0].map(|side| curve(&replay.time, &end(side, band))))
     };
     let (before, after) = (&judged.before, &judged.after);
+    let band = about(&|row| after.replay.heading[row]).zip(about(&|_| 0.0));
+    let band = band.map(|(heading, residual)| FitBand { heading, residual });
     let data = RecordFit {
         title: Some(title.to_owned()),
         heading: curve(trial.time(), trial.heading()),
         rudder: curve(trial.time(), trial.rudder()),
-        fits: vec![
-            fit(Origin::Before, &before.replay, before.errors.heading),
-            fit(Origin::After, &after.replay, after.errors.heading),
-        ],
+        fits: vec![fit(Origin::Before, before), Fit { band, ..fit(Origin::After, after) }],
     };
     figures::record_fit(&data, theme)
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::analysis::Judged;
-use ::trace::replay_errors::{Errors, HORIZONS};
+use ::trace::analysis::{Judged, OnRecord};
+use ::trace::replay_errors::HORIZONS;
 use serde::Serialize;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial};
@@ -93,6 +93,9 @@ pub struct ErrorsEntry {
     yaw_rate_rmse_deg_s: Option<f64>,
     overshoot_error_deg: Option<f64>,
     horizon_rmse_deg: BTreeMap<String, Option<f64>>,
+    /// Share of the headings inside the 95 % band of the full replay; null where the records do not tell its parameters
+    /// apart.
+    band_coverage_95: Option<f64>,
     /// With a moment of the record's own, where it was held out and the fitted records have such moments.
     #[serde(skip_serializing_if = "Option::is_none")]
     with_own_moment: Option<Box<ErrorsEntry>>,
@@ -160,8 +163,9 @@ pub struct NoiseEntry {
     waves_frequency_rad_s: Option<f64>,
 }
 
-impl From<&Errors> for ErrorsEntry {
-    fn from(errors: &Errors) -> Self {
+impl From<&OnRecord> for ErrorsEntry {
+    fn from(on: &OnRecord) -> Self {
+        let errors = &on.errors;
         let horizon =
             HORIZONS.iter().zip(errors.horizon).map(|(length, error)| (format!("{length:.0}"), error.map(to_deg)));
         Self {
@@ -169,6 +173,7 @@ impl From<&Errors> for ErrorsEntry {
             yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
             overshoot_error_deg: errors.overshoot.map(to_deg),
             horizon_rmse_deg: horizon.collect(),
+            band_coverage_95: on.coverage(),
             with_own_moment: None,
         }
     }
@@ -181,10 +186,10 @@ fn entries<'a>(trials: &[Trial], judged: impl IntoIterator<Item = Option<&'a Jud
         .filter_map(|(trial, judged)| Some((trial, judged?)))
         .map(|(trial, judged)| BeforeAfter {
             file: file_of(trial).0.to_owned(),
-            before: (&judged.before.errors).into(),
+            before: (&judged.before).into(),
             after: ErrorsEntry {
-                with_own_moment: judged.own_moment.as_ref().map(|own| Box::new((&own.errors).into())),
-                ..(&judged.after.errors).into()
+                with_own_moment: judged.own_moment.as_ref().map(|own| Box::new(own.into())),
+                ..(&judged.after).into()
             },
         })
         .collect()

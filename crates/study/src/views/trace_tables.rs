@@ -52,6 +52,7 @@ pub fn errors(report: &TraceReport) -> Table {
     columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
     columns.push(Column::decimal("yaw rate").unit("deg/s"));
     columns.push(Column::decimal("overshoots").unit("deg"));
+    columns.push(Column::decimal("band covers").unit("%"));
     let mut table = Table::new(columns);
     let analysis = report.analysis;
     let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
@@ -70,6 +71,7 @@ pub fn errors(report: &TraceReport) -> Table {
             cells.extend(
                 numbers.map(|value| value.map_or_else(|| MISSING.into(), |value| significant(to_deg(value), 3))),
             );
+            cells.push(optional(on.coverage().map(|share| 100.0 * share), 1));
             table.push(cells);
         }
     }

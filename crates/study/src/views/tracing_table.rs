@@ -12,7 +12,8 @@ use scenario::TRACE;
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
 ///
 /// Heading errors are medians over the trials, of the base (the reference method) and of the traced model, on the trial
-/// itself and on the validation manoeuvre.
+/// itself and on the validation manoeuvre. What the bands cover are means over the trials: of the headings of the
+/// trial, and of those of the validation manoeuvre, whose band is that of the parameters alone since it has no noise.
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
     let mut columns = head_of_cells(design);
     columns.push(Column::left("missing"));
@@ -30,6 +31,7 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         columns.extend(["before", "after"].map(|when| Column::decimal(format!("{what} {when}")).unit("deg")));
     }
     columns.push(Column::decimal("expected likelihood ratio"));
+    columns.extend(["band covers", "band covers validation"].map(|name| Column::decimal(name).unit("%")));
     columns.push(Column::left("named"));
     let mut table = Table::new(columns);
     for line in lines {
@@ -48,6 +50,8 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         cells.extend(records.map(|record| median(record.and_then(|record| record.heading_rmse_deg))));
         cells.extend(records.map(|record| median(record.and_then(|record| record.validation_rmse_deg))));
         cells.push(line.expected.map_or_else(|| MISSING.into(), |expected| number::significant(expected, 3)));
+        let digits = if all_digits { 3 } else { 1 };
+        cells.extend(line.band.map(|share| number::optional(share.map(|share| 100.0 * share), digits)));
         let mut named: Vec<(&String, &u64)> = line.named.iter().collect();
         named.sort_by(|one, other| other.1.cmp(one.1).then(one.0.cmp(other.0)));
         let most = if all_digits { usize::MAX } else { 4 };

@@ -62,6 +62,8 @@ fn keeps_the_contract(json: &Value, trials: usize, others: usize) {
                 let errors = &record[when];
                 assert!(errors["heading_rmse_deg"].is_f64() && errors["horizon_rmse_deg"]["20"].is_f64(), "{errors}");
                 assert!(errors.get("yaw_rate_rmse_deg_s").is_some() && errors.get("overshoot_error_deg").is_some());
+                let coverage = errors["band_coverage_95"].as_f64();
+                assert!(coverage.is_some_and(|share| (0.0..=1.0).contains(&share)), "{errors}");
             }
         }
     }

@@ -76,7 +76,7 @@ mod tests {
     fn replayed(heading: f64) -> Vec<OnRecord> {
         let replay = Replay { time: Vec::new(), heading: Vec::new(), yaw_rate: Vec::new(), residual: Vec::new() };
         let errors = Errors { heading, rows: 100, yaw_rate: None, overshoot: None, horizon: [None; 2] };
-        vec![OnRecord { replay, errors }]
+        vec![OnRecord { replay, errors, band: None }]
     }
 
     /// Whatever a replay says, the heading error after is not larger than before; the term that is at fault goes and is

@@ -7,27 +7,33 @@ use trial::Trial;
 
 use super::replays::{judged, starts};
 use super::result::Judged;
-use crate::fit::{Fit, Problem};
+use super::told::Side;
+use crate::band::Elsewhere;
+use crate::fit::Problem;
 use crate::held_out::HeldOut;
 use crate::index::RecordNumber;
 use crate::structure::Structure;
 
 /// Errors before and after on every record that the fit of a fold has not seen. The structure was found on all records
-/// and is kept; its parameters are those of the fold. `None` where a fold has no base, or no finite replay.
+/// and is kept, as is the noise; its parameters are those of the fold. `None` where a fold has no base, or no finite
+/// replay.
 pub(super) fn leave_one_out(
     trials: &[Trial],
     method: &dyn Identifier,
     problem: &Problem,
-    (structure, told): (&Structure, &Fit),
+    sides: &[Side; 2],
 ) -> Vec<Option<Judged>> {
     let fold = |left: usize| {
-        let rest = |all: &[[f64; 2]]| -> Vec<[f64; 2]> { without(all, left) };
         let first = method.identify(&without(trials, left)).ok()?.response;
-        let (kept, theta) = on_others(structure, &told.theta, RecordNumber(left));
         let others = problem.on(without(&problem.records, left));
-        let fit = others.fit(&kept, &theta, &rest(&told.initial), &told.colour);
+        let fitted = sides.each_ref().map(|side| {
+            let (structure, theta) = on_others(&side.structure, &side.fit.theta, RecordNumber(left));
+            let fit = others.fit(&structure, &theta, &without(&side.fit.initial, left), &side.fit.colour);
+            (structure, fit)
+        });
+        let known = [0, 1].map(|k| Elsewhere::new(&others, &fitted[k].0, &fitted[k].1, sides[k].noise));
         let held = HeldOut::new(&trials[left], starts(&trials[left], &first));
-        judged(&held, &first, (&kept, &fit.theta), structure).ok()
+        judged(&held, &first, &known, &sides[1].structure).ok()
     };
     (0..trials.len()).into_par_iter().map(fold).collect()
 }

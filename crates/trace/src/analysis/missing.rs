@@ -24,7 +24,7 @@ impl Analysis {
                 let number = RecordNumber(number);
                 let mut explanations = Vec::new();
                 if self.has_terms() {
-                    explanations.push(self.explanation(number, &self.model.structure, &self.told.fit));
+                    explanations.push(self.explanation(number, &self.told.structure, &self.told.fit));
                 }
                 let acts = |structure: &Structure| {
                     structure.terms.last().is_none_or(|term| term.only.is_none_or(|only| only == number))

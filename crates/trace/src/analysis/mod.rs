@@ -15,12 +15,12 @@ mod tests;
 mod told;
 
 use identify::{Identifier, output_error};
-use ship::{FirstOrder, Regressor, effects};
+use ship::{Regressor, effects};
 use trial::Trial;
 
 use crate::candidates::{self, Sizes};
 use crate::diagnostics::{self, Series};
-use crate::fit::{Fit, Problem};
+use crate::fit::Problem;
 use crate::held_out::HeldOut;
 use crate::record::Record;
 use crate::search::{Model, NotFitted, Search};
@@ -30,7 +30,7 @@ use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
 use left_out::leave_one_out;
 use parameters::{indices, parameter_covariance, parameters, randomness};
-use replays::{first_order, initial, on_records, starts, validate};
+use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
 
 pub use prospects::Prospect;
@@ -110,29 +110,15 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 
-    // The base that is nearest to the records, whatever the noise: no first-order response makes "before" smaller.
-    let of_base = (!settings.own_bias).then_some(&first);
-    let replay = |structure: &Structure, fit: &Fit, closed: Option<&FirstOrder>| {
-        on_records(trials, (structure, fit), &first, closed, settings.thorough)
-    };
+    // Replays of what is nearest to the records, whatever the noise: no first-order response makes "before" smaller.
     let nearest = |model: &Model| {
-        let is_base = model.structure.terms.is_empty();
-        replay(&model.structure, &model.plain, of_base.filter(|_| is_base))
+        let is_base = model.structure.terms.is_empty() && !settings.own_bias;
+        let closed = is_base.then_some(&first);
+        on_records(trials, (&model.structure, &model.plain), &first, closed, settings.thorough)
     };
     let before: Vec<OnRecord> = nearest(&start)?;
     let (model, after) = no_larger_error(&search, model, &before, nearest, &mut refused);
-    let told = Told::new(&problem, &model);
-    let (base_response, before, after) = match (told.noise_holds, model.structure.terms.is_empty()) {
-        (false, _) => (first_order(&start.plain.theta, &start.structure), before, after),
-        (true, false) => {
-            (first_order(&start.plain.theta, &start.structure), before, replay(&model.structure, &told.fit, None)?)
-        }
-        (true, true) => {
-            let response = first_order(&told.fit.theta, &model.structure);
-            let on = replay(&model.structure, &told.fit, of_base.map(|_| &response))?;
-            (response, on.clone(), on)
-        }
-    };
+    let told = Told::new(trials, &problem, [&start, &model], &first, [before, after], settings.thorough)?;
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
@@ -141,13 +127,12 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let series =
         |(on, trial): (&OnRecord, &Trial)| Series::new(&on.replay.time, &on.replay.residual, trial.sampling_period());
     let residuals = |all: &[OnRecord]| -> Vec<Series> { all.iter().zip(trials).map(series).collect() };
-    let whiteness = [diagnostics::whiteness(&residuals(&before)), diagnostics::whiteness(&residuals(&after))];
-    let elsewhere = validate(&held_out, &base_response, (&model.structure, &told.fit))?;
+    let whiteness = [diagnostics::whiteness(&residuals(&told.before)), diagnostics::whiteness(&residuals(&told.after))];
+    let elsewhere = if held_out.is_empty() { Vec::new() } else { validate(&held_out, &problem, &told.sides)? };
     let folds = settings.thorough && trials.len() > 1 && validation.is_empty();
-    let left_out =
-        if folds { leave_one_out(trials, &method, &problem, (&model.structure, &told.fit)) } else { Vec::new() };
+    let left_out = if folds { leave_one_out(trials, &method, &problem, &told.sides) } else { Vec::new() };
 
-    let fitted = (&model.structure, &told.fit);
+    let fitted = told.fitted();
     let covariance = parameter_covariance(&problem, fitted, told.is_coloured(whiteness[1].lag1));
     let parameters = parameters(&problem, fitted, covariance.as_ref(), &names);
     let (indices, rudder_bias) = indices(fitted, covariance.as_ref());
@@ -165,7 +150,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let weights = report.weigh(&mut effects, &mut candidates);
     let nameless = if told.random { report.nameless(&sizes) } else { None };
     let unexplained = match report.is_unexplained(&told, nameless.as_ref()) {
-        true => report.signature(trials, &after),
+        true => report.signature(trials, &told.after),
         false => None,
     };
     let empirical = nameless.filter(|_| unexplained.is_some());
@@ -175,6 +160,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         (None, false) => Verdict::Traced,
     };
     let randomness = randomness(&problem, &model);
+    let Told { sides: [_, after_side], before, after, .. } = told;
     let identification = judged(names, before, after);
     Ok(Analysis {
         base,
@@ -198,7 +184,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         start,
         candidate_terms,
         model,
-        told,
+        told: after_side,
         problem,
     })
 }

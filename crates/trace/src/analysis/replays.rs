@@ -4,9 +4,11 @@ use identify::replay::replay;
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use super::result::{Judged, OnRecord};
+use super::result::{Analysis, Judged, OnRecord};
 use super::settings::TraceError;
-use crate::fit::Fit;
+use super::told::Side;
+use crate::band::{self, Elsewhere, Noise};
+use crate::fit::{Fit, Problem};
 use crate::held_out::{self, HeldOut};
 use crate::index::RecordNumber;
 use crate::own_moment;
@@ -28,13 +30,6 @@ pub(super) fn starts(trial: &Trial, response: &FirstOrder) -> Vec<[f64; 2]> {
     starts.extend(initial(trial, response));
     starts.extend(trial.yaw_rate().map(|rate| rate[first]).filter(|r| r.is_finite()).map(|rate| [heading, rate]));
     starts
-}
-
-/// The first-order response of fitted parameters: their base, with the mean of several rudder biases.
-pub(super) fn first_order(theta: &[f64], structure: &Structure) -> FirstOrder {
-    let biases = &theta[2..structure.base_count()];
-    let rudder_bias = biases.iter().sum::<f64>() / biases.len() as f64;
-    FirstOrder { inverse_T: theta[0], K_over_T: theta[1], rudder_bias }
 }
 
 /// A fitted structure on the records it was fitted to, all rows; `first` where it is a first-order response with one
@@ -81,16 +76,22 @@ fn on_record(
     } else {
         replay_errors::in_brief(&replay)
     };
-    Some(OnRecord { replay, errors })
+    Some(OnRecord { replay, errors, band: None })
 }
 
-/// A base and a fitted structure on records that were held out.
-pub(super) fn validate(
-    held_out: &[HeldOut],
-    first: &FirstOrder,
-    (structure, fit): (&Structure, &Fit),
-) -> Result<Vec<Judged>, TraceError> {
-    held_out.iter().map(|held| judged(held, first, (structure, &fit.theta), structure)).collect()
+/// Gives replays of the records that a model was fitted to their bands, under the noise that it was judged by.
+pub(super) fn add_bands(problem: &Problem, side: &Side, on_records: &mut [OnRecord]) {
+    let spreads = band::of_fitted(problem, &side.structure, &side.fit, &side.noise);
+    for (on, spread) in on_records.iter_mut().zip(spreads.into_iter().flatten()) {
+        on.band = spread.band(&on.replay.time);
+    }
+}
+
+/// Models before and after on records that were held out.
+pub(super) fn validate(held_out: &[HeldOut], problem: &Problem, sides: &[Side; 2]) -> Result<Vec<Judged>, TraceError> {
+    let first = sides[0].first_order();
+    let known = sides.each_ref().map(|side| Elsewhere::new(problem, &side.structure, &side.fit, side.noise));
+    held_out.iter().map(|held| judged(held, &first, &known, &sides[1].structure)).collect()
 }
 
 /// A base and a structure with its parameters on a record that neither was fitted to; `forms` has the moments of time
@@ -98,22 +99,46 @@ pub(super) fn validate(
 pub(super) fn judged(
     held: &HeldOut,
     first: &FirstOrder,
-    (structure, theta): (&Structure, &[f64]),
+    known: &[Elsewhere; 2],
     forms: &Structure,
 ) -> Result<Judged, TraceError> {
+    let Elsewhere { structure, theta, .. } = known[1];
     let refuse = || TraceError::Replay { trial: held.trial.name().to_owned() };
     let base = Response::first_order_ship(*first);
     let before = on_record(held.trial, &held.record, &base, &held.starts, Some(first), true).ok_or_else(refuse)?;
+    let banded = |known: &Elsewhere, on: OnRecord| {
+        let band = known.band(held.averaged(known.theta[0]), on.replay.initial(), &on.replay.time);
+        OnRecord { band, ..on }
+    };
+    let before = banded(&known[0], before);
     let after = if structure.terms.is_empty() {
         before.clone()
     } else {
         let mut all = held.starts.clone();
         all.push(before.replay.initial());
         let response = held_out::portable(structure, theta);
-        on_record(held.trial, &held.record, &response, &all, None, true).ok_or_else(refuse)?
+        banded(&known[1], on_record(held.trial, &held.record, &response, &all, None, true).ok_or_else(refuse)?)
     };
-    let own = own_moment::response(held, (structure, theta), forms);
-    let own = own.and_then(|(response, near)| held.judge(&response, Some(near)));
-    let own_moment = own.map(|(replay, errors)| OnRecord { replay, errors });
+    let with_own = |(structure, fit): (Structure, Fit)| -> Option<OnRecord> {
+        let response = structure.response(RecordNumber(0), &fit.theta);
+        let (replay, errors) = held.judge(&response, Some(fit.initial[0]))?;
+        let spread = known[1].spread_with_own(held.averaged(theta[0]), &structure, &fit);
+        let band = spread.and_then(|spread| spread.band(&replay.time));
+        Some(OnRecord { replay, errors, band })
+    };
+    let own_moment = own_moment::fitted(held, (structure, theta), forms).and_then(with_own);
     Ok(Judged { name: held.trial.name().to_owned(), before, after, own_moment })
+}
+
+impl Analysis {
+    /// The final model on a further trial, in a calm and perfectly recorded, from the best initial state near `start`:
+    /// its band is that of the errors of the parameters alone. `None` when the replay is not finite.
+    pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<OnRecord> {
+        let replay = replay_errors::full(&self.ship(), &Record::whole(trial), &[start])?;
+        let (errors, initial) = (replay_errors::in_brief(&replay), replay.initial());
+        let Side { structure, fit, noise } = &self.told;
+        let known = Elsewhere { noise: Noise::NONE, ..Elsewhere::new(&self.problem, structure, fit, *noise) };
+        let band = known.band(Record::averaged(trial, fit.theta[0].abs().recip()), initial, &replay.time);
+        Some(OnRecord { replay, errors, band })
+    }
 }

@@ -6,7 +6,7 @@ use ship::effects::Parameter;
 use ship::narrow_band::NarrowBand;
 use trial::Quantity;
 
-use super::told::Told;
+use super::told::Side;
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;
@@ -172,6 +172,20 @@ pub struct OnRecord {
     pub replay: Replay,
     /// Errors.
     pub errors: Errors,
+    /// Half the width of the 95 % band of a reading at every row of the replay, rad; `None` where it was not asked for
+    /// and where the records do not tell the parameters apart.
+    pub band: Option<Vec<f64>>,
+}
+
+impl OnRecord {
+    /// Share of the measured headings that lie inside the band.
+    pub fn coverage(&self) -> Option<f64> {
+        let pairs = self.replay.residual.iter().zip(self.band.as_ref()?).filter(|(residual, _)| residual.is_finite());
+        let (inside, rows) = pairs.fold((0usize, 0usize), |(inside, rows), (residual, half)| {
+            (inside + usize::from(residual.abs() <= *half), rows + 1)
+        });
+        (rows > 0).then(|| inside as f64 / rows as f64)
+    }
 }
 
 /// One record with the models before and after.
@@ -231,8 +245,8 @@ pub struct Analysis {
     pub(super) tried: Vec<Tried>,
     pub(super) candidate_terms: Vec<Candidate>,
     pub(super) model: Model,
-    /// Which of its fits is told, and how its innovations agree with its noise model.
-    pub(super) told: Told,
+    /// The final model as it is told.
+    pub(super) told: Side,
 }
 
 impl Analysis {

@@ -35,9 +35,9 @@ impl Columns {
         self.matrix.nrows()
     }
 
-    /// Whitened columns of one record.
-    pub fn of_record(&self, record: usize) -> impl Iterator<Item = &[f64]> {
-        self.blocks[record].iter().map(|(_, column)| column.as_slice())
+    /// Places of the unknowns that act in one record, with their whitened columns.
+    pub fn of_record(&self, record: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        self.blocks[record].iter().map(|(place, column)| (*place, column.as_slice()))
     }
 
     /// Makes room for unknowns at a place and fills it with columns, which are whitened first.
@@ -145,6 +145,13 @@ impl Linear {
     /// The residual of every record.
     pub fn into_residual(self) -> Vec<Vec<f64>> {
         self.blocks.into_iter().map(|block| block.residual).collect()
+    }
+
+    /// The column of an unknown in one record; zeros where it does not act.
+    pub fn column(&self, record: usize, place: usize) -> Vec<f64> {
+        let Block { residual, columns } = &self.blocks[record];
+        let found = columns.iter().find(|(at, _)| *at == place);
+        found.map_or_else(|| vec![0.0; residual.len()], |(_, column)| column.clone())
     }
 
     /// The residual of every record, whitened.

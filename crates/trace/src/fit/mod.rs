@@ -22,6 +22,7 @@ mod tests;
 pub use linear::{Column, Columns, Linear};
 pub(crate) use linear::{Normal, acts, log_variance, whiten};
 pub use linearised::Linearised;
+pub use moments::Restricted;
 pub(crate) use moments::minimum;
 pub use outcome::Fit;
 pub use problem::Problem;

@@ -10,23 +10,13 @@ impl Problem {
     /// The random moment of the given kind that explains best what a fit leaves, if it is worth its parameter.
     ///
     /// Level and parameters are found together: for every level the linearised fit is solved anew. The level is that of
-    /// the restricted likelihood, −2 log L_R = (n − p) log(RSS/(n − p)) + Σ log S + log det XᵀX of the whitened
-    /// sensitivities X, which knows that p unknowns were fitted as well (Patterson and Thompson 1971).
+    /// the restricted likelihood, [`Problem::restricted`].
     pub fn best_moment(&self, linear: &Linear, kind: Moment, waves: Option<NarrowBand>) -> (Colour, f64) {
-        let at = |level: f64| {
-            let colour = Colour { moment: Some((kind, level.exp())), waves };
-            let whiteners = self.whiteners(&colour);
-            let columns = linear.whitened(&whiteners);
-            let rss = columns.normal(&linear.whitened_residual(&whiteners)).projected(columns.unknowns());
-            (colour, rss, log_variance(&whiteners), columns.log_determinant())
-        };
+        let of = |level: f64| Colour { moment: Some((kind, level.exp())), waves };
         let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
-        let restricted = |level: f64| {
-            let (_, rss, log_variance, log_determinant) = at(level);
-            self.restricted(rss, linear.unknowns, log_variance + log_determinant)
-        };
-        let (colour, rss, log_variance, _) = at(minimum(lo, hi, 12, restricted).0);
-        (colour, self.deviance(rss, log_variance))
+        let colour = of(minimum(lo, hi, 12, |level| self.under(linear, &of(level)).restricted).0);
+        let found = self.under(linear, &colour);
+        (colour, self.deviance(found.rss, found.log_variance))
     }
 
     /// The one of some kinds of random moment with the lowest BIC.
@@ -42,6 +32,82 @@ impl Problem {
         let gusts: Vec<Moment> = (0..GUSTS.len()).map(Moment::OrnsteinUhlenbeck).collect();
         let best = self.best_of(linear, &gusts, waves).and_then(|(colour, _)| colour.moment);
         [Moment::White, Moment::Walk].into_iter().chain(best.map(|(kind, _)| kind)).collect()
+    }
+}
+
+/// Range about the level of highest likelihood, in its logarithm, that the means of a level are taken over, and points
+/// in it.
+const RANGE: [f64; 2] = [-3.0, 6.0];
+const POINTS: usize = 24;
+
+/// What the best linear step of all unknowns leaves under one colour.
+struct Under {
+    /// Sum of squares, whitened, rad².
+    rss: f64,
+    /// Σ log S.
+    log_variance: f64,
+    /// −2 log of the restricted likelihood.
+    restricted: f64,
+}
+
+/// The size of the noise under the restricted likelihood.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Restricted {
+    /// Variance of the white noise of a full row, rad².
+    pub row: f64,
+    /// Level of the random moment, where there is one: its geometric mean.
+    pub level: f64,
+    /// Its mean over the geometric one.
+    pub mean: f64,
+}
+
+impl Problem {
+    /// Number of contrasts that the unknowns leave.
+    fn contrasts(&self, linear: &Linear) -> f64 {
+        (self.observations() as f64 - linear.unknowns as f64).max(1.0)
+    }
+
+    fn under(&self, linear: &Linear, colour: &Colour) -> Under {
+        let whiteners = self.whiteners(colour);
+        let columns = linear.whitened(&whiteners);
+        let rss = columns.normal(&linear.whitened_residual(&whiteners)).projected(linear.unknowns);
+        let (free, log_variance) = (self.contrasts(linear), log_variance(&whiteners));
+        let of_size = if rss.is_finite() { free * (rss / free + self.floor()).ln() } else { f64::INFINITY };
+        Under { rss, log_variance, restricted: of_size + log_variance + columns.log_determinant() }
+    }
+
+    /// The size of the noise of a colour that a fit has found, at the mean over the restricted likelihood, every level
+    /// being as likely before as its multiple.
+    ///
+    /// The likelihood of the fit counts what the unknowns have taken from the noise as if it had not been there, and of
+    /// a slow moment they take much: its level is too small. The restricted one is that of all contrasts without the
+    /// unknowns, −2 log L = (n − u) log(RSS/(n − u)) + Σ log S + log det XᵀΣ⁻¹X.
+    ///
+    /// Source: Patterson and Thompson (1971); Harville (1974) for its reading as a posterior.
+    pub fn restricted(&self, linear: &Linear, colour: &Colour) -> Restricted {
+        let free = self.contrasts(linear);
+        // −2 log L, and the variance of a row.
+        let at = |colour: &Colour| {
+            let Under { rss, restricted, .. } = self.under(linear, colour);
+            (restricted, rss / free)
+        };
+        let Some((kind, level)) = colour.moment else {
+            return Restricted { row: at(colour).1, level: 0.0, mean: 1.0 };
+        };
+        let [lo, hi] = RANGE;
+        let points = (0..=POINTS).map(|k| level * (lo + (hi - lo) * k as f64 / POINTS as f64).exp());
+        let points: Vec<(f64, (f64, f64))> =
+            points.map(|level| (level, at(&Colour { moment: Some((kind, level)), ..*colour }))).collect();
+        let lowest = points.iter().map(|(_, (deviance, _))| *deviance).fold(f64::INFINITY, f64::min);
+        let mut sums = [0.0; 4];
+        for (level, (deviance, row)) in points {
+            let weight = (0.5 * (lowest - deviance)).exp();
+            let values = [1.0, row, level * row, (level * row).max(f64::MIN_POSITIVE).ln()];
+            values.iter().zip(&mut sums).for_each(|(value, sum)| *sum += weight * value);
+        }
+        let [row, mean, logarithm] = [1, 2, 3].map(|k| sums[k] / sums[0]);
+        let moment = logarithm.exp();
+        Restricted { row, level: moment / row, mean: mean / moment }
     }
 }
 

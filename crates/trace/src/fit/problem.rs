@@ -80,11 +80,9 @@ impl Problem {
         if rss.is_finite() && rss >= 0.0 { n * (rss / n + self.floor).ln() + log_variance } else { f64::INFINITY }
     }
 
-    /// −2 log of the restricted likelihood of a whitened sum of squares (rad²) in which `unknowns` were fitted, with the
-    /// logarithms of its determinants.
-    pub(super) fn restricted(&self, rss: f64, unknowns: usize, logarithms: f64) -> f64 {
-        let n = (self.observations() as f64 - unknowns as f64).max(1.0);
-        if rss.is_finite() && rss >= 0.0 { n * (rss / n + self.floor).ln() + logarithms } else { f64::INFINITY }
+    /// Variance that the rudder between rows leaves unknown, rad².
+    pub(crate) fn floor(&self) -> f64 {
+        self.floor
     }
 
     /// Variance of one whitened heading, rad².
@@ -94,12 +92,22 @@ impl Problem {
 
     /// Standard deviation of the white noise of one reading, rad: rows may be means of several.
     pub fn noise_of_reading(&self, fit: &Fit) -> f64 {
-        self.noise_of_row(fit) * (full_readings(&self.records) as f64).sqrt()
+        self.noise_of_row(fit) * (self.full_readings() as f64).sqrt()
+    }
+
+    /// Readings behind the heading of a full row.
+    pub(crate) fn full_readings(&self) -> usize {
+        full_readings(&self.records)
     }
 
     /// Standard deviation of the white noise of a full row, rad.
     pub fn noise_of_row(&self, fit: &Fit) -> f64 {
         (fit.rss / self.observations() as f64).sqrt()
+    }
+
+    /// The noise of one record.
+    pub(crate) fn noise_of_record(&self, record: RecordNumber) -> &RecordNoise {
+        &self.noise[record.0]
     }
 
     /// Number of observed headings.

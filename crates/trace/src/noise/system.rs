@@ -1,0 +1,78 @@
+//! A random moment and waves as one linear system over the observed rows of a record.
+
+use ship::narrow_band::NarrowBand;
+
+/// Most states: heading, rate, moment, and two of the waves.
+pub(crate) const MOST: usize = 5;
+
+pub(crate) type Vector = [f64; MOST];
+pub(crate) type Matrix = [[f64; MOST]; MOST];
+
+/// x ← F x + q before every observed row but the first, heading h·x.
+#[derive(Debug, Clone)]
+pub(crate) struct System {
+    /// Number of states; the others are zero.
+    pub states: usize,
+    /// How many of them are those of a random moment: the waves come after it.
+    pub own: usize,
+    /// Transition F and covariance of q of every distinct step.
+    pub steps: Vec<(Matrix, Matrix)>,
+    /// The step before every observed row.
+    pub of_row: Vec<usize>,
+    /// h.
+    pub observe: Vector,
+    /// Covariance of the state at the first row.
+    pub initial: Matrix,
+}
+
+/// Fᵀ x.
+pub(crate) fn transposed(f: &Matrix, x: &Vector) -> Vector {
+    std::array::from_fn(|j| (0..MOST).map(|i| f[i][j] * x[i]).sum())
+}
+
+/// Transition and added covariance of moment and waves together.
+pub(super) fn joint(
+    drift: Option<(&(Matrix, Matrix), f64, usize)>,
+    waves: &Option<NarrowBand>,
+    h: f64,
+) -> (Matrix, Matrix) {
+    let (mut f, mut q): (Matrix, Matrix) = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
+    let mut own = 0;
+    if let Some(((transition, added), level, states)) = drift {
+        own = states;
+        for i in 0..states {
+            for j in 0..states {
+                (f[i][j], q[i][j]) = (transition[i][j], level * added[i][j]);
+            }
+        }
+    }
+    if let Some(waves) = waves {
+        let step = waves.step(h);
+        let (a, b) = (step.advance([1.0, 0.0], [0.0; 2]), step.advance([0.0, 1.0], [0.0; 2]));
+        let (c, d) = (step.advance([0.0; 2], [1.0, 0.0]), step.advance([0.0; 2], [0.0, 1.0]));
+        for i in 0..2 {
+            (f[own + i][own], f[own + i][own + 1]) = (a[i], b[i]);
+            for j in 0..2 {
+                q[own + i][own + j] = c[i] * c[j] + d[i] * d[j];
+            }
+        }
+    }
+    (f, q)
+}
+
+/// Covariance a step later: F P Fᵀ + Q.
+pub(crate) fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64; N]; N] {
+    let mut half = [[0.0; N]; N];
+    let mut result = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..N {
+            half[i][j] = (0..N).map(|k| f[i][k] * p[k][j]).sum();
+        }
+    }
+    for i in 0..N {
+        for j in 0..N {
+            result[i][j] = q[i][j] + (0..N).map(|k| half[i][k] * f[j][k]).sum::<f64>();
+        }
+    }
+    result
+}
