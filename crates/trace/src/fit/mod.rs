@@ -20,7 +20,7 @@ mod problem;
 mod tests;
 
 pub use linear::{Column, Columns, Linear};
-pub(crate) use linear::{Normal, acts, log_variance, whiten};
+pub(crate) use linear::{Normal, acts, log_variance, part_of, whiten};
 pub use linearised::Linearised;
 pub(crate) use moments::minimum;
 pub use outcome::Fit;
