@@ -154,7 +154,7 @@ fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
     thresholds.check()?;
     let wanted = menu.as_deref().map_or_else(|| Ok(Wanted::default()), among)?;
     if monomials > monomial::all().count() {
-        return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 60"));
+        return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
     let rest = ::trace::Settings::default();
     Ok(::trace::Settings { thresholds, rule, wanted, monomials, discovery: false, thorough: false, ..rest })

@@ -65,14 +65,13 @@ pub const LIBRARY: &[Powers] = library![
     "ψU" = [0, 0, 1, 1],
 ];
 
-/// The even square of the yaw rate, and monomials up to the third degree with magnitudes, that no named effect is. They
-/// are not proposed to anybody: they show what a rule names where much is on offer.
+/// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they show
+/// what a rule names where much is on offer.
 pub const WITH_MAGNITUDES: &[Powers] = library![
     "|ψ|" = [0, 0, 1, 0], [false, false, true];
     "|r|" = [1, 0, 0, 0], [true, false, false];
     "ψ|ψ|" = [0, 0, 2, 0], [false, false, true];
     "δ|δ|" = [0, 2, 0, 0], [false, true, false];
-    "r²" = [2, 0, 0, 0], [false, false, false];
     "δ|ψ|" = [0, 1, 1, 0], [false, false, true];
     "ψ|δ|" = [0, 1, 1, 0], [false, true, false];
     "|δ||ψ|" = [0, 1, 1, 0], [false, true, true];

@@ -92,3 +92,33 @@ fn most_frequent<const N: usize>(scores: &[[f64; N]], taken: &[BTreeSet<Place>])
     }
     counts.into_iter().filter(|(_, count)| 2 * count > N).map(|(place, _)| place).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every sample has eight parts, every part is in eight samples, every two are together in four.
+    #[test]
+    fn samples_are_balanced() {
+        let all = || 0..PARTS;
+        assert!(all().all(|sample| all().filter(|&part| holds(sample, part)).count() == 8));
+        for one in all() {
+            for other in all() {
+                let both = all().filter(|&sample| holds(sample, one) && holds(sample, other)).count();
+                assert_eq!(both, if one == other { 8 } else { 4 }, "{one} {other}");
+            }
+        }
+    }
+
+    /// Three samples, three structures: wind is in the best of two of them, damping in that of one.
+    #[test]
+    fn what_is_best_more_often_than_not_is_frequent() {
+        let [damping, wind]: [Place; 2] = [("nonlinear_damping", None), ("wind_moment", None)];
+        let taken = [vec![], vec![wind], vec![damping, wind]].map(|set| set.into_iter().collect());
+        let scores = [[0.0, 5.0, 5.0], [1.0, 2.0, 3.0], [2.0, 3.0, 1.0]];
+        assert_eq!(most_frequent(&scores, &taken), [wind].into());
+        // Exactly half is not more than half.
+        let halves = [[0.0, 5.0, 5.0, 0.0], [1.0, 2.0, 3.0, 1.0], [2.0, 3.0, 1.0, 2.0]];
+        assert_eq!(most_frequent(&halves, &taken), BTreeSet::new());
+    }
+}

@@ -231,3 +231,87 @@ impl Search<'_> {
         noted.fit.bic + self.price(&noted.structure, noted.fit.colour.waves.is_some())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::Fit;
+    use crate::noise::Colour;
+
+    const CUBIC: (&str, &str, Option<RecordNumber>) = ("nonlinear_damping", "r³", None);
+    const SQUARE: (&str, &str, Option<RecordNumber>) = ("nonlinear_damping", "r|r|", None);
+    const WIND: (&str, &str, Option<RecordNumber>) = ("wind_moment", "steady wind", None);
+
+    fn noted(bic: f64) -> Noted {
+        let fit = Fit {
+            theta: Vec::new(),
+            initial: Vec::new(),
+            colour: Colour::WHITE,
+            residual: Vec::new(),
+            rss: 1.0,
+            deviance: bic,
+            freedom: 0,
+            bic,
+        };
+        Noted { structure: Structure::base(1, false), fit, judged: true }
+    }
+
+    #[test]
+    fn rules_are_known_by_their_words() {
+        assert!(Rule::ALL.into_iter().all(|rule| rule.as_str().parse() == Ok(rule)));
+        assert_eq!(Rule::default(), Rule::Bic);
+        let error = "aic".parse::<Rule>().expect_err("no such rule");
+        assert_eq!(
+            error.to_string(),
+            "there is no rule `aic`; expected one of bic, pastis, held-out, bagged, probability, probability-0.9"
+        );
+    }
+
+    /// By hand, N = 300, n₀ = 19: ln N = 5.703782, ln(19/0.001) = 9.852194. Two parameters at BIC 100:
+    /// −(100 − 11.407565)/2 − 19.704389. They are worth 28 in BIC over nothing at all, and not 27.9.
+    #[test]
+    fn pastis_charges_every_parameter_the_logarithm_of_the_menu() {
+        let log_n = 300f64.ln();
+        assert!((pastis(100.0, 2, 19, log_n) + 64.000_606).abs() < 1e-6);
+        assert_eq!(pastis(150.0, 0, 19, log_n), -75.0);
+        let worth = 2.0 * (19.704_389 - 5.703_782);
+        assert!((worth - 28.001_214).abs() < 1e-6);
+        assert!(pastis(100.0 - worth - 1e-3, 2, 19, log_n) > pastis(100.0, 0, 19, log_n));
+        assert!(pastis(100.0 - worth + 1e-3, 2, 19, log_n) < pastis(100.0, 0, 19, log_n));
+        // A menu of 190 asks for 2 · 2 · ln 10 more.
+        assert!((pastis(100.0, 2, 19, log_n) - pastis(100.0, 2, 190, log_n) - 2.0 * 10f64.ln()).abs() < 1e-12);
+    }
+
+    /// Ten headings, so the variance of a sum is that of independent numbers. The richer model is better by 0.1 ± 1 a
+    /// heading: 1 in all with a standard error of √10. Better by 3 ± 1 it is better by 30.
+    #[test]
+    fn the_simplest_of_models_that_predict_alike_is_taken() {
+        let losses = |shift: f64| vec![(0..10).map(|k| 5.0 - shift + if k % 2 == 0 { 1.0 } else { -1.0 }).collect()];
+        let simple = vec![vec![5.0; 10]];
+        assert_eq!(simplest(&[losses(0.1), simple.clone()], &[1, 0]), Some(1));
+        assert_eq!(simplest(&[losses(3.0), simple.clone()], &[1, 0]), Some(0));
+        // The standard error is 3.16: 6 in all is within two of them, 7 is not.
+        assert_eq!(simplest(&[losses(0.6), simple.clone()], &[1, 0]), Some(1));
+        assert_eq!(simplest(&[losses(0.7), simple.clone()], &[1, 0]), Some(0));
+        let broken = vec![vec![f64::NAN; 10]];
+        assert_eq!(simplest(&[broken.clone(), simple], &[0, 1]), Some(1));
+        assert_eq!(simplest(&[broken], &[0]), None);
+    }
+
+    /// Nothing is added that is not among the places; of two forms of one place that of lower BIC is taken.
+    #[test]
+    fn a_structure_takes_all_it_may_and_nothing_else() {
+        let names: [Names; 5] = [vec![], vec![CUBIC], vec![SQUARE], vec![WIND], vec![CUBIC, WIND]];
+        let fits = [100.0, 50.0, 60.0, 90.0, 40.0].map(noted);
+        let contenders: Vec<(&Names, &Noted)> = names.iter().zip(&fits).collect();
+        let [damping, wind] = [("nonlinear_damping", None), ("wind_moment", None)];
+        let took = |included: &[Place]| taking(&contenders, &included.iter().copied().collect());
+        assert_eq!(took(&[]), Some(0));
+        assert_eq!(took(&[damping]), Some(1));
+        assert_eq!(took(&[wind]), Some(3));
+        assert_eq!(took(&[damping, wind]), Some(4));
+        // Nobody has tried all three together.
+        assert_eq!(took(&[damping, wind, ("speed_loss", None)]), Some(4));
+        assert_eq!(taking(&contenders[1..], &BTreeSet::new()), None);
+    }
+}
