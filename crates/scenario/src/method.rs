@@ -173,3 +173,37 @@ fn registry_id(settings: &IdentifierSettings) -> String {
     let table = toml::Table::try_from(settings).unwrap_or_default();
     table.keys().next().cloned().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn traced(keys: &str) -> Result<::trace::Settings, String> {
+        let wire: IdentifierWire =
+            toml::from_str(&format!("trace = {{ {keys} }}")).map_err(|error| error.to_string())?;
+        tracing(&wire.trace.expect("a trace")).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_trace_has_a_rule_and_a_menu() {
+        let usual = traced("").expect("the usual");
+        assert_eq!((usual.rule, usual.thresholds, usual.monomials), (Rule::Bic, Thresholds::default(), 0));
+        assert_eq!(usual.wanted, Wanted::default());
+        let keys = "rule = \"probability-0.9\", menu = [\"wind_moment\"], monomials = 59, gain = 6.0";
+        let other = traced(keys).expect("settings in range");
+        assert_eq!((other.rule, other.monomials, other.thresholds.gain), (Rule::Probability90, 59, 6.0));
+        assert_eq!(["wind_moment", "speed_loss", "wave_yaw"].map(|id| other.wanted.allows(id)), [true, false, false]);
+    }
+
+    #[test]
+    fn what_a_trace_does_not_know_is_refused_by_name() {
+        let refused = |keys: &str, name: &str| {
+            let error = traced(keys).expect_err("out of range");
+            assert!(error.contains(name), "{error}");
+        };
+        refused("rule = \"aic\"", "there is no rule `aic`; expected one of bic, pastis, held-out");
+        refused("menu = [\"wind\"]", "wind");
+        refused("monomials = 60", "59");
+        assert_eq!(monomial::all().count(), 59);
+    }
+}

@@ -65,7 +65,8 @@ pub const LIBRARY: &[Powers] = library![
     "ψU" = [0, 0, 1, 1],
 ];
 
-/// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they show
+/// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
+/// show
 /// what a rule names where much is on offer.
 pub const WITH_MAGNITUDES: &[Powers] = library![
     "|ψ|" = [0, 0, 1, 0], [false, false, true];

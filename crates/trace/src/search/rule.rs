@@ -30,8 +30,9 @@ pub enum Rule {
     Pastis,
     /// The fewest parameters among the structures whose loss on parts kept from the fit
     /// ([`crate::held_out::losses_on_parts`]) is not larger than the smallest by more than two standard errors
-    /// (Breiman, Friedman, Olshen and Stone 1984, with one). It judges the structures nearest to what a search asks for, and names too much where nothing is
-    /// missing: errors of a replay are so alike from row to row that their difference is less certain than it looks.
+    /// (Breiman, Friedman, Olshen and Stone 1984, with one). It judges the structures nearest to what a search asks
+    /// for, and names too much where nothing is missing: errors of a replay are so alike from row to row that their
+    /// difference is less certain than it looks.
     HeldOut,
     /// Every effect that is in the best structure of more than half of the balanced half-samples of the record
     /// (McCarthy 1969; selection by resampling: Meinshausen and Bühlmann 2010). The best has the lowest sum of BIC and
@@ -138,7 +139,7 @@ fn taking(contenders: &[(&Names, &Noted)], included: &BTreeSet<Place>) -> Option
 }
 
 impl Search<'_> {
-    /// What a rule believes among the structures that were tried: every one holds what `base` does. `found` is where the
+    /// What a rule believes among the structures that were tried and hold what was asked for. `found` is where the
     /// search has ended.
     pub fn decide(&self, rule: Rule, base: &Model, found: Model) -> Model {
         if rule == Rule::Bic {
