@@ -31,8 +31,8 @@ pub enum Rule {
     /// The fewest parameters among the structures whose loss on parts kept from the fit
     /// ([`crate::held_out::losses_on_parts`]) is not larger than the smallest by more than two standard errors
     /// (Breiman, Friedman, Olshen and Stone 1984, with one). It judges the structures nearest to what a search asks
-    /// for, and names too much where nothing is missing: errors of a replay are so alike from row to row that their
-    /// difference is less certain than it looks.
+    /// for, and names too much where nothing is missing: probably errors of a replay are alike for longer than the
+    /// standard error allows for.
     HeldOut,
     /// Every effect that is in the best structure of more than half of the balanced half-samples of the record
     /// (McCarthy 1969; selection by resampling: Meinshausen and Bühlmann 2010). The best has the lowest sum of BIC and
