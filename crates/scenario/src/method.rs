@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use ::trace::search::Thresholds;
+use ::trace::search::{Rule, Thresholds};
+use ::trace::{EffectId, Wanted, monomial};
 use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
 use rand::RngExt;
@@ -62,7 +63,28 @@ pub fn identify(identifier: &dyn Identifier, trial: &Trial, key: &StreamKey) -> 
 pub(crate) struct IdentifierWire {
     pub label: Option<String>,
     pub method: Option<IdentifierSettings>,
-    pub trace: Option<Thresholds>,
+    pub trace: Option<TraceWire>,
+}
+
+/// Settings of a trace.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub(crate) struct TraceWire {
+    gain: f64,
+    false_discovery: f64,
+    most_effects: usize,
+    rule: Rule,
+    /// Effects that may be missing; without the key all.
+    menu: Option<Vec<String>>,
+    /// Monomials that stand among the candidates.
+    monomials: usize,
+}
+
+impl Default for TraceWire {
+    fn default() -> Self {
+        let Thresholds { gain, false_discovery, most_effects } = Thresholds::default();
+        Self { gain, false_discovery, most_effects, rule: Rule::default(), menu: None, monomials: 0 }
+    }
 }
 
 /// The methods, all with names of their own.
@@ -108,9 +130,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, Problem
             let identifier = settings.build().map_err(|error| refused(&table, &error))?;
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
-        (None, Some(thresholds)) => {
-            tracing(*thresholds).map(Procedure::Trace).map_err(|error| refused(&key.child("trace"), &error))
-        }
+        (None, Some(wire)) => tracing(wire).map(Procedure::Trace).map_err(|error| refused(&key.child("trace"), &error)),
         (method, _) => Err(Problem::name(
             key.clone(),
             format!("`{key}` names {}", if method.is_some() { "a method and a trace" } else { "no method" }),
@@ -128,13 +148,62 @@ fn refused(table: &KeyPath, error: &SettingsError) -> Problem {
 }
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
-fn tracing(thresholds: Thresholds) -> Result<::trace::Settings, SettingsError> {
+fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
+    let TraceWire { gain, false_discovery, most_effects, rule, ref menu, monomials } = *wire;
+    let thresholds = Thresholds { gain, false_discovery, most_effects };
     thresholds.check()?;
-    Ok(::trace::Settings { thresholds, thorough: false, ..::trace::Settings::default() })
+    let wanted = menu.as_deref().map_or_else(|| Ok(Wanted::default()), among)?;
+    if monomials > monomial::all().count() {
+        return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
+    }
+    let rest = ::trace::Settings::default();
+    Ok(::trace::Settings { thresholds, rule, wanted, monomials, thorough: false, ..rest })
+}
+
+/// A search among some effects.
+fn among(menu: &[String]) -> Result<Wanted, SettingsError> {
+    let id = |name: &String| {
+        EffectId::find(name).ok_or_else(|| SettingsError::new("menu", name, "an effect of `study list effects`"))
+    };
+    Ok(Wanted::among(&menu.iter().map(id).collect::<Result<Vec<_>, _>>()?))
 }
 
 /// The key of a method in a scenario.
 fn registry_id(settings: &IdentifierSettings) -> String {
     let table = toml::Table::try_from(settings).unwrap_or_default();
     table.keys().next().cloned().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn traced(keys: &str) -> Result<::trace::Settings, String> {
+        let wire: IdentifierWire =
+            toml::from_str(&format!("trace = {{ {keys} }}")).map_err(|error| error.to_string())?;
+        tracing(&wire.trace.expect("a trace")).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_trace_has_a_rule_and_a_menu() {
+        let usual = traced("").expect("the usual");
+        assert_eq!((usual.rule, usual.thresholds, usual.monomials), (Rule::Bic, Thresholds::default(), 0));
+        assert_eq!(usual.wanted, Wanted::default());
+        let keys = "rule = \"probability-0.9\", menu = [\"wind_moment\"], monomials = 59, gain = 6.0";
+        let other = traced(keys).expect("settings in range");
+        assert_eq!((other.rule, other.monomials, other.thresholds.gain), (Rule::Probability90, 59, 6.0));
+        assert_eq!(["wind_moment", "speed_loss", "wave_yaw"].map(|id| other.wanted.allows(id)), [true, false, false]);
+    }
+
+    #[test]
+    fn what_a_trace_does_not_know_is_refused_by_name() {
+        let refused = |keys: &str, name: &str| {
+            let error = traced(keys).expect_err("out of range");
+            assert!(error.contains(name), "{error}");
+        };
+        refused("rule = \"aic\"", "there is no rule `aic`; expected one of bic, pastis, held-out");
+        refused("menu = [\"wind\"]", "wind");
+        refused("monomials = 60", "59");
+        assert_eq!(monomial::all().count(), 59);
+    }
 }

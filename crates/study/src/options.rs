@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use ::trace::search::Rule;
 use ::trace::{EffectId, Wanted};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
@@ -185,6 +186,10 @@ pub struct TraceRequest {
     /// Effects that are no candidates
     #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect)]
     pub without_effect: Vec<EffectId>,
+    /// Which of the structures that were tried is believed: `bic`, `pastis`, `held-out`, `bagged`, `probability`,
+    /// `probability-0.9`
+    #[arg(long, value_name = "NAME", default_value = Rule::default().as_str())]
+    pub rule: Rule,
     /// How figures are drawn
     #[command(flatten)]
     pub style: Style,

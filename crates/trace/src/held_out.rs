@@ -165,13 +165,23 @@ const PARTS: [[f64; 2]; 2] = [[0.4, 0.7], [0.7, 1.0]];
 const SIGNIFICANT: f64 = 2.0;
 
 /// Whether a model predicts parts of its own records worse than a simpler one, each fitted to the rest: `true` when its
-/// loss there is larger by more than two standard errors.
-///
-/// The loss is what the fits were made for: the squared error of the replay, or, where one of them has a random
-/// moment, −2 log of the density of every heading after those before it. A replay alone would ask a model to foresee
-/// the moment.
+/// loss there ([`losses_on_parts`]) is larger by more than two standard errors.
 pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&Structure, &Fit)) -> bool {
-    let (mut differences, mut covariance) = (Vec::new(), 0.0);
+    match losses_on_parts(problem, &[simple, rich]).as_slice() {
+        [simple, rich] => is_larger(rich, simple),
+        _ => false,
+    }
+}
+
+/// Losses of models on parts of the records that are kept from the fit in turn, each model fitted to the rest: for
+/// every model a series for every part of every record.
+///
+/// The loss is what the fits were made for: the squared error of the replay, rad², or, where one of the models has a
+/// random moment, −2 log of the density of every heading after those before it. A replay alone would ask a model to
+/// foresee the moment.
+pub fn losses_on_parts(problem: &Problem, models: &[(&Structure, &Fit)]) -> Vec<Vec<Vec<f64>>> {
+    let random = models.iter().any(|(_, fit)| fit.colour.moment.is_some());
+    let mut losses_of = vec![Vec::new(); models.len()];
     for part in PARTS {
         let kept: Vec<Record> = problem
             .records
@@ -182,22 +192,33 @@ pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&
             })
             .collect();
         let fitted = problem.on(kept);
-        let random = [simple.1, rich.1].iter().any(|fit| fit.colour.moment.is_some());
-        let predict = |(structure, start): (&Structure, &Fit)| {
+        for (all, (structure, start)) in losses_of.iter_mut().zip(models) {
             let fit = fitted.fit(structure, &start.theta, &start.initial, &start.colour);
             let residual = problem.residual(structure, &fit.theta, &fit.initial);
-            if random { losses(problem, &residual, &fit.colour, fitted.variance(&fit)) } else { squares(residual) }
-        };
-        let (one, other) = (predict(simple), predict(rich));
-        for (number, record) in problem.records.iter().enumerate() {
-            let numbers = record.observed.iter().enumerate().filter(|(_, row)| {
-                let share = (record.time[**row] - record.time[0]) / record.duration();
-                (part[0]..=part[1]).contains(&share)
-            });
-            let part: Vec<f64> = numbers.map(|(k, _)| other[number][k] - one[number][k]).collect();
-            covariance += long_run(&part);
-            differences.extend(part);
+            let loss = match random {
+                true => losses(problem, &residual, &fit.colour, fitted.variance(&fit)),
+                false => squares(residual),
+            };
+            for (record, loss) in problem.records.iter().zip(loss) {
+                let numbers = record.observed.iter().zip(loss).filter(|(row, _)| {
+                    let share = (record.time[**row] - record.time[0]) / record.duration();
+                    (part[0]..=part[1]).contains(&share)
+                });
+                all.push(numbers.map(|(_, loss)| loss).collect());
+            }
         }
+    }
+    losses_of
+}
+
+/// Whether losses are larger than others on the same headings by more than two standard errors of the difference, or
+/// no numbers.
+pub fn is_larger(losses: &[Vec<f64>], than: &[Vec<f64>]) -> bool {
+    let (mut differences, mut covariance) = (Vec::new(), 0.0);
+    for (one, other) in losses.iter().zip(than) {
+        let part: Vec<f64> = one.iter().zip(other).map(|(one, other)| one - other).collect();
+        covariance += long_run(&part);
+        differences.extend(part);
     }
     let sum: f64 = differences.iter().sum();
     !sum.is_finite() || sum > SIGNIFICANT * covariance.sqrt()

@@ -1,14 +1,17 @@
 //! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect
-//! carries.
+//! carries; and such with magnitudes, against which named effects can be held.
 
 use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use ship::{EffectReal, Regressor};
 
+use crate::candidates::{Candidate, Sizes};
+use crate::record::Record;
+
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Monomial {
-    /// Which one, in [`LIBRARY`].
-    pub place: usize,
+    /// Which one.
+    pub powers: &'static Powers,
     /// Sizes of r (rad/s), δ (rad), ψ (rad) and U (m/s).
     pub size: [f64; 4],
 }
@@ -18,6 +21,8 @@ pub struct Monomial {
 pub struct Powers {
     /// Exponents of r, δ, ψ and U.
     pub of: [i32; 4],
+    /// Whether one factor of the power of r, δ and ψ is a magnitude.
+    pub magnitude: [bool; 3],
     /// The monomial, as it is written.
     pub form: &'static str,
     /// The equation.
@@ -26,7 +31,15 @@ pub struct Powers {
 
 macro_rules! library {
     ($($form:literal = $of:expr),* $(,)?) => {
-        &[$(Powers { of: $of, form: $form, equation: concat!("T r' + r = K (δ + δ_r + c ", $form, ")") }),*]
+        library![$($form = $of, [false; 3]);*]
+    };
+    ($($form:literal = $of:expr, $magnitude:expr);* $(;)?) => {
+        &[$(Powers {
+            of: $of,
+            magnitude: $magnitude,
+            form: $form,
+            equation: concat!("T r' + r = K (δ + δ_r + c ", $form, ")"),
+        }),*]
     };
 }
 
@@ -52,6 +65,78 @@ pub const LIBRARY: &[Powers] = library![
     "ψU" = [0, 0, 1, 1],
 ];
 
+/// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
+/// show
+/// what a rule names where much is on offer.
+pub const WITH_MAGNITUDES: &[Powers] = library![
+    "|ψ|" = [0, 0, 1, 0], [false, false, true];
+    "|r|" = [1, 0, 0, 0], [true, false, false];
+    "ψ|ψ|" = [0, 0, 2, 0], [false, false, true];
+    "δ|δ|" = [0, 2, 0, 0], [false, true, false];
+    "δ|ψ|" = [0, 1, 1, 0], [false, false, true];
+    "ψ|δ|" = [0, 1, 1, 0], [false, true, false];
+    "|δ||ψ|" = [0, 1, 1, 0], [false, true, true];
+    "r|ψ|" = [1, 0, 1, 0], [false, false, true];
+    "ψ|r|" = [1, 0, 1, 0], [true, false, false];
+    "|r||ψ|" = [1, 0, 1, 0], [true, false, true];
+    "r|δ|" = [1, 1, 0, 0], [false, true, false];
+    "δ|r|" = [1, 1, 0, 0], [true, false, false];
+    "|r||δ|" = [1, 1, 0, 0], [true, true, false];
+    "|ψ|³" = [0, 0, 3, 0], [false, false, true];
+    "|δ|³" = [0, 3, 0, 0], [false, true, false];
+    "|r|³" = [3, 0, 0, 0], [true, false, false];
+    "δψ|ψ|" = [0, 1, 2, 0], [false, false, true];
+    "ψ²|δ|" = [0, 1, 2, 0], [false, true, false];
+    "ψ|δ||ψ|" = [0, 1, 2, 0], [false, true, true];
+    "δ²|ψ|" = [0, 2, 1, 0], [false, false, true];
+    "δψ|δ|" = [0, 2, 1, 0], [false, true, false];
+    "δ|δ||ψ|" = [0, 2, 1, 0], [false, true, true];
+    "rψ|ψ|" = [1, 0, 2, 0], [false, false, true];
+    "ψ²|r|" = [1, 0, 2, 0], [true, false, false];
+    "ψ|r||ψ|" = [1, 0, 2, 0], [true, false, true];
+    "rδ|δ|" = [1, 2, 0, 0], [false, true, false];
+    "δ²|r|" = [1, 2, 0, 0], [true, false, false];
+    "δ|r||δ|" = [1, 2, 0, 0], [true, true, false];
+    "r²|ψ|" = [2, 0, 1, 0], [false, false, true];
+    "rψ|r|" = [2, 0, 1, 0], [true, false, false];
+    "r|r||ψ|" = [2, 0, 1, 0], [true, false, true];
+    "r²|δ|" = [2, 1, 0, 0], [false, true, false];
+    "rδ|r|" = [2, 1, 0, 0], [true, false, false];
+    "r|r||δ|" = [2, 1, 0, 0], [true, true, false];
+    "rδ|ψ|" = [1, 1, 1, 0], [false, false, true];
+    "rψ|δ|" = [1, 1, 1, 0], [false, true, false];
+    "r|δ||ψ|" = [1, 1, 1, 0], [false, true, true];
+    "δψ|r|" = [1, 1, 1, 0], [true, false, false];
+    "δ|r||ψ|" = [1, 1, 1, 0], [true, false, true];
+    "ψ|r||δ|" = [1, 1, 1, 0], [true, true, false];
+    "|r||δ||ψ|" = [1, 1, 1, 0], [true, true, true];
+];
+
+/// Every monomial of both lists.
+pub fn all() -> impl Iterator<Item = &'static Powers> {
+    LIBRARY.iter().chain(WITH_MAGNITUDES)
+}
+
+/// The candidates that some monomials are on records which have the channels they need, for manoeuvres of these sizes.
+pub fn candidates(
+    records: &[Record],
+    sizes: &Sizes,
+    list: impl Iterator<Item = &'static Powers>,
+) -> impl Iterator<Item = Candidate> {
+    let rms = |values: &mut dyn Iterator<Item = f64>| {
+        let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
+        (square / count.max(1) as f64).sqrt().max(1e-9)
+    };
+    let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
+    let has_speed = records.iter().all(|record| record.speed().is_some());
+    let speed = rms(&mut records.iter().filter_map(Record::speed).flat_map(|s| s.values().iter().copied()));
+    let size = [sizes.rate, sizes.rudder, heading, speed];
+    let about = sizes.manoeuvres(records, &records[0]);
+    list.filter(move |powers| has_speed || powers.of[3] == 0)
+        .filter_map(move |powers| Monomial { powers, size }.proposal(&about))
+        .map(|proposal| Candidate::new(proposal, None))
+}
+
 const PARAMETERS: [Parameter; 1] = [Parameter {
     key: "c",
     symbol: "c",
@@ -69,11 +154,11 @@ impl Effect for Monomial {
     }
 
     fn form(&self) -> &'static str {
-        LIBRARY[self.place].form
+        self.powers.form
     }
 
     fn equation(&self) -> &'static str {
-        LIBRARY[self.place].equation
+        self.powers.equation
     }
 
     fn parameters(&self) -> &'static [Parameter] {
@@ -85,7 +170,7 @@ impl Effect for Monomial {
     }
 
     fn sees_heading(&self) -> bool {
-        LIBRARY[self.place].of[2] > 0
+        self.powers.of[2] > 0
     }
 
     fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
@@ -97,7 +182,7 @@ impl Effect for Monomial {
     }
 
     fn needs(&self) -> Option<Regressor> {
-        (LIBRARY[self.place].of[3] > 0).then_some(Regressor::Speed)
+        (self.powers.of[3] > 0).then_some(Regressor::Speed)
     }
 }
 
@@ -105,7 +190,13 @@ impl<R: EffectReal> Acts<R> for Monomial {
     fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
         let speed = R::from(now.measured.speed.unwrap_or(0.0));
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];
-        let power = |k: usize| (factors[k] / self.size[k]).powi(LIBRARY[self.place].of[k]);
+        let power = |k: usize| {
+            let (x, exponent) = (factors[k] / self.size[k], self.powers.of[k]);
+            match self.powers.magnitude.get(k) {
+                Some(true) => x.powi(exponent - 1) * x.abs(),
+                _ => x.powi(exponent),
+            }
+        };
         (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
     }
 }

@@ -58,6 +58,12 @@ impl Wanted {
         Self { with, without: Vec::new(), search: false }
     }
 
+    /// A search that has these effects alone on its menu.
+    pub fn among(menu: &[EffectId]) -> Self {
+        let without = EffectId::all().into_iter().filter(|id| !menu.contains(id)).collect();
+        Self { with: Vec::new(), without, search: true }
+    }
+
     /// Refuses an effect that is asked for and excluded at once.
     pub fn check(&self) -> Result<(), SettingsError> {
         match self.with.iter().find(|id| self.without.contains(id)) {
@@ -105,6 +111,9 @@ mod tests {
         let usual = Wanted { with: vec![id("speed_loss")], without: vec![id("wind_moment")], search: true };
         assert_eq!(usual.check(), Ok(()));
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| usual.allows(id)), [true, false, true]);
+        let few = Wanted::among(&[id("speed_loss")]);
+        assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| few.allows(id)), [true, false, false]);
+        assert!(few.with.is_empty() && few.search && few.check().is_ok());
         let only = Wanted::only(vec![id("speed_loss")]);
         assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| only.allows(id)), [true, false, false]);
         let both = Wanted { without: vec![id("speed_loss")], ..usual };

@@ -17,6 +17,8 @@ pub const CLEAR: f64 = 20.0;
 pub struct TraceSummary {
     /// Index of the cell.
     pub cell: usize,
+    /// Index of the method that is the trace.
+    pub method: usize,
     /// Identifiers of what was missing.
     pub missing: Vec<String>,
     /// Trials traced.
@@ -31,6 +33,8 @@ pub struct TraceSummary {
     pub complete: u64,
     /// Trials in which a group was named that holds no missing effect.
     pub wrong: u64,
+    /// Trials in which exactly what is missing was named: all of it and nothing else, or nothing where nothing is.
+    pub exact: u64,
     /// Trials in which the one missing effect is clearly better than any other alone, and those of them in which it was
     /// named.
     pub clear: [u64; 2],
@@ -44,6 +48,11 @@ impl TraceSummary {
     /// Share of trials in which all that is missing was named.
     pub fn complete_share(&self) -> Option<Statistic> {
         if self.missing.is_empty() || self.is_hull() { None } else { share(self.complete, self.trials) }
+    }
+
+    /// Share of trials in which exactly what is missing was named; `None` for a hull.
+    pub fn exact_share(&self) -> Option<Statistic> {
+        if self.is_hull() { None } else { share(self.exact, self.trials) }
     }
 
     /// Share of trials in which something was named that is not missing; `None` for a hull, of which nobody knows what
@@ -67,8 +76,8 @@ impl TraceSummary {
 pub struct TraceTally {
     missing: Vec<Vec<String>>,
     cells: Vec<TraceSummary>,
-    expected: Mean,
-    band: [Mean; 2],
+    /// Means of every line: of the expected likelihood ratio, and of the coverage of the two bands.
+    means: Vec<[Mean; 3]>,
 }
 
 /// The mean of the numbers that there are.
@@ -97,12 +106,18 @@ impl TraceTally {
     /// Takes note of a row, in the order of rows.
     pub fn add(&mut self, row: &Row) {
         let Some(answer) = &row.traced else { return };
-        let cell = row.cell as usize;
-        if self.cells.last().is_none_or(|last| last.cell != cell) {
-            (self.expected, self.band) = Default::default();
-            self.cells.push(TraceSummary { cell, missing: self.missing[cell].clone(), ..TraceSummary::default() });
-        }
-        let summary = self.cells.last_mut().expect("one was pushed");
+        let (cell, method) = (row.cell as usize, row.method);
+        let of_cell = self.cells.iter().rposition(|line| line.cell != cell).map_or(0, |before| before + 1);
+        let at = match self.cells[of_cell..].iter().position(|line| line.method == method) {
+            Some(own) => of_cell + own,
+            None => {
+                let missing = self.missing[cell].clone();
+                self.cells.push(TraceSummary { cell, method, missing, ..TraceSummary::default() });
+                self.means.push(Default::default());
+                self.cells.len() - 1
+            }
+        };
+        let summary = &mut self.cells[at];
         summary.trials += 1;
         let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
@@ -110,15 +125,18 @@ impl TraceTally {
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
         let is_missing = |effect: &NamedEffect| summary.missing.iter().any(|id| effect.holds(id));
-        summary.wrong += u64::from(!answer.named.iter().all(is_missing));
+        let wrong = !answer.named.iter().all(is_missing);
+        summary.wrong += u64::from(wrong);
         let complete = summary.missing.iter().all(|id| answer.named.iter().any(|effect| effect.holds(id)));
         summary.complete += u64::from(complete && !summary.missing.is_empty());
+        summary.exact += u64::from(complete && !wrong);
         if answer.margin.is_some_and(|margin| margin > CLEAR) {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
         }
-        summary.expected = self.expected.add(answer.expected);
-        summary.band = [self.band[0].add(answer.band_fitted), self.band[1].add(answer.band_held_out)];
+        let [expected, fitted, held_out] = &mut self.means[at];
+        summary.expected = expected.add(answer.expected);
+        summary.band = [fitted.add(answer.band_fitted), held_out.add(answer.band_held_out)];
     }
 
     /// All cells with traces, in order.
@@ -158,7 +176,7 @@ mod tests {
         trials.into_iter().for_each(|groups| tally.add(&row(groups, Some(30.0))));
         let [summary] = tally.finish().try_into().expect("one cell");
         assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
-        assert_eq!(summary.clear, [5, 3]);
+        assert_eq!((summary.exact, summary.clear), (2, [5, 3]));
         assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
         assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
     }
@@ -169,6 +187,19 @@ mod tests {
         tally.add(&row(&[], None));
         tally.add(&row(&[&["a"]], None));
         let [summary] = tally.finish().try_into().expect("one cell");
-        assert_eq!((summary.wrong, summary.complete_share()), (1, None));
+        assert_eq!((summary.wrong, summary.exact, summary.complete_share()), (1, 1, None));
+    }
+
+    #[test]
+    fn every_trace_of_a_cell_has_a_line_of_its_own() {
+        let mut tally = TraceTally { missing: vec![vec![], vec!["a".into()]], ..TraceTally::default() };
+        for (cell, method, group) in [(0, 1, "a"), (0, 2, "b"), (0, 1, "a"), (1, 1, "a"), (1, 2, "b")] {
+            tally.add(&Row { cell, method, ..row(&[&[group]], None) });
+        }
+        let lines = tally.finish();
+        let told = |line: &TraceSummary| (line.cell, line.method, line.trials, line.exact, line.expected);
+        let expected = Some(4.0);
+        let wanted = [(0, 1, 2, 0, expected), (0, 2, 1, 0, expected), (1, 1, 1, 1, expected), (1, 2, 1, 0, expected)];
+        assert_eq!(lines.iter().map(told).collect::<Vec<_>>(), wanted);
     }
 }

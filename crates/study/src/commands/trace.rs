@@ -35,7 +35,8 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = read_all(&request.trials)?;
     let others = read_all(&request.validate)?;
     warn_of_repetition(&trials, &others, &mut warnings);
-    let settings = Settings { own_bias: request.own_bias, wanted: request.wanted(), ..Settings::default() };
+    let settings =
+        Settings { own_bias: request.own_bias, rule: request.rule, wanted: request.wanted(), ..Settings::default() };
     let busy = progress::busy("tracing", common.quiet);
     let analysis = ::trace::trace(&trials, &others, &settings);
     busy.finish_and_clear();

@@ -9,6 +9,7 @@ use report::{Figure, Theme};
 use super::charts::{self, Quantity};
 use super::picture::{first_failure, slug, write_figure};
 use super::trace_charts as traces;
+use super::tracing_table::has_several;
 use campaign::folder::ResultFolder;
 use campaign::showcase::Showcase;
 use campaign::store::Stored;
@@ -91,17 +92,24 @@ const MOST_TRACED: usize = 24;
 fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = Vec::new();
-    for (number, (group, data)) in traces::confusion(design, &summary.tracing).into_iter().enumerate() {
+    // Of several traces the first is drawn: the others are in the tables.
+    let first = summary.tracing.first().map_or(0, |line| line.method);
+    let lines: Vec<_> = summary.tracing.iter().filter(|line| line.method == first).cloned().collect();
+    let whose = match has_several(design) {
+        true => format!(" Here: {}.", design.methods[first].label),
+        false => String::new(),
+    };
+    for (number, (group, data)) in traces::confusion(design, &lines).into_iter().enumerate() {
         let stem = if number == 0 { "confusion".to_owned() } else { format!("confusion-{}", slug(&group)) };
         let caption = "How often each effect was named, in per cent of the trials. A row is what the trials lack, a column what \
                        was named, a dash is never; aliases count for their own name only.";
-        drawings.push(Drawing::new(stem, caption, move |theme| figures::heat_map(&data, theme)));
+        drawings.push(Drawing::new(stem, format!("{caption}{whose}"), move |theme| figures::heat_map(&data, theme)));
     }
-    if let Some(data) = traces::power(&summary.tracing) {
+    if let Some(data) = traces::power(&lines) {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
                        ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
                        likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
-        drawings.push(Drawing::new("power", caption, move |theme| figures::power(&data, theme)));
+        drawings.push(Drawing::new("power", format!("{caption}{whose}"), move |theme| figures::power(&data, theme)));
     }
     drawings.iter_mut().for_each(|drawing| drawing.of_traces = true);
     drawings

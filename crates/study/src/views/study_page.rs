@@ -27,7 +27,7 @@ pub fn on_screen(stored: &Stored, summary: &Summary) -> String {
         text += &tables::overall(summary, design).to_text();
     }
     if !summary.tracing.is_empty() {
-        text += &format!("\nwhat traces named\n{}", tracing_table::kinds(&summary.tracing).to_text());
+        text += &format!("\nwhat traces named\n{}", tracing_table::kinds(&summary.tracing, design).to_text());
     }
     let failures = tables::failures(summary, design);
     failures.iter().take(SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
@@ -61,10 +61,10 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings:
         drawings.iter().filter(|drawing| drawing.showcase == Some(index)).for_each(|drawing| line(&figure(drawing)));
     }
     if !summary.tracing.is_empty() {
-        line(&format!("## What traces named\n\n{}", tracing_table::kinds(&summary.tracing).to_markdown()));
+        line(&format!("## What traces named\n\n{}", tracing_table::kinds(&summary.tracing, design).to_markdown()));
         line(&format!(
-            "*all named*: every missing effect is in one of the groups named; *wrong named*: a group was named that holds no \
-             missing effect; *clear*: the one missing effect alone gains {} more in BIC than any other alone. Intervals are \
+            "*all named*: every missing effect is in one of the groups named; *exact*: that and nothing else; \
+             *false names*: a group was named that holds no missing effect; *clear*: the one missing effect alone gains {} more in BIC than any other alone. Intervals are \
              Wilson's, 95 %.\n",
             campaign::summary::CLEAR
         ));

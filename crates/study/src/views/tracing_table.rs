@@ -1,5 +1,7 @@
 //! Tables of what traces said.
 
+use std::collections::BTreeSet;
+
 use report::number::{self, MISSING};
 use report::{Column, Table};
 
@@ -15,10 +17,14 @@ use scenario::TRACE;
 /// itself and on the validation manoeuvre. What the bands cover are means over the trials: of the headings of the
 /// trial, and of those of the validation manoeuvre, whose band is that of the parameters alone since it has no noise.
 pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_digits: bool) -> Table {
+    let several = has_several(design);
     let mut columns = head_of_cells(design);
+    if several {
+        columns.push(Column::left("method"));
+    }
     columns.push(Column::left("missing"));
     columns.push(Column::right("trials"));
-    let shares = ["all named", "wrong named", "named where clear"];
+    let shares = ["all named", "exact", "false names", "named where clear"];
     for name in shares {
         columns.push(Column::decimal(name).unit("%"));
         if all_digits {
@@ -36,15 +42,17 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
     let mut table = Table::new(columns);
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
+        if several {
+            cells.push(design.methods[line.method].label.clone());
+        }
         cells.push(if line.missing.is_empty() { MISSING.into() } else { line.missing.join(" + ") });
         cells.push(line.trials.to_string());
-        for figure in [line.complete_share(), line.wrong_share(), line.clear_share()] {
+        for figure in [line.complete_share(), line.exact_share(), line.wrong_share(), line.clear_share()] {
             cells.extend(percent(figure, all_digits));
         }
         cells.push(line.clear[0].to_string());
         cells.extend(line.verdicts.map(|count| count.to_string()));
-        let traced = design.methods.iter().position(|method| method.id == TRACE);
-        let records = [Some(summary.reference), traced].map(|method| summary.record(line.cell, method?));
+        let records = [summary.reference, line.method].map(|method| summary.record(line.cell, method));
         let median =
             |figure: Option<Statistic>| figure.map_or_else(|| MISSING.into(), |f| number::significant(f.value, 3));
         cells.extend(records.map(|record| median(record.and_then(|record| record.heading_rmse_deg))));
@@ -71,24 +79,34 @@ fn percent(figure: Option<Statistic>, all_digits: bool) -> Vec<String> {
     cells
 }
 
-/// All cells of one kind together, a line each: nothing missing, one effect, several, a hull.
-pub fn kinds(lines: &[TraceSummary]) -> Table {
-    let mut table = Table::new([
+/// Whether more than one method of a study is a trace.
+pub fn has_several(design: &Design) -> bool {
+    design.methods.iter().filter(|method| method.id == TRACE).count() > 1
+}
+
+/// All cells of one kind together, a line each of every trace: nothing missing, one effect, several, a hull.
+pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
+    let several = has_several(design);
+    let method = several.then(|| Column::left("method"));
+    let mut table = Table::new(Vec::from_iter(method.into_iter().chain([
         Column::left("cells"),
         Column::right("number"),
         Column::right("trials"),
         Column::left("all named [%]"),
-        Column::left("wrong named [%]"),
+        Column::left("exact [%]"),
+        Column::left("false names [%]"),
         Column::left("named where clear [%]"),
-    ]);
+    ])));
     let kind = |line: &TraceSummary| match line.missing.len() {
         0 => "nothing missing",
         _ if line.wrong_share().is_none() => "a hull",
         1 => "one effect missing",
         _ => "several effects missing",
     };
-    for name in ["nothing missing", "one effect missing", "several effects missing", "a hull"] {
-        let own: Vec<&TraceSummary> = lines.iter().filter(|line| kind(line) == name).collect();
+    let methods: BTreeSet<usize> = lines.iter().map(|line| line.method).collect();
+    let kinds = ["nothing missing", "one effect missing", "several effects missing", "a hull"];
+    for (name, number) in kinds.into_iter().flat_map(|name| methods.iter().map(move |&number| (name, number))) {
+        let own: Vec<&TraceSummary> = lines.iter().filter(|line| kind(line) == name && line.method == number).collect();
         if own.is_empty() {
             continue;
         }
@@ -97,6 +115,7 @@ pub fn kinds(lines: &[TraceSummary]) -> Table {
             sum.trials += line.trials;
             sum.complete += line.complete;
             sum.wrong += line.wrong;
+            sum.exact += line.exact;
             sum.clear = [sum.clear[0] + line.clear[0], sum.clear[1] + line.clear[1]];
         }
         let cell = |figure: Option<Statistic>| match figure {
@@ -106,14 +125,16 @@ pub fn kinds(lines: &[TraceSummary]) -> Table {
             }
             None => MISSING.into(),
         };
-        table.push([
+        let label = several.then(|| design.methods[number].label.clone());
+        table.push(label.into_iter().chain([
             name.to_owned(),
             own.len().to_string(),
             sum.trials.to_string(),
             cell(sum.complete_share()),
+            cell(sum.exact_share()),
             cell(sum.wrong_share()),
             cell(sum.clear_share()),
-        ]);
+        ]));
     }
     table
 }

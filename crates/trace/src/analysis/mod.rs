@@ -22,6 +22,7 @@ use crate::candidates::{self, Sizes};
 use crate::diagnostics::{self, Series};
 use crate::fit::Problem;
 use crate::held_out::HeldOut;
+use crate::monomial;
 use crate::record::Record;
 use crate::search::{Model, NotFitted, Search};
 use crate::structure::Structure;
@@ -92,6 +93,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let sizes = Sizes::of(&problem.records, first.inverse_T, &headings);
     let mut candidate_terms = candidates::all(&problem.records, &sizes);
     candidate_terms.retain(|candidate| settings.wanted.allows(candidate.term.effect.id()));
+    candidate_terms.extend(monomial::candidates(&problem.records, &sizes, monomial::all()).take(settings.monomials));
     let mut search = Search::new(&problem, &candidate_terms, settings.thresholds);
     search.wanted = settings.wanted.clone();
 
@@ -100,8 +102,11 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let mut model = search.with_asked(&start).map_err(cannot_be_held)?;
     if settings.wanted.search {
         model = match model.structure.terms.is_empty() {
-            true => search.run(&start, &tried),
-            false => search.run(&model, &search.try_all(&model, &model.plain, false)),
+            true => search.decide(settings.rule, &start, search.run(&start, &tried)),
+            false => {
+                let found = search.run(&model, &search.try_all(&model, &model.plain, false));
+                search.decide(settings.rule, &model, found)
+            }
         };
     }
 

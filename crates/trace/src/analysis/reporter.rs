@@ -14,8 +14,7 @@ use crate::candidates::{Candidate, Sizes};
 use crate::diagnostics::{self, Signature};
 use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
-use crate::monomial::{LIBRARY, Monomial};
-use crate::record::Record;
+use crate::monomial::{self, LIBRARY};
 use crate::search::{Evidence, Model, Search, Tested, Tried, Weights};
 use crate::separation::Ground;
 use crate::structure::Term;
@@ -348,20 +347,7 @@ impl Reporter<'_> {
     /// The monomial that carries most of what is left, with those that cannot be told from it.
     pub fn nameless(&self, sizes: &Sizes) -> Option<Empirical> {
         let records = &self.search.problem.records;
-        let rms = |values: &mut dyn Iterator<Item = f64>| {
-            let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
-            (square / count.max(1) as f64).sqrt().max(1e-9)
-        };
-        let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
-        let has_speed = records.iter().all(|record| record.speed().is_some());
-        let speed = rms(&mut records.iter().filter_map(Record::speed).flat_map(|s| s.values().iter().copied()));
-        let size = [sizes.rate, sizes.rudder, heading, speed];
-        let about = sizes.manoeuvres(records, &records[0]);
-        let library: Vec<Candidate> = (0..LIBRARY.len())
-            .filter(|&place| has_speed || LIBRARY[place].of[3] == 0)
-            .filter_map(|place| Monomial { place, size }.proposal(&about))
-            .map(|proposal| Candidate::new(proposal, None))
-            .collect();
+        let library: Vec<Candidate> = monomial::candidates(records, sizes, LIBRARY.iter()).collect();
         let search = Search::new(self.search.problem, &library, self.search.thresholds);
         let tried = search.try_all(self.model, &self.model.judged, false);
         let best =

@@ -4,7 +4,7 @@ use identify::IdentifyError;
 use identify::settings::SettingsError;
 use thiserror::Error;
 
-use crate::search::Thresholds;
+use crate::search::{Rule, Thresholds};
 use crate::wanted::{EffectId, Wanted};
 
 /// Settings of an analysis.
@@ -12,6 +12,10 @@ use crate::wanted::{EffectId, Wanted};
 pub struct Settings {
     /// What it takes to believe an effect.
     pub thresholds: Thresholds,
+    /// Which of the structures that were tried is believed.
+    pub rule: Rule,
+    /// Number of monomials that stand among the candidates as effects without a name ([`crate::monomial::all`]).
+    pub monomials: usize,
     /// Effects that are in the model on request, and effects that are no candidates.
     pub wanted: Wanted,
     /// Whether every record has a rudder bias of its own.
@@ -23,7 +27,8 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         let (thresholds, wanted) = (Thresholds::default(), Wanted::default());
-        Self { thresholds, wanted, own_bias: false, thorough: true }
+        let rule = Rule::default();
+        Self { thresholds, rule, monomials: 0, wanted, own_bias: false, thorough: true }
     }
 }
 

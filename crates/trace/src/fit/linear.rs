@@ -1,5 +1,7 @@
 //! Residual and sensitivities at one point as linear equations: whitened, extended by columns, solved.
 
+use std::ops::Range;
+
 use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};
 
@@ -102,6 +104,22 @@ impl Columns {
         scaled.cholesky().map_or(0.0, |factor| factor.ln_determinant()) - 2.0 * of_scales
     }
 
+    /// Normal equations of the rows of one of `parts` parts of every record, which are as even as the rows allow.
+    pub(crate) fn normal_of_part(&self, white: &[Vec<f64>], part: usize, parts: usize) -> Normal {
+        let count = self.unknowns();
+        let (mut matrix, mut gradient, mut rss) = (DMatrix::zeros(count, count), DVector::zeros(count), 0.0);
+        for (columns, white) in self.blocks.iter().zip(white) {
+            let rows = part_of(white.len(), part, parts);
+            let own: Vec<(usize, Vec<f64>)> =
+                columns.iter().map(|(at, column)| (*at, column[rows.clone()].to_vec())).collect();
+            gram(&own, 0, &mut matrix);
+            let white = &white[rows];
+            own.iter().for_each(|(at, column)| gradient[*at] += dot(column, white));
+            rss += dot(white, white);
+        }
+        Normal { matrix, gradient, rss }
+    }
+
     /// Covariance of the unknowns for unit variance of the whitened residual; `None` when they cannot be told apart.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let scale = scales(&self.matrix);
@@ -122,6 +140,11 @@ impl Columns {
         };
         self.blocks.iter().zip(white).map(of_record).collect()
     }
+}
+
+/// The rows of one of `parts` parts of a record of `rows` rows.
+pub(crate) fn part_of(rows: usize, part: usize, parts: usize) -> Range<usize> {
+    rows * part / parts..rows * (part + 1) / parts
 }
 
 /// Normal equations of whitened columns.
@@ -161,7 +184,7 @@ impl Linear {
     }
 
     /// Leaves out the columns of some unknowns, which stay in place.
-    pub fn without(mut self, unknowns: std::ops::Range<usize>) -> Self {
+    pub fn without(mut self, unknowns: Range<usize>) -> Self {
         for block in &mut self.blocks {
             block.columns.retain(|(place, _)| !unknowns.contains(place));
         }

@@ -20,7 +20,7 @@ mod problem;
 mod tests;
 
 pub use linear::{Column, Columns, Linear};
-pub(crate) use linear::{Normal, acts, log_variance, whiten};
+pub(crate) use linear::{Normal, acts, log_variance, part_of, whiten};
 pub use linearised::Linearised;
 pub use moments::Restricted;
 pub(crate) use moments::minimum;

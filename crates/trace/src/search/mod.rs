@@ -11,7 +11,9 @@ mod asked;
 mod evidence;
 mod ledger;
 mod models;
+mod resampled;
 mod rounds;
+mod rule;
 #[cfg(test)]
 mod tests;
 mod together;
@@ -20,7 +22,8 @@ mod weights;
 
 pub use asked::NotFitted;
 pub use evidence::{Evidence, Thresholds};
-pub use ledger::Ledger;
+pub use ledger::{Ledger, Names, Noted};
 pub use models::{Model, Search, Tested};
+pub use rule::{Rule, UnknownRule};
 pub use trying::Tried;
 pub use weights::{Weighted, Weights};

@@ -184,7 +184,7 @@ impl Search<'_> {
                 start = fit;
             }
         }
-        self.ledger.note(&structure, &judged);
+        self.ledger.note(&structure, &judged, true);
         Model { structure, plain, judged }
     }
 
@@ -201,7 +201,7 @@ impl Search<'_> {
         if !model.judged.colour.is_white() {
             let theta = model.structure.drop_from(&model.judged.theta, place);
             let under = self.problem.fit(&less.structure, &theta, &model.judged.initial, &model.judged.colour);
-            self.ledger.note(&less.structure, &under);
+            self.ledger.note(&less.structure, &under, false);
             if under.bic < less.judged.bic {
                 less.judged = under;
             }

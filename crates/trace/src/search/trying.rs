@@ -138,7 +138,7 @@ impl Search<'_> {
                 let candidate = self.candidate(place);
                 let (structure, with) = self.with_term(model, candidate, fit, known);
                 let evidence = self.evidence(fit, &with, candidate.term.freedom());
-                self.ledger.note(&structure, &with);
+                self.ledger.note(&structure, &with, false);
                 Tried { candidate: place, structure, fit: with, evidence }
             })
             .collect();
@@ -148,7 +148,11 @@ impl Search<'_> {
 
     /// The model of a candidate that was tried, with the noise that suits it best.
     pub fn adopted(&self, tried: &Tried) -> Model {
-        let Tried { structure, fit, .. } = tried;
+        self.judged_from(&tried.structure, &tried.fit)
+    }
+
+    /// The model of a structure that was fitted under some noise, with the noise that suits it best.
+    pub(super) fn judged_from(&self, structure: &Structure, fit: &Fit) -> Model {
         if fit.colour.moment.is_none() {
             return self.judge(structure.clone(), fit.clone());
         }

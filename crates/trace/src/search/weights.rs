@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ship::effects::{Effect, WaveYaw};
 
+use super::ledger::Names;
 use super::models::Search;
 use crate::index::RecordNumber;
 use crate::structure::TermName;
@@ -40,10 +41,7 @@ const SMALLEST_SHARE: f64 = 0.05;
 
 impl Weights {
     /// Weights of structures with these BIC; `forms` has the number of forms of every place of the menu.
-    fn new(
-        tried: &BTreeMap<Vec<TermName>, f64>,
-        forms: &BTreeMap<(&'static str, Option<RecordNumber>), usize>,
-    ) -> Self {
+    fn new(tried: &BTreeMap<Names, f64>, forms: &BTreeMap<(&'static str, Option<RecordNumber>), usize>) -> Self {
         let menu = forms.len();
         // Even the only candidate may be absent.
         let prior = 1.0 / menu.max(2) as f64;
@@ -97,6 +95,11 @@ impl Weights {
 impl Search<'_> {
     /// Weights over everything that was tried so far.
     pub fn weights(&self) -> Weights {
+        self.weigh(&self.ledger.known().iter().map(|(names, noted)| (names.clone(), noted.fit.bic)).collect())
+    }
+
+    /// Weights over structures with these BIC.
+    pub(super) fn weigh(&self, tried: &BTreeMap<Names, f64>) -> Weights {
         let mut forms = BTreeMap::new();
         for candidate in self.candidates {
             *forms.entry((candidate.term.effect.id(), candidate.term.only)).or_insert(0) += 1;
@@ -104,7 +107,7 @@ impl Search<'_> {
         if self.wanted.allows(WaveYaw.id()) {
             forms.insert((WaveYaw.id(), None), 1);
         }
-        Weights::new(&self.ledger.known(), &forms)
+        Weights::new(tried, &forms)
     }
 }
 
