@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use ::trace::analysis::{Judged, OnRecord};
+use ::trace::noise::Moment;
 use ::trace::replay_errors::HORIZONS;
 use serde::Serialize;
 use ship::angle::to_deg;
@@ -42,6 +43,8 @@ pub struct TraceFile {
     pub residual: ResidualEntry,
     /// The yaw moment that the base lacks on every fitted record.
     pub missing_moment: Vec<MissingMomentEntry>,
+    /// The noise of every record.
+    pub noise: Vec<RecordNoiseEntry>,
     /// The trial that would tell most.
     pub next_trial: String,
     /// The augmented model.
@@ -153,6 +156,21 @@ pub struct NamedParameter {
     value: ParameterEntry,
 }
 
+/// The noise of one record.
+#[derive(Debug, Serialize)]
+pub struct RecordNoiseEntry {
+    file: String,
+    heading_sd_deg: f64,
+    /// `null`: the heading noise of a trace is white.
+    heading_correlation_s: Option<f64>,
+    moment: &'static str,
+    /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
+    moment_sd_rudder_deg: Option<f64>,
+    moment_correlation_s: Option<f64>,
+    /// Whether the innovations are white, of one variance, and without a surprise.
+    describes_what_is_left: Option<bool>,
+}
+
 /// The random part.
 #[derive(Debug, Serialize)]
 pub struct NoiseEntry {
@@ -233,6 +251,24 @@ impl TraceFile {
                 leave_one_out: entries(report.trials, analysis.left_out.iter().map(Option::as_ref)),
             },
             residual: ResidualEntry { before: whiteness(0), after: whiteness(1) },
+            noise: report
+                .names
+                .iter()
+                .map(|name| RecordNoiseEntry {
+                    file: name.clone(),
+                    heading_sd_deg: to_deg(noise.white),
+                    heading_correlation_s: None,
+                    moment: match noise.moment {
+                        None => "none",
+                        Some(Moment::White) => "white",
+                        Some(Moment::OrnsteinUhlenbeck(_)) => "ornstein-uhlenbeck",
+                        Some(Moment::Walk) => "walk",
+                    },
+                    moment_sd_rudder_deg: noise.moment.map(|_| to_deg(noise.rudder)),
+                    moment_correlation_s: noise.correlation,
+                    describes_what_is_left: noise.moment.map(|_| noise.holds),
+                })
+                .collect(),
             missing_moment: missing_moment::entries(report),
             next_trial: trace_page::next_trial(report),
             model: ModelEntry {

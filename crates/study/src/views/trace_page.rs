@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use ::trace::analysis::{Fitted, Judged, Outcome, Traced, Verdict};
+use ::trace::analysis::{Fitted, Judged, Outcome, Randomness, RunnerUp, Traced, Verdict};
 use ::trace::noise::Moment;
 use report::number::{self, significant};
 use ship::angle::to_deg;
@@ -20,6 +20,31 @@ pub fn moment(kind: Moment) -> &'static str {
     }
 }
 
+/// A random moment as an angle of the rudder, in words; `None` without one.
+fn moment_in_words(noise: &Randomness) -> Option<String> {
+    let size = significant(to_deg(noise.rudder), 2);
+    Some(match noise.moment? {
+        Moment::White => format!("a white yaw moment of {size}° of rudder in the mean of a second"),
+        Moment::OrnsteinUhlenbeck(_) => {
+            let time = significant(noise.correlation.unwrap_or(f64::NAN), 2);
+            format!("gusts of {size}° of rudder with a correlation time of about {time} s")
+        }
+        Moment::Walk => format!("a yaw moment that wanders by {size}° of rudder in a second"),
+    })
+}
+
+/// What a named noise hides, and how much more would have to be recorded until it is seen.
+fn hidden(noise: &Randomness) -> Option<String> {
+    let RunnerUp { id, form, times } = noise.runner_up?;
+    let much = if times > MOST_TIMES { String::from("more than 20") } else { significant(times, 2) };
+    Some(format!(
+        "{id} ({form}) is nearest to being told from it: that would take {much} times as much of such records"
+    ))
+}
+
+/// Beyond so many times as much record nobody will sail.
+const MOST_TIMES: f64 = 20.0;
+
 /// The words of one analysis.
 pub fn words(report: &TraceReport) -> String {
     let analysis = report.analysis;
@@ -29,6 +54,7 @@ pub fn words(report: &TraceReport) -> String {
         several => format!("{} records together: {rows} rows", several.len()),
     };
     let verdict = match analysis.verdict {
+        Verdict::Clean if analysis.randomness.holds => "clean: nothing is missing, and the noise has a name",
         Verdict::Clean => "clean: nothing is missing",
         Verdict::Traced if analysis.effects.iter().all(|effect| effect.asked) => {
             "traced: what is left beside the effects that were asked for is noise"
@@ -45,6 +71,12 @@ pub fn words(report: &TraceReport) -> String {
     }
     for refused in &analysis.refused {
         let _ = write!(text, "\n  {refused}");
+    }
+    if let Some(noise) = moment_in_words(&analysis.randomness).filter(|_| analysis.randomness.holds) {
+        let _ = write!(text, "\n  noise: {noise}");
+        if let Some(hidden) = hidden(&analysis.randomness) {
+            let _ = write!(text, "; {hidden}");
+        }
     }
     if let Some(signature) = signature(report) {
         let _ = write!(text, "\n  left: {signature}");
@@ -206,8 +238,12 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     let _ = writeln!(text, "## The model\n\n{}", parameters(report).to_markdown());
     let noise = &analysis.randomness;
     let _ = write!(text, "Heading noise: {}° (white)", significant(to_deg(noise.white), 2));
-    if let Some(kind) = noise.moment {
-        let _ = write!(text, ", and a random yaw moment ({})", moment(kind));
+    if let Some(moment) = moment_in_words(noise) {
+        let holds = if noise.holds { "describes what is left" } else { "does not describe all that is left" };
+        let _ = write!(text, ", and {moment}; this noise {holds}");
+        if let Some(hidden) = hidden(noise) {
+            let _ = write!(text, "; {hidden}");
+        }
     }
     if let Some(waves) = noise.waves {
         let (sd, frequency) = (significant(to_deg(waves.sd), 2), significant(waves.frequency, 3));

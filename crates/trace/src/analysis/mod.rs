@@ -30,12 +30,14 @@ use crate::structure::Structure;
 use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
 use left_out::leave_one_out;
-use parameters::{indices, parameter_covariance, parameters, randomness};
+use parameters::{indices, parameter_covariance, parameters, randomness, runner_up};
 use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
 
 pub use prospects::Prospect;
-pub use result::{Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, Traced, Verdict};
+pub use result::{
+    Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, RunnerUp, Traced, Verdict,
+};
 pub use settings::{Settings, TraceError};
 use told::Told;
 
@@ -164,7 +166,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         (None, true) => Verdict::Clean,
         (None, false) => Verdict::Traced,
     };
-    let randomness = randomness(&problem, &model);
+    let open = told.random.then(|| runner_up(&problem, &candidates, &candidate_terms)).flatten();
+    let randomness = randomness(&problem, &model, &told, open);
     let Told { sides: [_, after_side], before, after, .. } = told;
     let identification = judged(names, before, after);
     Ok(Analysis {

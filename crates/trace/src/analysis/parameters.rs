@@ -10,8 +10,11 @@ use ship::narrow_band::NarrowBand;
 use statrs::distribution::{ContinuousCDF, Normal};
 use trial::Quantity;
 
-use super::result::{Fitted, Randomness};
+use super::result::{Considered, Fitted, Outcome, Randomness, RunnerUp};
+use super::told::Told;
+use crate::candidates::Candidate;
 use crate::fit::{Fit, Problem};
+use crate::noise::Moment;
 use crate::search::Model;
 use crate::structure::Structure;
 
@@ -102,13 +105,37 @@ pub(super) fn indices(
     ([estimate.K(), estimate.T()], bias)
 }
 
-pub(super) fn randomness(problem: &Problem, model: &Model) -> Randomness {
+/// Likelihood ratio per parameter below which chance alone could have made it: nothing is said of such a candidate.
+const CHANCE: f64 = 2.0;
+
+/// The candidate nearest to being believed beside the random moment of a model.
+pub(super) fn runner_up(problem: &Problem, candidates: &[Considered], terms: &[Candidate]) -> Option<RunnerUp> {
+    let log_n = (problem.observations() as f64).ln();
+    let of = |(one, candidate): (&Considered, &Candidate)| {
+        let freedom = candidate.term.freedom() as f64;
+        let ratio = one.evidence?.gain + freedom * log_n;
+        let is_open = one.outcome != Outcome::Added && !candidate.term.effect.is_of_time() && ratio > CHANCE * freedom;
+        // ratio · x − freedom · (log n + log x) = needed, by repeated substitution.
+        let times = (0..50).fold(1.0_f64, |x, _| (one.needed + freedom * (log_n + x.ln())).max(ratio) / ratio);
+        is_open.then_some(RunnerUp { id: one.id, form: one.form, times })
+    };
+    candidates.iter().zip(terms).filter_map(of).min_by(|one, other| one.times.total_cmp(&other.times))
+}
+
+/// The noise as the final model sees it; as an angle of the rudder by the K/T that is told.
+pub(super) fn randomness(problem: &Problem, model: &Model, told: &Told, runner_up: Option<RunnerUp>) -> Randomness {
     let fit = &model.judged;
     let of_row = problem.noise_of_row(fit);
+    let gain = told.sides[1].fit.theta[1].abs();
+    let size = |(kind, level): (Moment, f64)| kind.size(level * of_row * of_row, problem.longest()) / gain;
     Randomness {
         white: problem.noise_of_reading(fit),
         moment: fit.colour.moment.map(|(kind, _)| kind),
         wander: fit.colour.moment.map_or(0.0, |(_, level)| level.sqrt() * of_row),
+        rudder: fit.colour.moment.map_or(0.0, size),
+        correlation: fit.colour.moment.and_then(|(kind, _)| kind.correlation(problem.longest())),
+        holds: told.noise_holds,
+        runner_up,
         waves: fit.colour.waves.map(|waves| NarrowBand { sd: waves.sd * of_row, ..waves }),
     }
 }

@@ -151,6 +151,18 @@ pub struct Empirical {
     pub error: f64,
 }
 
+/// The candidate that is nearest to being believed, and how much more record would decide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunnerUp {
+    /// Identifier.
+    pub id: &'static str,
+    /// Form.
+    pub form: &'static str,
+    /// How many times as much of the same record would make it gain what it needs, if it is there: its likelihood ratio
+    /// grows with the length, the price of its parameters with the logarithm of it.
+    pub times: f64,
+}
+
 /// Random part of the records, as the final model sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Randomness {
@@ -161,6 +173,16 @@ pub struct Randomness {
     /// Standard deviation of the heading that the moment alone would leave at the end of the longest record of a ship
     /// without damping, rad.
     pub wander: f64,
+    /// The same as an angle of the rudder, rad: the standard deviation of gusts, of the mean of a white moment over one
+    /// second, of what a walk adds in one second. 0 without a moment.
+    pub rudder: f64,
+    /// Correlation time of gusts, s.
+    pub correlation: Option<f64>,
+    /// Whether this noise is a description of what is left: its innovations are white, of one variance, and without a
+    /// surprise.
+    pub holds: bool,
+    /// What came nearest to being believed beside a random moment.
+    pub runner_up: Option<RunnerUp>,
     /// Waves; `sd` in rad.
     pub waves: Option<NarrowBand>,
 }
