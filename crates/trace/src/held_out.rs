@@ -104,6 +104,8 @@ pub struct Comparison {
     pub full: f64,
     /// Geometric mean of the ratios of full and restarted replays.
     pub mean: f64,
+    /// The largest of them.
+    pub largest: f64,
 }
 
 /// Ratio of the mean up to which an error counts as no worse: what the errors of the parameters themselves cost.
@@ -123,9 +125,9 @@ impl Comparison {
         self.full > FULL_TOLERANCE || self.mean > MEAN_TOLERANCE
     }
 
-    /// Whether the second model is better by more than errors of parameters could make it.
+    /// Whether the second model is better by more than errors of parameters could make it, and nowhere worse.
     pub fn is_much_better(&self) -> bool {
-        self.full < FULL_GAIN && self.mean < MEAN_GAIN
+        self.full < FULL_GAIN && self.mean < MEAN_GAIN && self.largest <= MEAN_TOLERANCE
     }
 
     /// Compares errors over records, pooled row by row; restarted replays count where both models have them. `None`
@@ -149,7 +151,8 @@ impl Comparison {
             true => f64::INFINITY,
             false => (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp(),
         };
-        Some(Self { full, mean })
+        let largest = ratios.iter().copied().fold(0.0, f64::max);
+        Some(Self { full, mean, largest })
     }
 }
 
@@ -279,6 +282,8 @@ mod tests {
         assert!(one.is_worse() && !one.is_much_better());
         assert!(compared((1.0, 1.0), (0.8, 0.8)).is_much_better());
         assert!(!compared((1.0, 1.0), (1.0, 1.0)).is_worse());
+        let shorter_worse = compared((1.0, 1.0), (0.3, 1.05));
+        assert!(!shorter_worse.is_worse() && !shorter_worse.is_much_better());
         assert!(compared((1.0, 1.0), (1.6, 0.1)).is_worse());
     }
 
@@ -287,8 +292,8 @@ mod tests {
     fn the_full_replay_decides_even_where_its_error_is_zero() {
         let worse = compared((0.0, 1.0), (1.0, 0.5));
         assert!(worse.full.is_infinite() && worse.is_worse() && !worse.is_much_better());
-        assert_eq!(compared((0.0, 1.0), (0.0, 1.0)), Comparison { full: 1.0, mean: 1.0 });
-        assert_eq!(compared((1.0, 1.0), (0.0, 0.0)), Comparison { full: 0.0, mean: 0.0 });
+        assert_eq!(compared((0.0, 1.0), (0.0, 1.0)), Comparison { full: 1.0, mean: 1.0, largest: 1.0 });
+        assert_eq!(compared((1.0, 1.0), (0.0, 0.0)), Comparison { full: 0.0, mean: 0.0, largest: 0.0 });
         assert!(compared((0.0, 1.0), (1.0, 0.0)).is_worse());
     }
 

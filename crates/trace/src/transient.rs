@@ -1,6 +1,6 @@
-//! Where in a record a moment may have been present for a while, or have set in: boxes of several lengths, or steps, are
-//! tried at every place, with the response of the base in closed form, and the best places are handed on as starts of a
-//! fit.
+//! Where in a record a moment may have been present for a while, or have set in: boxes of several lengths, or steps,
+//! are tried at every place, with the response of the base in closed form, and the best places are handed on as starts
+//! of a fit.
 
 use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};

@@ -17,6 +17,7 @@ use trace::candidates::{self, Sizes};
 use trace::fit::Problem;
 use trace::noise::Colour;
 use trace::record::Record;
+use trace::search::Rule;
 use trace::structure::Structure;
 use trial::{Channel, Trial};
 
@@ -25,27 +26,44 @@ struct Set {
     name: &'static str,
     folder: &'static str,
     records: &'static [&'static str],
+    /// Records that are fitted together, the others being held out; without others, each is left out in turn.
+    pools: &'static [&'static [&'static str]],
     /// Whether the records have wind columns.
     wind: bool,
 }
+
+const ESSO_OSAKA: [&str; 5] =
+    ["zigzag_13_57_45", "zigzag_13_04_24", "zigzag_13_14_21", "zigzag_13_42_53", "zigzag_14_10_05"];
 
 const SETS: [Set; 3] = [
     Set {
         name: "KVLCC2, 7 m model, HSVA",
         folder: "kvlcc2_hsva",
-        records: &["zigzag_20_10_s", "zigzag_10_10_s", "zigzag_20_05", "zigzag_15_05", "zigzag_10_05", "zigzag_05_01"],
+        records: &[
+            "zigzag_20_10_s",
+            "zigzag_10_10_s",
+            "zigzag_35_05",
+            "zigzag_30_05",
+            "zigzag_20_05",
+            "zigzag_15_05",
+            "zigzag_10_05",
+            "zigzag_05_01",
+        ],
+        pools: &[&["zigzag_20_10_s", "zigzag_10_10_s", "zigzag_15_05"]],
         wind: false,
     },
     Set {
         name: "KVLCC2, MARIN, full-scale values",
         folder: "kvlcc2_marin",
-        records: &["zigzag_20", "zigzag_10"],
+        records: &["zigzag_20", "zigzag_-20", "zigzag_10"],
+        pools: &[&["zigzag_20", "zigzag_-20"]],
         wind: false,
     },
     Set {
         name: "Esso Osaka, 3 m model outdoors",
         folder: "esso_osaka",
-        records: &["zigzag_13_57_45", "zigzag_13_04_24", "zigzag_13_14_21", "zigzag_13_42_53", "zigzag_14_10_05"],
+        records: &ESSO_OSAKA,
+        pools: &[&["zigzag_13_57_45", "zigzag_13_04_24", "zigzag_13_14_21"], &ESSO_OSAKA],
         wind: true,
     },
 ];
@@ -87,13 +105,21 @@ fn run(results: &Path) -> Outcome<()> {
             for &without_wind in withheld {
                 let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
                 let out = scratch.path().join(&name);
-                trace_one(set, record, without_wind, &out)?;
+                trace_some(set, &[record], without_wind, &out)?;
                 let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?;
-                table.push(line(record, without_wind, &json));
+                let label = if without_wind { format!("{record}, wind withheld") } else { record.to_owned() };
+                table.push(line(label, &json));
                 if KEPT.contains(&(record, without_wind)) {
                     keep(&out, &results.join(format!("{}-{name}", set.folder)))?;
                 }
             }
+        }
+        for (number, pool) in set.pools.iter().enumerate() {
+            let out = scratch.path().join(format!("{}-pool-{number}", set.folder));
+            trace_some(set, pool, false, &out)?;
+            let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?;
+            let others = if pool.len() == set.records.len() { ", each left out in turn" } else { "" };
+            table.push(line(format!("together: {}{others}", pool.join(", ")), &json));
         }
         let _ = writeln!(page, "## {}\n\n{}", set.name, table.to_markdown());
         if set.wind {
@@ -120,11 +146,12 @@ are not part of the project; where they come from is said in the README of the p
 cargo run --release -p kempf-tests --bin measured -- results/measured
 ```
 
-A line is one analysis: `study trace` of one record with all others of its set held out. *heading*: error of the recorded rudder
-replayed over the whole record, before (the best first-order base) and after. *windows*: the same restarted every 20 s. On held-out
-records only initial states are fitted; their figures are root mean squares over all rows of all of them, as the ratio after over
-before. Terms are in the order of discovery; those marked * were believed because they predict the held-out records, the others
-because of their likelihood against random moments.
+A line is one analysis: `study trace` of one record, or of some together, with all others of its set held out; where all are fitted
+together, each is left out in turn. *heading*: error of the recorded rudder replayed over the whole record, before (the best
+first-order base) and after. *windows*: the same restarted every 20 and 60 s. On held-out records only initial states are fitted;
+errors of several records are root mean squares over them, as the ratio after over before. *band*: share of the measured headings of
+the held-out records inside the 95 % band of the final model. Terms are in the order of discovery; those marked * were believed
+because they predict the held-out records, the others because of their likelihood against random moments.
 
 ";
 
@@ -140,40 +167,46 @@ fn errors_table() -> Table {
         Column::decimal("held out: heading ratio"),
         Column::decimal("held out: windows of 20 s"),
         Column::decimal("held out: windows of 60 s"),
+        Column::decimal("held out: inside the band").unit("%"),
     ])
 }
 
-/// Runs `study trace` on one record.
-fn trace_one(set: &Set, record: &str, without_wind: bool, out: &Path) -> Outcome<()> {
+/// Runs `study trace` on some records, the others held out.
+fn trace_some(set: &Set, records: &[&str], without_wind: bool, out: &Path) -> Outcome<()> {
     let path = |name: &str| folder().join(set.folder).join(format!("{name}.csv"));
     let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
     let request = TraceRequest {
-        trials: vec![path(record)],
-        validate: set.records.iter().filter(|other| **other != record).map(|other| path(other)).collect(),
+        trials: records.iter().map(|record| path(record)).collect(),
+        validate: set.records.iter().filter(|other| !records.contains(other)).map(|other| path(other)).collect(),
         columns: Some(sidecars),
         own_bias: false,
         without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
         with: Vec::new(),
         only: Vec::new(),
         without_effect: Vec::new(),
+        rule: Rule::default(),
         style: Style { paper: None, dpi: 600.0 },
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
-    eprintln!("{}: {record}{}", set.folder, if without_wind { ", wind withheld" } else { "" });
+    eprintln!("{}: {}{}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
     study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string().into())
 }
 
 /// One line of the table, from `trace.json`.
-fn line(record: &str, without_wind: bool, json: &Value) -> Vec<String> {
+fn line(label: String, json: &Value) -> Vec<String> {
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-    let fitted = &json["error"]["identification"][0];
-    let (before, after) = (number(&fitted["before"]["heading_rmse_deg"]), number(&fitted["after"]["heading_rmse_deg"]));
     let empty = Vec::new();
-    let held_out = json["error"]["validation"].as_array().unwrap_or(&empty);
-    let ratio = |of: &dyn Fn(&Value) -> &Value| {
-        let pooled = |when: &str| held_out.iter().map(|record| number(of(&record[when])).powi(2)).sum::<f64>().sqrt();
-        significant(pooled("after") / pooled("before"), 2)
+    let records = |kind: &str| json["error"][kind].as_array().unwrap_or(&empty);
+    let fitted = records("identification");
+    let held_out = [records("validation").as_slice(), records("leave_one_out")].concat();
+    let pooled = |all: &[Value], when: &str, of: &dyn Fn(&Value) -> &Value| {
+        let square = all.iter().map(|record| number(of(&record[when])).powi(2)).sum::<f64>();
+        (square / all.len() as f64).sqrt()
     };
+    let heading: &dyn Fn(&Value) -> &Value = &|errors| &errors["heading_rmse_deg"];
+    let [before, after] = ["before", "after"].map(|when| pooled(fitted, when, heading));
+    let ratio = |of| significant(pooled(&held_out, "after", of) / pooled(&held_out, "before", of), 2);
+    let covered = held_out.iter().map(|record| number(&record["after"]["band_coverage_95"])).sum::<f64>();
     let found: Vec<String> = json["effects"]
         .as_array()
         .unwrap_or(&empty)
@@ -185,14 +218,15 @@ fn line(record: &str, without_wind: bool, json: &Value) -> Vec<String> {
         })
         .collect();
     vec![
-        format!("{record}{}", if without_wind { ", wind withheld" } else { "" }),
+        label,
         if found.is_empty() { "nothing".to_owned() } else { found.join(", ") },
         significant(before, 3),
         significant(after, 3),
         significant(after / before, 2),
-        ratio(&|errors| &errors["heading_rmse_deg"]),
+        ratio(heading),
         ratio(&|errors| &errors["horizon_rmse_deg"]["20"]),
         ratio(&|errors| &errors["horizon_rmse_deg"]["60"]),
+        fixed(100.0 * covered / held_out.len() as f64, 0),
     ]
 }
 

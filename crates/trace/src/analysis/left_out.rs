@@ -7,7 +7,7 @@ use trial::Trial;
 
 use super::replays::{judged, starts};
 use super::result::Judged;
-use super::told::Side;
+use super::side::Side;
 use crate::band::Elsewhere;
 use crate::fit::Problem;
 use crate::held_out::HeldOut;

@@ -10,6 +10,7 @@ mod replays;
 mod reporter;
 mod result;
 mod settings;
+mod side;
 #[cfg(test)]
 mod tests;
 mod told;

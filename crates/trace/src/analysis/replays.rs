@@ -6,7 +6,7 @@ use trial::Trial;
 
 use super::result::{Analysis, Judged, OnRecord};
 use super::settings::TraceError;
-use super::told::Side;
+use super::side::Side;
 use crate::band::{self, Elsewhere, Noise};
 use crate::fit::{Fit, Problem};
 use crate::held_out::{self, HeldOut};

@@ -6,7 +6,7 @@ use ship::effects::Parameter;
 use ship::narrow_band::NarrowBand;
 use trial::Quantity;
 
-use super::told::Side;
+use super::side::Side;
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;

@@ -12,7 +12,7 @@ use trial::Trial;
 use super::replays::{add_bands, on_records};
 use super::result::OnRecord;
 use super::settings::TraceError;
-use crate::band::Noise;
+use super::side::Side;
 use crate::fit::{Fit, Problem};
 use crate::innovations::Innovations;
 use crate::search::Model;
@@ -20,36 +20,6 @@ use crate::structure::Structure;
 
 /// Autocorrelation above which a residual is called coloured.
 const COLOURED: f64 = 0.2;
-
-/// A model as it is told: before or after what is missing was added.
-#[derive(Debug, Clone)]
-pub(super) struct Side {
-    /// Structure.
-    pub structure: Structure,
-    /// Parameters and initial states.
-    pub fit: Fit,
-    /// The noise of the records as the model sees it.
-    pub noise: Noise,
-}
-
-impl Side {
-    fn new(problem: &Problem, model: &Model, fit: &Fit) -> Self {
-        let noise = Noise::of(problem, &model.structure, &model.judged);
-        Self { structure: model.structure.clone(), fit: fit.clone(), noise }
-    }
-
-    /// The first-order response of the parameters: their base, with the mean of several rudder biases.
-    pub fn first_order(&self) -> FirstOrder {
-        let theta = &self.fit.theta;
-        let biases = &theta[2..self.structure.base_count()];
-        let rudder_bias = biases.iter().sum::<f64>() / biases.len() as f64;
-        FirstOrder { inverse_T: theta[0], K_over_T: theta[1], rudder_bias }
-    }
-
-    fn is_first_order(&self) -> bool {
-        self.structure.terms.is_empty() && !self.structure.own_bias
-    }
-}
 
 /// Models before and after with their replays of the fitted records.
 pub(super) struct Told {

@@ -111,8 +111,8 @@ impl Search<'_> {
         if self.found(&model).next().is_none() { base.clone() } else { model }
     }
 
-    /// The better of a model and the best set of effects that pay together: every term of either stands against a random
-    /// moment, so a set has to be better under one and nearer to the records without.
+    /// The better of a model and the best set of effects that pay together: every term of either stands against a
+    /// random moment, so a set has to be better under one and nearer to the records without.
     fn with_a_set(&self, model: Model, base: &Model) -> Model {
         let ids = |set: &Model| -> Vec<&str> { set.structure.terms.iter().map(|term| term.effect.id()).collect() };
         let mut sets: Vec<Model> = Vec::new();
