@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use rand::{SeedableRng, rngs::ChaCha8Rng};
-use rand_distr::{Distribution, Normal};
+use rand_distr::{Distribution, Normal, StandardNormal};
 use ship::angle::from_deg;
 use ship::dynamics::Dynamics;
 use ship::effects::Effect;
@@ -85,4 +85,25 @@ pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial 
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
     let origin = Origin::Simulated { scenario: "made up".into(), cell: 0, replicate: 0 };
     Trial::new("made up", origin, Columns { time, channels, unknown: Vec::new() }).expect("a valid record")
+}
+
+/// A base in a moment that walks: `level` is the standard deviation, deg, that a ship without damping would have at the
+/// end of 300 s.
+pub fn wandering(level: f64, seed: u64) -> Trial {
+    let calm = record(&ship(Vec::new()), Plan { seed, ..Plan::default() });
+    let mut generator = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
+    let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
+    let h = 0.02;
+    let step = level.to_radians() * (20.0 / 300f64.powi(5) * h).sqrt();
+    let [mut heading, mut rate, mut moment] = [0.0; 3];
+    let mut measured = calm.heading().to_vec();
+    for (row, value) in measured.iter_mut().enumerate() {
+        for _ in 0..if row > 0 { 50 } else { 0 } {
+            moment += step * draw();
+            rate += h * (moment - BASE[0] * rate);
+            heading += h * rate;
+        }
+        *value += heading;
+    }
+    of_columns(calm.time().to_vec(), measured, calm.rudder().to_vec())
 }

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use ship::effects::{Effect, NonlinearDamping};
+use identify::Identifier;
+use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
 
 use super::*;
-use crate::made_up::{Plan, record, ship};
+use crate::made_up::{BASE, Plan, record, ship, wandering};
 use crate::wanted::{EffectId, Wanted};
 
 /// K = 0.1 1/s, T = 16.3 s with damping of the third power.
@@ -105,4 +106,45 @@ fn a_moment_of_time_that_was_asked_for_is_one_of_every_record() {
     let settings = Settings { wanted, thorough: false, ..Settings::default() };
     let analysis = trace(&trials, &[], &settings).expect("a base");
     assert_eq!(named(&analysis), [("moment_drift", true); 2]);
+}
+
+/// A moment that walks is told as noise, of its size, and the parameters are those of the likelihood under it: nearer to
+/// the truth than output error, with intervals that hold it.
+#[test]
+fn a_moment_that_wanders_is_named_and_no_riddle() {
+    const RECORDS: u64 = 24;
+    let (mut clean, mut held, mut size, mut square) = (0, 0, 0.0, [0.0; 2]);
+    for seed in 0..RECORDS {
+        let trial = wandering(60.0, seed);
+        let settings = Settings { thorough: false, ..Settings::default() };
+        let analysis = trace(std::slice::from_ref(&trial), &[], &settings).expect("a base");
+        if analysis.verdict != Verdict::Clean {
+            continue;
+        }
+        clean += 1;
+        let nearest = output_error::Settings::default().build().expect("valid").identify(&[trial]).expect("a fit");
+        let [low, high] = analysis.indices[0].ci95.expect("an interval");
+        held += u64::from((low..=high).contains(&0.1));
+        square[0] += (analysis.indices[0].value - 0.1).powi(2);
+        square[1] += (nearest.K().value - 0.1).powi(2);
+        assert!(analysis.randomness.holds && analysis.randomness.moment.is_some(), "{seed}");
+        size += analysis.randomness.rudder.ln();
+    }
+    assert!(clean >= RECORDS - 2, "{clean} of {RECORDS}");
+    assert!(held as f64 >= 0.8 * clean as f64, "{held} of {clean}");
+    assert!(square[0] < 0.65_f64.powi(2) * square[1], "{square:?}");
+    // What the walk adds in a second, as rudder.
+    let truth = 60f64.to_radians() * (20.0 / 300f64.powi(5)).sqrt() / BASE[1];
+    let ratio = (size / clean as f64).exp() / truth;
+    assert!((0.75..1.33).contains(&ratio), "{ratio}");
+}
+
+/// A moment that sets in and stays is found with its instant, and is no random walk.
+#[test]
+fn a_moment_that_stays_is_located() {
+    let step: Arc<dyn Effect> = Arc::new(TransientDisturbance::Lasting { edge: 0.5 });
+    let analysis = traced(&ship(vec![(step, vec![0.02, 131.0])]), Wanted::default()).expect("a base");
+    assert_eq!((analysis.verdict, named(&analysis)), (Verdict::Traced, vec![("transient_disturbance", false)]));
+    let [moment, instant] = [0, 1].map(|k| analysis.effects[0].parameters[k].quantity.value);
+    assert!((moment / 0.02 - 1.0).abs() < 0.05 && (instant - 131.0).abs() < 1.0, "{moment} {instant}");
 }

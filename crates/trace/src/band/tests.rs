@@ -1,15 +1,13 @@
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
-use rand::{SeedableRng, rngs::ChaCha8Rng};
-use rand_distr::{Distribution, StandardNormal};
 use ship::effects::{Effect, MomentDrift, NonlinearDamping};
 use ship::narrow_band::NarrowBand;
 use trial::Trial;
 
 use super::*;
 use crate::candidates::{Candidate, Sizes};
-use crate::made_up::{BASE, Plan, of_columns, record, ship};
+use crate::made_up::{BASE, Plan, of_columns, record, ship, wandering};
 use crate::noise::Moment;
 use crate::search::{Search, Thresholds};
 use crate::structure::Term;
@@ -226,27 +224,6 @@ fn a_band_is_that_of_readings() {
     assert!(band.iter().zip(expected).all(|(one, sd)| (one - 1.959_964 * sd).abs() < 1e-5), "{band:?}");
 }
 
-/// A base in a moment that walks: `level` is the standard deviation, deg, that a ship without damping would have at the
-/// end of 300 s.
-fn disturbed(level: f64, seed: u64) -> Trial {
-    let calm = record(&ship(Vec::new()), Plan { seed, ..Plan::default() });
-    let mut generator = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
-    let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
-    let h = 0.02;
-    let step = level.to_radians() * (20.0 / 300f64.powi(5) * h).sqrt();
-    let [mut heading, mut rate, mut moment] = [0.0; 3];
-    let mut measured = calm.heading().to_vec();
-    for (row, value) in measured.iter_mut().enumerate() {
-        for _ in 0..if row > 0 { 50 } else { 0 } {
-            moment += step * draw();
-            rate += h * (moment - BASE[0] * rate);
-            heading += h * rate;
-        }
-        *value += heading;
-    }
-    of_columns(calm.time().to_vec(), measured, calm.rudder().to_vec())
-}
-
 fn inside(band: &[f64], residual: &[f64]) -> f64 {
     let count = band.iter().zip(residual).filter(|(half, e)| e.abs() <= **half).count();
     count as f64 / band.len() as f64
@@ -259,8 +236,8 @@ fn bands_hold_what_they_promise() {
     let mut shares = [0.0; 4];
     let replicates = 100;
     for seed in 0..replicates {
-        let trials = [seed, seed + 500].map(|seed| disturbed(60.0, seed));
-        let other = disturbed(60.0, seed + 1500);
+        let trials = [seed, seed + 500].map(|seed| wandering(60.0, seed));
+        let other = wandering(60.0, seed + 1500);
         let problem = Problem::new(trials.iter().map(Record::whole).collect(), BASE[0], BASE[1]);
         let search = Search::new(&problem, &[], Thresholds::default());
         let model = search.base(Structure::base(2, false), &BASE, &[[0.0; 2]; 2]);
