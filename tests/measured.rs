@@ -137,7 +137,7 @@ fn mirror_images_of_one_hull_tell_the_same_physics() {
     let trials = ["kvlcc2_marin/zigzag_20.csv", "kvlcc2_marin/zigzag_-20.csv"].map(measured::record);
     let [Some(starboard), Some(port)] = trials else { return };
     for (trial, ratio) in [(starboard, 0.1), (port, 0.2)] {
-        let settings = trace::Settings { thorough: false, discovery: false, ..trace::Settings::default() };
+        let settings = trace::Settings { thorough: false, ..trace::Settings::default() };
         let analysis = trace::trace(std::slice::from_ref(&trial), &[], &settings).expect("a zig-zag has a base");
         let named: Vec<_> = analysis.effects.iter().map(|effect| effect.id).collect();
         assert_eq!(named, ["second_order", "nonlinear_damping", "speed_loss"], "{}", trial.name());

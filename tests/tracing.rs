@@ -78,7 +78,7 @@ fn sizes() -> Vec<Missing> {
         (Arc::new(RudderDeadband::Backlash), vec![from_deg(1.5)]),
         (Arc::new(PortStarboardAsymmetry), vec![0.2]),
         (Arc::new(MomentDrift { reference_time: 0.0 }), vec![7e-5]),
-        (Arc::new(TransientDisturbance), vec![0.04, 150.0, 30.0]),
+        (Arc::new(TransientDisturbance::Passing), vec![0.04, 150.0, 30.0]),
         (Arc::new(WaveYaw), vec![from_deg(0.4), 0.6, 0.1]),
     ]
 }
