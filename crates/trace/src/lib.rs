@@ -17,7 +17,7 @@
 //! | how far a record may be from a replay by chance | [`band`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
 //! | the yaw moment that the base lacks, over time and over what it may depend on | [`missing_moment`] |
-//! | what is left in the end | [`diagnostics`], [`monomial`] |
+//! | what is left in the end | [`diagnostics`], [`monomial`], [`offset`] |
 
 pub mod analysis;
 pub mod band;
@@ -30,6 +30,7 @@ pub mod innovations;
 pub mod missing_moment;
 pub mod monomial;
 pub mod noise;
+pub mod offset;
 pub mod own_moment;
 pub mod record;
 pub mod replay_errors;

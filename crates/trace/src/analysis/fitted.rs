@@ -7,7 +7,7 @@ use super::settings::TraceError;
 use crate::search::{Model, Search};
 
 /// Root mean square heading error over all records, rad.
-fn heading_error(records: &[OnRecord]) -> f64 {
+pub(super) fn heading_error(records: &[OnRecord]) -> f64 {
     let square: f64 = records.iter().map(|on| on.errors.heading.powi(2) * on.errors.rows as f64).sum();
     let rows: usize = records.iter().map(|on| on.errors.rows).sum();
     (square / rows as f64).sqrt()

@@ -15,6 +15,7 @@ use crate::diagnostics::{self, Signature};
 use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
 use crate::monomial::{self, LIBRARY};
+use crate::offset;
 use crate::search::{Evidence, Model, Search, Tested, Tried, Weights};
 use crate::separation::Ground;
 use crate::structure::Term;
@@ -347,11 +348,18 @@ impl Reporter<'_> {
     /// The monomial that carries most of what is left, with those that cannot be told from it.
     pub fn nameless(&self, sizes: &Sizes) -> Option<Empirical> {
         let records = &self.search.problem.records;
-        let library: Vec<Candidate> = monomial::candidates(records, sizes, LIBRARY.iter()).collect();
+        let mut library: Vec<Candidate> = monomial::candidates(records, sizes, LIBRARY.iter()).collect();
+        library.extend(offset::candidate(records, sizes));
         let search = Search::new(self.search.problem, &library, self.search.thresholds);
-        let tried = search.try_all(self.model, &self.model.judged, false);
-        let best =
-            tried.first().filter(|best| search.believes(&search.candidate(best.candidate).term, &best.evidence))?;
+        let mut tried = search.try_all(self.model, &self.model.judged, false);
+        let believed = |tried: &Tried| search.believes(&search.candidate(tried.candidate).term, &tried.evidence);
+        if !tried.first().is_some_and(believed) {
+            // Under the noise of the model without it a slow term looks like more of that noise: it is held against the
+            // model with the noise that suits it best.
+            tried = search.try_all(self.model, &self.model.plain, true);
+            tried.retain(|tried| search.stands(self.model, tried));
+        }
+        let best = tried.first()?;
         let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);
         let term = &search.candidate(best.candidate).term;
         let square: f64 = search.adopted(best).plain.residual.iter().flatten().map(|e| e * e).sum();

@@ -1,5 +1,6 @@
 //! Which fit of a model is told, replayed and held against other records: that of the likelihood where its noise model
-//! holds, otherwise the one that is nearest to the records.
+//! holds, otherwise the one that is nearest to the records. Where effects were found the replay of the likelihood has to be
+//! as near, too: it is what they are shown by.
 //!
 //! Under the noise that is there, the likelihood has the smallest errors and intervals that hold (Åström and Källström
 //! 1976). Where the noise model is itself no description of what is left, its optimum looks after the next heading
@@ -9,6 +10,7 @@
 use ship::FirstOrder;
 use trial::Trial;
 
+use super::fitted::heading_error;
 use super::replays::{add_bands, on_records};
 use super::result::OnRecord;
 use super::settings::TraceError;
@@ -17,6 +19,9 @@ use crate::fit::{Fit, Problem};
 use crate::innovations::Innovations;
 use crate::search::Model;
 use crate::structure::Structure;
+
+/// Share of the smallest heading error up to which a replay of a model with effects counts as near to the records.
+const AS_NEAR: f64 = 1.05;
 
 /// Autocorrelation above which a residual is called coloured.
 const COLOURED: f64 = 0.2;
@@ -31,7 +36,7 @@ pub(super) struct Told {
     pub after: Vec<OnRecord>,
     /// Whether what is left needs a random moment.
     pub random: bool,
-    /// Whether there is one and the noise model holds: the fit is then that of the likelihood under it.
+    /// Whether there is one and the noise model holds.
     pub noise_holds: bool,
 }
 
@@ -51,19 +56,17 @@ impl Told {
         let mut told = Self { sides, before, after, random, noise_holds: false };
         if random && Innovations::of(problem, &model.judged).agree() {
             let likelihood = Side::new(problem, model, &model.judged);
-            let replay = |side: &Side, thorough| {
-                let response = side.is_first_order().then(|| side.first_order());
-                on_records(trials, (&side.structure, &side.fit), first, response.as_ref(), thorough)
-            };
-            let on = replay(&likelihood, thorough)?;
+            let response = likelihood.is_first_order().then(|| likelihood.first_order());
+            let (structure, fit) = (&likelihood.structure, &likelihood.fit);
+            let on = on_records(trials, (structure, fit), first, response.as_ref(), thorough)?;
+            let mut is_told = true;
+            told.noise_holds = true;
             if likelihood.structure.terms.is_empty() {
                 (told.sides[0], told.before) = (likelihood.clone(), on.clone());
-                told.noise_holds = true;
             } else {
-                let windows = |side: &Side| replay(side, true).map(|on| restarted(&on));
-                told.noise_holds = windows(&likelihood)? <= windows(&told.sides[0])?;
+                is_told = heading_error(&on) <= AS_NEAR * heading_error(&told.after);
             }
-            if told.noise_holds {
+            if is_told {
                 (told.sides[1], told.after) = (likelihood, on);
             }
         }
@@ -81,14 +84,7 @@ impl Told {
 
     /// Whether the noise has a colour that the fit does not know, when the residual has this autocorrelation.
     pub fn is_coloured(&self, lag1: f64) -> bool {
-        let white = self.sides[1].fit.colour.is_white();
-        !self.noise_holds && (self.random || (white && lag1.abs() > COLOURED))
+        let colour = &self.sides[1].fit.colour;
+        colour.moment.is_none() && (self.random || (colour.is_white() && lag1.abs() > COLOURED))
     }
-}
-
-/// Mean square error of replays that are restarted every 20 s, rad²; 0 where the windows hold too few headings.
-fn restarted(on: &[OnRecord]) -> f64 {
-    let rows: usize = on.iter().map(|on| on.errors.rows).sum();
-    let square = |on: &OnRecord| on.errors.horizon[0].map_or(0.0, |error| error.powi(2) * on.errors.rows as f64);
-    on.iter().map(square).sum::<f64>() / rows as f64
 }

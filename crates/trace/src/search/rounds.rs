@@ -134,16 +134,11 @@ impl Search<'_> {
     /// Whether a base is all there is: a random moment describes what is left, no candidate promises to pay beside it,
     /// and no moment of time pays, which a linear promise does not tell.
     fn is_enough(&self, base: &Model, first: &[Tried]) -> bool {
-        let stands = |tried: &&Tried| {
-            let with = self.judge(tried.structure.clone(), tried.fit.clone());
-            let term = &self.candidate(tried.candidate).term;
-            self.believes(term, &self.evidence(&base.judged, &with.judged, term.freedom()))
-        };
         let mut of_time = first.iter().filter(|tried| self.candidate(tried.candidate).term.effect.is_of_time());
         base.judged.colour.moment.is_some()
             && Innovations::of(self.problem, &base.judged).agree()
             && !self.promises_anything(base)
-            && !of_time.any(|tried| stands(&tried))
+            && !of_time.any(|tried| self.stands(base, tried))
     }
 
     /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.

@@ -146,6 +146,14 @@ impl Search<'_> {
         tried
     }
 
+    /// Whether a candidate that was tried on a model as if the noise were white is believed when both have the noise
+    /// that suits them best.
+    pub fn stands(&self, model: &Model, tried: &Tried) -> bool {
+        let with = self.judge(tried.structure.clone(), tried.fit.clone());
+        let term = &self.candidate(tried.candidate).term;
+        self.believes(term, &self.evidence(&model.judged, &with.judged, term.freedom()))
+    }
+
     /// The model of a candidate that was tried, with the noise that suits it best.
     pub fn adopted(&self, tried: &Tried) -> Model {
         self.judged_from(&tried.structure, &tried.fit)
