@@ -108,8 +108,8 @@ fn a_moment_of_time_that_was_asked_for_is_one_of_every_record() {
     assert_eq!(named(&analysis), [("moment_drift", true); 2]);
 }
 
-/// A moment that walks is told as noise, of its size, and the parameters are those of the likelihood under it: nearer to
-/// the truth than output error, with intervals that hold it.
+/// A moment that walks is told as noise, of its size, and the parameters are those of the likelihood under it: nearer
+/// to the truth than output error, with intervals that hold it.
 #[test]
 fn a_moment_that_wanders_is_named_and_no_riddle() {
     const RECORDS: u64 = 24;

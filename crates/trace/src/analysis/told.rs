@@ -1,6 +1,6 @@
-//! Which fit of a model is told, replayed and held against other records: that of the likelihood where its noise model
-//! holds, otherwise the one that is nearest to the records. Where effects were found the replay of the likelihood has to be
-//! as near, too: it is what they are shown by.
+//! Which fit of a model is told, replayed and held against other records: that of the likelihood where its noise
+//! model holds, otherwise the one that is nearest to the records. Where effects were found the replay of the likelihood
+//! has to be as near, too: it is what they are shown by.
 //!
 //! Under the noise that is there, the likelihood has the smallest errors and intervals that hold (Åström and Källström
 //! 1976). Where the noise model is itself no description of what is left, its optimum looks after the next heading
