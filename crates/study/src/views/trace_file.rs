@@ -251,8 +251,7 @@ impl TraceFile {
                 leave_one_out: entries(report.trials, analysis.left_out.iter().map(Option::as_ref)),
             },
             residual: ResidualEntry { before: whiteness(0), after: whiteness(1) },
-            noise: report
-                .names
+            noise: report.names[..report.trials.len()]
                 .iter()
                 .map(|name| RecordNoiseEntry {
                     file: name.clone(),
