@@ -66,8 +66,7 @@ pub const LIBRARY: &[Powers] = library![
 ];
 
 /// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
-/// show
-/// what a rule names where much is on offer.
+/// show what a rule names where much is on offer.
 pub const WITH_MAGNITUDES: &[Powers] = library![
     "|ψ|" = [0, 0, 1, 0], [false, false, true];
     "|r|" = [1, 0, 0, 0], [true, false, false];
@@ -137,7 +136,8 @@ pub fn candidates(
         .map(|proposal| Candidate::new(proposal, None))
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter {
+/// The coefficient of a term without a name: a rudder angle, for factors in units of their own size.
+pub(crate) const PARAMETERS: [Parameter; 1] = [Parameter {
     key: "c",
     symbol: "c",
     unit: "rad",

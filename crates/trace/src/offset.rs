@@ -5,6 +5,7 @@ use ship::EffectReal;
 use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 
 use crate::candidates::{Candidate, Sizes};
+use crate::monomial::PARAMETERS;
 use crate::record::Record;
 
 /// c y with y' = sin(ψ − ψ₀), as an equivalent rudder angle; y in units of the length of the record.
@@ -15,17 +16,6 @@ struct Offset {
     /// Length of the record, s.
     duration: f64,
 }
-
-const PARAMETERS: [Parameter; 1] = [Parameter {
-    key: "c",
-    symbol: "c",
-    unit: "rad",
-    neutral: 0.0,
-    typical: 0.02,
-    lowest: -10.0,
-    highest: 10.0,
-    odd: false,
-}];
 
 impl Effect for Offset {
     fn id(&self) -> &'static str {

@@ -19,10 +19,10 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// One of the fits of a model, in the noise that suits the model best.
-    pub fn new(problem: &Problem, model: &Model, fit: &Fit) -> Self {
+    /// The fit of a model that is nearest to the records, in the noise that suits the model best.
+    pub fn nearest(problem: &Problem, model: &Model) -> Self {
         let noise = Noise::of(problem, &model.structure, &model.judged);
-        Self { structure: model.structure.clone(), fit: fit.clone(), noise }
+        Self { structure: model.structure.clone(), fit: model.plain.clone(), noise }
     }
 
     /// The first-order response of the parameters: their base, with the mean of several rudder biases.

@@ -52,10 +52,10 @@ impl Told {
         thorough: bool,
     ) -> Result<Self, TraceError> {
         let random = model.judged.colour.moment.is_some();
-        let sides = [start, model].map(|model| Side::new(problem, model, &model.plain));
+        let sides = [start, model].map(|model| Side::nearest(problem, model));
         let mut told = Self { sides, before, after, random, noise_holds: false };
         if random && Innovations::of(problem, &model.judged).agree() {
-            let likelihood = Side::new(problem, model, &model.judged);
+            let likelihood = Side { fit: model.judged.clone(), ..told.sides[1].clone() };
             let response = likelihood.is_first_order().then(|| likelihood.first_order());
             let (structure, fit) = (&likelihood.structure, &likelihood.fit);
             let on = on_records(trials, (structure, fit), first, response.as_ref(), thorough)?;
