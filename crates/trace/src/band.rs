@@ -38,9 +38,9 @@ pub struct Noise {
     pub reading: f64,
     /// Variance of what the rudder between rows leaves unknown, which no averaging makes smaller, rad².
     pub floor: f64,
-    /// Random moment with its variance in rad², waves with their standard deviation in rad.
+    /// What wanders with its variance in rad², waves with their standard deviation in rad.
     pub colour: Colour,
-    /// How much larger the variance of the random moment is on average over what the records leave open. On the records
+    /// How much larger the variance of what wanders is on average over what the records leave open. On the records
     /// from which it was estimated the best value counts, since they are what it describes; elsewhere the average does.
     pub elsewhere: f64,
 }
@@ -53,12 +53,12 @@ impl Noise {
     pub fn of(problem: &Problem, structure: &Structure, fit: &Fit) -> Self {
         let linear = problem.linear(structure, &fit.theta, &fit.initial);
         let Restricted { row, level, mean } = problem.restricted(&linear, &fit.colour);
-        let Colour { moment, waves } = fit.colour;
+        let Colour { wander, waves } = fit.colour;
         Self {
             reading: row * problem.full_readings() as f64,
             floor: problem.floor(),
             colour: Colour {
-                moment: moment.map(|(kind, _)| (kind, level * row)),
+                wander: wander.map(|(kind, _)| (kind, level * row)),
                 waves: waves.map(|waves| NarrowBand { sd: waves.sd * row.sqrt(), ..waves }),
             },
             elsewhere: mean,
@@ -67,8 +67,8 @@ impl Noise {
 
     /// The same on records from which it was not estimated.
     fn elsewhere(self) -> Self {
-        let moment = self.colour.moment.map(|(kind, variance)| (kind, variance * self.elsewhere));
-        Self { colour: Colour { moment, ..self.colour }, elsewhere: 1.0, ..self }
+        let wander = self.colour.wander.map(|(kind, variance)| (kind, variance * self.elsewhere));
+        Self { colour: Colour { wander, ..self.colour }, elsewhere: 1.0, ..self }
     }
 }
 

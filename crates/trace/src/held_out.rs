@@ -183,7 +183,7 @@ pub fn is_worse_on_parts(problem: &Problem, simple: (&Structure, &Fit), rich: (&
 /// random moment, −2 log of the density of every heading after those before it. A replay alone would ask a model to
 /// foresee the moment.
 pub fn losses_on_parts(problem: &Problem, models: &[(&Structure, &Fit)]) -> Vec<Vec<Vec<f64>>> {
-    let random = models.iter().any(|(_, fit)| fit.colour.moment.is_some());
+    let random = models.iter().any(|(_, fit)| fit.colour.wander.is_some());
     let mut losses_of = vec![Vec::new(); models.len()];
     for part in PARTS {
         let kept: Vec<Record> = problem

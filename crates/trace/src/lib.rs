@@ -17,11 +17,12 @@
 //! | how far a record may be from a replay by chance | [`band`] |
 //! | what a record cannot tell, and which trial could | [`separation`] |
 //! | the yaw moment that the base lacks, over time and over what it may depend on | [`missing_moment`] |
-//! | what is left in the end | [`diagnostics`], [`monomial`], [`offset`] |
+//! | what is left in the end | [`diagnostics`], [`monomial`], [`offset`], [`change`] |
 
 pub mod analysis;
 pub mod band;
 pub mod candidates;
+pub mod change;
 pub mod diagnostics;
 pub mod fit;
 pub mod held_out;

@@ -1,5 +1,6 @@
-//! The noise that a fit is judged against: white heading noise, a random yaw moment that has gone through the ship, and
-//! narrow-band waves, as one linear stochastic system whose Kalman filter makes residual and sensitivities white.
+//! The noise that a fit is judged against: white heading noise, a random yaw moment that has gone through the ship or an
+//! error of the compass that wanders, and narrow-band waves, as one linear stochastic system whose Kalman filter makes
+//! residual and sensitivities white.
 //!
 //! Noise is a competitor of every effect. A slow residual may be a missing term or a moment nobody knows the cause of;
 //! an effect is only believed when it explains the record better than the best of these random explanations. With the
@@ -24,29 +25,44 @@ use system::{Vector, joint};
 /// What the filter does with a row: gain, log S, weight.
 type Correction<const N: usize> = ([f64; N], f64, f64);
 
-/// A random yaw moment.
+/// What wanders beside the white heading noise: a random yaw moment, or an error of the compass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Moment {
+pub enum Wander {
     /// r' = −a r + w: the yaw rate of a ship in a white moment wanders.
     White,
     /// r' = −a r + d, d' = −d/τ + w: gusts, whose correlation time τ is this one of [`GUSTS`].
     OrnsteinUhlenbeck(usize),
     /// r' = −a r + d, d' = w: the moment itself wanders.
     Walk,
+    /// ε' = −ε/τ + w, added to the heading that is read: a compass whose errors last for a time τ, this one of
+    /// [`COMPASS`].
+    Compass(usize),
 }
 
 /// Correlation times of gusts that are told apart, as shares of the longest record.
 pub const GUSTS: [f64; 4] = [0.015, 0.03, 0.06, 0.12];
 
-impl Moment {
-    /// Number of parameters: the level, and the correlation time where there is one.
-    pub fn freedom(self) -> usize {
-        if matches!(self, Self::OrnsteinUhlenbeck(_)) { 2 } else { 1 }
+/// Correlation times of an error of the compass that are told apart, as shares of the longest record.
+pub const COMPASS: [f64; 6] = [0.004, 0.008, 0.016, 0.032, 0.064, 0.128];
+
+impl Wander {
+    /// Whether it is an error of the compass.
+    pub fn is_of_compass(self) -> bool {
+        matches!(self, Self::Compass(_))
     }
 
-    /// Correlation time, s, where the longest record lasts so long; `None` where the moment has none.
+    /// Number of parameters: the level, and the correlation time where there is one.
+    pub fn freedom(self) -> usize {
+        if matches!(self, Self::White | Self::Walk) { 1 } else { 2 }
+    }
+
+    /// Correlation time, s, where the longest record lasts so long; `None` where there is none.
     pub fn correlation(self, longest: f64) -> Option<f64> {
-        if let Self::OrnsteinUhlenbeck(number) = self { Some(GUSTS[number] * longest) } else { None }
+        match self {
+            Self::White | Self::Walk => None,
+            Self::OrnsteinUhlenbeck(number) => Some(GUSTS[number] * longest),
+            Self::Compass(number) => Some(COMPASS[number] * longest),
+        }
     }
 
     /// Intensity of w for level 1. Gusts have that of the white moment they are to slow motions.
@@ -56,34 +72,48 @@ impl Moment {
             Self::White => white,
             Self::OrnsteinUhlenbeck(number) => white / (GUSTS[number] * longest).powi(2),
             Self::Walk => 20.0 / longest.powi(5),
+            Self::Compass(number) => 2.0 / (COMPASS[number] * longest),
         }
     }
 
-    /// Size of the yaw acceleration of a level (rad², in heading) in a record: of a white moment the root of its
-    /// spectral density, rad/s² √s; of gusts the standard deviation, rad/s²; of a walk that after one second.
+    /// Size of what a level (rad², in heading) is in a record: of a white moment the root of the spectral density of
+    /// its yaw acceleration, rad/s² √s; of gusts the standard deviation, rad/s²; of a walk that after one second; of an
+    /// error of the compass the standard deviation, rad.
     pub fn size(self, level: f64, longest: f64) -> f64 {
         let square = level * self.intensity(longest);
         self.correlation(longest).map_or(square, |time| 0.5 * time * square).sqrt()
+    }
+
+    /// x' = G x + w on the last state for a ship of the given 1/T, heading first.
+    fn generator(self, damping: f64, longest: f64) -> DMatrix<f64> {
+        let fading = self.correlation(longest).map_or(0.0, f64::recip);
+        match self {
+            Self::White => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -damping]),
+            Self::OrnsteinUhlenbeck(_) | Self::Walk => {
+                DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, -damping, 1.0, 0.0, 0.0, -fading])
+            }
+            Self::Compass(_) => DMatrix::from_element(1, 1, -fading),
+        }
     }
 }
 
 /// Colour of the noise beside the white heading noise, whose variance is the unit of everything here.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Colour {
-    /// Random moment, and the variance of the heading it would leave at the end of the longest record of a ship without
-    /// damping.
-    pub moment: Option<(Moment, f64)>,
+    /// What wanders, and the variance of the heading it leaves: of a random moment that at the end of the longest
+    /// record of a ship without damping.
+    pub wander: Option<(Wander, f64)>,
     /// Waves; `sd` in units of the white noise.
     pub waves: Option<NarrowBand>,
 }
 
 impl Colour {
     /// White heading noise alone.
-    pub const WHITE: Self = Self { moment: None, waves: None };
+    pub const WHITE: Self = Self { wander: None, waves: None };
 
     /// Number of parameters beside σ.
     pub fn freedom(&self) -> usize {
-        self.moment.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
+        self.wander.map_or(0, |(kind, _)| kind.freedom()) + if self.waves.is_some() { 3 } else { 0 }
     }
 
     /// Whether it is white.
@@ -92,11 +122,11 @@ impl Colour {
     }
 }
 
-/// Transitions of a random moment over every step of a record, for one unit of intensity.
+/// Transitions of what wanders over every step of a record, for level 1.
 #[derive(Debug, Clone)]
 struct Drift {
     states: usize,
-    /// Variance of the moment at the beginning, for level 1.
+    /// Variance of the last state at the beginning.
     beginning: f64,
     /// Transition and added covariance of every distinct step.
     steps: Vec<(Matrix, Matrix)>,
@@ -105,19 +135,10 @@ struct Drift {
 }
 
 impl Drift {
-    fn new(kind: Moment, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
-        let states = if kind == Moment::White { 2 } else { 3 };
+    fn new(kind: Wander, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
         let intensity = kind.intensity(longest);
-        let mut generator = DMatrix::<f64>::zeros(states, states);
-        generator[(0, 1)] = 1.0;
-        generator[(1, 1)] = -inverse_time;
-        if states == 3 {
-            generator[(1, 2)] = 1.0;
-        }
-        let beginning = kind.correlation(longest).map_or(0.0, |time| {
-            generator[(2, 2)] = -time.recip();
-            0.5 * time * intensity
-        });
+        let generator = kind.generator(inverse_time, longest);
+        let beginning = kind.correlation(longest).map_or(0.0, |time| 0.5 * time * intensity);
         let mut known: Vec<f64> = Vec::new();
         let mut steps = Vec::new();
         let of_row = durations
@@ -130,7 +151,7 @@ impl Drift {
                 })
             })
             .collect();
-        Self { states, beginning, steps, of_row }
+        Self { states: generator.nrows(), beginning, steps, of_row }
     }
 }
 
@@ -165,6 +186,7 @@ pub struct RecordNoise {
     white: Drift,
     walk: Drift,
     gusts: [OnceLock<Drift>; GUSTS.len()],
+    compass: [OnceLock<Drift>; COMPASS.len()],
 }
 
 impl RecordNoise {
@@ -178,9 +200,10 @@ impl RecordNoise {
         let damping = inverse_time.max(0.0);
         let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
         Self {
-            white: Drift::new(Moment::White, damping, &durations, longest),
-            walk: Drift::new(Moment::Walk, damping, &durations, longest),
+            white: Drift::new(Wander::White, damping, &durations, longest),
+            walk: Drift::new(Wander::Walk, damping, &durations, longest),
             gusts: Default::default(),
+            compass: Default::default(),
             damping,
             variances: record.observed.iter().map(variance).collect(),
             durations,
@@ -205,6 +228,7 @@ impl RecordNoise {
         }
         let system = self.system(colour);
         match system.states {
+            1 => self.filter::<1>(system, colour),
             2 => self.filter::<2>(system, colour),
             3 => self.filter::<3>(system, colour),
             4 => self.filter::<4>(system, colour),
@@ -214,13 +238,15 @@ impl RecordNoise {
 
     /// Random moment and waves of this colour as one linear system, without the white noise of the rows.
     pub(crate) fn system(&self, colour: &Colour) -> System {
-        let drift = colour.moment.map(|(kind, level)| match kind {
-            Moment::White => (&self.white, level),
-            Moment::Walk => (&self.walk, level),
-            Moment::OrnsteinUhlenbeck(number) => {
-                let new = || Drift::new(kind, self.damping, &self.durations, self.longest);
-                (self.gusts[number].get_or_init(new), level)
-            }
+        let drift = colour.wander.map(|(kind, level)| {
+            let new = || Drift::new(kind, self.damping, &self.durations, self.longest);
+            let drift = match kind {
+                Wander::White => &self.white,
+                Wander::Walk => &self.walk,
+                Wander::OrnsteinUhlenbeck(number) => self.gusts[number].get_or_init(new),
+                Wander::Compass(number) => self.compass[number].get_or_init(new),
+            };
+            (drift, level)
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);
         let mut observe = [0.0; MOST];
@@ -355,6 +381,7 @@ impl Whitener {
                     columns.iter_mut().for_each(|column| column[k] *= weight);
                 }
             }
+            1 => self.apply_all::<1>(columns),
             2 => self.apply_all::<2>(columns),
             3 => self.apply_all::<3>(columns),
             4 => self.apply_all::<4>(columns),

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::analysis::{Judged, OnRecord};
-use ::trace::noise::Moment;
+use ::trace::analysis::{Fitted, Judged, OnRecord};
+use ::trace::noise::Wander;
 use ::trace::replay_errors::HORIZONS;
 use serde::Serialize;
 use ship::angle::to_deg;
@@ -61,11 +61,12 @@ pub struct UnexplainedEntry {
     empirical: Option<EmpiricalEntry>,
 }
 
-/// A monomial that would carry some of it.
+/// A term without a name that would carry some of it.
 #[derive(Debug, Serialize)]
 pub struct EmpiricalEntry {
     terms: Vec<&'static str>,
     equation: &'static str,
+    parameters: Vec<NamedParameter>,
     delta_bic: f64,
     p_value: f64,
     heading_rmse_deg: f64,
@@ -156,12 +157,20 @@ pub struct NamedParameter {
     value: ParameterEntry,
 }
 
+impl From<&Fitted> for NamedParameter {
+    fn from(fitted: &Fitted) -> Self {
+        Self { key: fitted.parameter.key, symbol: fitted.parameter.symbol, value: fitted.into() }
+    }
+}
+
 /// The noise of one record.
 #[derive(Debug, Serialize)]
 pub struct RecordNoiseEntry {
     file: String,
+    /// Standard deviation of the white part.
     heading_sd_deg: f64,
-    /// `null`: the heading noise of a trace is white.
+    /// Standard deviation of an error of the compass that wanders.
+    heading_wander_sd_deg: Option<f64>,
     heading_correlation_s: Option<f64>,
     moment: &'static str,
     /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
@@ -226,6 +235,8 @@ impl TraceFile {
         let [k, t] = analysis.indices;
         let unknown = Quantity::bare(f64::NAN);
         let noise = &analysis.randomness;
+        let compass = noise.wander.filter(|kind| kind.is_of_compass());
+        let moment = noise.wander.filter(|kind| !kind.is_of_compass());
         Self {
             schema: "trace/2",
             verdict: analysis.verdict.as_str(),
@@ -240,6 +251,7 @@ impl TraceFile {
                 empirical: analysis.empirical.as_ref().map(|empirical| EmpiricalEntry {
                     terms: empirical.group.clone(),
                     equation: empirical.equation,
+                    parameters: empirical.parameters.iter().map(NamedParameter::from).collect(),
                     delta_bic: -empirical.evidence.gain,
                     p_value: empirical.evidence.p_value,
                     heading_rmse_deg: to_deg(empirical.error),
@@ -256,16 +268,17 @@ impl TraceFile {
                 .map(|name| RecordNoiseEntry {
                     file: name.clone(),
                     heading_sd_deg: to_deg(noise.white),
-                    heading_correlation_s: None,
-                    moment: match noise.moment {
-                        None => "none",
-                        Some(Moment::White) => "white",
-                        Some(Moment::OrnsteinUhlenbeck(_)) => "ornstein-uhlenbeck",
-                        Some(Moment::Walk) => "walk",
+                    heading_wander_sd_deg: compass.map(|_| to_deg(noise.heading)),
+                    heading_correlation_s: compass.and(noise.correlation),
+                    moment: match moment {
+                        Some(Wander::White) => "white",
+                        Some(Wander::OrnsteinUhlenbeck(_)) => "ornstein-uhlenbeck",
+                        Some(Wander::Walk) => "walk",
+                        None | Some(Wander::Compass(_)) => "none",
                     },
-                    moment_sd_rudder_deg: noise.moment.map(|_| to_deg(noise.rudder)),
-                    moment_correlation_s: noise.correlation,
-                    describes_what_is_left: noise.moment.map(|_| noise.holds),
+                    moment_sd_rudder_deg: moment.map(|_| to_deg(noise.rudder)),
+                    moment_correlation_s: moment.and(noise.correlation),
+                    describes_what_is_left: noise.wander.map(|_| noise.holds),
                 })
                 .collect(),
             missing_moment: missing_moment::entries(report),
@@ -284,19 +297,11 @@ impl TraceFile {
                         delta_r_deg: Index { quantity: bias, at_bound: bias_ends },
                     }
                 },
-                parameters: analysis
-                    .parameters
-                    .iter()
-                    .map(|fitted| NamedParameter {
-                        key: fitted.parameter.key,
-                        symbol: fitted.parameter.symbol,
-                        value: fitted.into(),
-                    })
-                    .collect(),
+                parameters: analysis.parameters.iter().map(NamedParameter::from).collect(),
                 noise: NoiseEntry {
                     heading_sd_deg: to_deg(noise.white),
-                    random_moment: noise.moment.map(trace_page::moment),
-                    random_moment_heading_sd_deg: noise.moment.map(|_| to_deg(noise.wander)),
+                    random_moment: moment.map(trace_page::kind),
+                    random_moment_heading_sd_deg: moment.map(|_| to_deg(noise.heading)),
                     waves_sd_deg: noise.waves.map(|waves| to_deg(waves.sd)),
                     waves_frequency_rad_s: noise.waves.map(|waves| waves.frequency),
                 },

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use ::trace::analysis::{Fitted, Judged, Outcome, Randomness, RunnerUp, Traced, Verdict};
-use ::trace::noise::Moment;
+use ::trace::analysis::{Empirical, Fitted, Judged, Outcome, Randomness, RunnerUp, Traced, Verdict};
+use ::trace::noise::Wander;
 use report::number::{self, significant};
 use ship::angle::to_deg;
 use trial::Trial;
@@ -11,25 +11,30 @@ use trial::Trial;
 use super::trace_report::TraceReport;
 use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures, uncertain};
 
-/// How a random moment is called.
-pub fn moment(kind: Moment) -> &'static str {
-    match kind {
-        Moment::White => "white",
-        Moment::OrnsteinUhlenbeck(_) => "gusts",
-        Moment::Walk => "random walk",
+/// How what wanders is called.
+pub fn kind(wander: Wander) -> &'static str {
+    match wander {
+        Wander::White => "white",
+        Wander::OrnsteinUhlenbeck(_) => "gusts",
+        Wander::Walk => "random walk",
+        Wander::Compass(_) => "compass",
     }
 }
 
-/// A random moment as an angle of the rudder, in words; `None` without one.
-fn moment_in_words(noise: &Randomness) -> Option<String> {
+/// What wanders beside the white noise, a moment as an angle of the rudder, in words; `None` where nothing does.
+fn wander_in_words(noise: &Randomness) -> Option<String> {
     let size = significant(to_deg(noise.rudder), 2);
-    Some(match noise.moment? {
-        Moment::White => format!("a white yaw moment of {size}° of rudder in the mean of a second"),
-        Moment::OrnsteinUhlenbeck(_) => {
-            let time = significant(noise.correlation.unwrap_or(f64::NAN), 2);
+    let time = significant(noise.correlation.unwrap_or(f64::NAN), 2);
+    Some(match noise.wander? {
+        Wander::White => format!("a white yaw moment of {size}° of rudder in the mean of a second"),
+        Wander::OrnsteinUhlenbeck(_) => {
             format!("gusts of {size}° of rudder with a correlation time of about {time} s")
         }
-        Moment::Walk => format!("a yaw moment that wanders by {size}° of rudder in a second"),
+        Wander::Walk => format!("a yaw moment that wanders by {size}° of rudder in a second"),
+        Wander::Compass(_) => {
+            let size = significant(to_deg(noise.heading), 2);
+            format!("an error of the compass of {size}° with a correlation time of about {time} s")
+        }
     })
 }
 
@@ -72,7 +77,7 @@ pub fn words(report: &TraceReport) -> String {
     for refused in &analysis.refused {
         let _ = write!(text, "\n  {refused}");
     }
-    if let Some(noise) = moment_in_words(&analysis.randomness).filter(|_| analysis.randomness.holds) {
+    if let Some(noise) = wander_in_words(&analysis.randomness).filter(|_| analysis.randomness.holds) {
         let _ = write!(text, "\n  noise: {noise}");
         if let Some(hidden) = hidden(&analysis.randomness) {
             let _ = write!(text, "; {hidden}");
@@ -80,6 +85,9 @@ pub fn words(report: &TraceReport) -> String {
     }
     if let Some(signature) = signature(report) {
         let _ = write!(text, "\n  left: {signature}");
+        if let Some(empirical) = &analysis.empirical {
+            let _ = write!(text, "; {}", nameless(empirical));
+        }
     }
     for warning in bounds(&analysis.parameters) {
         let _ = write!(text, "\nwarning: {warning}");
@@ -106,16 +114,15 @@ fn bounds(parameters: &[Fitted]) -> Vec<String> {
     .collect()
 }
 
+/// A parameter with its value.
+fn value(fitted: &Fitted) -> String {
+    let (quantity, unit) = in_degrees(fitted);
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    format!("{} = {}{unit}", fitted.parameter.symbol, uncertain(quantity.value, quantity.sd))
+}
+
 fn effect_line(effect: &Traced) -> String {
-    let parameters: Vec<String> = effect
-        .parameters
-        .iter()
-        .map(|fitted| {
-            let (quantity, unit) = in_degrees(fitted);
-            let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
-            format!("{} = {}{unit}", fitted.parameter.symbol, uncertain(quantity.value, quantity.sd))
-        })
-        .collect();
+    let parameters: Vec<String> = effect.parameters.iter().map(value).collect();
     let alike = match effect.aliases.as_slice() {
         [] => String::new(),
         aliases => {
@@ -145,10 +152,11 @@ pub fn signature(report: &TraceReport) -> Option<String> {
     });
     let [low, high] = signature.heading.0;
     let [port, starboard] = signature.side;
-    let random = report.analysis.randomness.moment.map_or("", |kind| match kind {
-        Moment::White => "; it looks like a white random yaw moment",
-        Moment::OrnsteinUhlenbeck(_) => "; it looks like gusts",
-        Moment::Walk => "; it looks like a yaw moment that wanders",
+    let random = report.analysis.randomness.wander.map_or("", |kind| match kind {
+        Wander::White => "; it looks like a white random yaw moment",
+        Wander::OrnsteinUhlenbeck(_) => "; it looks like gusts",
+        Wander::Walk => "; it looks like a yaw moment that wanders",
+        Wander::Compass(_) => "; it looks like an error of the compass that lasts",
     });
     Some(format!(
         "{record}{}° rms; {:.0} % of it between {:.0} and {:.0} s; {strongest}largest at headings \
@@ -163,6 +171,18 @@ pub fn signature(report: &TraceReport) -> Option<String> {
         degrees(port),
         degrees(starboard),
     ))
+}
+
+/// A term without a name in one sentence.
+fn nameless(empirical: &Empirical) -> String {
+    let values: Vec<String> = empirical.parameters.iter().map(value).collect();
+    format!(
+        "a term in {} with {} would lower the heading error to {}° (ΔBIC {}); it is a proposal and not part of the model",
+        empirical.group.join(" or "),
+        values.join(", "),
+        significant(to_deg(empirical.error), 2),
+        number::fixed(-empirical.evidence.gain, 0)
+    )
 }
 
 /// The best next trial in one sentence.
@@ -238,9 +258,9 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     let _ = writeln!(text, "## The model\n\n{}", parameters(report).to_markdown());
     let noise = &analysis.randomness;
     let _ = write!(text, "Heading noise: {}° (white)", significant(to_deg(noise.white), 2));
-    if let Some(moment) = moment_in_words(noise) {
+    if let Some(wander) = wander_in_words(noise) {
         let holds = if noise.holds { "describes what is left" } else { "does not describe all that is left" };
-        let _ = write!(text, ", and {moment}; this noise {holds}");
+        let _ = write!(text, ", and {wander}; this noise {holds}");
         if let Some(hidden) = hidden(noise) {
             let _ = write!(text, "; {hidden}");
         }
@@ -270,14 +290,7 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
     if let Some(signature) = signature(report) {
         let _ = writeln!(text, "## What is left\n\n{signature}.\n");
         if let Some(empirical) = &analysis.empirical {
-            let _ = writeln!(
-                text,
-                "Empirical, without a name in the field: a term in {} would lower the heading error to {}° (ΔBIC {}). It is a \
-                 proposal and not part of the model.\n",
-                empirical.group.join(" or "),
-                significant(to_deg(empirical.error), 2),
-                number::fixed(-empirical.evidence.gain, 0)
-            );
+            let _ = writeln!(text, "Empirical, without a name in the field: {}.\n", nameless(empirical));
         }
     }
     let hidden: Vec<String> = analysis

@@ -23,7 +23,7 @@ pub(super) fn believed_elsewhere(
         }
         let less = search.dropped(&model, place, true);
         let worse = if held_out.is_empty() {
-            let random = model.judged.colour.moment.is_some();
+            let random = model.judged.colour.wander.is_some();
             let of = |model: &Model| if random { model.judged.clone() } else { model.plain.clone() };
             let (one, other) = (of(&less), of(&model));
             held_out::is_worse_on_parts(search.problem, (&less.structure, &one), (&model.structure, &other))
@@ -66,7 +66,7 @@ pub(super) struct Predicted {
 /// does not.
 pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: &[HeldOut]) -> Vec<Predicted> {
     let mut predicted = Vec::new();
-    if held_out.is_empty() || model.judged.colour.moment.is_none() || !search.wanted.search {
+    if held_out.is_empty() || model.judged.colour.wander.is_none() || !search.wanted.search {
         return predicted;
     }
     while model.structure.terms.len() < search.thresholds.most_effects {
@@ -84,7 +84,7 @@ pub(super) fn predicted_elsewhere(search: &Search, model: &mut Model, held_out: 
         let Some((tried, term, comparison)) = next else { break };
         *model = search.adopted(&tried);
         predicted.push(Predicted { term, evidence: tried.evidence, comparison });
-        if model.judged.colour.moment.is_none() {
+        if model.judged.colour.wander.is_none() {
             break;
         }
     }

@@ -14,7 +14,7 @@ use super::result::{Considered, Fitted, Outcome, Randomness, RunnerUp};
 use super::told::Told;
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Problem};
-use crate::noise::Moment;
+use crate::noise::Wander;
 use crate::search::Model;
 use crate::structure::Structure;
 
@@ -127,13 +127,15 @@ pub(super) fn randomness(problem: &Problem, model: &Model, told: &Told, runner_u
     let fit = &model.judged;
     let of_row = problem.noise_of_row(fit);
     let gain = told.sides[1].fit.theta[1].abs();
-    let size = |(kind, level): (Moment, f64)| kind.size(level * of_row * of_row, problem.longest()) / gain;
+    let wander = fit.colour.wander;
+    let moment = wander.filter(|(kind, _)| !kind.is_of_compass());
+    let size = |(kind, level): (Wander, f64)| kind.size(level * of_row * of_row, problem.longest()) / gain;
     Randomness {
         white: problem.noise_of_reading(fit),
-        moment: fit.colour.moment.map(|(kind, _)| kind),
-        wander: fit.colour.moment.map_or(0.0, |(_, level)| level.sqrt() * of_row),
-        rudder: fit.colour.moment.map_or(0.0, size),
-        correlation: fit.colour.moment.and_then(|(kind, _)| kind.correlation(problem.longest())),
+        wander: wander.map(|(kind, _)| kind),
+        heading: wander.map_or(0.0, |(_, level)| level.sqrt() * of_row),
+        rudder: moment.map_or(0.0, size),
+        correlation: wander.and_then(|(kind, _)| kind.correlation(problem.longest())),
         holds: told.noise_holds,
         runner_up,
         waves: fit.colour.waves.map(|waves| NarrowBand { sd: waves.sd * of_row, ..waves }),

@@ -4,13 +4,14 @@
 use rayon::prelude::*;
 use ship::Regressor;
 use ship::effects::{self, Effect, WaveYaw};
-use trial::Trial;
+use trial::{Quantity, Trial};
 
 use super::elsewhere::Predicted;
 use super::result::{ALIAS, Considered, Empirical, Fitted, OnRecord, Outcome, Traced};
 use super::settings::Settings;
 use super::told::Told;
 use crate::candidates::{Candidate, Sizes};
+use crate::change;
 use crate::diagnostics::{self, Signature};
 use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
@@ -126,7 +127,7 @@ impl Reporter<'_> {
         share: f64,
         aliases: &[(&'static str, &'static str)],
     ) -> String {
-        let whom = match (&self.model.judged.colour.moment, aliases.is_empty()) {
+        let whom = match (&self.model.judged.colour.wander, aliases.is_empty()) {
             (None, true) => "against the best model without it, random moments included",
             (Some(_), true) => "against the best model without it, while a random moment takes what neither explains",
             (_, false) => "against the best model without any of its aliases",
@@ -193,7 +194,7 @@ impl Reporter<'_> {
 
     pub fn candidates(&self, effects: &[Traced]) -> Vec<Considered> {
         let structure = &self.model.structure;
-        let judged = self.model.judged.colour.moment.is_some();
+        let judged = self.model.judged.colour.wander.is_some();
         let fit = if judged { &self.model.judged } else { &self.model.plain };
         // On the base itself the first round has told already.
         let last = if structure.terms.is_empty() && !judged {
@@ -345,11 +346,12 @@ impl Reporter<'_> {
         ))
     }
 
-    /// The monomial that carries most of what is left, with those that cannot be told from it.
+    /// The term without a name that carries most of what is left, with those that cannot be told from it.
     pub fn nameless(&self, sizes: &Sizes) -> Option<Empirical> {
         let records = &self.search.problem.records;
         let mut library: Vec<Candidate> = monomial::candidates(records, sizes, LIBRARY.iter()).collect();
         library.extend(offset::candidate(records, sizes));
+        library.extend(change::candidate(records, sizes));
         let search = Search::new(self.search.problem, &library, self.search.thresholds);
         let mut tried = search.try_all(self.model, &self.model.judged, false);
         let believed = |tried: &Tried| search.believes(&search.candidate(tried.candidate).term, &tried.evidence);
@@ -362,10 +364,21 @@ impl Reporter<'_> {
         let best = tried.first()?;
         let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);
         let term = &search.candidate(best.candidate).term;
+        let own = best.fit.theta.len() - term.effect.parameters().len()..best.fit.theta.len();
         let square: f64 = search.adopted(best).plain.residual.iter().flatten().map(|e| e * e).sum();
         Some(Empirical {
             group: near.map(|tried| search.candidate(tried.candidate).term.effect.form()).collect(),
             equation: term.effect.equation(),
+            parameters: self.search.problem.entries(&best.structure)[own.clone()]
+                .iter()
+                .zip(&best.fit.theta[own])
+                .map(|(entry, &value)| Fitted {
+                    parameter: entry.parameter,
+                    quantity: Quantity::bare(value),
+                    only: None,
+                    at_bound: entry.ends_at(value),
+                })
+                .collect(),
             evidence: best.evidence,
             error: (square / self.search.problem.observations() as f64).sqrt(),
         })

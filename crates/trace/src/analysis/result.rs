@@ -10,7 +10,7 @@ use super::side::Side;
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::Problem;
-use crate::noise::Moment;
+use crate::noise::Wander;
 use crate::replay_errors::Errors;
 use crate::search::{Evidence, Model, Thresholds, Tried, Weights};
 
@@ -138,13 +138,15 @@ pub struct Considered {
     pub reason: Option<&'static str>,
 }
 
-/// A monomial that carries what no named effect does.
+/// A term without a name that carries what no named effect does.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Empirical {
     /// The best, and those that these records cannot tell from it.
     pub group: Vec<&'static str>,
     /// Equation of the best.
     pub equation: &'static str,
+    /// Its parameters, SI and rad.
+    pub parameters: Vec<Fitted>,
     /// Its evidence.
     pub evidence: Evidence,
     /// Root mean square heading error with it, rad.
@@ -168,15 +170,15 @@ pub struct RunnerUp {
 pub struct Randomness {
     /// Standard deviation of white heading noise, rad.
     pub white: f64,
-    /// Random yaw moment, where one is needed.
-    pub moment: Option<Moment>,
-    /// Standard deviation of the heading that the moment alone would leave at the end of the longest record of a ship
-    /// without damping, rad.
-    pub wander: f64,
-    /// The same as an angle of the rudder, rad: the standard deviation of gusts, of the mean of a white moment over one
-    /// second, of what a walk adds in one second. 0 without a moment.
+    /// What wanders beside it, where something does.
+    pub wander: Option<Wander>,
+    /// Standard deviation of the heading that this leaves, rad: of a random moment that at the end of the longest record
+    /// of a ship without damping.
+    pub heading: f64,
+    /// A random moment as an angle of the rudder, rad: the standard deviation of gusts, of the mean of a white moment
+    /// over one second, of what a walk adds in one second. 0 without one.
     pub rudder: f64,
-    /// Correlation time of gusts, s.
+    /// Correlation time of gusts, or of an error of the compass, s.
     pub correlation: Option<f64>,
     /// Whether this noise is a description of what is left: its innovations are white, of one variance, and without a
     /// surprise.

@@ -3,10 +3,13 @@
 use std::sync::Arc;
 
 use identify::Identifier;
+use rand::{SeedableRng, rngs::ChaCha8Rng};
+use rand_distr::{Distribution, StandardNormal};
 use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
 
 use super::*;
-use crate::made_up::{BASE, Plan, record, ship, wandering};
+use crate::made_up::{BASE, Plan, changing, of_columns, record, ship, wandering};
+use crate::noise::Wander;
 use crate::wanted::{EffectId, Wanted};
 
 /// K = 0.1 1/s, T = 16.3 s with damping of the third power.
@@ -127,7 +130,7 @@ fn a_moment_that_wanders_is_named_and_no_riddle() {
         held += u64::from((low..=high).contains(&0.1));
         square[0] += (analysis.indices[0].value - 0.1).powi(2);
         square[1] += (nearest.K().value - 0.1).powi(2);
-        assert!(analysis.randomness.holds && analysis.randomness.moment.is_some(), "{seed}");
+        assert!(analysis.randomness.holds && analysis.randomness.wander.is_some(), "{seed}");
         size += analysis.randomness.rudder.ln();
     }
     assert!(clean >= RECORDS - 2, "{clean} of {RECORDS}");
@@ -147,4 +150,68 @@ fn a_moment_that_stays_is_located() {
     assert_eq!((analysis.verdict, named(&analysis)), (Verdict::Traced, vec![("transient_disturbance", false)]));
     let [moment, instant] = [0, 1].map(|k| analysis.effects[0].parameters[k].quantity.value);
     assert!((moment / 0.02 - 1.0).abs() < 0.05 && (instant - 131.0).abs() < 1.0, "{moment} {instant}");
+}
+
+/// Two squalls of opposite sign are two terms, each at its time.
+#[test]
+fn two_squalls_are_located() {
+    let squall = |moment: f64, at: f64| -> (Arc<dyn Effect>, Vec<f64>) {
+        (Arc::new(TransientDisturbance::Passing), vec![moment, at, 25.0])
+    };
+    let analysis = traced(&ship(vec![squall(0.05, 80.0), squall(-0.05, 210.0)]), Wanted::default()).expect("a base");
+    assert_eq!((analysis.verdict, named(&analysis)), (Verdict::Traced, vec![("transient_disturbance", false); 2]));
+    let mut at: Vec<f64> = analysis.effects.iter().map(|effect| effect.parameters[1].quantity.value).collect();
+    at.sort_by(f64::total_cmp);
+    assert!((at[0] - 80.0).abs() < 2.0 && (at[1] - 210.0).abs() < 2.0, "{at:?}");
+}
+
+/// A compass whose errors last is told as that, with its size and its correlation time, and is no riddle.
+#[test]
+fn a_coloured_error_of_the_compass_is_named() {
+    const RECORDS: u64 = 12;
+    let (sd, time) = (0.4_f64.to_radians(), 8.0_f64);
+    let (mut told, mut logarithms) = (0, [0.0; 2]);
+    for seed in 0..RECORDS {
+        let calm = record(&ship(Vec::new()), Plan { seed, ..Plan::default() });
+        let mut generator = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
+        let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
+        let mut error = sd * draw();
+        let (kept, fresh) = ((-1.0 / time).exp(), sd * (1.0 - (-2.0 / time).exp()).sqrt());
+        let coloured = calm.heading().iter().map(|heading| {
+            error = kept * error + fresh * draw();
+            heading + error
+        });
+        let trial = of_columns(calm.time().to_vec(), coloured.collect(), calm.rudder().to_vec());
+        let settings = Settings { thorough: false, ..Settings::default() };
+        let analysis = trace(&[trial], &[], &settings).expect("a base");
+        let noise = &analysis.randomness;
+        let Some(Wander::Compass(_)) = noise.wander.filter(|_| noise.holds && analysis.verdict == Verdict::Clean)
+        else {
+            continue;
+        };
+        told += 1;
+        logarithms[0] += (noise.heading / sd).ln();
+        logarithms[1] += (noise.correlation.expect("of a compass") / time).ln();
+    }
+    assert!(told >= RECORDS - 1, "{told} of {RECORDS}");
+    let ratios = logarithms.map(|sum| (sum / told as f64).exp());
+    assert!(ratios.iter().all(|ratio| (0.7..1.43).contains(ratio)), "{ratios:?}");
+}
+
+/// A ship that becomes another one half-way has no effect that is on the list: it is told with the instant and the
+/// shares by which its indices change.
+#[test]
+fn a_ship_that_changes_is_located() {
+    let [before, after] = [BASE, [1.6 * BASE[0], 1.6 * BASE[1], BASE[2]]]
+        .map(|base| ship::ResponseModel::first_order().with(base.to_vec()));
+    let trial = changing(&before, &after, 150.0);
+    let analysis = trace(&[trial], &[], &Settings { thorough: false, ..Settings::default() }).expect("a base");
+    let empirical = analysis.empirical.as_ref().map(|found| (found.group[0], &found.parameters));
+    let values = empirical.map(|(form, parameters)| (form, parameters.iter().map(|p| p.quantity.value).collect()));
+    let (form, values): (&str, Vec<f64>) = values.expect("a nameless shape");
+    assert_eq!((analysis.verdict, form), (Verdict::Unexplained, "another 1/T and K/T from t₀ on"));
+    assert!(
+        (values[2] - 150.0).abs() < 5.0 && (values[0] - 0.6).abs() < 0.1 && (values[1] - 0.6).abs() < 0.1,
+        "{values:?}"
+    );
 }

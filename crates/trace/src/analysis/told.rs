@@ -51,7 +51,7 @@ impl Told {
         [before, after]: [Vec<OnRecord>; 2],
         thorough: bool,
     ) -> Result<Self, TraceError> {
-        let random = model.judged.colour.moment.is_some();
+        let random = model.judged.colour.wander.is_some();
         let sides = [start, model].map(|model| Side::nearest(problem, model));
         let mut told = Self { sides, before, after, random, noise_holds: false };
         if random && Innovations::of(problem, &model.judged).agree() {
@@ -85,6 +85,6 @@ impl Told {
     /// Whether the noise has a colour that the fit does not know, when the residual has this autocorrelation.
     pub fn is_coloured(&self, lag1: f64) -> bool {
         let colour = &self.sides[1].fit.colour;
-        colour.moment.is_none() && (self.random || (colour.is_white() && lag1.abs() > COLOURED))
+        colour.wander.is_none() && (self.random || (colour.is_white() && lag1.abs() > COLOURED))
     }
 }

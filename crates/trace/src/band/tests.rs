@@ -8,7 +8,7 @@ use trial::Trial;
 use super::*;
 use crate::candidates::{Candidate, Sizes};
 use crate::made_up::{BASE, Plan, of_columns, record, ship, wandering};
-use crate::noise::Moment;
+use crate::noise::Wander;
 use crate::search::{Search, Thresholds};
 use crate::structure::Term;
 
@@ -18,7 +18,7 @@ const WAVES: NarrowBand = NarrowBand { sd: 0.002, frequency: 0.6, damping: 0.1 }
 const COLOURED: Noise = Noise {
     reading: 1e-6,
     floor: 1e-8,
-    colour: Colour { moment: Some((Moment::Walk, 1e-3)), waves: Some(WAVES) },
+    colour: Colour { wander: Some((Wander::Walk, 1e-3)), waves: Some(WAVES) },
     elsewhere: 1.0,
 };
 
@@ -29,7 +29,7 @@ fn term(effect: Arc<dyn Effect>, records: &[Record]) -> Term {
 }
 
 fn fit(theta: Vec<f64>, initial: Vec<[f64; 2]>, colour: Colour) -> Fit {
-    Fit { theta, initial, colour, residual: Vec::new(), rss: 1.0, deviance: 0.0, freedom: 0, bic: 0.0 }
+    Fit { theta, initial, colour, residual: Vec::new(), rss: 1.0, deviance: 0.0, freedom: 0, lost: 0.0, bic: 0.0 }
 }
 
 /// Covariance of the noise of one record in full: what a system leaves at rows i ≥ j is h Φ(i, j) Pⱼ h.
@@ -117,9 +117,9 @@ fn the_band_of_fitted_records_is_that_of_dense_matrices() {
         let waves = Some(NarrowBand { sd: 1.5, ..WAVES });
         let colours = [
             Colour::WHITE,
-            Colour { moment: None, waves },
-            Colour { moment: Some((Moment::White, 40.0)), waves: None },
-            Colour { moment: Some((Moment::Walk, 40.0)), waves },
+            Colour { wander: None, waves },
+            Colour { wander: Some((Wander::White, 40.0)), waves: None },
+            Colour { wander: Some((Wander::Walk, 40.0)), waves },
         ];
         for colour in colours {
             let fit = fit([BASE.to_vec(), vec![80.0]].concat(), vec![[0.01, 0.001]; records], colour);

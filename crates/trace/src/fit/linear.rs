@@ -92,18 +92,6 @@ impl Columns {
         Normal { matrix: self.matrix.clone(), gradient, rss }
     }
 
-    /// Logarithm of the determinant of the normal equations, without unknowns that do not act.
-    pub fn log_determinant(&self) -> f64 {
-        let scale = scales(&self.matrix);
-        let n = self.unknowns();
-        let scaled = DMatrix::from_fn(n, n, |i, j| {
-            let own = if i == j { 1e-11 + if scale[i] == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
-            self.matrix[(i, j)] * scale[i] * scale[j] + own
-        });
-        let of_scales: f64 = scale.iter().filter(|scale| **scale > 0.0).map(|scale| scale.ln()).sum();
-        scaled.cholesky().map_or(0.0, |factor| factor.ln_determinant()) - 2.0 * of_scales
-    }
-
     /// Normal equations of the rows of one of `parts` parts of every record, which are as even as the rows allow.
     pub(crate) fn normal_of_part(&self, white: &[Vec<f64>], part: usize, parts: usize) -> Normal {
         let count = self.unknowns();
@@ -207,6 +195,18 @@ impl Linear {
     pub fn projected(&self, whiteners: &[Whitener]) -> f64 {
         self.whitened(whiteners).normal(&self.whitened_residual(whiteners)).projected(self.unknowns)
     }
+}
+
+/// Logarithm of the determinant of normal equations, without unknowns that do not act.
+pub(crate) fn log_determinant(matrix: &DMatrix<f64>) -> f64 {
+    let scale = scales(matrix);
+    let n = matrix.nrows();
+    let scaled = DMatrix::from_fn(n, n, |i, j| {
+        let own = if i == j { 1e-11 + if scale[i] == 0.0 { 1.0 } else { 0.0 } } else { 0.0 };
+        matrix[(i, j)] * scale[i] * scale[j] + own
+    });
+    let of_scales: f64 = scale.iter().filter(|scale| **scale > 0.0).map(|scale| scale.ln()).sum();
+    scaled.cholesky().map_or(0.0, |factor| factor.ln_determinant()) - 2.0 * of_scales
 }
 
 /// Σ log S of all records.

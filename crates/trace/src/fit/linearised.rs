@@ -13,6 +13,8 @@ pub struct Linearised {
     pub whiteners: Vec<Whitener>,
     /// Whitened sensitivities.
     pub columns: Columns,
+    /// Sensitivities under white noise.
+    pub plain: Columns,
     /// Whitened residual.
     pub white: Vec<Vec<f64>>,
     /// Replayed headings, rad.
@@ -28,6 +30,7 @@ impl Linearised {
             record.observed.iter().zip(residual).map(|(&row, e)| record.heading[row] - e).collect()
         };
         Self {
+            plain: problem.under_white(&linear),
             columns: linear.whitened(&whiteners),
             white: linear.whitened_residual(&whiteners),
             headings: problem.records.iter().zip(&fit.residual).map(replayed).collect(),

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use super::outcome::Fit;
-use crate::noise::{Colour, Moment};
+use crate::noise::{Colour, GUSTS, Wander};
 use crate::structure::{Structure, TermName};
 
 /// What decides a fit: names of the terms and which of their parameters are held, and every number that goes into it,
@@ -39,11 +39,12 @@ pub(super) fn question(
     let names = structure.terms.iter().map(|term| (term.name(), term.held)).collect();
     let constants: Vec<f64> = structure.terms.iter().flat_map(|term| term.effect.constants()).collect();
     let bounds = structure.terms.iter().flat_map(|term| [&term.lowest, &term.highest, &term.scale]).flatten();
-    let moment = colour.moment.map_or([0.0; 2], |(kind, level)| {
+    let moment = colour.wander.map_or([0.0; 2], |(kind, level)| {
         let number = match kind {
-            Moment::White => 1,
-            Moment::Walk => 2,
-            Moment::OrnsteinUhlenbeck(number) => 3 + number,
+            Wander::White => 1,
+            Wander::Walk => 2,
+            Wander::OrnsteinUhlenbeck(number) => 3 + number,
+            Wander::Compass(number) => 3 + GUSTS.len() + number,
         };
         [number as f64, level]
     });
@@ -83,6 +84,7 @@ mod tests {
                     rss: 0.0,
                     deviance: 0.0,
                     freedom: 0,
+                    lost: 0.0,
                     bic: 0.0,
                 }
             });

@@ -65,8 +65,9 @@ impl Problem {
             let whiteners = self.whiteners(colour);
             let linear = self.linear(structure, &theta, initial);
             let columns = linear.whitened(&whiteners);
+            let lost = self.lost(colour, || self.under_white(&linear), &columns);
             let start = Point::new(theta, initial.to_vec(), linear.into_residual(), &whiteners);
-            self.search(structure, start, (columns, true), &whiteners, colour)
+            self.search(structure, start, (columns, true), &whiteners, (colour, lost))
         })
     }
 
@@ -76,12 +77,18 @@ impl Problem {
             let theta = [from.theta.as_slice(), start].concat();
             let (_, tangents) = self.columns_of_last(structure, &theta, &from.initial, &known.headings);
             let mut columns = known.columns.clone();
-            let own = tangents.len();
-            columns.insert(structure.free_count() - own, &tangents, &known.whiteners);
+            let at = structure.free_count() - tangents.len();
+            columns.insert(at, &tangents, &known.whiteners);
+            let plain = || {
+                let mut plain = known.plain.clone();
+                plain.insert(at, &tangents, &self.whiteners(&Colour::WHITE));
+                plain
+            };
+            let lost = self.lost(&from.colour, plain, &columns);
             let theta = self.inside(structure, &theta);
             let residual = self.residual(structure, &theta, &from.initial);
             let start = Point::new(theta, from.initial.clone(), residual, &known.whiteners);
-            self.search(structure, start, (columns, false), &known.whiteners, &from.colour)
+            self.search(structure, start, (columns, false), &known.whiteners, (&from.colour, lost))
         })
     }
 
@@ -90,7 +97,8 @@ impl Problem {
         theta.iter().zip(&entries).map(|(x, entry)| x.clamp(entry.lowest, entry.highest)).collect()
     }
 
-    /// Searches for the minimum from a point with whitened sensitivities, which are fresh or those of a point near by.
+    /// Searches for the minimum from a point with whitened sensitivities, which are fresh or those of a point near by,
+    /// under a noise that takes so much from the price of the unknowns.
     ///
     /// Sensitivities are computed anew only when a step did not do what they promised: most terms change the response
     /// so little that one set serves the whole search.
@@ -100,7 +108,7 @@ impl Problem {
         mut now: Point,
         known: (Columns, bool),
         whiteners: &[Whitener],
-        colour: &Colour,
+        noise: (&Colour, f64),
     ) -> Fit {
         let entries = self.entries(structure);
         let mut damping = SMALLEST_DAMPING;
@@ -165,7 +173,7 @@ impl Problem {
                 break;
             }
         }
-        self.finished(structure, now, whiteners, colour)
+        self.finished(structure, now, whiteners, noise)
     }
 
     /// A damped step and how much it lowers RSS if the heading is linear; parameters that would leave their range go to
@@ -214,12 +222,12 @@ impl Problem {
         None
     }
 
-    fn finished(&self, structure: &Structure, point: Point, whiteners: &[Whitener], colour: &Colour) -> Fit {
-        let n = self.observations() as f64;
+    fn finished(&self, structure: &Structure, point: Point, whiteners: &[Whitener], noise: (&Colour, f64)) -> Fit {
+        let (n, (colour, lost)) = (self.observations() as f64, noise);
         let freedom = structure.free_count() + 2 * self.records.len() + colour.freedom() + 1;
         let deviance = self.deviance(point.rss, log_variance(whiteners));
         let Point { theta, initial, residual, rss, .. } = point;
-        let bic = deviance + freedom as f64 * n.ln();
-        Fit { theta, initial, colour: *colour, residual, rss, deviance, freedom, bic }
+        let bic = deviance + freedom as f64 * n.ln() + lost;
+        Fit { theta, initial, colour: *colour, residual, rss, deviance, freedom, lost, bic }
     }
 }

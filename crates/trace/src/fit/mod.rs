@@ -6,9 +6,11 @@
 //! | the records, replays and sensitivities | [`Problem`] |
 //! | what comes out | [`Fit`] |
 //! | the search for the minimum | `minimise` |
+//! | what a noise takes from the information | `information` |
 //! | linear equations at one point | [`Linear`], [`Columns`] |
 //! | what candidates on one fit share | [`Linearised`] |
 
+mod information;
 mod linear;
 mod linearised;
 mod memory;
@@ -19,8 +21,9 @@ mod problem;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use information::prior_and;
 pub use linear::{Column, Columns, Linear};
-pub(crate) use linear::{Normal, acts, log_variance, part_of, whiten};
+pub(crate) use linear::{Normal, acts, log_determinant, log_variance, part_of, whiten};
 pub use linearised::Linearised;
 pub use moments::Restricted;
 pub(crate) use moments::minimum;

@@ -2,36 +2,43 @@
 
 use ship::narrow_band::NarrowBand;
 
-use super::linear::{Linear, log_variance};
+use super::linear::{Columns, Linear, log_determinant, log_variance};
 use super::problem::Problem;
-use crate::noise::{Colour, GUSTS, Moment};
+use crate::noise::{COMPASS, Colour, GUSTS, Wander};
 
 impl Problem {
-    /// The random moment of the given kind that explains best what a fit leaves, if it is worth its parameter.
+    /// The random moment of the given kind that explains best what a fit leaves, with its −2 log L and what it takes
+    /// from the price of the unknowns.
     ///
     /// Level and parameters are found together: for every level the linearised fit is solved anew. The level is that of
     /// the restricted likelihood, [`Problem::restricted`].
-    pub fn best_moment(&self, linear: &Linear, kind: Moment, waves: Option<NarrowBand>) -> (Colour, f64) {
-        let of = |level: f64| Colour { moment: Some((kind, level.exp())), waves };
+    pub fn best_moment(&self, linear: &Linear, kind: Wander, waves: Option<NarrowBand>) -> (Colour, f64) {
+        let of = |level: f64| Colour { wander: Some((kind, level.exp())), waves };
         let (lo, hi) = (1e-3f64.ln(), 1e13f64.ln());
         let colour = of(minimum(lo, hi, 12, |level| self.under(linear, &of(level)).restricted).0);
         let found = self.under(linear, &colour);
-        (colour, self.deviance(found.rss, found.log_variance))
+        let lost = self.lost(&colour, || self.under_white(linear), &found.columns);
+        (colour, self.deviance(found.rss, found.log_variance) + lost)
     }
 
     /// The one of some kinds of random moment with the lowest BIC.
-    pub fn best_of(&self, linear: &Linear, kinds: &[Moment], waves: Option<NarrowBand>) -> Option<(Colour, f64)> {
+    pub fn best_of(&self, linear: &Linear, kinds: &[Wander], waves: Option<NarrowBand>) -> Option<(Colour, f64)> {
         let log_n = (self.observations() as f64).ln();
         let found = kinds.iter().map(|&kind| self.best_moment(linear, kind, waves));
         let bic = |(colour, deviance): &(Colour, f64)| deviance + colour.freedom() as f64 * log_n;
         found.min_by(|one, other| bic(one).total_cmp(&bic(other)))
     }
 
-    /// Kinds of random moment that are worth a look: white, a walk, and the gusts that explain best what a fit leaves.
-    pub fn kinds(&self, linear: &Linear, waves: Option<NarrowBand>) -> Vec<Moment> {
-        let gusts: Vec<Moment> = (0..GUSTS.len()).map(Moment::OrnsteinUhlenbeck).collect();
-        let best = self.best_of(linear, &gusts, waves).and_then(|(colour, _)| colour.moment);
-        [Moment::White, Moment::Walk].into_iter().chain(best.map(|(kind, _)| kind)).collect()
+    /// Kinds of wandering that are worth a look: a white moment, a walk, and the gusts and the error of the compass that
+    /// explain best what a fit leaves.
+    pub fn kinds(&self, linear: &Linear, waves: Option<NarrowBand>) -> Vec<Wander> {
+        let nearest = |kinds: Vec<Wander>| {
+            let best = self.best_of(linear, &kinds, waves).and_then(|(colour, _)| colour.wander);
+            best.map(|(kind, _)| kind)
+        };
+        let gusts = nearest((0..GUSTS.len()).map(Wander::OrnsteinUhlenbeck).collect());
+        let compass = nearest((0..COMPASS.len()).map(Wander::Compass).collect());
+        [Wander::White, Wander::Walk].into_iter().chain(gusts).chain(compass).collect()
     }
 }
 
@@ -46,6 +53,8 @@ struct Under {
     rss: f64,
     /// Σ log S.
     log_variance: f64,
+    /// Whitened sensitivities.
+    columns: Columns,
     /// −2 log of the restricted likelihood.
     restricted: f64,
 }
@@ -73,7 +82,8 @@ impl Problem {
         let rss = columns.normal(&linear.whitened_residual(&whiteners)).projected(linear.unknowns);
         let (free, log_variance) = (self.contrasts(linear), log_variance(&whiteners));
         let of_size = if rss.is_finite() { free * (rss / free + self.floor()).ln() } else { f64::INFINITY };
-        Under { rss, log_variance, restricted: of_size + log_variance + columns.log_determinant() }
+        let restricted = of_size + log_variance + log_determinant(&columns.matrix);
+        Under { rss, log_variance, columns, restricted }
     }
 
     /// The size of the noise of a colour that a fit has found, at the mean over the restricted likelihood, every level
@@ -91,13 +101,13 @@ impl Problem {
             let Under { rss, restricted, .. } = self.under(linear, colour);
             (restricted, rss / free)
         };
-        let Some((kind, level)) = colour.moment else {
+        let Some((kind, level)) = colour.wander else {
             return Restricted { row: at(colour).1, level: 0.0, mean: 1.0 };
         };
         let [lo, hi] = RANGE;
         let points = (0..=POINTS).map(|k| level * (lo + (hi - lo) * k as f64 / POINTS as f64).exp());
         let points: Vec<(f64, (f64, f64))> =
-            points.map(|level| (level, at(&Colour { moment: Some((kind, level)), ..*colour }))).collect();
+            points.map(|level| (level, at(&Colour { wander: Some((kind, level)), ..*colour }))).collect();
         let lowest = points.iter().map(|(_, (deviance, _))| *deviance).fold(f64::INFINITY, f64::min);
         let mut sums = [0.0; 4];
         for (level, (deviance, row)) in points {

@@ -19,6 +19,8 @@ pub struct Fit {
     pub deviance: f64,
     /// Number of fitted parameters, initial states and noise included.
     pub freedom: usize,
-    /// −2 log L + freedom · log n (Schwarz 1978).
+    /// What the colour of the noise takes from the price of the unknowns, at most 0.
+    pub lost: f64,
+    /// −2 log L + freedom · log n + lost (Schwarz 1978).
     pub bic: f64,
 }

@@ -1,4 +1,4 @@
-//! A random moment and waves as one linear system over the observed rows of a record.
+//! What wanders and waves as one linear system over the observed rows of a record.
 
 use ship::narrow_band::NarrowBand;
 
@@ -13,7 +13,7 @@ pub(crate) type Matrix = [[f64; MOST]; MOST];
 pub(crate) struct System {
     /// Number of states; the others are zero.
     pub states: usize,
-    /// How many of them are those of a random moment: the waves come after it.
+    /// How many of them are those of what wanders: the waves come after it.
     pub own: usize,
     /// Transition F and covariance of q of every distinct step.
     pub steps: Vec<(Matrix, Matrix)>,
@@ -30,7 +30,7 @@ pub(crate) fn transposed(f: &Matrix, x: &Vector) -> Vector {
     std::array::from_fn(|j| (0..MOST).map(|i| f[i][j] * x[i]).sum())
 }
 
-/// Transition and added covariance of moment and waves together.
+/// Transition and added covariance of what wanders and waves together.
 pub(super) fn joint(
     drift: Option<(&(Matrix, Matrix), f64, usize)>,
     waves: &Option<NarrowBand>,

@@ -14,20 +14,23 @@ fn record(time: &[f64]) -> Record {
 fn covariance(time: &[f64], a: f64, colour: &Colour, longest: f64) -> DMatrix<f64> {
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
-    if let Some((kind, level)) = colour.moment {
+    if let Some((kind @ Wander::Compass(_), level)) = colour.wander {
+        let tau = kind.correlation(longest).expect("an error that lasts");
+        total += DMatrix::from_fn(n, n, |i, j| level * (-(time[i] - time[j]).abs() / tau).exp());
+    } else if let Some((kind, level)) = colour.wander {
         // Heading after a unit impulse of yaw acceleration, after a unit step, and after one that dies away.
         let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
         let tau = kind.correlation(longest).unwrap_or(f64::NAN);
         let impulse = |a: f64, t: f64| match kind {
-            Moment::White => faded(a, t),
-            Moment::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
-            Moment::Walk => (t - faded(a, t)) / a,
+            Wander::White => faded(a, t),
+            Wander::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
+            _ => (t - faded(a, t)) / a,
         };
         let white = 3.0 / longest.powi(3);
         let intensity = match kind {
-            Moment::White => white,
-            Moment::OrnsteinUhlenbeck(_) => white / (tau * tau),
-            Moment::Walk => 20.0 / longest.powi(5),
+            Wander::White => white,
+            Wander::OrnsteinUhlenbeck(_) => white / (tau * tau),
+            _ => 20.0 / longest.powi(5),
         };
         if kind.correlation(longest).is_some() {
             // Gusts that have always blown.
@@ -69,11 +72,13 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
         let a = 0.08;
         let noise = RecordNoise::new(&record, a, longest, 1);
         let colours = [
-            Colour { moment: Some((Moment::White, 50.0)), waves: None },
-            Colour { moment: Some((Moment::Walk, 400.0)), waves: None },
-            Colour { moment: Some((Moment::OrnsteinUhlenbeck(3), 80.0)), waves: None },
-            Colour { moment: None, waves: Some(waves) },
-            Colour { moment: Some((Moment::Walk, 100.0)), waves: Some(waves) },
+            Colour { wander: Some((Wander::White, 50.0)), waves: None },
+            Colour { wander: Some((Wander::Walk, 400.0)), waves: None },
+            Colour { wander: Some((Wander::OrnsteinUhlenbeck(3), 80.0)), waves: None },
+            Colour { wander: Some((Wander::Compass(5), 9.0)), waves: None },
+            Colour { wander: Some((Wander::Compass(4), 2.0)), waves: Some(waves) },
+            Colour { wander: None, waves: Some(waves) },
+            Colour { wander: Some((Wander::Walk, 100.0)), waves: Some(waves) },
         ];
         for colour in colours {
             let dense = covariance(&time, a, &colour, longest).cholesky().expect("positive definite");
@@ -102,7 +107,7 @@ fn rows_count_by_their_readings() {
     record.readings.fill(4);
     record.readings[7] = 1;
     let noise = RecordNoise::new(&record, 0.1, 19.0, 4);
-    for colour in [Colour::WHITE, Colour { moment: Some((Moment::White, 1e-12)), waves: None }] {
+    for colour in [Colour::WHITE, Colour { wander: Some((Wander::White, 1e-12)), waves: None }] {
         let whitener = noise.whitener(&colour);
         let mut column = vec![1.0; 20];
         whitener.apply(&mut [&mut column]);

@@ -56,7 +56,7 @@ impl Search<'_> {
         tried.into_iter().find(|tried| tried.structure.terms.len() > model.structure.terms.len())
     }
 
-    fn plainly(&self, tried: Tried) -> Model {
+    pub(super) fn plainly(&self, tried: Tried) -> Model {
         Model { structure: tried.structure, judged: tried.fit.clone(), plain: tried.fit }
     }
 

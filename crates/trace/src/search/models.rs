@@ -12,7 +12,7 @@ use super::ledger::Ledger;
 use crate::candidates::Candidate;
 use crate::fit::{Fit, Linear, Problem};
 use crate::index::TermPlace;
-use crate::noise::{Colour, Moment};
+use crate::noise::{Colour, Wander};
 use crate::structure::{Structure, Term};
 use crate::wanted::{EffectId, Wanted};
 use crate::waves;
@@ -44,7 +44,7 @@ pub struct Search<'a> {
     /// What was tried so far.
     pub ledger: Ledger,
     /// Kinds of random moment that are worth a look, from the first model that was judged.
-    kinds: OnceLock<Vec<Moment>>,
+    kinds: OnceLock<Vec<Wander>>,
 }
 
 /// A term of a model, held against the model without it.
@@ -79,7 +79,7 @@ impl Search<'_> {
 
     /// Evidence of `freedom` parameters that lead from one fit to another.
     pub fn evidence(&self, without: &Fit, with: &Fit, freedom: usize) -> Evidence {
-        let ratio = (without.deviance - with.deviance).max(0.0);
+        let ratio = (without.deviance + without.lost - with.deviance - with.lost).max(0.0);
         let chance = ChiSquared::new(freedom as f64).map_or(1.0, |chi| chi.sf(ratio));
         Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
     }
@@ -133,7 +133,7 @@ impl Search<'_> {
     /// A model fitted anew with or without waves.
     pub fn coloured(&self, model: &Model, waves: Option<NarrowBand>) -> Model {
         let Model { structure, plain, .. } = model;
-        let plain = self.problem.fit(structure, &plain.theta, &plain.initial, &Colour { moment: None, waves });
+        let plain = self.problem.fit(structure, &plain.theta, &plain.initial, &Colour { wander: None, waves });
         self.judge(structure.clone(), plain)
     }
 
@@ -150,15 +150,16 @@ impl Search<'_> {
         self.problem.linear(structure, &fit.theta, &fit.initial)
     }
 
-    /// The best random moment of the kinds that are worth a look, and its deviance after a linear step.
+    /// The best random moment of the kinds that are worth a look, with its −2 log L after a linear step and what it takes
+    /// from the price of the unknowns.
     fn best_moment(&self, linear: &Linear, waves: Option<NarrowBand>) -> (Colour, f64) {
         let kinds = self.kinds.get_or_init(|| self.problem.kinds(linear, waves));
-        self.problem.best_of(linear, kinds, waves).unwrap_or((Colour { moment: None, waves }, f64::INFINITY))
+        self.problem.best_of(linear, kinds, waves).unwrap_or((Colour { wander: None, waves }, f64::INFINITY))
     }
 
     /// Kinds of random moment that are worth a look, once a first model was judged.
-    pub(super) fn kinds(&self) -> &[Moment] {
-        self.kinds.get().map_or(&[Moment::White, Moment::Walk], Vec::as_slice)
+    pub(super) fn kinds(&self) -> &[Wander] {
+        self.kinds.get().map_or(&[Wander::White, Wander::Walk], Vec::as_slice)
     }
 
     /// Finds the noise that suits a plainly fitted structure best.
@@ -172,8 +173,8 @@ impl Search<'_> {
             // Level and parameters are found in turn. A random moment that does not pay for its one parameter is not
             // tried.
             for _ in 0..2 {
-                if reached + colour.moment.map_or(0, |(kind, _)| kind.freedom()) as f64 * self.log_n() >= plain.deviance
-                {
+                let price = colour.wander.map_or(0, |(kind, _)| kind.freedom()) as f64 * self.log_n();
+                if reached + price >= plain.deviance + plain.lost {
                     break;
                 }
                 let fit = self.problem.fit(&structure, &start.theta, &start.initial, &colour);
@@ -192,7 +193,7 @@ impl Search<'_> {
     pub fn dropped(&self, model: &Model, place: TermPlace, under_moment: bool) -> Model {
         let structure = model.structure.without(place);
         let theta = model.structure.drop_from(&model.plain.theta, place);
-        let colour = Colour { moment: None, waves: model.plain.colour.waves };
+        let colour = Colour { wander: None, waves: model.plain.colour.waves };
         let plain = self.problem.fit(&structure, &theta, &model.plain.initial, &colour);
         if !under_moment {
             return Model { structure, judged: plain.clone(), plain };

@@ -53,8 +53,9 @@ impl Search<'_> {
     /// BIC in every sample, with what the effects of the structure have to gain.
     fn in_samples(&self, noted: &Noted) -> [f64; PARTS] {
         let parts = self.parts(noted);
-        let fixed =
-            noted.fit.freedom as f64 * self.log_n() + self.price(&noted.structure, noted.fit.colour.waves.is_some());
+        let fixed = noted.fit.freedom as f64 * self.log_n()
+            + noted.fit.lost
+            + self.price(&noted.structure, noted.fit.colour.waves.is_some());
         std::array::from_fn(|sample| {
             let unknowns = parts[0].normal.matrix.nrows();
             let (matrix, gradient) = (DMatrix::zeros(unknowns, unknowns), DVector::zeros(unknowns));

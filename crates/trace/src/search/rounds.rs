@@ -1,7 +1,7 @@
 //! The rounds of a search: terms are added, exchanged and dropped until none is missing and none needless.
 
 use super::models::{Model, Search, Tested};
-use super::trying::Tried;
+use super::trying::{Tried, is_located};
 use crate::index::TermPlace;
 use crate::innovations::Innovations;
 
@@ -48,7 +48,7 @@ impl Search<'_> {
 
     /// Drops terms that do not lower the heading error itself: what helps only under a random moment mends no replay.
     fn helpful(&self, mut model: Model) -> Model {
-        while !model.structure.terms.is_empty() && model.judged.colour.moment.is_some() {
+        while !model.structure.terms.is_empty() && model.judged.colour.wander.is_some() {
             let all = self.found(&model).map(|place| (place, self.dropped(&model, place, true)));
             let gain = |less: &Model| less.plain.bic - model.plain.bic;
             match all.min_by(|one, other| gain(&one.1).total_cmp(&gain(&other.1))) {
@@ -131,14 +131,31 @@ impl Search<'_> {
         pruned.find(better).unwrap_or(model)
     }
 
-    /// Whether a base is all there is: a random moment describes what is left, no candidate promises to pay beside it,
-    /// and no moment of time pays, which a linear promise does not tell.
+    /// Whether a base is all there is: a random moment describes what is left, neither a candidate nor two together
+    /// promise to pay beside it, and no moment of time pays, which a linear promise does not tell.
     fn is_enough(&self, base: &Model, first: &[Tried]) -> bool {
         let mut of_time = first.iter().filter(|tried| self.candidate(tried.candidate).term.effect.is_of_time());
-        base.judged.colour.moment.is_some()
+        base.judged.colour.wander.is_some()
             && Innovations::of(self.problem, &base.judged).agree()
             && !self.promises_anything(base)
             && !of_time.any(|tried| self.stands(base, tried))
+            && self.twice(base, first).is_none()
+    }
+
+    /// Two moments that come or go in one record, if they pay together: one alone may be nothing but a part of what
+    /// wanders.
+    fn twice(&self, base: &Model, first: &[Tried]) -> Option<Model> {
+        let located: Vec<&Tried> =
+            first.iter().filter(|tried| is_located(&self.candidate(tried.candidate).term)).collect();
+        let only = |tried: &Tried| self.candidate(tried.candidate).term.only;
+        let with_second = |tried: &&Tried| {
+            let one = self.plainly((*tried).clone());
+            let places = located.iter().filter(|other| only(other) == only(tried)).map(|other| other.candidate);
+            self.try_these(&one, &one.plain, places.collect())
+        };
+        let both = located.iter().flat_map(with_second).map(|both| self.judge(both.structure, both.fit));
+        let best = both.min_by(|one, other| one.judged.bic.total_cmp(&other.judged.bic));
+        best.filter(|best| self.pays(best, base))
     }
 
     /// The whole search. `base` holds what was asked for; `first` are all candidates tried on it.
@@ -155,10 +172,12 @@ impl Search<'_> {
                 model = timeless;
             }
         }
-        if model.judged.colour.moment.is_some() {
+        if model.judged.colour.wander.is_some() {
             model = self.with_a_set(model, base);
+            let twice = self.twice(base, first).map(|twice| self.prune(twice, base, true));
+            model = twice.filter(|twice| twice.judged.bic < model.judged.bic).unwrap_or(model);
         }
-        while self.found(&model).count() < self.thresholds.most_effects && model.judged.colour.moment.is_some() {
+        while self.found(&model).count() < self.thresholds.most_effects && model.judged.colour.wander.is_some() {
             let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };
             let before = model.structure.terms.len();
             let next = self.prune(self.adopted(&best), base, true);

@@ -163,7 +163,7 @@ impl Search<'_> {
     fn try_neighbours(&self, model: &Model) {
         let places = model.structure.places().filter(|&place| !self.wanted.keeps(model.structure.term(place)));
         self.tested(model, places, true);
-        let fit = if model.judged.colour.moment.is_some() { &model.judged } else { &model.plain };
+        let fit = if model.judged.colour.wander.is_some() { &model.judged } else { &model.plain };
         self.try_all(model, fit, false);
     }
 
@@ -253,6 +253,7 @@ mod tests {
             rss: 1.0,
             deviance: bic,
             freedom: 0,
+            lost: 0.0,
             bic,
         };
         Noted { structure: Structure::base(1, false), fit, judged: true }

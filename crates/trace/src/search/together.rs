@@ -9,9 +9,9 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::models::{Model, Search};
-use crate::fit::{Column, Linearised, Normal, log_variance};
+use crate::fit::{Column, Linearised, Normal, log_determinant, log_variance, prior_and};
 use crate::index::CandidatePlace;
-use crate::noise::{Colour, Moment};
+use crate::noise::{Colour, Wander, Whitener};
 
 /// Most effects of a set.
 const MOST: usize = 3;
@@ -37,11 +37,49 @@ struct Block {
 struct Promises {
     blocks: Vec<Block>,
     reduced: Vec<Reduced>,
+    /// What the records would tell under white noise.
+    plain: Told,
+}
+
+/// Information of some normal equations.
+struct Told {
+    /// Logarithm of its determinant for the unknowns of the model.
+    of_model: f64,
+    /// What is left of it for the columns of candidates.
+    rest: DMatrix<f64>,
+}
+
+impl Told {
+    /// `None` where the first `own` unknowns cannot be told apart.
+    fn new(matrix: &DMatrix<f64>, own: usize) -> Option<Self> {
+        let more = matrix.nrows() - own;
+        let inner = matrix.view((0, 0), (own, own)).into_owned();
+        let cross = matrix.view((0, own), (own, more)).into_owned();
+        let shared = regular(inner.clone()).cholesky()?.solve(&cross);
+        let rest = matrix.view((own, own), (more, more)) - cross.tr_mul(&shared);
+        Some(Self { of_model: log_determinant(&inner), rest })
+    }
+
+    /// Logarithm of the determinant for the unknowns of the model and some columns.
+    fn of(&self, columns: &[usize]) -> f64 {
+        let n = columns.len();
+        self.of_model + log_determinant(&DMatrix::from_fn(n, n, |i, j| self.rest[(columns[i], columns[j])]))
+    }
+}
+
+/// A matrix that can be factored although some of its columns are parallel.
+fn regular(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
+    for k in 0..matrix.nrows() {
+        matrix[(k, k)] += 1e-11 * matrix[(k, k)] + f64::MIN_POSITIVE;
+    }
+    matrix
 }
 
 /// What is left of the normal equations when the unknowns of the model have taken their share.
 struct Reduced {
     matrix: DMatrix<f64>,
+    /// What prior and records tell under this colour.
+    told: Told,
     gradient: DVector<f64>,
     rss: f64,
     log_variance: f64,
@@ -50,20 +88,17 @@ struct Reduced {
 
 impl Reduced {
     /// Projects the first `own` unknowns out; `None` where they cannot be told apart.
-    fn new(normal: &Normal, own: usize, log_variance: f64, colour: Colour) -> Option<Self> {
+    fn new(normal: &Normal, told: Told, own: usize, log_variance: f64, colour: Colour) -> Option<Self> {
         let all = normal.matrix.nrows();
         let more = all - own;
-        let mut inner = normal.matrix.view((0, 0), (own, own)).into_owned();
-        for k in 0..own {
-            inner[(k, k)] += 1e-11 * inner[(k, k)] + f64::MIN_POSITIVE;
-        }
-        let factor = inner.cholesky()?;
+        let factor = regular(normal.matrix.view((0, 0), (own, own)).into_owned()).cholesky()?;
         let cross = normal.matrix.view((0, own), (own, more)).into_owned();
         let gradient = normal.gradient.rows(0, own).into_owned();
         let (shared, explained) = (factor.solve(&cross), factor.solve(&gradient));
         Some(Self {
             matrix: normal.matrix.view((own, own), (more, more)) - cross.tr_mul(&shared),
             gradient: normal.gradient.rows(own, more) - cross.tr_mul(&explained),
+            told,
             rss: normal.rss - gradient.dot(&explained),
             log_variance,
             colour,
@@ -93,12 +128,13 @@ impl Search<'_> {
     /// suits it best: fitted and judged, not pruned, the lowest BIC first.
     pub(super) fn together(&self, model: &Model) -> Vec<Model> {
         let fit = &model.plain;
-        let Promises { blocks, reduced } = self.promises(model);
-        let mut sets = self.sets(&blocks, MOST);
+        let Some(promises) = self.promises(model, true) else { return Vec::new() };
+        let blocks = &promises.blocks;
+        let mut sets = self.sets(blocks, MOST);
         let mut judged: Vec<(f64, Colour, Vec<usize>)> = sets
             .par_drain(..)
             .filter_map(|set| {
-                let (bic, colour) = self.promised(&blocks, &reduced, &set)?;
+                let (bic, colour) = self.promised(&promises, &set)?;
                 Some((bic, colour, set))
             })
             .collect();
@@ -130,57 +166,68 @@ impl Search<'_> {
     /// Whether any effect, or two together, promise to gain what they need on a model, each under the noise that suits
     /// it best.
     pub(super) fn promises_anything(&self, model: &Model) -> bool {
-        let Promises { blocks, reduced } = self.promises(model);
-        let Some((without, _)) = self.promised(&blocks, &reduced, &[]) else { return true };
+        let Some(promises) = self.promises(model, false) else { return true };
+        let blocks = &promises.blocks;
+        let Some((without, _)) = self.promised(&promises, &[]) else { return true };
         let pays = |set: &Vec<usize>| {
             let needed: f64 = set.iter().map(|&k| self.needed(&self.candidate(blocks[k].place).term)).sum();
-            self.promised(&blocks, &reduced, set).is_none_or(|(bic, _)| without - bic > needed)
+            self.promised(&promises, set).is_none_or(|(bic, _)| without - bic > needed)
         };
-        self.sets(&blocks, PROMISED).par_iter().any(pays)
+        self.sets(blocks, PROMISED).par_iter().any(pays)
     }
 
-    /// Columns of the candidates, and the normal equations under every colour.
-    fn promises(&self, model: &Model) -> Promises {
+    /// Columns of the candidates, `timeless` without a trend, and the normal equations under every colour.
+    fn promises(&self, model: &Model, timeless: bool) -> Option<Promises> {
         let fit = &model.plain;
         let known = Linearised::new(self.problem, &model.structure, fit);
-        let (blocks, columns) = self.blocks(model, &known);
+        let (blocks, columns) = self.blocks(model, &known, timeless);
         let linear = self.problem.linear(&model.structure, &fit.theta, &fit.initial);
         let own = known.columns.unknowns();
         let waves = fit.colour.waves;
         let moments = self.kinds().iter().flat_map(|&kind| LEVELS.map(|level| (kind, level)));
-        let colours: Vec<Option<(Moment, f64)>> = std::iter::once(None).chain(moments.map(Some)).collect();
+        let colours: Vec<Option<(Wander, f64)>> = std::iter::once(None).chain(moments.map(Some)).collect();
+        let under = |whiteners: &[Whitener]| {
+            let mut whitened = linear.whitened(whiteners);
+            whitened.insert(own, &columns, whiteners);
+            whitened.normal(&linear.whitened_residual(whiteners))
+        };
+        let plain = under(&self.problem.whiteners(&Colour::WHITE)).matrix;
+        let n = self.problem.observations() as f64;
         let reduced: Vec<Reduced> = colours
             .into_par_iter()
-            .filter_map(|moment| {
-                let colour = Colour { moment, waves };
+            .filter_map(|wander| {
+                let colour = Colour { wander, waves };
                 let whiteners = self.problem.whiteners(&colour);
-                let mut whitened = linear.whitened(&whiteners);
-                whitened.insert(own, &columns, &whiteners);
-                let normal = whitened.normal(&linear.whitened_residual(&whiteners));
-                Reduced::new(&normal, own, log_variance(&whiteners), colour)
+                let normal = under(&whiteners);
+                let told = Told::new(&prior_and(&plain, &normal.matrix, n), own)?;
+                Reduced::new(&normal, told, own, log_variance(&whiteners), colour)
             })
             .collect();
-        Promises { blocks, reduced }
+        Told::new(&plain, own).map(|plain| Promises { blocks, reduced, plain })
     }
 
     /// The lowest BIC that a set promises under any colour, less what every model has, with that colour.
-    fn promised(&self, blocks: &[Block], reduced: &[Reduced], set: &[usize]) -> Option<(f64, Colour)> {
+    fn promised(&self, promises: &Promises, set: &[usize]) -> Option<(f64, Colour)> {
+        let Promises { blocks, reduced, plain } = promises;
         let all: Vec<usize> = set.iter().flat_map(|&k| blocks[k].columns.clone()).collect();
         let freedom: usize = set.iter().map(|&k| blocks[k].freedom).sum();
+        let plain = plain.of(&all);
         let bic = |reduced: &Reduced| {
+            let lost = if reduced.colour.is_white() { 0.0 } else { reduced.told.of(&all) - plain };
             let deviance = self.problem.deviance(reduced.rss_with(&all), reduced.log_variance);
-            deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n()
+            deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n() + lost
         };
         let under = reduced.iter().map(|reduced| (bic(reduced), reduced.colour));
         under.min_by(|one, other| one.0.total_cmp(&other.0))
     }
 
-    /// Columns of every candidate that holds in all time, at the start of largest score.
-    fn blocks(&self, model: &Model, known: &Linearised) -> (Vec<Block>, Vec<Column>) {
+    /// Columns of every candidate whose place in time need not be looked for, at the start of largest score; `timeless`
+    /// of those that hold in all time.
+    fn blocks(&self, model: &Model, known: &Linearised, timeless: bool) -> (Vec<Block>, Vec<Column>) {
         let (mut blocks, mut columns): (Vec<Block>, Vec<Column>) = (Vec::new(), Vec::new());
         for (place, candidate) in self.candidates.iter().enumerate() {
             let term = &candidate.term;
-            if term.effect.is_of_time() || self.excludes(&model.structure, term) {
+            if (timeless && term.effect.is_of_time()) || self.excludes(&model.structure, term) {
                 continue;
             }
             let best = candidate
@@ -241,11 +288,15 @@ mod tests {
             gradient: DVector::from_fn(chosen.len(), |i, _| product(&columns[chosen[i]], &measured)),
             rss: product(&measured, &measured),
         };
-        let reduced = Reduced::new(&normal(&[0, 1, 2, 3, 4]), 2, 0.0, Colour::WHITE).expect("independent columns");
+        let whole = normal(&[0, 1, 2, 3, 4]);
+        let told = Told::new(&whole.matrix, 2).expect("independent columns");
+        let reduced = Reduced::new(&whole, told, 2, 0.0, Colour::WHITE).expect("independent columns");
         for (set, chosen) in [(vec![0], vec![0, 1, 2]), (vec![0, 2], vec![0, 1, 2, 4]), (vec![], vec![0, 1])] {
             let whole = normal(&chosen).projected(chosen.len());
             let found = reduced.rss_with(&set);
             assert!((found / whole - 1.0).abs() < 1e-6, "{set:?}: {found} against {whole}");
+            let told = reduced.told.of(&set) - log_determinant(&normal(&chosen).matrix);
+            assert!(told.abs() < 1e-6, "{set:?}: {told}");
         }
     }
 }

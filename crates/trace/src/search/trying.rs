@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use ship::effects::{Effect, NonlinearDamping};
+use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
 
 use super::evidence::Evidence;
 use super::models::{Model, Search};
@@ -30,6 +30,11 @@ pub struct Tried {
 /// Later rounds fit only this many candidates, those with the largest score.
 const SHORT_LIST: usize = 6;
 
+/// Whether the place of a term in time has to be looked for.
+pub(super) fn is_located(term: &Term) -> bool {
+    term.effect.id() == TransientDisturbance::Passing.id()
+}
+
 impl Search<'_> {
     /// The candidate at a place of the list.
     pub fn candidate(&self, place: CandidatePlace) -> &Candidate {
@@ -37,15 +42,19 @@ impl Search<'_> {
     }
 
     /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands
-    /// beside any other damping), or another moment that depends on time. Several of those would be a random moment,
-    /// written as a sum.
+    /// beside any other damping, a second squall beside a first), or another moment that depends on time. Several of
+    /// those would be a random moment, written as a sum.
     pub(super) fn excludes(&self, structure: &Structure, term: &Term) -> bool {
         let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
-        structure.terms.iter().any(|other| {
-            other.only == term.only
-                && (other.is(term)
-                    || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
-                    || (term.effect.is_of_time() && other.effect.is_of_time()))
+        let with = || structure.terms.iter().filter(|other| other.only == term.only);
+        if is_located(term) {
+            let mut of_time = with().filter(|other| other.effect.is_of_time());
+            return of_time.next().is_some_and(|other| !is_located(other) || of_time.next().is_some());
+        }
+        with().any(|other| {
+            other.is(term)
+                || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
+                || (term.effect.is_of_time() && other.effect.is_of_time())
         })
     }
 
@@ -161,10 +170,10 @@ impl Search<'_> {
 
     /// The model of a structure that was fitted under some noise, with the noise that suits it best.
     pub(super) fn judged_from(&self, structure: &Structure, fit: &Fit) -> Model {
-        if fit.colour.moment.is_none() {
+        if fit.colour.wander.is_none() {
             return self.judge(structure.clone(), fit.clone());
         }
-        let colour = Colour { moment: None, ..fit.colour };
+        let colour = Colour { wander: None, ..fit.colour };
         let plain = self.problem.fit(structure, &fit.theta, &fit.initial, &colour);
         let mut model = self.judge(structure.clone(), plain);
         if fit.bic < model.judged.bic {
