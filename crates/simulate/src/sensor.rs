@@ -2,9 +2,10 @@
 //! specification turns truth into a record is in `measure`; what the helmsman sees is in `display`.
 //!
 //! Order of events in the heading channel: lag of the gyrocompass, waves, bias, coloured error, white noise,
-//! quantisation; in the record alone, spikes, and rows without a heading. Clocks: row k carries the nominal stamp t_k; the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything
-//! else that moves) at t_k + j_k − `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact
-//! instant differs only in the sign of j.
+//! quantisation; in the record alone, spikes, and rows without a heading. Clocks: row k carries the nominal stamp t_k;
+//! the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything else that moves) at t_k + j_k −
+//! `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact instant differs only in the
+//! sign of j.
 
 use ship::angle::from_deg;
 use trial::Noise;

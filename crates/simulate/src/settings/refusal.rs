@@ -113,7 +113,9 @@ fn advice(key: &str, expected: Expected) -> String {
             "give the rate the analyst assumes, for instance 2.5".to_owned()
         }
         ("manoeuvre.replay.file", _) => "give a record that lasts longer than an instant".to_owned(),
-        _ if WHOLE.iter().any(|part| key.starts_with(part)) => "change the value, or leave the whole table out".to_owned(),
+        _ if WHOLE.iter().any(|part| key.starts_with(part)) => {
+            "change the value, or leave the whole table out".to_owned()
+        }
         _ if OPTIONAL.iter().any(|part| key.starts_with(part)) => "change the value, or leave the key out".to_owned(),
         _ => "change the value".to_owned(),
     }
