@@ -131,6 +131,9 @@ duration-s = 200.0
 [sensor]
 heading-noise-deg = 0.2
 heading-quantum-deg = 0.1
+heading-wander = {{ sd-deg = 0.1, correlation-s = 10.0 }}
+heading-spikes = {{ probability = 0.01, size-deg = 2.0 }}
+heading-every-rows = 2
 rudder-noise-deg = 0.1
 jitter-s = 0.05
 drop-out = {{ probability = 0.02 }}

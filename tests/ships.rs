@@ -10,7 +10,7 @@ use ship::vessel::mmg::{BySign, Mmg, Parameters, Wake};
 use ship::{FirstOrder, Particulars, Polyline, Ship};
 use simulate::disturbance::{GaussMarkov, Squall, Wind};
 use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, ZigZagEnd};
-use simulate::sensor::{Bursts, Loses, YawRateSensor};
+use simulate::sensor::{Bursts, Loses, Spikes, YawRateSensor};
 use simulate::{Disturbances, Manoeuvre, Sensors, Side, Simulation, SteeringGear, StreamKey, Truth, Vessel};
 use trial::{Channel, Trial, ZigZag};
 
@@ -197,7 +197,7 @@ fn every_instrument_leaves_its_mark_on_the_record() {
     fn multiples(values: &[f64], quantum_deg: f64) -> bool {
         values.iter().all(|value| (to_deg(*value) / quantum_deg - (to_deg(*value) / quantum_deg).round()).abs() < 1e-6)
     }
-    let instruments: [Instrument; 12] = [
+    let instruments: [Instrument; 15] = [
         (
             "heading noise",
             |s| s.heading.noise = from_deg(0.5),
@@ -206,6 +206,17 @@ fn every_instrument_leaves_its_mark_on_the_record() {
         ("heading quantum", |s| s.heading.quantum = from_deg(0.5), |t, _| multiples(t.heading(), 0.5)),
         ("heading lag", |s| s.heading.lag = 1.0, |t, c| (0.1..2.0).contains(&rms(t.heading(), c.heading()))),
         ("heading bias", |s| s.heading.bias = from_deg(3.0), |t, c| (rms(t.heading(), c.heading()) - 3.0).abs() < 1e-9),
+        (
+            "heading wander",
+            |s| s.heading.wander = Some(GaussMarkov { sd: from_deg(1.0), correlation_time: 10.0 }),
+            |t, c| (0.5..1.5).contains(&rms(t.heading(), c.heading())),
+        ),
+        (
+            "heading spikes",
+            |s| s.heading.spikes = Some(Spikes { probability: 0.1, size: from_deg(5.0) }),
+            |t, c| (10..50).contains(&t.heading().iter().zip(c.heading()).filter(|(psi, own)| psi != own).count()),
+        ),
+        ("rare headings", |s| s.heading.every_rows = 5, |t, c| t.rudder() == c.rudder() && lost(t) == t.len() / 5 * 4),
         ("rudder noise", |s| s.rudder.noise = from_deg(0.5), |t, c| (0.4..0.6).contains(&rms(t.rudder(), c.rudder()))),
         ("rudder quantum", |s| s.rudder.quantum = from_deg(1.0), |t, _| multiples(t.rudder(), 1.0)),
         (

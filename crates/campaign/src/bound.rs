@@ -1,46 +1,62 @@
 //! How well a trial could be identified at best, from what chance really does to it.
 
+mod coloured;
+
 use identify::{maximum_likelihood, output_error};
 use likelihood::{Moment, Noise};
 use nalgebra::{Matrix2, Matrix2x3};
 use ship::FirstOrder;
 use ship::first_order::State;
+use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderColumn;
 use simulate::{Simulated, Simulation};
 
 use crate::rows::Bound;
+use coloured::CompassError;
 
 /// Cramér–Rao bound of one trial: as standard deviations, and as covariance of relative errors of K and T, %².
 ///
 /// Random are the compass, the recorded rudder, the gyro, and one moment: a random walk or gusts. What the rest of the
-/// sea does is no noise but a fault of the model, which no bound knows. `None` without heading noise, under two random
-/// moments at once, and for a record that does not determine the ship.
+/// sea does is no noise but a fault of the model, which no bound knows. It leaves out spikes, too,
+/// which only take information away. `None` without heading noise, under two random moments at once, for a compass with
+/// a white and a coloured error where something else is random too, and for a record that does not determine the ship.
 pub fn of(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) -> Option<(Bound, Matrix2<f64>)> {
-    let noise = noise(simulation, truth)?;
+    let white = simulation.sensors.declared_noise().heading;
+    let wander = simulation.sensors.heading.wander.filter(|wander| wander.sd > 0.0);
+    let compass = match (white, wander) {
+        (white, None) => Noise::compass(white?),
+        (_, Some(GaussMarkov { sd, correlation_time })) => {
+            Noise { heading_correlation: Some(correlation_time), ..Noise::compass(sd) }
+        }
+    };
+    let noise = noise(simulation, truth, compass)?;
     let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
     let trial = &simulated.trial;
-    let covariance = if noise == Noise::compass(noise.heading_sd) {
-        output_error::cramer_rao(trial, truth, initial, noise.heading_sd)?
-    } else {
-        maximum_likelihood::cramer_rao(trial, truth, initial, &noise)?
+    let covariance = match (white, wander) {
+        (Some(white), Some(coloured)) if noise == compass => {
+            coloured::cramer_rao(trial, truth, initial, &CompassError { white, coloured })?
+        }
+        (Some(_), Some(_)) => return None,
+        (_, None) if noise == compass => output_error::cramer_rao(trial, truth, initial, noise.heading_sd)?.matrix,
+        _ => maximum_likelihood::cramer_rao(trial, truth, initial, &noise)?.matrix,
     };
     let (a, b) = (truth.inverse_T, truth.K_over_T);
     // Gradients of ln K = ln b − ln a and ln T = −ln a.
     let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
-    let relative = gradient * covariance.matrix * gradient.transpose();
+    let relative = gradient * covariance * gradient.transpose();
     let bound = Bound {
         k_per_s: relative[(0, 0)].sqrt() * truth.K().abs(),
         t_s: relative[(1, 1)].sqrt() * truth.T().abs(),
-        k_over_t_per_s2: covariance.matrix[(1, 1)].sqrt(),
+        k_over_t_per_s2: covariance[(1, 1)].sqrt(),
     };
     let finite = [bound.k_per_s, bound.t_s, bound.k_over_t_per_s2].iter().all(|sd| sd.is_finite());
     finite.then_some((bound, relative * 1e4))
 }
 
-/// What is random in trials of a simulation, as the likelihood of a first-order ship has it.
-fn noise(simulation: &Simulation, truth: &FirstOrder) -> Option<Noise> {
+/// What is random in trials of a simulation, beside the errors of its `compass`, as the likelihood of a first-order
+/// ship has it.
+fn noise(simulation: &Simulation, truth: &FirstOrder, compass: Noise) -> Option<Noise> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
-    let compass = Noise::compass(sensors.declared_noise().heading?);
     let gyro = sensors.yaw_rate.filter(|gyro| gyro.noise > 0.0 && gyro.bias == 0.0 && gyro.scale_error == 0.0);
     let read = recording.rudder == RudderColumn::Feedback;
     // Moments are given as the rudder angle that has the same one.

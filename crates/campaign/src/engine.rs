@@ -86,7 +86,12 @@ impl Yardstick {
         let sd = simulation.sensors.declared_noise().heading;
         let bound = nearest.and_then(|nearest| bound::of(simulation, simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        let expected = near.filter(|_| traces).zip(sd).map(|(near, sd)| near.mean_square / (sd * sd) * near.rows);
+        // Of a likelihood with white heading noise: what has a colour is another one.
+        let compass = simulation.sensors.heading;
+        let white = sd.filter(|_| compass.wander.is_none());
+        let ratio =
+            |(near, sd): (Nearest, f64)| near.mean_square / (sd * sd) * near.rows.div_ceil(compass.every_rows) as f64;
+        let expected = near.filter(|_| traces).zip(white).map(ratio);
         Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
     }
 }
@@ -96,7 +101,7 @@ struct Nearest {
     response: FirstOrder,
     /// Mean square heading error, rad².
     mean_square: f64,
-    rows: f64,
+    rows: usize,
 }
 
 /// The first-order response nearest to the trial of a ship that is none.
@@ -111,8 +116,8 @@ fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<Neare
     let method = output_error::Settings::default().build().ok()?;
     let response = method.identify(std::slice::from_ref(&trial)).ok()?.response;
     let residual = replay(&trial, &response)?.residual;
-    let rows = residual.len() as f64;
-    Some(Nearest { response, mean_square: residual.iter().map(|e| e * e).sum::<f64>() / rows, rows })
+    let rows = residual.len();
+    Some(Nearest { response, mean_square: residual.iter().map(|e| e * e).sum::<f64>() / rows as f64, rows })
 }
 
 /// Runs trials of one study; what all trials of a cell share is made once.

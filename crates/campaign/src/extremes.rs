@@ -42,7 +42,7 @@ fn every_number_is_checked_and_found_again() {
         let lines: Vec<&str> = text.lines().collect();
         for (number, line) in lines.iter().enumerate() {
             let Some((key, value)) = line.rsplit_once(" = ") else { continue };
-            if value.parse::<f64>().is_err() || ["after-execute", "every"].contains(&key) {
+            if value.parse::<f64>().is_err() || ["after-execute", "every", "heading-every-rows"].contains(&key) {
                 continue;
             }
             let changed: Vec<String> = lines

@@ -5,6 +5,7 @@ use rand::rngs::ChaCha8Rng;
 
 use crate::sensor::{HeadingSensor, quantise};
 use crate::stream::{Purpose, StreamKey, normal};
+use crate::wander::{Known, Reader, WanderPath};
 use crate::wave_path::Waves;
 
 /// A reading this far (rad) short of the heading asked for has reached it: a multiple of the quantum may lie a rounding
@@ -18,6 +19,15 @@ pub(crate) struct Reading {
     pub time: f64,
     /// Heading read, rad.
     pub heading: f64,
+    /// Coloured error in it, rad.
+    pub wander: f64,
+}
+
+impl Reading {
+    /// What it tells of the coloured error.
+    pub fn known(&self) -> Known {
+        Known { time: self.time, error: self.wander }
+    }
 }
 
 /// The display in one run.
@@ -28,6 +38,7 @@ pub(crate) struct Display {
     base: f64,
     sensor: HeadingSensor,
     waves: Waves,
+    wander: Option<WanderPath>,
     rng: ChaCha8Rng,
     log: Vec<Reading>,
 }
@@ -36,7 +47,9 @@ impl Display {
     /// A display that is renewed every `period` s; the base course is what it shows, without noise, at `heading`.
     pub fn new(period: f64, sensor: HeadingSensor, waves: Waves, key: &StreamKey, heading: f64) -> Self {
         let base = quantise(heading + sensor.bias, sensor.quantum);
-        Self { period, next: 0, base, sensor, waves, rng: key.rng(Purpose::Display), log: Vec::with_capacity(1024) }
+        let wander = sensor.wander.map(|process| WanderPath::new(process, Reader::Display, key));
+        let (rng, log) = (key.rng(Purpose::Display), Vec::with_capacity(1024));
+        Self { period, next: 0, base, sensor, waves, wander, rng, log }
     }
 
     /// Passes over the readings before `t` (s): nobody looked.
@@ -60,8 +73,9 @@ impl Display {
         self.next += 1;
         let [wave, _] = self.waves.at(time);
         let noise = self.sensor.noise * normal(&mut self.rng);
-        let heading = quantise(gyro + wave + self.sensor.bias + noise, self.sensor.quantum);
-        self.log.push(Reading { time, heading });
+        let wander = self.wander.as_mut().map_or(0.0, |wander| wander.at(time));
+        let heading = quantise(gyro + wave + self.sensor.bias + wander + noise, self.sensor.quantum);
+        self.log.push(Reading { time, heading, wander });
         side * (heading - self.base) >= angle - READING_TOLERANCE
     }
 

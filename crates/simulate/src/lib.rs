@@ -12,7 +12,7 @@
 //! | who reads the compass and turns the wheel | [`helm`] |
 //! | rate limit, lag, dead time and dead band of the rudder | [`gear`] |
 //! | wind, gusts, squalls, drift, waves | [`disturbance`] |
-//! | noise, quantisation, lag, clocks, drop-outs | [`sensor`] |
+//! | noise, quantisation, lag, coloured error, spikes, clocks, drop-outs | [`sensor`] |
 //! | which part of the run is recorded | [`recording`] |
 //! | where random numbers come from | [`stream`] |
 //! | the same as a person writes it | [`settings`] |
@@ -44,6 +44,7 @@ mod run;
 mod sample;
 #[cfg(test)]
 mod tests;
+mod wander;
 mod wave_path;
 mod weather;
 

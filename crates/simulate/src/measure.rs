@@ -14,8 +14,9 @@ use crate::gear::RudderPath;
 use crate::helm::Execute;
 use crate::run::Wake;
 use crate::sample::Sample;
-use crate::sensor::{DropOut, Loses, Sensors, quantise};
+use crate::sensor::{DropOut, HeadingSensor, Loses, Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal, uniform};
+use crate::wander::{Known, Reader, WanderPath};
 use crate::wave_path::Waves;
 
 /// Two instants closer together than this, s, are one.
@@ -169,6 +170,11 @@ fn compass_and_rate(
         }
     }
     heading.iter_mut().for_each(|psi| *psi += compass.bias);
+    if let Some(process) = compass.wander {
+        let known: Vec<Known> = scene.readings.iter().map(Reading::known).collect();
+        let errors = WanderPath::new(process, Reader::Record, key).through(&scene.instants, &known);
+        heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
+    }
     // Drawn in every row, whether used or not, so that what the helmsman reads shifts no later draw.
     disturb(&mut heading, compass.noise, key.rng(Purpose::Heading));
     quantise_all(&mut heading, compass.quantum);
@@ -179,11 +185,30 @@ fn compass_and_rate(
             }
         }
     }
+    spoil(&mut heading, compass, key);
     if let (Some(yaw_rate), Some(sensor)) = (&mut yaw_rate, &sensors.yaw_rate) {
         yaw_rate.iter_mut().for_each(|r| *r = (1.0 + sensor.scale_error) * *r + sensor.bias);
         disturb(yaw_rate, sensor.noise, key.rng(Purpose::YawRate));
     }
     (heading, yaw_rate)
+}
+
+/// What goes wrong between the compass and the record: spikes, and rows without a heading.
+fn spoil(heading: &mut [f64], compass: &HeadingSensor, key: &StreamKey) {
+    if let Some(spikes) = compass.spikes {
+        let mut rng = key.rng(Purpose::HeadingSpikes);
+        for psi in heading.iter_mut() {
+            // Both are drawn in every row, so that another probability shifts no later draw.
+            let (hit, to_port) = (uniform(&mut rng) < spikes.probability, uniform(&mut rng) < 0.5);
+            if hit {
+                *psi = quantise(*psi + if to_port { -spikes.size } else { spikes.size }, compass.quantum);
+            }
+        }
+    }
+    if compass.every_rows > 1 {
+        let between = |(row, psi)| (row % compass.every_rows != 0).then_some(psi);
+        heading.iter_mut().enumerate().filter_map(between).for_each(|psi: &mut f64| *psi = f64::NAN);
+    }
 }
 
 /// What the helmsman read at time `t`, if he did.

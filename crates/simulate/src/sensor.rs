@@ -1,18 +1,30 @@
 //! Instruments as a specification: what the record gets wrong. The default is perfect in everything. How a
 //! specification turns truth into a record is in `measure`; what the helmsman sees is in `display`.
 //!
-//! Order of events in the heading channel: lag of the gyrocompass, waves, bias, white noise, quantisation. Clocks: row
-//! k carries the nominal stamp t_k; the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything
-//! else that moves) at t_k + j_k − `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact
-//! instant differs only in the sign of j.
+//! Order of events in the heading channel: lag of the gyrocompass, waves, bias, coloured error, white noise,
+//! quantisation; in the record alone, spikes, and rows without a heading. Clocks: row k carries the nominal stamp t_k;
+//! the rudder is read at t_k + j_k with jitter j_k, and the heading (with everything else that moves) at t_k + j_k −
+//! `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact instant differs only in the
+//! sign of j.
 
+use ship::angle::from_deg;
 use trial::Noise;
 
+use crate::disturbance::GaussMarkov;
 use crate::error::{self, Checked};
-use crate::limits::LONGEST_TIME;
+use crate::limits::{LONGEST_TIME, MOST_ROWS};
+
+/// Rows whose recorded heading is off: faults on the way from the compass to the record, which no helmsman sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spikes {
+    /// Probability per row, independently of the others.
+    pub probability: f64,
+    /// Size of every spike, rad; to either side with the same probability.
+    pub size: f64,
+}
 
 /// The gyrocompass.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeadingSensor {
     /// Standard deviation of white noise, rad.
     pub noise: f64,
@@ -22,6 +34,19 @@ pub struct HeadingSensor {
     pub lag: f64,
     /// Constant error, rad.
     pub bias: f64,
+    /// Coloured error, rad: w' = −w/τ + white noise, stationary from the beginning of the run.
+    pub wander: Option<GaussMarkov>,
+    /// Rows whose recorded heading is off.
+    pub spikes: Option<Spikes>,
+    /// A heading stands in the first row and in every n-th after it, counted before any row is lost; 1 for in all. Only
+    /// the heading is recorded so rarely.
+    pub every_rows: usize,
+}
+
+impl Default for HeadingSensor {
+    fn default() -> Self {
+        Self { noise: 0.0, quantum: 0.0, lag: 0.0, bias: 0.0, wander: None, spikes: None, every_rows: 1 }
+    }
 }
 
 /// The rate-of-turn indicator.
@@ -111,6 +136,9 @@ pub(crate) fn quantise(value: f64, quantum: f64) -> f64 {
 const SHORTEST_LAG: f64 = 0.01;
 const LONGEST_LAG: f64 = 100.0;
 
+/// Largest spike, deg: no heading is further from another one.
+const LARGEST_SPIKE_DEG: f64 = 180.0;
+
 impl Sensors {
     /// Checks every value; fails with the first one that makes no sense.
     pub fn validate(&self) -> Checked {
@@ -120,6 +148,16 @@ impl Sensors {
             error::between("sensor.heading-lag-s", self.heading.lag, SHORTEST_LAG, LONGEST_LAG)?;
         }
         error::finite("sensor.heading-bias-deg", self.heading.bias)?;
+        if let Some(wander) = &self.heading.wander {
+            error::not_negative("sensor.heading-wander.sd-deg", wander.sd)?;
+            error::positive_time("sensor.heading-wander.correlation-s", wander.correlation_time)?;
+        }
+        if let Some(spikes) = &self.heading.spikes {
+            error::between("sensor.heading-spikes.probability", spikes.probability, 0.0, 1.0)?;
+            error::positive("sensor.heading-spikes.size-deg", spikes.size)?;
+            error::at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(LARGEST_SPIKE_DEG))?;
+        }
+        error::count("sensor.heading-every-rows", self.heading.every_rows, MOST_ROWS)?;
         if let Some(yaw_rate) = &self.yaw_rate {
             error::not_negative("sensor.yaw-rate-noise-deg-s", yaw_rate.noise)?;
             error::finite("sensor.yaw-rate-bias-deg-s", yaw_rate.bias)?;
@@ -137,8 +175,9 @@ impl Sensors {
         Ok(())
     }
 
-    /// The noise such instruments declare: white noise and quantisation (q/√12) together; `None` where there is
-    /// neither.
+    /// The noise such instruments declare, which is independent from reading to reading: white noise and quantisation
+    /// (q/√12) together; `None` where there is neither. Nobody declares waves, lag, bias, a coloured error or spikes:
+    /// one standard deviation cannot say them.
     pub fn declared_noise(&self) -> Noise {
         let total = |noise: f64, quantum: f64| {
             let sd = noise.hypot(quantum / 12.0_f64.sqrt());

@@ -231,7 +231,8 @@ impl Simulation {
         let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
         let seas = waves.is_some() || !self.vessel.random_headings().is_empty();
-        let display = self.helmsman.watches != Watches::TrueHeading && (self.sensors.heading.noise > 0.0 || seas);
+        let compass = self.sensors.heading.noise > 0.0 || self.sensors.heading.wander.is_some();
+        let display = self.helmsman.watches != Watches::TrueHeading && (compass || seas);
         !weather && !display && self.sensors.clock.jitter == 0.0
     }
 

@@ -38,11 +38,15 @@ pub enum Purpose {
     Specification = 12,
     /// Chance inside an identification method: its seed for this trial.
     Method = 13,
+    /// Coloured error of the compass, one index for the record and one for the display.
+    HeadingWander = 14,
+    /// Spikes of the recorded heading.
+    HeadingSpikes = 15,
 }
 
 impl Purpose {
     /// All purposes, in the order of their numbers.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::Heading,
         Self::Display,
         Self::YawRate,
@@ -57,6 +61,8 @@ impl Purpose {
         Self::EffectWaves,
         Self::Specification,
         Self::Method,
+        Self::HeadingWander,
+        Self::HeadingSpikes,
     ];
 }
 
@@ -121,7 +127,7 @@ mod tests {
         assert_eq!([normal(&mut rng), normal(&mut rng)], [0.785_614_548_219_654_8, -0.108_714_680_095_289_06]);
     }
 
-    const GOLDEN: [[u64; 2]; 14] = [
+    const GOLDEN: [[u64; 2]; 16] = [
         [0xcefb_61ae_36f3_d6a7, 0x7929_869b_6e05_323f],
         [0x7723_276b_606f_56c4, 0x66b7_6ed2_b5c8_3011],
         [0xa7e0_1fde_49f1_7e1b, 0x9d6e_3310_dbab_5155],
@@ -136,6 +142,8 @@ mod tests {
         [0x23ea_fdb1_b171_943d, 0x6984_48ed_daae_e5e9],
         [0x4f35_6280_be9d_7896, 0x23e9_ba16_aa3a_7cb9],
         [0x4094_1b33_b1c2_a1a8, 0xf2c9_075c_959b_33b8],
+        [0x0fd6_905a_68d7_dbb0, 0x993f_42f5_bdbc_9f33],
+        [0x7f67_eaa5_5561_5440, 0x4099_9c32_3872_43ac],
     ];
 
     #[test]
@@ -164,7 +172,7 @@ mod tests {
         for (i, left) in all.iter().enumerate() {
             for right in &all[i + 1..] {
                 let product = left.iter().zip(right).map(|(x, y)| x * y).sum::<f64>() / f64::from(count);
-                // 78 pairs: four standard errors.
+                // 120 pairs: four standard errors.
                 assert!(product.abs() < 4.0 / f64::from(count).sqrt());
             }
         }

@@ -63,6 +63,15 @@ rudder-noise-deg = 0.1
 rudder-quantum-deg = 0.1
 jitter-s = 0.1
 heading-delay-s = 0.1
+heading-every-rows = 2
+
+[sensor.heading-wander]
+sd-deg = 0.1
+correlation-s = 10.0
+
+[sensor.heading-spikes]
+probability = 0.01
+size-deg = 5.0
 
 [sensor.drop-out]
 probability = 0.1

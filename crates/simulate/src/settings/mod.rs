@@ -19,6 +19,6 @@ pub use disturbance::{
 pub use manoeuvre::{ManoeuvreSettings, PullOutSettings, ReplaySettings, TurningCircleSettings, ZigZagSettings};
 pub use recording::{RecordingSettings, RudderSource};
 pub use refusal::SettingError;
-pub use sensor::{DropOutSettings, SensorSettings};
+pub use sensor::{DropOutSettings, HeadingSpikesSettings, HeadingWanderSettings, SensorSettings};
 pub use steering::{ApproachSettings, GearSettings, HelmsmanSettings};
 pub use trial::{Assumption, checked, keys};

@@ -84,6 +84,9 @@ impl From<SpecificationError> for SettingError {
 /// Parts of a scenario whose every key may be left out.
 const OPTIONAL: [&str; 4] = ["steering-gear.", "helmsman.", "approach.", "sensor."];
 
+/// Parts of them that may be left out only whole.
+const WHOLE: [&str; 2] = ["sensor.heading-wander.", "sensor.heading-spikes."];
+
 fn advice(key: &str, expected: Expected) -> String {
     match (key, expected) {
         ("recording.duration-s", Expected::Duration) => {
@@ -110,6 +113,9 @@ fn advice(key: &str, expected: Expected) -> String {
             "give the rate the analyst assumes, for instance 2.5".to_owned()
         }
         ("manoeuvre.replay.file", _) => "give a record that lasts longer than an instant".to_owned(),
+        _ if WHOLE.iter().any(|part| key.starts_with(part)) => {
+            "change the value, or leave the whole table out".to_owned()
+        }
         _ if OPTIONAL.iter().any(|part| key.starts_with(part)) => "change the value, or leave the key out".to_owned(),
         _ => "change the value".to_owned(),
     }

@@ -2,7 +2,8 @@
 
 use ship::angle::from_deg;
 
-use crate::sensor::{Bursts, Clock, DropOut, HeadingSensor, Loses, RudderSensor, Sensors, YawRateSensor};
+use crate::disturbance::GaussMarkov;
+use crate::sensor::{Bursts, Clock, DropOut, HeadingSensor, Loses, RudderSensor, Sensors, Spikes, YawRateSensor};
 use crate::settings::declare::settings;
 use crate::settings::refusal::SettingError;
 
@@ -19,6 +20,12 @@ settings! {
         pub heading_lag_s: f64,
         /// Constant heading error.
         pub heading_bias_deg: f64,
+        /// Coloured compass error, on top of the white noise; a helmsman who reads the display sees it too.
+        pub heading_wander: Option<HeadingWanderSettings>,
+        /// Rows whose recorded heading is off by a spike.
+        pub heading_spikes: Option<HeadingSpikesSettings>,
+        /// The heading stands in the first row and in every n-th after it, the rudder in all; 1 when left out.
+        pub heading_every_rows: Option<usize>,
         /// Standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator.
         pub yaw_rate_noise_deg_s: Option<f64>,
         /// Constant yaw-rate error.
@@ -35,6 +42,28 @@ settings! {
         pub heading_delay_s: f64,
         /// Rows that are lost.
         pub drop_out: DropOutSettings,
+    }
+}
+
+settings! {
+    /// Coloured compass error: first-order Gauss–Markov, stationary.
+    #[derive(Copy)]
+    pub struct HeadingWanderSettings {
+        /// Standard deviation.
+        pub sd_deg: f64,
+        /// Correlation time.
+        pub correlation_s: f64,
+    }
+}
+
+settings! {
+    /// Rows whose recorded heading is off.
+    #[derive(Copy)]
+    pub struct HeadingSpikesSettings {
+        /// Probability per row, independently of the others.
+        pub probability: f64,
+        /// Size of a spike, to either side.
+        pub size_deg: f64,
     }
 }
 
@@ -69,6 +98,13 @@ impl SensorSettings {
                 quantum: from_deg(self.heading_quantum_deg),
                 lag: self.heading_lag_s,
                 bias: from_deg(self.heading_bias_deg),
+                wander: self
+                    .heading_wander
+                    .map(|wander| GaussMarkov { sd: from_deg(wander.sd_deg), correlation_time: wander.correlation_s }),
+                spikes: self
+                    .heading_spikes
+                    .map(|spikes| Spikes { probability: spikes.probability, size: from_deg(spikes.size_deg) }),
+                every_rows: self.heading_every_rows.unwrap_or(1),
             },
             yaw_rate,
             rudder: RudderSensor { noise: from_deg(self.rudder_noise_deg), quantum: from_deg(self.rudder_quantum_deg) },

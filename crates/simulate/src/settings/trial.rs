@@ -4,6 +4,7 @@
 use crate::helm::Watches;
 use crate::manoeuvre::{Manoeuvre, ZigZag, ZigZagEnd};
 use crate::recording::{RudderColumn, Start};
+use crate::sensor::HeadingSensor;
 use crate::settings::declare::{Entry, Key};
 use crate::settings::disturbance::DisturbanceSettings;
 use crate::settings::manoeuvre::ManoeuvreSettings;
@@ -93,7 +94,12 @@ impl Assumption {
                 let perfect = helmsman.watches == Watches::TrueHeading && helmsman.reaction_time == 0.0;
                 perfect && matches!(manoeuvre, Manoeuvre::ZigZag(_))
             }
-            Self::PerfectCompass => sensors.heading.noise == 0.0 && sensors.heading.quantum == 0.0,
+            Self::PerfectCompass => {
+                let HeadingSensor { noise, quantum, wander, spikes, .. } = sensors.heading;
+                let never_off = wander.is_none_or(|wander| wander.sd == 0.0)
+                    && spikes.is_none_or(|spikes| spikes.probability == 0.0);
+                noise == 0.0 && quantum == 0.0 && never_off
+            }
         }
     }
 

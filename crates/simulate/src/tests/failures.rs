@@ -2,12 +2,15 @@
 
 use ship::FirstOrder;
 use ship::angle::from_deg;
+use trial::TrialError;
 
 use super::{KEY, zig_zag};
+use crate::disturbance::GaussMarkov;
 use crate::helm::Watches;
-use crate::limits::{MOST_EXECUTES, MOST_ROWS};
+use crate::limits::{LONGEST_TIME, MOST_EXECUTES, MOST_ROWS};
 use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
 use crate::recording::Start;
+use crate::sensor::Spikes;
 use crate::{Expected, SimulateError, Simulation, Solver, Vessel};
 
 fn failure(simulation: &Simulation) -> SimulateError {
@@ -48,6 +51,17 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
         refused(|s| s.sensors.drop_out.probability = 1.5),
         ("sensor.drop-out.probability", Expected::Between(0.0, 1.0))
     );
+    let wander =
+        |sd, correlation_time| refused(|s| s.sensors.heading.wander = Some(GaussMarkov { sd, correlation_time }));
+    assert_eq!(wander(-0.1, 10.0), ("sensor.heading-wander.sd-deg", Expected::NotNegative));
+    assert_eq!(wander(0.1, 0.0), ("sensor.heading-wander.correlation-s", Expected::Positive));
+    assert_eq!(wander(0.1, 1e9), ("sensor.heading-wander.correlation-s", Expected::AtMost(LONGEST_TIME)));
+    let spikes = |probability, size| refused(|s| s.sensors.heading.spikes = Some(Spikes { probability, size }));
+    assert_eq!(spikes(-0.1, 0.1), ("sensor.heading-spikes.probability", Expected::Between(0.0, 1.0)));
+    assert_eq!(spikes(0.1, 0.0), ("sensor.heading-spikes.size-deg", Expected::Positive));
+    assert_eq!(spikes(0.1, 4.0), ("sensor.heading-spikes.size-deg", Expected::AtMost(180.0)));
+    let rows = Expected::Between(1.0, MOST_ROWS as f64);
+    assert_eq!(refused(|s| s.sensors.heading.every_rows = 0), ("sensor.heading-every-rows", rows));
     assert_eq!(refused(|s| s.disturbances.random_walk = f64::NAN).0, "disturbance.random-walk-deg-per-root-s");
 }
 
@@ -109,6 +123,10 @@ fn a_run_that_takes_too_much_is_given_up() {
 
 #[test]
 fn a_record_with_too_few_rows_is_an_error() {
-    let simulation = zig_zag(10.0, 10.0, 2.5, 3.0);
+    let mut simulation = zig_zag(10.0, 10.0, 2.5, 3.0);
     assert!(matches!(failure(&simulation), SimulateError::Record(_)));
+    // Enough rows, of which every fiftieth has a heading.
+    simulation = zig_zag(10.0, 10.0, 2.5, 300.0);
+    simulation.sensors.heading.every_rows = 50;
+    assert_eq!(failure(&simulation), SimulateError::Record(TrialError::TooShort { needed: 8, found: 7 }));
 }

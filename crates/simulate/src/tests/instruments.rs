@@ -11,7 +11,7 @@ use super::{KEY, zig_zag};
 use crate::disturbance::{GaussMarkov, Wind};
 use crate::helm::Watches;
 use crate::recording::{RudderColumn, Start};
-use crate::sensor::{Bursts, Loses, YawRateSensor};
+use crate::sensor::{Bursts, Loses, Spikes, YawRateSensor};
 use crate::{Recording, Simulated, Simulation, Vessel};
 
 const ROWS: f64 = 2001.0;
@@ -181,6 +181,106 @@ fn lost_headings_are_nan_and_lost_rows_are_gone() {
     assert!(rows.trial.len() < headings.trial.len() - lost as usize);
     assert_eq!(rows.trial.time(), rows.truth.time);
     assert_eq!(rows.trial.heading(), rows.truth.heading);
+}
+
+/// w' = −w/τ + white noise: standard deviation σ, autocorrelation exp(−h/τ), and none of it in the truth.
+#[test]
+fn the_coloured_error_has_its_sd_and_its_correlation() {
+    let (mut wandering, mut calm) = (long(), long());
+    let wander = GaussMarkov { sd: from_deg(0.3), correlation_time: 5.0 };
+    for simulation in [&mut wandering, &mut calm] {
+        simulation.sensors.heading.noise = from_deg(0.1);
+        simulation.sensors.yaw_rate = Some(YawRateSensor { noise: 1e-3, ..YawRateSensor::default() });
+    }
+    wandering.sensors.heading.wander = Some(wander);
+    let (wandering, calm) = (run(&wandering), run(&calm));
+    let errors: Vec<f64> =
+        wandering.trial.heading().iter().zip(calm.trial.heading()).map(|(one, other)| one - other).collect();
+    // ΣΣ exp(−|i − j|/τ)/n² is 2τ/n, and for the squares τ/n.
+    let mean_square = errors.iter().map(|w| w * w).sum::<f64>() / ROWS;
+    let tolerance = 3.0 * (2.0 * 5.0 / ROWS).sqrt();
+    assert_relative_eq!(mean_square, wander.sd.powi(2), max_relative = tolerance);
+    for lag in [1, 3, 10] {
+        let product = errors.iter().zip(&errors[lag..]).map(|(one, other)| one * other).sum::<f64>() / ROWS;
+        assert_relative_eq!(product / mean_square, (-(lag as f64) / 5.0).exp(), epsilon = tolerance);
+    }
+    assert_eq!(wandering.trial.yaw_rate(), calm.trial.yaw_rate());
+    assert_eq!(wandering.trial.rudder(), calm.trial.rudder());
+    assert_eq!(wandering.truth, calm.truth);
+    assert_eq!(wandering.trial.noise().heading, Some(from_deg(0.1)), "what is white is declared, and nothing else");
+}
+
+/// A helmsman who reads the display sees the error of the compass, and his readings lie on the path of the record.
+#[test]
+fn a_display_shows_the_coloured_error() {
+    let mut simulation = long();
+    simulation.helmsman.watches = Watches::Display { period: 1.0 };
+    // Rows between the readings.
+    (simulation.recording.period, simulation.recording.duration) = (0.5, Some(0.5 * (ROWS - 1.0)));
+    let calm = run(&simulation).truth;
+    let wander = GaussMarkov { sd: from_deg(0.3), correlation_time: 20.0 };
+    simulation.sensors.heading.wander = Some(wander);
+    let Simulated { trial, truth } = run(&simulation);
+    assert_ne!(truth.executes, calm.executes);
+    let errors: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(psi, own)| psi - own).collect();
+    let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (_, sd) = statistics(&steps, &vec![0.0; steps.len()]);
+    assert_relative_eq!(sd, wander.sd * (2.0 * (1.0 - (-0.5_f64 / 20.0).exp())).sqrt(), max_relative = sd_tolerance());
+}
+
+#[test]
+fn spikes_are_as_many_and_as_large_as_asked_for() {
+    let mut simulation = long();
+    simulation.sensors.heading.noise = from_deg(0.1);
+    let calm = run(&simulation);
+    let size = from_deg(5.0);
+    simulation.sensors.heading.spikes = Some(Spikes { probability: 0.05, size });
+    let spiked = run(&simulation);
+    let (mut to_port, mut to_starboard) = (0, 0);
+    for (psi, own) in spiked.trial.heading().iter().zip(calm.trial.heading()) {
+        if psi != own {
+            assert_abs_diff_eq!((psi - own).abs(), size, epsilon = 1e-12);
+            *(if psi < own { &mut to_port } else { &mut to_starboard }) += 1;
+        }
+    }
+    for count in [to_port, to_starboard] {
+        assert_abs_diff_eq!(f64::from(count), 0.025 * ROWS, epsilon = 3.0 * (0.025 * ROWS).sqrt());
+    }
+    assert_eq!(spiked.truth, calm.truth);
+    assert_eq!(spiked.trial.noise(), calm.trial.noise());
+
+    // They come after the display: no helmsman acts on one, and what is recorded is still a multiple of its quantum.
+    simulation.helmsman.watches = Watches::Display { period: 1.0 };
+    simulation.sensors.heading.quantum = from_deg(1.0);
+    let seen = run(&simulation);
+    simulation.sensors.heading.spikes = None;
+    assert_eq!(seen.truth, run(&simulation).truth);
+    assert!(seen.trial.heading().iter().all(|psi| (to_deg(*psi) - to_deg(*psi).round()).abs() < 1e-9));
+}
+
+#[test]
+fn a_heading_in_every_fifth_row_leaves_the_others_their_rudder() {
+    let mut simulation = long();
+    simulation.sensors.heading.noise = from_deg(0.1);
+    simulation.sensors.yaw_rate = Some(YawRateSensor::default());
+    let full = run(&simulation);
+    simulation.sensors.heading.every_rows = 5;
+    let rare = run(&simulation);
+    assert!(rare.trial.observed_rows().eq((0..ROWS as usize).step_by(5)));
+    assert!(rare.trial.observed_rows().all(|row| rare.trial.heading()[row] == full.trial.heading()[row]));
+    assert_eq!(rare.trial.rudder(), full.trial.rudder());
+    assert_eq!(rare.trial.yaw_rate(), full.trial.yaw_rate());
+    assert_eq!(rare.trial.noise(), full.trial.noise());
+    assert_eq!(rare.truth, full.truth);
+
+    // Rows are counted before any is lost.
+    simulation.sensors.drop_out.probability = 0.2;
+    simulation.sensors.drop_out.loses = Loses::Row;
+    let lossy = run(&simulation).trial;
+    assert!(lossy.len() < rare.trial.len());
+    for (time, psi) in lossy.time().iter().zip(lossy.heading()) {
+        assert_eq!(psi.is_finite(), time.rem_euclid(5.0) == 0.0, "{time}");
+    }
 }
 
 #[test]
