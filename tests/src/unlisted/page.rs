@@ -174,11 +174,27 @@ fn finding(truths: &[Truth], outcomes: &[Outcome]) -> String {
             counted(Group::Unlisted, &[Noise]),
             counted(Group::Unlisted, &[Clean]),
         ),
+        mostly_right(truths, outcomes),
         format!("Where nothing is missing, something is named in {}.", counted(Group::Nothing, &[Wrong])),
     ];
     let failed = outcomes.iter().filter(|outcome| outcome.judgement == Judgement::Failed).count();
     let failed = if failed > 0 { format!(" {failed} trials have no trace.") } else { String::new() };
     wrapped(&(sentences.join(" ") + &failed))
+}
+
+/// The ships on no list of which a trace is right in more than half of the trials.
+fn mostly_right(truths: &[Truth], outcomes: &[Outcome]) -> String {
+    let right = |outcome: &&Outcome| [Judgement::Located, Judgement::Unexplained].contains(&outcome.judgement);
+    let cells = outcomes.chunk_by(|one, other| one.ship == other.ship);
+    let cells = cells.filter(|cell| Group::of(&truths[cell[0].ship]) == Group::Unlisted);
+    let (most, others): (Vec<_>, Vec<_>) = cells.partition(|cell| 2 * cell.iter().filter(right).count() > cell.len());
+    let count = |cells: &[&[Outcome]]| {
+        let all = || cells.iter().copied().flatten();
+        format!("{} of {} trials", all().filter(right).count(), all().count())
+    };
+    let names: Vec<&str> = most.iter().map(|cell| truths[cell[0].ship].name).collect();
+    let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+    format!("Mostly right there: {names} ({}); of the others {} are.", count(&most), count(&others))
 }
 
 /// How records are made and judged.
