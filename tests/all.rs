@@ -8,4 +8,5 @@ mod invariance;
 mod measured;
 mod ships;
 mod tracing;
+mod unlisted;
 mod validation;

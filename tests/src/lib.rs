@@ -7,8 +7,10 @@
 //! | simulated records, and what can be done to a record | [`records`] |
 //! | damaged files for every reader | [`fuzz`] |
 //! | measured records, which are not part of the project | [`measured`] |
+//! | ships that are on no list, traced | [`unlisted`] |
 
 pub mod fuzz;
 pub mod measured;
 pub mod records;
+pub mod unlisted;
 pub mod validation;

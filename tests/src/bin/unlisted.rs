@@ -1,0 +1,30 @@
+//! Traces records of ships that are on no list and writes what came out into `results/unlisted`.
+//!
+//! Run with the folder of the results as first argument; see [`kempf_tests::unlisted`].
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use kempf_tests::unlisted::{NOISES_DEG, REPLICATES, page, run, truths};
+
+fn main() -> ExitCode {
+    let Some(results) = std::env::args_os().nth(1).map(PathBuf::from) else {
+        eprintln!("give the folder of the results: {}", page::COMMAND);
+        return ExitCode::from(2);
+    };
+    match write(&results) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{}: {error}", results.display());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn write(results: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(results)?;
+    let outcomes = run(&truths::ALL, &NOISES_DEG, REPLICATES);
+    fs::write(results.join("outcomes.csv"), page::csv(&truths::ALL, &outcomes))?;
+    fs::write(results.join("README.md"), page::markdown(&truths::ALL, &outcomes))
+}
