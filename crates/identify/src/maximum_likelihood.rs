@@ -23,6 +23,7 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
+use choice::Prepared;
 use trial::Trial;
 
 pub use answer::cramer_rao;
@@ -32,6 +33,13 @@ use crate::error::IdentifyError;
 use crate::estimate::Estimate;
 use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::settings::{SettingsError, check_iterations};
+
+/// Times, s, of the readings of every record that belong to no ship: single spikes and sentinels such as −999, which
+/// stand alone against what `output-error` leaves of the headings about them. None where more than a tenth of the
+/// readings do: that is noise of another law. Fails as `output-error` does.
+pub fn spikes(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
+    Ok(Prepared::new(&Settings::default(), trials)?.spikes())
+}
 
 impl Settings {
     /// Checks the settings and makes the method.

@@ -60,6 +60,10 @@ impl Effect for Change {
         vec![self.edge]
     }
 
+    fn has_instant(&self) -> bool {
+        true
+    }
+
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
         let [start, end] = about.span;
         let at = |share: f64| start + share * (end - start);

@@ -189,6 +189,15 @@ impl Trial {
         self
     }
 
+    /// The same record without the headings read at some times, s.
+    pub fn without_readings(mut self, times: &[f64]) -> Self {
+        let rows: Vec<usize> = (0..self.len()).filter(|&row| times.contains(&self.time()[row])).collect();
+        if let Some(heading) = self.channels.get_mut(&Channel::Heading) {
+            rows.into_iter().for_each(|row| heading[row] = f64::NAN);
+        }
+        self
+    }
+
     /// Name of the record: the stem of its file, or the cell of its scenario.
     pub fn name(&self) -> &str {
         &self.name

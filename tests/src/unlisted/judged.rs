@@ -94,7 +94,7 @@ impl Answer {
         Self {
             verdict: analysis.verdict,
             named: analysis.effects.iter().map(Named::of).collect(),
-            noise: analysis.randomness.moment.is_some() && analysis.randomness.holds,
+            noise: analysis.randomness.wander.is_some() && analysis.randomness.holds,
             shape: analysis.empirical.as_ref().and_then(|shape| shape.group.first().copied()),
             heading: [from_deg(*nearest), (square / rows as f64).sqrt()],
         }

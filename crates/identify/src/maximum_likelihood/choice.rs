@@ -66,9 +66,16 @@ impl Prepared {
         let whole = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let method = output_error::Settings::default().build().expect("default settings are valid");
-        let mut suspects = vec![Suspects::default(); trials.len()];
+        // What is far from any course a ship can steer would spoil the first fit: a sentinel in the first row is one that
+        // an initial yaw rate of a very quick ship can follow.
+        let gross = |track: &Track| match settings.outliers {
+            true => Suspects { jumps: Vec::new(), ..outliers::find(track, &track.heading, &[]) },
+            false => Suspects::default(),
+        };
+        let mut suspects: Vec<Suspects> = whole.iter().map(gross).collect();
         let mut too_many = false;
-        let mut tracks = whole.clone();
+        let mut tracks: Vec<Track> =
+            whole.iter().zip(&suspects).map(|(track, found)| track.without(&found.spikes)).collect();
         let mut first = method.fit(tracks.clone(), finest);
         let mut evaluations = 0;
         for _ in 0..if settings.outliers { ROUNDS } else { 0 } {
@@ -109,6 +116,15 @@ impl Prepared {
             })
             .collect();
         Ok(Self { records, start: first.response, outliers: suspects, too_many, evaluations })
+    }
+
+    /// Times of the spikes of every record, s.
+    pub fn spikes(&self) -> Vec<Vec<f64>> {
+        let times = |(record, found): (&Record, &Suspects)| {
+            let time = record.track.time();
+            found.spikes.iter().map(|&row| time[row]).collect()
+        };
+        self.records.iter().zip(&self.outliers).map(times).collect()
     }
 
     /// Fits every kind of noise and takes the one with the lowest BIC.

@@ -143,6 +143,11 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
         false
     }
 
+    /// Whether one of its parameters is an instant, which has as many places as a record is long.
+    fn has_instant(&self) -> bool {
+        false
+    }
+
     /// Whether it depends on the heading, so that a turned record is another one.
     fn sees_heading(&self) -> bool {
         false

@@ -104,6 +104,10 @@ impl Effect for TransientDisturbance {
         true
     }
 
+    fn has_instant(&self) -> bool {
+        true
+    }
+
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
         let Manoeuvres { duration, spacing, span: [start, end], .. } = *about;
         let length = end - start;

@@ -103,7 +103,7 @@ fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure 
 }
 
 fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure {
-    let first = trial.observed_rows().next().unwrap_or(0);
+    let first = trial.time().partition_point(|&t| t < judged.before.replay.time[0]);
     let models = [(Origin::Before, &judged.before.replay), (Origin::After, &judged.after.replay)];
     let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| ResidualPanel {

@@ -51,6 +51,15 @@ pub struct TraceFile {
     pub model: ModelEntry,
     /// Terms that explained the records but made the error elsewhere worse.
     pub refused: Vec<String>,
+    /// Readings of the compass that belong to no ship, of records that have any.
+    pub outliers: Vec<OutliersEntry>,
+}
+
+/// Readings of one record that were left out.
+#[derive(Debug, Serialize)]
+pub struct OutliersEntry {
+    file: String,
+    times_s: Vec<f64>,
 }
 
 /// What is left.
@@ -307,6 +316,13 @@ impl TraceFile {
                 },
             },
             refused: analysis.refused.clone(),
+            outliers: report
+                .names
+                .iter()
+                .zip(&analysis.outliers)
+                .filter(|(_, times)| !times.is_empty())
+                .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
+                .collect(),
         }
     }
 }

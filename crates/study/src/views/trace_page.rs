@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use ::trace::analysis::{Empirical, Fitted, Judged, Outcome, Randomness, RunnerUp, Traced, Verdict};
 use ::trace::noise::Wander;
 use report::number::{self, significant};
+use ship::Shown;
 use ship::angle::to_deg;
 use trial::Trial;
 
@@ -89,11 +90,27 @@ pub fn words(report: &TraceReport) -> String {
             let _ = write!(text, "; {}", nameless(empirical));
         }
     }
-    for warning in bounds(&analysis.parameters) {
+    for warning in bounds(&analysis.parameters).into_iter().chain(outliers(report)) {
         let _ = write!(text, "\nwarning: {warning}");
     }
     let _ = write!(text, "\nnext trial: {}", next_trial(report));
     text
+}
+
+/// Readings that are listed.
+const LISTED: usize = 8;
+
+/// A sentence for every record with readings that were left out.
+fn outliers(report: &TraceReport) -> Vec<String> {
+    let spoilt = report.names.iter().zip(&report.analysis.outliers).filter(|(_, times)| !times.is_empty());
+    spoilt
+        .map(|(name, times)| {
+            let mut shown: Vec<String> = times.iter().take(LISTED).map(|t| Shown(*t).to_string()).collect();
+            shown.extend((times.len() > LISTED).then(|| String::from("…")));
+            let count = times.len();
+            format!("{name}: {count} headings stand alone and are left out, at t = {} s", shown.join(", "))
+        })
+        .collect()
 }
 
 /// A sentence for every parameter at an end of its range.
@@ -252,8 +269,8 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
             let _ = writeln!(text, "These records cannot tell it from {}.\n", names.join(", "));
         }
     }
-    for refused in &analysis.refused {
-        let _ = writeln!(text, "{refused}.\n");
+    for remark in analysis.refused.iter().chain(&outliers(report)) {
+        let _ = writeln!(text, "{remark}.\n");
     }
     let _ = writeln!(text, "## The model\n\n{}", parameters(report).to_markdown());
     let noise = &analysis.randomness;

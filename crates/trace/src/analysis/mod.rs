@@ -15,7 +15,8 @@ mod side;
 mod tests;
 mod told;
 
-use identify::{Identifier, output_error};
+use identify::{Identifier, maximum_likelihood, output_error};
+use rayon::prelude::*;
 use ship::{Regressor, effects};
 use trial::Trial;
 
@@ -42,6 +43,17 @@ pub use result::{
 pub use settings::{Settings, TraceError};
 use told::Told;
 
+/// Every record without the readings of its compass that belong to no ship, and their times, s. A record that cannot be
+/// looked at keeps its readings.
+fn without_spikes(trials: &[Trial]) -> (Vec<Trial>, Vec<Vec<f64>>) {
+    let one = |trial: &Trial| {
+        let spikes = maximum_likelihood::spikes(std::slice::from_ref(trial))
+            .map_or_else(|_| Vec::new(), |mut all| all.remove(0));
+        (trial.clone().without_readings(&spikes), spikes)
+    };
+    trials.par_iter().map(one).unzip()
+}
+
 /// Why an effect that was asked for is not in the model.
 fn cannot_be_held(NotFitted(effect): NotFitted) -> TraceError {
     let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
@@ -57,7 +69,8 @@ fn cannot_be_held(NotFitted(effect): NotFitted) -> TraceError {
 /// Analyses records of one ship.
 ///
 /// The base comes from `output-error`, which is global in 1/T. `validation` records are replayed only; what makes their
-/// error worse is not kept. Fails when a setting is out of its range and when the base cannot be fitted or replayed.
+/// error worse is not kept. Readings of the compass that belong to no ship are left out of all records, and listed.
+/// Fails when a setting is out of its range and when the base cannot be fitted or replayed.
 ///
 /// ```
 /// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
@@ -83,6 +96,9 @@ fn cannot_be_held(NotFitted(effect): NotFitted) -> TraceError {
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
     settings.thresholds.check()?;
     settings.wanted.check()?;
+    let (trials, outliers) = without_spikes(trials);
+    let (validation, outliers_elsewhere) = without_spikes(validation);
+    let (trials, validation) = (trials.as_slice(), validation.as_slice());
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(trials)?;
     let first = base.response;
@@ -188,6 +204,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         left_out,
         whiteness,
         refused,
+        outliers: outliers.into_iter().chain(outliers_elsewhere).collect(),
         thresholds: settings.thresholds,
         tried,
         start,

@@ -260,6 +260,8 @@ pub struct Analysis {
     pub whiteness: [Whiteness; 2],
     /// Terms that explained the records but made an error larger, there or elsewhere: a sentence each that says so.
     pub refused: Vec<String>,
+    /// Times, s, of the headings that belong to no ship and were left out, of every record, the held-out ones last.
+    pub outliers: Vec<Vec<f64>>,
     /// The thresholds it was judged by.
     pub thresholds: Thresholds,
     pub(super) problem: Problem,

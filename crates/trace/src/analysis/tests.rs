@@ -215,3 +215,22 @@ fn a_ship_that_changes_is_located() {
         "{values:?}"
     );
 }
+
+/// A sentinel and a spike are left out, listed, and change nothing.
+#[test]
+fn readings_that_belong_to_no_ship_are_left_out_and_listed() {
+    let clean = record(&ship(Vec::new()), Plan::default());
+    let mut heading = clean.heading().to_vec();
+    (heading[0], heading[77]) = ((-999_f64).to_radians(), heading[77] + 5_f64.to_radians());
+    let spoilt = of_columns(clean.time().to_vec(), heading, clean.rudder().to_vec());
+    let traced = |trial: &Trial| {
+        trace(std::slice::from_ref(trial), &[], &Settings { thorough: false, ..Settings::default() }).expect("a base")
+    };
+    let (with, without) = (traced(&spoilt), traced(&clean));
+    assert_eq!(
+        (with.verdict, &with.outliers, &without.outliers),
+        (Verdict::Clean, &vec![vec![0.0, 77.0]], &vec![vec![]])
+    );
+    let away = (with.indices[0].value - without.indices[0].value).abs();
+    assert!(away < without.indices[0].sd.expect("known"), "{away}");
+}

@@ -28,7 +28,7 @@ pub struct Model {
     pub judged: Fit,
 }
 
-/// A moment that depends on time alone needs this many times the gain of another term.
+/// A term that depends on time alone, or has an instant, needs this many times the gain of another one.
 const OF_TIME: f64 = 2.5;
 
 /// Search over one problem.
@@ -84,10 +84,14 @@ impl Search<'_> {
         Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
     }
 
-    /// Gain in BIC that a term needs: a trend, or a moment for a while, is also what a random moment looks like in one
-    /// record.
+    /// Gain in BIC that a term needs: a trend, a moment for a while, or a ship that changes is also what a random moment
+    /// looks like in one record.
     pub fn needed(&self, term: &Term) -> f64 {
-        if term.effect.is_of_time() { OF_TIME * self.thresholds.gain } else { self.thresholds.gain }
+        if term.effect.is_of_time() || term.effect.has_instant() {
+            OF_TIME * self.thresholds.gain
+        } else {
+            self.thresholds.gain
+        }
     }
 
     /// Whether the evidence for a term passes both thresholds.

@@ -1,7 +1,7 @@
 //! The rounds of a search: terms are added, exchanged and dropped until none is missing and none needless.
 
 use super::models::{Model, Search, Tested};
-use super::trying::{Tried, is_located};
+use super::trying::Tried;
 use crate::index::TermPlace;
 use crate::innovations::Innovations;
 
@@ -146,7 +146,7 @@ impl Search<'_> {
     /// wanders.
     fn twice(&self, base: &Model, first: &[Tried]) -> Option<Model> {
         let located: Vec<&Tried> =
-            first.iter().filter(|tried| is_located(&self.candidate(tried.candidate).term)).collect();
+            first.iter().filter(|tried| self.candidate(tried.candidate).term.effect.has_instant()).collect();
         let only = |tried: &Tried| self.candidate(tried.candidate).term.only;
         let with_second = |tried: &&Tried| {
             let one = self.plainly((*tried).clone());

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use ship::effects::{Effect, NonlinearDamping, TransientDisturbance};
+use ship::effects::{Effect, NonlinearDamping};
 
 use super::evidence::Evidence;
 use super::models::{Model, Search};
@@ -30,11 +30,6 @@ pub struct Tried {
 /// Later rounds fit only this many candidates, those with the largest score.
 const SHORT_LIST: usize = 6;
 
-/// Whether the place of a term in time has to be looked for.
-pub(super) fn is_located(term: &Term) -> bool {
-    term.effect.id() == TransientDisturbance::Passing.id()
-}
-
 impl Search<'_> {
     /// The candidate at a place of the list.
     pub fn candidate(&self, place: CandidatePlace) -> &Candidate {
@@ -47,9 +42,9 @@ impl Search<'_> {
     pub(super) fn excludes(&self, structure: &Structure, term: &Term) -> bool {
         let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
         let with = || structure.terms.iter().filter(|other| other.only == term.only);
-        if is_located(term) {
+        if term.effect.has_instant() {
             let mut of_time = with().filter(|other| other.effect.is_of_time());
-            return of_time.next().is_some_and(|other| !is_located(other) || of_time.next().is_some());
+            return of_time.next().is_some_and(|other| !other.effect.has_instant() || of_time.next().is_some());
         }
         with().any(|other| {
             other.is(term)
