@@ -7,7 +7,7 @@ use crate::diagnostics::{self, Series};
 use crate::fit::{Fit, Problem, whiten};
 
 /// Probability below which innovations are not those of the noise model.
-const IMPROBABLE: f64 = 0.001;
+const IMPROBABLE: f64 = 1e-4;
 
 /// How well the innovations of a fit agree with its noise model.
 #[derive(Debug, Clone, Copy, PartialEq)]
