@@ -20,6 +20,7 @@ use trial::{Quantity, Trial};
 use crate::bound;
 use crate::design::CellFacts;
 use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
+use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
 use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
@@ -278,6 +279,10 @@ fn traced(
         traced: Some(Box::new(TraceAnswer {
             verdict: analysis.verdict,
             named: analysis.effects.iter().map(named).collect(),
+            probabilities: effect_ids()
+                .map(|id| (Box::from(id), analysis.weights.of_effect(id)))
+                .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
+                .collect(),
             margin: margin(analysis, missing),
             expected,
             band_fitted: analysis.identification[0].after.coverage(),
@@ -286,6 +291,9 @@ fn traced(
         ..with_indices(blank, [k, t, bias])
     }
 }
+
+/// A smaller probability is not stored.
+const NEXT_TO_NOTHING: f64 = 0.005;
 
 /// By how much the one missing effect gains more in BIC than the best other one, each added alone.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {

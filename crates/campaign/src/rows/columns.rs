@@ -169,6 +169,7 @@ fn answer(row: &mut Row) -> &mut TraceAnswer {
     let blank = || TraceAnswer {
         verdict: Verdict::Clean,
         named: Vec::new(),
+        probabilities: Vec::new(),
         margin: None,
         expected: None,
         band_fitted: None,
@@ -226,6 +227,25 @@ fn set_groups(row: &mut Row, text: &str) -> Result<(), String> {
     Ok(())
 }
 
+/// Between an effect and its probability.
+const BETWEEN_NUMBERS: &str = "=";
+
+fn probabilities(row: &Row) -> Option<Cow<'_, str>> {
+    let all = row.traced.as_ref()?.probabilities.iter();
+    let parts: Vec<String> = all.map(|(id, probability)| format!("{id}{BETWEEN_NUMBERS}{probability:.3}")).collect();
+    Some(parts.join(BETWEEN_EFFECTS).into())
+}
+
+fn set_probabilities(row: &mut Row, text: &str) -> Result<(), String> {
+    let one = |part: &str| {
+        let (id, number) = part.split_once(BETWEEN_NUMBERS)?;
+        Some((Box::from(id), number.parse().ok().filter(|p| (0.0..=1.0).contains(p))?))
+    };
+    let all: Option<Vec<(Box<str>, f64)>> = parts(text, BETWEEN_EFFECTS).map(one).collect();
+    answer(row).probabilities = all.ok_or_else(|| format!("{text:?} are no probabilities of effects"))?;
+    Ok(())
+}
+
 fn set_verdict(row: &mut Row, word: &str) -> Result<(), String> {
     let known = Verdict::ALL.into_iter().find(|verdict| verdict.as_str() == word);
     answer(row).verdict = known.ok_or_else(|| format!("no trace ends with {word:?}"))?;
@@ -244,7 +264,7 @@ pub const OWN_COLUMNS: [Column; 2] = [
 ];
 
 /// Columns that follow in a study with a trace.
-pub const TRACE_COLUMNS: [Column; 7] = [
+pub const TRACE_COLUMNS: [Column; 8] = [
     Column {
         name: "trace_verdict",
         meaning: "clean, traced or unexplained",
@@ -259,6 +279,11 @@ pub const TRACE_COLUMNS: [Column; 7] = [
         name: "trace_groups",
         meaning: "the same, each with its aliases joined by |",
         access: Access::Text(groups, set_groups),
+    },
+    Column {
+        name: "trace_probabilities",
+        meaning: "effects with a probability of at least 0.005, each with it behind =, joined by +",
+        access: Access::Text(probabilities, set_probabilities),
     },
     number(
         "trace_margin",

@@ -38,6 +38,8 @@ pub struct TraceAnswer {
     pub verdict: Verdict,
     /// The effects named, in the order of discovery.
     pub named: Vec<NamedEffect>,
+    /// Probability of every effect that is not next to nothing, given the trial.
+    pub probabilities: Vec<(Box<str>, f64)>,
     /// Gain in BIC of the one missing effect over the best other one.
     pub margin: Option<f64>,
     /// Likelihood ratio of the truth against the nearest first-order response, on average.

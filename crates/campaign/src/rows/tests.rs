@@ -106,6 +106,7 @@ fn traces_have_columns_of_their_own() {
         let answer = TraceAnswer {
             verdict,
             named,
+            probabilities: vec![("speed_loss".into(), 0.25), ("wind_moment".into(), 1.0)],
             margin: Some(31.5),
             expected: None,
             band_fitted: Some(0.95),

@@ -12,7 +12,7 @@ mod tracing;
 pub use detail::{CellDetail, Cloud, MethodDetail, Violin};
 pub use record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Record, Summary};
 pub use tally::{Tally, summarise};
-pub use tracing::{CLEAR, TraceSummary};
+pub use tracing::{CLEAR, PROMISED, Promised, TraceSummary, effect_ids};
 
 #[cfg(test)]
 mod tests;

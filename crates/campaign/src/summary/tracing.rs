@@ -42,6 +42,37 @@ pub struct TraceSummary {
     pub expected: Option<f64>,
     /// Mean share of the headings inside the band: of the trial, and of the validation manoeuvre.
     pub band: [Option<f64>; 2],
+    /// Effects by the probability that was given to them; empty for a hull, of which nobody knows what it lacks.
+    pub promised: [Promised; PROMISED.len() - 1],
+}
+
+/// Ends of the ranges of probability that are told apart.
+pub const PROMISED: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
+
+/// Effects whose probabilities are in one range.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Promised {
+    /// Effects on the list, one for every trial.
+    pub effects: u64,
+    /// Those of them that were there.
+    pub present: u64,
+    /// Sum of the probabilities.
+    pub sum: f64,
+}
+
+impl Promised {
+    /// Adds those of other trials.
+    pub fn join(&mut self, other: &Self) {
+        self.effects += other.effects;
+        self.present += other.present;
+        self.sum += other.sum;
+    }
+}
+
+/// Identifiers of all effects, each once.
+pub fn effect_ids() -> impl Iterator<Item = &'static str> {
+    let ids: BTreeSet<&'static str> = ship::effects::all().iter().map(|effect| effect.id()).collect();
+    ids.into_iter()
 }
 
 impl TraceSummary {
@@ -134,6 +165,14 @@ impl TraceTally {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
         }
+        let known = !summary.is_hull();
+        for id in effect_ids().filter(|_| known) {
+            let own = answer.probabilities.iter().find(|(other, _)| **other == *id);
+            let probability = own.map_or(0.0, |(_, probability)| *probability);
+            let range = PROMISED[1..].partition_point(|end| *end <= probability).min(summary.promised.len() - 1);
+            let present = u64::from(summary.missing.iter().any(|missing| missing == id));
+            summary.promised[range].join(&Promised { effects: 1, present, sum: probability });
+        }
         let [expected, fitted, held_out] = &mut self.means[at];
         summary.expected = expected.add(answer.expected);
         summary.band = [fitted.add(answer.band_fitted), held_out.add(answer.band_held_out)];
@@ -160,6 +199,7 @@ mod tests {
         let cells = TraceAnswer {
             verdict: Verdict::Traced,
             named,
+            probabilities: vec![("wind_moment".into(), 0.97)],
             margin,
             expected: Some(4.0),
             band_fitted: Some(0.9),
@@ -179,6 +219,18 @@ mod tests {
         assert_eq!((summary.exact, summary.clear), (2, [5, 3]));
         assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
         assert_eq!((summary.expected, summary.band), (Some(4.0), [Some(0.9), None]));
+    }
+
+    /// Of the effects on the list one is there and was given 97 %, the others are not and were given nothing.
+    #[test]
+    fn effects_are_counted_by_what_was_promised() {
+        let mut tally = TraceTally { missing: vec![vec!["wind_moment".into()]], ..TraceTally::default() };
+        tally.add(&row(&[], None));
+        let [summary] = tally.finish().try_into().expect("one cell");
+        let others = effect_ids().count() as u64 - 1;
+        assert_eq!(summary.promised[0], Promised { effects: others, present: 0, sum: 0.0 });
+        assert_eq!(summary.promised[6], Promised { effects: 1, present: 1, sum: 0.97 });
+        assert_eq!(summary.promised.iter().map(|range| range.effects).sum::<u64>(), others + 1);
     }
 
     #[test]

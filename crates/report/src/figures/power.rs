@@ -1,4 +1,4 @@
-//! How often something is found over how large it is: measured shares with their intervals beside curves of theory.
+//! How often something is found over how large it is, or how likely it was called: measured shares with their intervals beside curves of theory.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,8 +26,10 @@ pub struct PowerSeries {
 pub struct Power {
     /// Title above the figure.
     pub title: Option<String>,
-    /// Horizontal axis, logarithmic.
+    /// Horizontal axis.
     pub x_title: String,
+    /// Whether it is a share in per cent; otherwise it is logarithmic.
+    pub of_shares: bool,
     /// Vertical axis, per cent.
     pub y_title: String,
     /// Measured shares.
@@ -63,8 +65,12 @@ pub fn power(data: &Power, theme: &Theme) -> Figure {
     sheet.legend(&measured.chain(theory).collect::<Vec<_>>());
     let sizes = data.series.iter().flat_map(|series| series.points.iter().map(|point| point.0));
     let drawn = data.theory.iter().flat_map(|(_, curve)| curve.finite().map(|(x, _)| x));
-    let x = Axis::log_covering(sizes.chain(drawn).filter(|x| *x > 0.0).collect::<Vec<_>>());
-    let y = Axis::linear(-3.0, 103.0, Steps::Decimal);
+    let shares = Axis::linear(-3.0, 103.0, Steps::Decimal);
+    let x = match data.of_shares {
+        true => shares.clone(),
+        false => Axis::log_covering(sizes.chain(drawn).filter(|x| *x > 0.0).collect::<Vec<_>>()),
+    };
+    let y = shares;
     let grid =
         Grid::stack(Side::new(x, data.x_title.clone()), vec![(Side::new(y, data.y_title.clone()), theme.tall(0.42))]);
     for panel in &sheet.grid(grid) {

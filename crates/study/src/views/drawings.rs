@@ -13,7 +13,7 @@ use super::tracing_table::has_several;
 use campaign::folder::ResultFolder;
 use campaign::showcase::Showcase;
 use campaign::store::Stored;
-use campaign::summary::Summary;
+use campaign::summary::{Summary, TraceSummary};
 use scenario::failure::Failure;
 
 /// A figure that can be drawn.
@@ -88,13 +88,19 @@ fn reading(quantity: Quantity) -> &'static str {
 /// Cells of a study with traces beyond which errors of K and T are not drawn one by one.
 const MOST_TRACED: usize = 24;
 
+/// What the first of several traces said.
+pub fn first_trace(summary: &Summary) -> Vec<TraceSummary> {
+    let first = summary.tracing.first().map_or(0, |line| line.method);
+    summary.tracing.iter().filter(|line| line.method == first).cloned().collect()
+}
+
 /// Figures about what traces named.
 fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let design = &stored.design;
     let mut drawings = Vec::new();
     // Of several traces the first is drawn: the others are in the tables.
-    let first = summary.tracing.first().map_or(0, |line| line.method);
-    let lines: Vec<_> = summary.tracing.iter().filter(|line| line.method == first).cloned().collect();
+    let lines = first_trace(summary);
+    let first = lines.first().map_or(0, |line| line.method);
     let whose = match has_several(design) {
         true => format!(" Here: {}.", design.methods[first].label),
         false => String::new(),
@@ -110,6 +116,12 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
                        ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
                        likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
         drawings.push(Drawing::new("power", format!("{caption}{whose}"), move |theme| figures::power(&data, theme)));
+    }
+    if let Some(data) = traces::reliability(&lines) {
+        let caption = "How often an effect was there, over the probability that the trace gave it: every effect on the list \
+                       counts once in every trial of a ship whose effects are known, with 95 % intervals.";
+        drawings
+            .push(Drawing::new("reliability", format!("{caption}{whose}"), move |theme| figures::power(&data, theme)));
     }
     drawings.iter_mut().for_each(|drawing| drawing.of_traces = true);
     drawings

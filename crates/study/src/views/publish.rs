@@ -34,6 +34,7 @@ pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &C
         write_csv(folder, "tracing.csv", &summary.tracing, |lines| {
             tracing_table::table(lines, &summary, design, true)
         })?;
+        folder.write("reliability.csv", tracing_table::reliability(&drawings::first_trace(&summary)).to_csv())?;
     }
     let brief = is_readable(design).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {

@@ -5,7 +5,8 @@ use report::figures::{HeatMap, HeatPanel, Power, PowerSeries, Scale};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
-use campaign::summary::TraceSummary;
+use campaign::statistics::share;
+use campaign::summary::{PROMISED, Promised, TraceSummary};
 
 /// Name of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
@@ -105,10 +106,42 @@ pub fn power(lines: &[TraceSummary]) -> Option<Power> {
     Some(Power {
         title: None,
         x_title: String::from("expected likelihood ratio against the best first-order response"),
+        of_shares: false,
         y_title: String::from("named [%]"),
         series,
         theory: theory.into(),
     })
+}
+
+/// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.
+pub fn reliability(lines: &[TraceSummary]) -> Option<Power> {
+    let points: Vec<_> = promised(lines)
+        .iter()
+        .filter_map(|range| {
+            let share = share(range.present, range.effects)?;
+            let percent = share.ci95.map(|ends| ends.map(|end| 100.0 * end));
+            Some((100.0 * range.sum / range.effects as f64, 100.0 * share.value, percent))
+        })
+        .collect();
+    let series = vec![PowerSeries { name: String::from("effects by their probability"), points }];
+    let diagonal = Curve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
+    (!series[0].points.is_empty()).then(|| Power {
+        title: None,
+        x_title: String::from("mean probability given [%]"),
+        of_shares: true,
+        y_title: String::from("present [%]"),
+        series,
+        theory: vec![(String::from("as promised"), diagonal)],
+    })
+}
+
+/// Effects by their probability, over all cells.
+pub fn promised(lines: &[TraceSummary]) -> Vec<Promised> {
+    let mut all = vec![Promised::default(); PROMISED.len() - 1];
+    for line in lines {
+        all.iter_mut().zip(&line.promised).for_each(|(all, own)| all.join(own));
+    }
+    all
 }
 
 fn is_of_time(id: &str) -> bool {

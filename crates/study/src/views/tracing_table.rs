@@ -6,9 +6,10 @@ use report::number::{self, MISSING};
 use report::{Column, Table};
 
 use super::tables::head_of_cells;
+use super::trace_charts::promised;
 use campaign::design::Design;
-use campaign::statistics::Statistic;
-use campaign::summary::{CLEAR, Summary, TraceSummary};
+use campaign::statistics::{Statistic, share};
+use campaign::summary::{CLEAR, PROMISED, Summary, TraceSummary};
 use scenario::TRACE;
 
 /// Every cell with its shares, for people and, with all digits, for `tracing.csv`.
@@ -64,6 +65,30 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
         named.sort_by(|one, other| other.1.cmp(one.1).then(one.0.cmp(other.0)));
         let most = if all_digits { usize::MAX } else { 4 };
         cells.push(named.iter().take(most).map(|(id, count)| format!("{id} {count}")).collect::<Vec<_>>().join(", "));
+        table.push(cells);
+    }
+    table
+}
+
+/// Effects by the probability that was given to them, over all cells.
+pub fn reliability(lines: &[TraceSummary]) -> Table {
+    let mut table = Table::new(vec![
+        Column::right("probability from").unit("%"),
+        Column::right("to").unit("%"),
+        Column::right("effects"),
+        Column::decimal("mean probability").unit("%"),
+        Column::decimal("present").unit("%"),
+        Column::decimal("low").unit("%"),
+        Column::decimal("high").unit("%"),
+    ]);
+    for (range, ends) in promised(lines).iter().zip(PROMISED.windows(2)) {
+        let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
+        let present = share(range.present, range.effects);
+        let ends_of = present.and_then(|share| share.ci95);
+        let three = [present.map(|share| share.value), ends_of.map(|ends| ends[0]), ends_of.map(|ends| ends[1])];
+        let mut cells: Vec<String> = ends.iter().map(|end| number::fixed(100.0 * end, 0)).collect();
+        cells.extend([range.effects.to_string(), number::optional(mean, 2)]);
+        cells.extend(three.map(|share| number::optional(share.map(|share| 100.0 * share), 2)));
         table.push(cells);
     }
     table

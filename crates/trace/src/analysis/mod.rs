@@ -20,14 +20,15 @@ use rayon::prelude::*;
 use ship::{Regressor, effects};
 use trial::Trial;
 
-use crate::candidates::{self, Sizes};
+use crate::candidates::{self, Candidate, Sizes};
+use crate::change;
 use crate::diagnostics::{self, Series};
 use crate::fit::Problem;
 use crate::held_out::HeldOut;
 use crate::monomial;
 use crate::record::Record;
 use crate::search::{Model, NotFitted, Search};
-use crate::structure::Structure;
+use crate::structure::{Structure, Term};
 
 use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
@@ -64,6 +65,18 @@ fn cannot_be_held(NotFitted(effect): NotFitted) -> TraceError {
         false => lacking.unwrap_or("the records leave no place for it"),
     };
     TraceError::Asked { effect, reason }
+}
+
+/// Whether a model of nothing but moments that come or go explains a record worse than a ship that changes.
+fn change_is_better(search: &Search, base: &Model, model: &Model, sizes: &Sizes) -> bool {
+    let comes_or_goes = |term: &Term| term.effect.has_instant() && !search.wanted.keeps(term);
+    if model.structure.terms.is_empty() || !model.structure.terms.iter().all(comes_or_goes) {
+        return false;
+    }
+    let library: Vec<Candidate> = change::candidate(&search.problem.records, sizes).into_iter().collect();
+    let nameless = Search::new(search.problem, &library, search.thresholds);
+    let tried = nameless.try_all(base, &base.plain, false);
+    tried.iter().any(|tried| nameless.adopted(tried).judged.bic < model.judged.bic)
 }
 
 /// Analyses records of one ship.
@@ -129,8 +142,15 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         };
     }
 
-    let held_out: Vec<HeldOut> = validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
     let mut refused = Vec::new();
+    if settings.wanted.search && change_is_better(&search, &start, &model, &sizes) {
+        refused.push(String::from(
+            "moments that come or go are not kept: a ship that is another one from an instant on explains the record better",
+        ));
+        model = start.clone();
+    }
+
+    let held_out: Vec<HeldOut> = validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 

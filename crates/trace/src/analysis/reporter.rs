@@ -357,14 +357,14 @@ impl Reporter<'_> {
         let believed = |tried: &Tried| search.believes(&search.candidate(tried.candidate).term, &tried.evidence);
         if !tried.first().is_some_and(believed) {
             // Under the noise of the model without it a slow term looks like more of that noise: it is held against the
-            // model with the noise that suits it best, as a moment that depends on time is.
+            // model with the noise that suits it best.
             tried = search.try_all(self.model, &self.model.plain, true);
             for tried in &mut tried {
                 let with = search.adopted(tried);
                 let freedom = search.candidate(tried.candidate).term.freedom();
                 tried.evidence = search.evidence(&self.model.judged, &with.judged, freedom);
             }
-            tried.retain(|tried| search.believes_of_time(&tried.evidence));
+            tried.retain(believed);
         }
         let best = tried.first()?;
         let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);
