@@ -137,7 +137,7 @@ pub fn candidates(
 }
 
 /// The coefficient of a term without a name: a rudder angle, for factors in units of their own size.
-pub(crate) const PARAMETERS: [Parameter; 1] = [Parameter {
+pub(crate) const COEFFICIENT: Parameter = Parameter {
     key: "c",
     symbol: "c",
     unit: "rad",
@@ -146,7 +146,9 @@ pub(crate) const PARAMETERS: [Parameter; 1] = [Parameter {
     lowest: -10.0,
     highest: 10.0,
     odd: false,
-}];
+};
+
+const PARAMETERS: [Parameter; 1] = [COEFFICIENT];
 
 impl Effect for Monomial {
     fn id(&self) -> &'static str {

@@ -1,6 +1,6 @@
-//! The noise that a fit is judged against: white heading noise, a random yaw moment that has gone through the ship or an
-//! error of the compass that wanders, and narrow-band waves, as one linear stochastic system whose Kalman filter makes
-//! residual and sensitivities white.
+//! The noise that a fit is judged against: white heading noise, a random yaw moment that has gone through the ship or
+//! an error of the compass that wanders, and narrow-band waves, as one linear stochastic system whose Kalman filter
+//! makes residual and sensitivities white.
 //!
 //! Noise is a competitor of every effect. A slow residual may be a missing term or a moment nobody knows the cause of;
 //! an effect is only believed when it explains the record better than the best of these random explanations. With the

@@ -5,17 +5,32 @@ use ship::EffectReal;
 use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 
 use crate::candidates::{Candidate, Sizes};
-use crate::monomial::PARAMETERS;
+use crate::monomial::COEFFICIENT;
 use crate::record::Record;
 
-/// c y with y' = sin(ψ − ψ₀), as an equivalent rudder angle; y in units of the length of the record.
+/// c y with y' = sin(ψ − ψ₀), as an equivalent rudder angle; y in units of the length of the record. The first heading
+/// is too noisy a reading of the course ψ₀: a tenth of a degree is a trend.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Offset {
-    /// Course of the track ψ₀, rad.
+    /// Heading at the beginning, rad.
     course: f64,
     /// Length of the record, s.
     duration: f64,
 }
+
+const PARAMETERS: [Parameter; 2] = [
+    COEFFICIENT,
+    Parameter {
+        key: "psi_0",
+        symbol: "ψ₀",
+        unit: "rad",
+        neutral: 0.0,
+        typical: 0.01,
+        lowest: -1e3,
+        highest: 1e3,
+        odd: false,
+    },
+];
 
 impl Effect for Offset {
     fn id(&self) -> &'static str {
@@ -35,7 +50,7 @@ impl Effect for Offset {
     }
 
     fn constants(&self) -> Vec<f64> {
-        vec![self.course, self.duration]
+        vec![self.duration]
     }
 
     fn states(&self) -> usize {
@@ -47,7 +62,8 @@ impl Effect for Offset {
     }
 
     fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
-        Some(Proposal::of_one(*self, 0.02, 0.0, 1.0))
+        let start = vec![0.0, self.course];
+        Some(Proposal::new(*self, vec![0.02, 0.02], vec![start], vec![1.0, self.course]))
     }
 
     fn places(&self) -> Places {
@@ -56,8 +72,8 @@ impl Effect for Offset {
 }
 
 impl<R: EffectReal> Acts<R> for Offset {
-    fn rates(&self, _p: &[R], _z: &[R], now: &Now<R>, _before: R, rate: &mut [R]) {
-        rate[0] = (now.heading - R::from(self.course)).sin_cos().0 / self.duration;
+    fn rates(&self, p: &[R], _z: &[R], now: &Now<R>, _before: R, rate: &mut [R]) {
+        rate[0] = (now.heading - p[1]).sin_cos().0 / self.duration;
     }
 
     fn yaw_acceleration(&self, p: &[R], z: &[R], now: &Now<R>) -> R {

@@ -66,8 +66,8 @@ impl Prepared {
         let whole = trials.iter().map(|trial| track(trial, FEWEST_ROWS)).collect::<Result<Vec<_>, IdentifyError>>()?;
         let finest = trials.iter().map(Trial::sampling_period).fold(f64::INFINITY, f64::min);
         let method = output_error::Settings::default().build().expect("default settings are valid");
-        // What is far from any course a ship can steer would spoil the first fit: a sentinel in the first row is one that
-        // an initial yaw rate of a very quick ship can follow.
+        // What is far from any course a ship can steer would spoil the first fit: a very quick ship could follow a
+        // sentinel in the first row by its initial yaw rate.
         let gross = |track: &Track| match settings.outliers {
             true => Suspects { jumps: Vec::new(), ..outliers::find(track, &track.heading, &[]) },
             false => Suspects::default(),

@@ -1,4 +1,5 @@
-//! How often something is found over how large it is, or how likely it was called: measured shares with their intervals beside curves of theory.
+//! How often something is found over how large it is, or how likely it was called: measured shares with their intervals
+//! beside curves of theory.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,8 @@
 //! What is said of a finished search: effects with their evidence and aliases, what became of every candidate, and what
 //! is left.
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 use ship::Regressor;
 use ship::effects::{self, Effect, WaveYaw};
@@ -36,6 +38,9 @@ pub(super) struct Reporter<'a> {
     /// Terms that are believed for what they predict.
     pub predicted: &'a [Predicted],
 }
+
+/// Terms without a name that are fitted with the noise that suits them best.
+const ADOPTED: usize = 6;
 
 impl Reporter<'_> {
     fn only(&self, term: &Term) -> Option<String> {
@@ -357,14 +362,19 @@ impl Reporter<'_> {
         let believed = |tried: &Tried| search.believes(&search.candidate(tried.candidate).term, &tried.evidence);
         if !tried.first().is_some_and(believed) {
             // Under the noise of the model without it a slow term looks like more of that noise: it is held against the
-            // model with the noise that suits it best.
-            tried = search.try_all(self.model, &self.model.plain, true);
+            // model with the noise that suits it best, fitted from where either noise has led it.
+            tried.truncate(ADOPTED);
+            tried.extend(search.try_all(self.model, &self.model.plain, true));
             for tried in &mut tried {
                 let with = search.adopted(tried);
                 let freedom = search.candidate(tried.candidate).term.freedom();
                 tried.evidence = search.evidence(&self.model.judged, &with.judged, freedom);
+                tried.fit = with.judged;
             }
             tried.retain(believed);
+            tried.sort_by(|one, other| one.fit.bic.total_cmp(&other.fit.bic));
+            let mut seen = BTreeSet::new();
+            tried.retain(|one| seen.insert(one.candidate));
         }
         let best = tried.first()?;
         let near = tried.iter().take_while(|tried| tried.fit.bic < best.fit.bic + ALIAS);

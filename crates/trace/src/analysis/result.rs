@@ -172,8 +172,8 @@ pub struct Randomness {
     pub white: f64,
     /// What wanders beside it, where something does.
     pub wander: Option<Wander>,
-    /// Standard deviation of the heading that this leaves, rad: of a random moment that at the end of the longest record
-    /// of a ship without damping.
+    /// Standard deviation of the heading that this leaves, rad: of a random moment that at the end of the longest
+    /// record of a ship without damping.
     pub heading: f64,
     /// A random moment as an angle of the rudder, rad: the standard deviation of gusts, of the mean of a white moment
     /// over one second, of what a walk adds in one second. 0 without one.

@@ -29,8 +29,8 @@ impl Problem {
         found.min_by(|one, other| bic(one).total_cmp(&bic(other)))
     }
 
-    /// Kinds of wandering that are worth a look: a white moment, a walk, and the gusts and the error of the compass that
-    /// explain best what a fit leaves.
+    /// Kinds of wandering that are worth a look: a white moment, a walk, and the gusts and the error of the compass
+    /// that explain best what a fit leaves.
     pub fn kinds(&self, linear: &Linear, waves: Option<NarrowBand>) -> Vec<Wander> {
         let nearest = |kinds: Vec<Wander>| {
             let best = self.best_of(linear, &kinds, waves).and_then(|(colour, _)| colour.wander);

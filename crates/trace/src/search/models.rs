@@ -84,8 +84,8 @@ impl Search<'_> {
         Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
     }
 
-    /// Gain in BIC that a term needs: a trend, a moment for a while, or a ship that changes is also what a random moment
-    /// looks like in one record.
+    /// Gain in BIC that a term needs: a trend, a moment for a while, or a ship that changes is also what a random
+    /// moment looks like in one record.
     pub fn needed(&self, term: &Term) -> f64 {
         if term.effect.is_of_time() || term.effect.has_instant() {
             OF_TIME * self.thresholds.gain

@@ -175,7 +175,8 @@ impl Search<'_> {
         if model.judged.colour.wander.is_some() {
             model = self.with_a_set(model, base);
             let twice = self.twice(base, first).map(|twice| self.prune(twice, base, true));
-            model = twice.filter(|twice| twice.judged.bic < model.judged.bic).unwrap_or(model);
+            let priced = |model: &Model| model.judged.bic + self.price(&model.structure, false);
+            model = twice.filter(|twice| priced(twice) < priced(&model)).unwrap_or(model);
         }
         while self.found(&model).count() < self.thresholds.most_effects && model.judged.colour.wander.is_some() {
             let Some(best) = self.best(self.try_all(&model, &model.judged, true)) else { break };

@@ -38,18 +38,18 @@ struct Promises {
     blocks: Vec<Block>,
     reduced: Vec<Reduced>,
     /// What the records would tell under white noise.
-    plain: Told,
+    plain: Information,
 }
 
 /// Information of some normal equations.
-struct Told {
+struct Information {
     /// Logarithm of its determinant for the unknowns of the model.
     of_model: f64,
     /// What is left of it for the columns of candidates.
     rest: DMatrix<f64>,
 }
 
-impl Told {
+impl Information {
     /// `None` where the first `own` unknowns cannot be told apart.
     fn new(matrix: &DMatrix<f64>, own: usize) -> Option<Self> {
         let more = matrix.nrows() - own;
@@ -79,7 +79,7 @@ fn regular(mut matrix: DMatrix<f64>) -> DMatrix<f64> {
 struct Reduced {
     matrix: DMatrix<f64>,
     /// What prior and records tell under this colour.
-    told: Told,
+    information: Information,
     gradient: DVector<f64>,
     rss: f64,
     log_variance: f64,
@@ -88,7 +88,7 @@ struct Reduced {
 
 impl Reduced {
     /// Projects the first `own` unknowns out; `None` where they cannot be told apart.
-    fn new(normal: &Normal, told: Told, own: usize, log_variance: f64, colour: Colour) -> Option<Self> {
+    fn new(normal: &Normal, information: Information, own: usize, log_variance: f64, colour: Colour) -> Option<Self> {
         let all = normal.matrix.nrows();
         let more = all - own;
         let factor = regular(normal.matrix.view((0, 0), (own, own)).into_owned()).cholesky()?;
@@ -98,7 +98,7 @@ impl Reduced {
         Some(Self {
             matrix: normal.matrix.view((own, own), (more, more)) - cross.tr_mul(&shared),
             gradient: normal.gradient.rows(own, more) - cross.tr_mul(&explained),
-            told,
+            information,
             rss: normal.rss - gradient.dot(&explained),
             log_variance,
             colour,
@@ -199,11 +199,11 @@ impl Search<'_> {
                 let colour = Colour { wander, waves };
                 let whiteners = self.problem.whiteners(&colour);
                 let normal = under(&whiteners);
-                let told = Told::new(&prior_and(&plain, &normal.matrix, n), own)?;
-                Reduced::new(&normal, told, own, log_variance(&whiteners), colour)
+                let information = Information::new(&prior_and(&plain, &normal.matrix, n), own)?;
+                Reduced::new(&normal, information, own, log_variance(&whiteners), colour)
             })
             .collect();
-        Told::new(&plain, own).map(|plain| Promises { blocks, reduced, plain })
+        Information::new(&plain, own).map(|plain| Promises { blocks, reduced, plain })
     }
 
     /// The lowest BIC that a set promises under any colour, less what every model has, with that colour.
@@ -213,7 +213,7 @@ impl Search<'_> {
         let freedom: usize = set.iter().map(|&k| blocks[k].freedom).sum();
         let plain = plain.of(&all);
         let bic = |reduced: &Reduced| {
-            let lost = if reduced.colour.is_white() { 0.0 } else { reduced.told.of(&all) - plain };
+            let lost = if reduced.colour.is_white() { 0.0 } else { reduced.information.of(&all) - plain };
             let deviance = self.problem.deviance(reduced.rss_with(&all), reduced.log_variance);
             deviance + (freedom + reduced.colour.freedom()) as f64 * self.log_n() + lost
         };
@@ -289,13 +289,13 @@ mod tests {
             rss: product(&measured, &measured),
         };
         let whole = normal(&[0, 1, 2, 3, 4]);
-        let told = Told::new(&whole.matrix, 2).expect("independent columns");
-        let reduced = Reduced::new(&whole, told, 2, 0.0, Colour::WHITE).expect("independent columns");
+        let information = Information::new(&whole.matrix, 2).expect("independent columns");
+        let reduced = Reduced::new(&whole, information, 2, 0.0, Colour::WHITE).expect("independent columns");
         for (set, chosen) in [(vec![0], vec![0, 1, 2]), (vec![0, 2], vec![0, 1, 2, 4]), (vec![], vec![0, 1])] {
             let whole = normal(&chosen).projected(chosen.len());
             let found = reduced.rss_with(&set);
             assert!((found / whole - 1.0).abs() < 1e-6, "{set:?}: {found} against {whole}");
-            let told = reduced.told.of(&set) - log_determinant(&normal(&chosen).matrix);
+            let told = reduced.information.of(&set) - log_determinant(&normal(&chosen).matrix);
             assert!(told.abs() < 1e-6, "{set:?}: {told}");
         }
     }

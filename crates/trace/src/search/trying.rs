@@ -37,19 +37,15 @@ impl Search<'_> {
     }
 
     /// Whether a structure has no place for one more term: it has the same effect already (damping by side stands
-    /// beside any other damping, a second squall beside a first), or another moment that depends on time. Several of
-    /// those would be a random moment, written as a sum.
+    /// beside any other damping), or another moment that depends on time. Several of those would be a random moment,
+    /// written as a sum.
     pub(super) fn excludes(&self, structure: &Structure, term: &Term) -> bool {
         let by_side = |term: &Term| term.effect.form() == NonlinearDamping::Square.form();
-        let with = || structure.terms.iter().filter(|other| other.only == term.only);
-        if term.effect.has_instant() {
-            let mut of_time = with().filter(|other| other.effect.is_of_time());
-            return of_time.next().is_some_and(|other| !other.effect.has_instant() || of_time.next().is_some());
-        }
-        with().any(|other| {
-            other.is(term)
-                || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
-                || (term.effect.is_of_time() && other.effect.is_of_time())
+        structure.terms.iter().any(|other| {
+            other.only == term.only
+                && (other.is(term)
+                    || (other.effect.id() == term.effect.id() && !by_side(term) && !by_side(other))
+                    || (term.effect.is_of_time() && other.effect.is_of_time()))
         })
     }
 
