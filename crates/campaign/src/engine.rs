@@ -280,7 +280,7 @@ fn traced(
             verdict: analysis.verdict,
             named: analysis.effects.iter().map(named).collect(),
             probabilities: effect_ids()
-                .map(|id| (Box::from(id), analysis.weights.of_effect(id)))
+                .map(|id| (Box::from(id), (DIGITS * analysis.weights.of_effect(id)).round() / DIGITS))
                 .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
                 .collect(),
             margin: margin(analysis, missing),
@@ -294,6 +294,9 @@ fn traced(
 
 /// A smaller probability is not stored.
 const NEXT_TO_NOTHING: f64 = 0.005;
+
+/// Probabilities are stored in multiples of one over this, so that a stored row is the one that was computed.
+const DIGITS: f64 = 1000.0;
 
 /// By how much the one missing effect gains more in BIC than the best other one, each added alone.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {

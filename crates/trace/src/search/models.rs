@@ -154,8 +154,8 @@ impl Search<'_> {
         self.problem.linear(structure, &fit.theta, &fit.initial)
     }
 
-    /// The best random moment of the kinds that are worth a look, with its −2 log L after a linear step and what it takes
-    /// from the price of the unknowns.
+    /// The best random moment of the kinds that are worth a look, with its −2 log L after a linear step and what it
+    /// takes from the price of the unknowns.
     fn best_moment(&self, linear: &Linear, waves: Option<NarrowBand>) -> (Colour, f64) {
         let kinds = self.kinds.get_or_init(|| self.problem.kinds(linear, waves));
         self.problem.best_of(linear, kinds, waves).unwrap_or((Colour { wander: None, waves }, f64::INFINITY))
