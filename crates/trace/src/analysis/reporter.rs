@@ -362,7 +362,8 @@ impl Reporter<'_> {
         let believed = |tried: &Tried| search.believes(&search.candidate(tried.candidate).term, &tried.evidence);
         if !tried.first().is_some_and(believed) {
             // Under the noise of the model without it a slow term looks like more of that noise: it is held against the
-            // model with the noise that suits it best, fitted from where either noise has led it.
+            // model with the noise that suits it best, fitted from where either noise has led it, and needs what a moment
+            // of time needs.
             tried.truncate(ADOPTED);
             tried.extend(search.try_all(self.model, &self.model.plain, true));
             for tried in &mut tried {
@@ -371,7 +372,7 @@ impl Reporter<'_> {
                 tried.evidence = search.evidence(&self.model.judged, &with.judged, freedom);
                 tried.fit = with.judged;
             }
-            tried.retain(believed);
+            tried.retain(|tried| search.believes_as_of_time(&tried.evidence));
             tried.sort_by(|one, other| one.fit.bic.total_cmp(&other.fit.bic));
             let mut seen = BTreeSet::new();
             tried.retain(|one| seen.insert(one.candidate));

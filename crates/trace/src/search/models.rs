@@ -94,6 +94,11 @@ impl Search<'_> {
         }
     }
 
+    /// Whether the evidence for a term passes both thresholds, were it one that depends on time alone.
+    pub fn believes_as_of_time(&self, evidence: &Evidence) -> bool {
+        evidence.gain > OF_TIME * self.thresholds.gain && evidence.p_value < self.thresholds.false_discovery
+    }
+
     /// Whether the evidence for a term passes both thresholds.
     pub fn believes(&self, term: &Term, evidence: &Evidence) -> bool {
         evidence.gain > self.needed(term) && evidence.p_value < self.thresholds.false_discovery
