@@ -361,9 +361,9 @@ impl Reporter<'_> {
         let mut tried = search.try_all(self.model, &self.model.judged, false);
         let believed = |tried: &Tried| search.believes(&search.candidate(tried.candidate).term, &tried.evidence);
         if !tried.first().is_some_and(believed) {
-            // Under the noise of the model without it a slow term looks like more of that noise: it is held against the
-            // model with the noise that suits it best, fitted from where either noise has led it, and needs what a moment
-            // of time needs.
+            // Under the noise of the model without it a slow term looks like more of that noise: it is held against
+            // the model with the noise that suits it best, fitted from where either noise has led it, and needs what a
+            // moment of time needs.
             tried.truncate(ADOPTED);
             tried.extend(search.try_all(self.model, &self.model.plain, true));
             for tried in &mut tried {
