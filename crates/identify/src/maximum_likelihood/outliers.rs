@@ -57,15 +57,14 @@ pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects
     let rows = whole.observed();
     let mut kept: Vec<usize> = (0..residual.len()).collect();
     let most = (LARGEST_SHARE * residual.len() as f64).ceil() as usize + 1;
-    let one_sided: Vec<f64> = deviations(residual, &kept).into_iter().filter_map(|[before, _]| before).collect();
+    let before = deviations(residual, &kept).into_iter().filter_map(|[before, _]| before);
+    let one_sided: Vec<f64> = before.map(|side| side.distance).collect();
     let limit = (SPIKE * NORMAL * median(&mut magnitudes(&one_sided))).max(floor);
     let mut spikes = Vec::new();
     let mut grossest = 0.0_f64;
     while spikes.len() < most {
-        // Far from both sides: where the level changes, a reading is near to one of them.
-        let apart = |sides: [Option<f64>; 2]| sides.into_iter().flatten().map(f64::abs).fold(f64::INFINITY, f64::min);
         let distances = deviations(residual, &kept).into_iter().map(apart).enumerate();
-        let far = distances.filter(|(_, distance)| distance.is_finite() && *distance > limit);
+        let far = distances.filter(|(_, distance)| *distance > limit);
         let Some((place, distance)) = far.max_by(|one, other| one.1.total_cmp(&other.1)) else { break };
         let row = rows[kept[place]];
         if !known.contains(&row) {
@@ -81,14 +80,40 @@ pub(super) fn find(whole: &Track, residual: &[f64], known: &[usize]) -> Suspects
     Suspects { jumps: jumps(residual, &kept, floor).into_iter().map(|number| rows[number]).collect(), spikes }
 }
 
-/// Every reading less the median of its neighbours before and after.
-fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<f64>; 2]> {
+/// A reading held against its neighbours on one side, rad.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    /// The reading less their median.
+    distance: f64,
+    /// Median of their distances from their median.
+    spread: f64,
+}
+
+/// How far a reading stands from both sides: where the level changes it is near to one of them, on a slope it is between
+/// them. At an end of the record there is one side, and a slope is told by the spread of the neighbours.
+fn apart(sides: [Option<Side>; 2]) -> f64 {
+    match sides {
+        [Some(before), Some(after)] if before.distance * after.distance > 0.0 => {
+            before.distance.abs().min(after.distance.abs())
+        }
+        [Some(side), None] | [None, Some(side)] if side.distance.abs() > SPIKE * side.spread => side.distance.abs(),
+        _ => 0.0,
+    }
+}
+
+/// Every reading held against its neighbours before and after.
+fn deviations(residual: &[f64], kept: &[usize]) -> Vec<[Option<Side>; 2]> {
+    let against = |k: usize, side: std::ops::Range<usize>| {
+        let mut around: Vec<f64> = side.map(|other| residual[kept[other]]).collect();
+        (around.len() >= FEWEST).then(|| {
+            let level = median(&mut around);
+            around.iter_mut().for_each(|value| *value = (*value - level).abs());
+            Side { distance: residual[kept[k]] - level, spread: median(&mut around) }
+        })
+    };
     (0..kept.len())
         .map(|k| {
-            [k.saturating_sub(NEIGHBOURS)..k, k + 1..(k + 1 + NEIGHBOURS).min(kept.len())].map(|side| {
-                let mut around: Vec<f64> = side.map(|other| residual[kept[other]]).collect();
-                (around.len() >= FEWEST).then(|| residual[kept[k]] - median(&mut around))
-            })
+            [k.saturating_sub(NEIGHBOURS)..k, k + 1..(k + 1 + NEIGHBOURS).min(kept.len())].map(|side| against(k, side))
         })
         .collect()
 }
@@ -153,6 +178,16 @@ mod tests {
         let jumped: Vec<f64> =
             noise.iter().enumerate().map(|(row, x)| x + if row >= 130 { 0.07 } else { 0.0 }).collect();
         assert_eq!(find(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
+    }
+
+    /// A smooth misfit without noise has no outliers, however it begins.
+    #[test]
+    fn a_slope_is_no_run_of_spikes() {
+        let track = Track::new(&Case::default().trial());
+        let smooth: Vec<f64> = (0..track.heading.len())
+            .map(|k| 0.05 * (-(k as f64) / 6.0).exp() + 0.01 * (k as f64 / 40.0).sin())
+            .collect();
+        assert_eq!(find(&track, &smooth, &[]).spikes, []);
     }
 
     #[test]
