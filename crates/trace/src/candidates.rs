@@ -107,7 +107,7 @@ pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
 }
 
 /// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.
-fn mean_square(records: &[Record], signal: impl Fn(&Record) -> Option<&Polyline>) -> Option<f64> {
+pub fn mean_square(records: &[Record], signal: impl Fn(&Record) -> Option<&Polyline>) -> Option<f64> {
     let mut sum = 0.0;
     let mut count = 0usize;
     for record in records {

@@ -2,6 +2,7 @@
 //! among the effects, since nothing in the motion itself says when it comes.
 
 use ship::EffectReal;
+use ship::effects::instant::{EDGE_ROWS, INSTANT, REACH};
 use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal, Scale};
 
 use crate::candidates::{Candidate, Sizes};
@@ -18,26 +19,10 @@ struct Change {
 const SHARE: Parameter =
     Parameter { key: "a", symbol: "a", unit: "1", neutral: 0.0, typical: 0.2, lowest: -0.9, highest: 10.0, odd: false };
 
-const PARAMETERS: [Parameter; 3] = [
-    SHARE,
-    Parameter { key: "b", symbol: "b", ..SHARE },
-    Parameter {
-        key: "t_0",
-        symbol: "t₀",
-        unit: "s",
-        neutral: 100.0,
-        typical: 100.0,
-        lowest: -1e7,
-        highest: 1e7,
-        odd: false,
-    },
-];
+const PARAMETERS: [Parameter; 3] = [SHARE, Parameter { key: "b", symbol: "b", ..SHARE }, INSTANT];
 
 /// Instants from which a fit starts, as shares of the record; the outer ones bound it.
 const INSTANTS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-
-/// Width of the edge, in rows.
-const EDGE_ROWS: f64 = 2.0;
 
 impl Effect for Change {
     fn id(&self) -> &'static str {
@@ -82,7 +67,7 @@ impl Effect for Change {
     }
 
     fn fast_span(&self, p: &[f64]) -> [f64; 2] {
-        [p[2] - 15.0 * self.edge, p[2] + 15.0 * self.edge]
+        [p[2] - REACH * self.edge, p[2] + REACH * self.edge]
     }
 }
 

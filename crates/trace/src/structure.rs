@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use ship::dynamics::Dynamics;
-use ship::effects::{Effect, Parameter};
+use ship::effects::{Effect, Parameter, SpeedLoss};
 use ship::replay::replay_states;
 use ship::response::BASE;
 use ship::{EffectReal, Response, ResponseModel};
@@ -58,6 +58,26 @@ impl Term {
     }
 }
 
+/// A base whose K and T follow the measured speed: K ~ U and T ~ 1/U. It costs no parameter.
+#[derive(Debug, Clone)]
+pub struct SpeedScaling {
+    /// The speed of which K and T are told, m/s.
+    pub approach_speed: f64,
+    effect: Arc<dyn Effect>,
+}
+
+impl SpeedScaling {
+    /// Scaling about an approach speed, m/s.
+    pub fn about(approach_speed: f64) -> Self {
+        Self { approach_speed, effect: Arc::new(SpeedLoss::Measured { approach_speed }) }
+    }
+
+    /// Identifier, form and record of the effect whose exponents are those of the free stream here.
+    pub fn name(&self) -> TermName {
+        (self.effect.id(), self.effect.form(), None)
+    }
+}
+
 /// Base and terms over a number of records.
 #[derive(Debug, Clone)]
 pub struct Structure {
@@ -65,6 +85,8 @@ pub struct Structure {
     pub records: usize,
     /// Whether every record has a rudder bias of its own.
     pub own_bias: bool,
+    /// Whether K and T of the base follow the measured speed. A term with exponents of its own takes the place of it.
+    pub scaling: Option<SpeedScaling>,
     /// Whether the ship is known: nothing is fitted but what depends on time alone, and initial states.
     pub ship_known: bool,
     /// The terms, in the order in which the rudder passes through them.
@@ -107,7 +129,7 @@ pub fn fitted(entries: &[Entry]) -> Vec<ThetaPlace> {
 impl Structure {
     /// The base alone.
     pub fn base(records: usize, own_bias: bool) -> Self {
-        Self { records, own_bias, ship_known: false, terms: Vec::new() }
+        Self { records, own_bias, scaling: None, ship_known: false, terms: Vec::new() }
     }
 
     /// Number of rudder biases.
@@ -124,6 +146,21 @@ impl Structure {
     pub fn free_count(&self) -> usize {
         let base = if self.ship_known { 0 } else { self.base_count() };
         base + self.terms.iter().filter(|term| self.fits(term)).map(Term::freedom).sum::<usize>()
+    }
+
+    /// The scaling of the base, unless a term has taken its place.
+    pub fn scaled(&self) -> Option<&SpeedScaling> {
+        self.scaling.as_ref().filter(|scaling| self.terms.iter().all(|term| term.name() != scaling.name()))
+    }
+
+    /// Whether it is a first-order response with constant K and T.
+    pub fn is_constant(&self) -> bool {
+        self.terms.is_empty() && self.scaling.is_none()
+    }
+
+    /// Whether it is one with one rudder bias, too.
+    pub fn is_first_order(&self) -> bool {
+        self.is_constant() && !self.own_bias
     }
 
     /// Whether the parameters of a term are fitted.
@@ -207,6 +244,10 @@ impl Structure {
         let (mut effects, mut own) = (Vec::with_capacity(self.terms.len()), Vec::with_capacity(theta.len()));
         own.extend_from_slice(&theta[..2]);
         own.push(theta[2 + if self.own_bias { record.0 } else { 0 }]);
+        if let Some(SpeedScaling { effect, .. }) = self.scaled() {
+            effects.push(Arc::clone(effect));
+            own.extend(SpeedLoss::FREE_STREAM.map(R::from));
+        }
         let mut from = self.base_count();
         for term in &self.terms {
             let to = from + term.effect.parameters().len();

@@ -9,6 +9,7 @@
 //! line in [`all`].
 
 mod effect;
+pub mod instant;
 mod moment_drift;
 mod nonlinear_damping;
 mod port_starboard_asymmetry;

@@ -24,6 +24,11 @@ pub enum SpeedLoss {
     },
 }
 
+impl SpeedLoss {
+    /// Exponents (m_a, m_b) of a ship whose rudder stands in the free stream: K ~ U and T ~ 1/U.
+    pub const FREE_STREAM: [f64; 2] = [1.0, 2.0];
+}
+
 const MODELLED: [Parameter; 3] = [
     Parameter {
         key: "c_u",
@@ -148,7 +153,8 @@ impl Effect for SpeedLoss {
             }
             Self::Measured { .. } => {
                 let measured = Self::Measured { approach_speed: about.speed_square?.sqrt() };
-                Some(Proposal::new(measured, vec![1.0, 1.0], vec![vec![0.0, 0.0]], vec![1.0, 2.0]))
+                let scaled = Self::FREE_STREAM.to_vec();
+                Some(Proposal::new(measured, vec![1.0, 1.0], vec![vec![0.0, 0.0], scaled.clone()], scaled))
             }
             Self::Propeller { .. } => {
                 let [mean, lowest, highest] = about.propeller?;

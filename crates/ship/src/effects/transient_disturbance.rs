@@ -1,6 +1,7 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::instant::{EDGE_ROWS, INSTANT, REACH};
 use crate::number::Real;
 
 /// A moment m, as an equivalent rudder angle, in one of two forms.
@@ -28,32 +29,11 @@ const MOMENT: Parameter = Parameter {
 
 const PASSING: [Parameter; 3] = [
     MOMENT,
-    Parameter {
-        key: "t_c",
-        symbol: "t_c",
-        unit: "s",
-        neutral: 100.0,
-        typical: 100.0,
-        lowest: -1e7,
-        highest: 1e7,
-        odd: false,
-    },
+    Parameter { key: "t_c", symbol: "t_c", ..INSTANT },
     Parameter { key: "d", symbol: "d", unit: "s", neutral: 30.0, typical: 30.0, lowest: 0.5, highest: 1e5, odd: false },
 ];
 
-const LASTING: [Parameter; 2] = [
-    MOMENT,
-    Parameter {
-        key: "t_0",
-        symbol: "t₀",
-        unit: "s",
-        neutral: 100.0,
-        typical: 100.0,
-        lowest: -1e7,
-        highest: 1e7,
-        odd: false,
-    },
-];
+const LASTING: [Parameter; 2] = [MOMENT, INSTANT];
 
 /// Width of an edge as a share of the duration.
 const EDGE: f64 = 0.1;
@@ -63,9 +43,6 @@ const LONGEST: f64 = 0.2;
 
 /// Share of a record at either end in which no lasting moment is looked for: it would be a matter of a few rows.
 const SOONEST: f64 = 0.05;
-
-/// Width of the edge of a lasting moment, in rows.
-const EDGE_ROWS: f64 = 2.0;
 
 impl Effect for TransientDisturbance {
     fn id(&self) -> &'static str {
@@ -136,11 +113,10 @@ impl Effect for TransientDisturbance {
         }
     }
 
-    /// Fifteen widths beyond the edges: tanh is there one to 10⁻¹³.
     fn fast_span(&self, p: &[f64]) -> [f64; 2] {
         let reach = match self {
-            Self::Passing => (0.5 + 15.0 * EDGE) * p[2],
-            Self::Lasting { edge } => 15.0 * edge,
+            Self::Passing => (0.5 + REACH * EDGE) * p[2],
+            Self::Lasting { edge } => REACH * edge,
         };
         [p[1] - reach, p[1] + reach]
     }

@@ -76,7 +76,7 @@ pub fn table(missing: &MissingMoment) -> String {
 /// The explanation that is drawn: the named effects together, else the best candidate alone.
 fn drawn(report: &TraceReport, missing: &MissingMoment) -> Option<String> {
     let ids = identifiers(missing, [0])?;
-    Some(if report.analysis.has_terms() { ids } else { format!("best candidate: {ids}") })
+    Some(if report.analysis.explains_something() { ids } else { format!("best candidate: {ids}") })
 }
 
 /// Effects of some explanations, every one once.

@@ -18,6 +18,15 @@ use super::trace_report::TraceReport;
 use crate::records::file_of;
 use campaign::answer::Parameters;
 
+/// K and T that follow the measured speed.
+#[derive(Debug, Serialize)]
+pub struct SpeedScalingEntry {
+    /// The speed of which K and T are told.
+    pub speed_m_s: f64,
+    /// Change of BIC against constant K and T.
+    pub delta_bic: f64,
+}
+
 /// `trace.json`.
 #[derive(Debug, Serialize)]
 pub struct TraceFile {
@@ -27,6 +36,8 @@ pub struct TraceFile {
     pub verdict: &'static str,
     /// K, T and δ_r of the base fitted alone.
     pub base: Parameters,
+    /// Whether the search began from K and T that follow the measured speed.
+    pub speed_scaling: Option<SpeedScalingEntry>,
     /// What was found, in the order of discovery.
     pub effects: Vec<EffectEntry>,
     /// Every effect of the list and what became of it.
@@ -250,6 +261,9 @@ impl TraceFile {
             schema: "trace/2",
             verdict: analysis.verdict.as_str(),
             base: Parameters { k_per_s: base.K(), t_s: base.T(), delta_r_deg: base.rudder_bias().scaled(degree) },
+            speed_scaling: analysis
+                .speed_scaling()
+                .map(|(speed, gain)| SpeedScalingEntry { speed_m_s: speed, delta_bic: -gain }),
             effects: analysis.effects.iter().map(EffectEntry::from).collect(),
             candidates: candidates(&analysis.candidates, &analysis.weights),
             models: analysis.weights.alike().iter().map(|one| StructureEntry::new(one, &report.names)).collect(),

@@ -72,6 +72,11 @@ pub fn words(report: &TraceReport) -> String {
         Verdict::Unexplained => "unexplained: some of what is missing has a name, some has not",
     };
     let _ = write!(text, "\nverdict: {verdict}");
+    if let Some((speed, gain)) = analysis.speed_scaling() {
+        let (speed, gain) = (significant(speed, 3), number::fixed(-gain, 0));
+        let _ =
+            write!(text, "\n  base: K ~ U and T ~ 1/U with the measured speed, K and T at {speed} m/s; ΔBIC {gain}");
+    }
     for effect in &analysis.effects {
         let _ = write!(text, "\n  {}", effect_line(effect));
     }

@@ -41,7 +41,11 @@ pub(super) fn believed_elsewhere(
     model
 }
 
-fn worse_on_others(held_out: &[HeldOut], less: &Model, more: &Model) -> Option<String> {
+/// Why a model is no better than a simpler one on records that neither was fitted to.
+pub(super) fn worse_on_others(held_out: &[HeldOut], less: &Model, more: &Model) -> Option<String> {
+    if held_out.is_empty() {
+        return None;
+    }
     let errors = |model: &Model| held_out::errors(held_out, &model.structure, &model.plain);
     // A model whose replay is not finite is worse than any other.
     let Some(after) = errors(more) else { return Some(String::from("its replay of a held-out record is not finite")) };

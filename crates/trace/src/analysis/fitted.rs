@@ -29,7 +29,7 @@ pub(super) fn no_larger_error(
     let limit = heading_error(before);
     // A replay that is not finite has no error: none is larger.
     let judged = |model: &Model| {
-        let after = if model.structure.terms.is_empty() { Ok(before.to_vec()) } else { replay(model) };
+        let after = if model.structure.is_constant() { Ok(before.to_vec()) } else { replay(model) };
         let error = after.as_ref().map_or(f64::INFINITY, |after| heading_error(after));
         (error, after.unwrap_or_default())
     };

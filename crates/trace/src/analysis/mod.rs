@@ -1,5 +1,6 @@
 //! The whole analysis of some records of one ship, and its result.
 
+mod base;
 mod elsewhere;
 mod fitted;
 mod left_out;
@@ -30,6 +31,7 @@ use crate::record::Record;
 use crate::search::{Model, NotFitted, Search};
 use crate::structure::{Structure, Term};
 
+use base::better_base;
 use elsewhere::{believed_elsewhere, predicted_elsewhere};
 use fitted::no_larger_error;
 use left_out::leave_one_out;
@@ -129,7 +131,9 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let mut search = Search::new(&problem, &candidate_terms, settings.thresholds);
     search.wanted = settings.wanted.clone();
 
-    let start = search.base(structure, &theta, &initial);
+    let constant = search.base(structure, &theta, &initial);
+    let held_out: Vec<HeldOut> = validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
+    let start = better_base(&search, &constant, &held_out);
     let tried = search.try_all(&start, &start.plain, false);
     let mut model = search.with_asked(&start).map_err(cannot_be_held)?;
     if settings.wanted.search {
@@ -150,19 +154,17 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         model = start.clone();
     }
 
-    let held_out: Vec<HeldOut> = validation.iter().map(|trial| HeldOut::new(trial, starts(trial, &first))).collect();
     model = believed_elsewhere(&search, model, &held_out, &mut refused);
     let predicted = predicted_elsewhere(&search, &mut model, &held_out);
 
     // Replays of what is nearest to the records, whatever the noise: no first-order response makes "before" smaller.
     let nearest = |model: &Model| {
-        let is_base = model.structure.terms.is_empty() && !settings.own_bias;
-        let closed = is_base.then_some(&first);
+        let closed = model.structure.is_first_order().then_some(&first);
         on_records(trials, (&model.structure, &model.plain), &first, closed, settings.thorough)
     };
-    let before: Vec<OnRecord> = nearest(&start)?;
+    let before: Vec<OnRecord> = nearest(&constant)?;
     let (model, after) = no_larger_error(&search, model, &before, nearest, &mut refused);
-    let told = Told::new(trials, &problem, [&start, &model], &first, [before, after], settings.thorough)?;
+    let told = Told::new(trials, &problem, [&constant, &model], &first, [before, after], settings.thorough)?;
     let names: Vec<String> = trials.iter().map(|trial| trial.name().to_owned()).collect();
     let judged = |names: Vec<String>, before: Vec<OnRecord>, after: Vec<OnRecord>| -> Vec<Judged> {
         let pairs = names.into_iter().zip(before.into_iter().zip(after));
@@ -227,6 +229,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         outliers: outliers.into_iter().chain(outliers_elsewhere).collect(),
         thresholds: settings.thresholds,
         tried,
+        constant,
         start,
         candidate_terms,
         model,

@@ -111,7 +111,7 @@ pub(super) fn judged(
         OnRecord { band, ..on }
     };
     let before = banded(&known[0], before);
-    let after = if structure.terms.is_empty() {
+    let after = if structure.is_constant() {
         before.clone()
     } else {
         let mut all = held.starts.clone();

@@ -19,7 +19,7 @@ use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
 use crate::monomial::{self, LIBRARY};
 use crate::offset;
-use crate::search::{Evidence, Model, Search, Tested, Tried, Weights};
+use crate::search::{Evidence, Model, NAMELESS, Search, Tested, Tried, Weights};
 use crate::separation::Ground;
 use crate::structure::Term;
 
@@ -372,7 +372,7 @@ impl Reporter<'_> {
                 tried.evidence = search.evidence(&self.model.judged, &with.judged, freedom);
                 tried.fit = with.judged;
             }
-            tried.retain(|tried| search.believes_as_of_time(&tried.evidence));
+            tried.retain(|tried| search.passes(&tried.evidence, NAMELESS));
             tried.sort_by(|one, other| one.fit.bic.total_cmp(&other.fit.bic));
             let mut seen = BTreeSet::new();
             tried.retain(|one| seen.insert(one.candidate));

@@ -227,7 +227,7 @@ pub struct Judged {
 
 /// The result.
 pub struct Analysis {
-    /// The base, fitted alone: no first-order response is nearer to the records.
+    /// The base of constant K and T, fitted alone: no first-order response is nearer to the records.
     pub base: Estimate,
     /// Base indices K (1/s) and T (s) of the final model.
     pub indices: [Quantity; 2],
@@ -265,7 +265,9 @@ pub struct Analysis {
     /// The thresholds it was judged by.
     pub thresholds: Thresholds,
     pub(super) problem: Problem,
-    /// The base.
+    /// The base of constant K and T.
+    pub(super) constant: Model,
+    /// The base that the search began from.
     pub(super) start: Model,
     /// All candidates on the base, lowest BIC first.
     pub(super) tried: Vec<Tried>,
@@ -276,6 +278,13 @@ pub struct Analysis {
 }
 
 impl Analysis {
+    /// The speed, m/s, of which K and T of the final model are told, where K ~ U and T ~ 1/U with the measured speed
+    /// explain the records better than constant ones, and the fall of BIC.
+    pub fn speed_scaling(&self) -> Option<(f64, f64)> {
+        let scaling = self.start.structure.scaling.as_ref()?;
+        Some((scaling.approach_speed, self.constant.judged.bic - self.start.judged.bic))
+    }
+
     /// Whether K, T and δ_r of the final model rest on a parameter at an end of its range: K = (K/T)/(1/T), T =
     /// 1/(1/T).
     pub fn indices_at_bound(&self) -> [bool; 3] {

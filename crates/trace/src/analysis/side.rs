@@ -32,9 +32,4 @@ impl Side {
         let rudder_bias = biases.iter().sum::<f64>() / biases.len() as f64;
         FirstOrder { inverse_T: theta[0], K_over_T: theta[1], rudder_bias }
     }
-
-    /// Whether it is a first-order response with one rudder bias.
-    pub fn is_first_order(&self) -> bool {
-        self.structure.terms.is_empty() && !self.structure.own_bias
-    }
 }

@@ -56,12 +56,12 @@ impl Told {
         let mut told = Self { sides, before, after, random, noise_holds: false };
         if random && Innovations::of(problem, &model.judged).agree() {
             let likelihood = Side { fit: model.judged.clone(), ..told.sides[1].clone() };
-            let response = likelihood.is_first_order().then(|| likelihood.first_order());
+            let response = likelihood.structure.is_first_order().then(|| likelihood.first_order());
             let (structure, fit) = (&likelihood.structure, &likelihood.fit);
             let on = on_records(trials, (structure, fit), first, response.as_ref(), thorough)?;
             let mut is_told = true;
             told.noise_holds = true;
-            if likelihood.structure.terms.is_empty() {
+            if likelihood.structure.is_constant() {
                 (told.sides[0], told.before) = (likelihood.clone(), on.clone());
             } else {
                 is_told = heading_error(&on) <= AS_NEAR * heading_error(&told.after);

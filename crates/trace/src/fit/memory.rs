@@ -50,9 +50,11 @@ pub(super) fn question(
     });
     let waves = colour.waves.map_or([0.0; 3], |waves| [waves.sd, waves.frequency, waves.damping]);
     let shape = [structure.own_bias, structure.ship_known, start.is_some()].map(f64::from);
+    let scaling = structure.scaled().map_or(0.0, |scaling| scaling.approach_speed);
     let own = start.unwrap_or_default();
     let numbers = shape
         .iter()
+        .chain([&scaling])
         .chain(&moment)
         .chain(&waves)
         .chain(&constants)

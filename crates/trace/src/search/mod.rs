@@ -23,7 +23,7 @@ mod weights;
 pub use asked::NotFitted;
 pub use evidence::{Evidence, Thresholds};
 pub use ledger::{Ledger, Names, Noted};
-pub use models::{Model, Search, Tested};
+pub use models::{Model, NAMELESS, Search, Tested};
 pub use rule::{Rule, UnknownRule};
 pub use trying::Tried;
 pub use weights::{Weighted, Weights};

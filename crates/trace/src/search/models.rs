@@ -28,8 +28,14 @@ pub struct Model {
     pub judged: Fit,
 }
 
-/// A term that depends on time alone, or has an instant, needs this many times the gain of another one.
-const OF_TIME: f64 = 2.5;
+/// A trend needs this many times the gain of another term: in one record a random moment has one, too.
+const TREND: f64 = 1.2;
+
+/// A term that comes or goes at an instant needs this many times the gain: a random moment has many instants.
+const LOCATED: f64 = 2.0;
+
+/// A term without a name that lets stand a random moment needs this many times the gain.
+pub const NAMELESS: f64 = 2.5;
 
 /// Search over one problem.
 pub struct Search<'a> {
@@ -84,24 +90,28 @@ impl Search<'_> {
         Evidence { gain: without.bic - with.bic, p_value: (chance * self.candidates.len() as f64).min(1.0) }
     }
 
-    /// Gain in BIC that a term needs: a trend, a moment for a while, or a ship that changes is also what a random
-    /// moment looks like in one record.
-    pub fn needed(&self, term: &Term) -> f64 {
-        if term.effect.is_of_time() || term.effect.has_instant() {
-            OF_TIME * self.thresholds.gain
-        } else {
-            self.thresholds.gain
+    /// How many times the gain of a plain term a term needs.
+    fn times(term: &Term) -> f64 {
+        match (term.effect.has_instant(), term.effect.is_of_time()) {
+            (true, _) => LOCATED,
+            (false, true) => TREND,
+            (false, false) => 1.0,
         }
     }
 
-    /// Whether the evidence for a term passes both thresholds, were it one that depends on time alone.
-    pub fn believes_as_of_time(&self, evidence: &Evidence) -> bool {
-        evidence.gain > OF_TIME * self.thresholds.gain && evidence.p_value < self.thresholds.false_discovery
+    /// Gain in BIC that a term needs.
+    pub fn needed(&self, term: &Term) -> f64 {
+        Self::times(term) * self.thresholds.gain
+    }
+
+    /// Whether evidence passes both thresholds, where so many times the gain of a plain term is needed.
+    pub fn passes(&self, evidence: &Evidence, times: f64) -> bool {
+        evidence.gain > times * self.thresholds.gain && evidence.p_value < self.thresholds.false_discovery
     }
 
     /// Whether the evidence for a term passes both thresholds.
     pub fn believes(&self, term: &Term, evidence: &Evidence) -> bool {
-        evidence.gain > self.needed(term) && evidence.p_value < self.thresholds.false_discovery
+        self.passes(evidence, Self::times(term))
     }
 
     /// The base, fitted and judged.
