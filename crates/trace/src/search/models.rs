@@ -29,7 +29,7 @@ pub struct Model {
 }
 
 /// A trend needs this many times the gain of another term: in one record a random moment has one, too.
-const TREND: f64 = 1.2;
+const TREND: f64 = 1.4;
 
 /// A term that comes or goes at an instant needs this many times the gain: a random moment has many instants.
 const LOCATED: f64 = 2.0;

@@ -79,7 +79,7 @@ fn a_moment_of_time_needs_more_and_stands_alone() {
         CandidatePlace(candidates.iter().position(|candidate| candidate.term.effect.id() == id).expect("listed"))
     };
     let (drift, squall, damping) = (place("moment_drift"), place("transient_disturbance"), place("nonlinear_damping"));
-    assert_eq!(search.needed(&search.candidate(drift).term), 12.0);
+    assert_eq!(search.needed(&search.candidate(drift).term), 14.0);
     assert_eq!(search.needed(&search.candidate(damping).term), 10.0);
     let structure = base.structure.with(search.candidate(drift).term.clone());
     let fit = problem.fit(&structure, &[&BASE[..], &[0.0]].concat(), &[[0.0; 2]], &Colour::WHITE);
