@@ -28,8 +28,18 @@ struct Set {
     records: &'static [&'static str],
     /// Records that are fitted together, the others being held out; without others, each is left out in turn.
     pools: &'static [&'static [&'static str]],
+    /// Turning circles: held out from the pools once more, by themselves. A rudder that stays where it is tells too
+    /// little to be fitted.
+    circles: &'static [&'static str],
     /// Whether the records have wind columns.
     wind: bool,
+}
+
+impl Set {
+    /// The zig-zags that are not among some of them.
+    fn others(&self, records: &[&str]) -> Vec<&'static str> {
+        self.records.iter().copied().filter(|other| !records.contains(other)).collect()
+    }
 }
 
 const ESSO_OSAKA: [&str; 5] =
@@ -50,6 +60,7 @@ const SETS: [Set; 3] = [
             "zigzag_05_01",
         ],
         pools: &[&["zigzag_20_10_s", "zigzag_10_10_s", "zigzag_15_05"]],
+        circles: &[],
         wind: false,
     },
     Set {
@@ -57,6 +68,7 @@ const SETS: [Set; 3] = [
         folder: "kvlcc2_marin",
         records: &["zigzag_20", "zigzag_-20", "zigzag_10"],
         pools: &[&["zigzag_20", "zigzag_-20"]],
+        circles: &["turning_35"],
         wind: false,
     },
     Set {
@@ -64,6 +76,12 @@ const SETS: [Set; 3] = [
         folder: "esso_osaka",
         records: &ESSO_OSAKA,
         pools: &[&["zigzag_13_57_45", "zigzag_13_04_24", "zigzag_13_14_21"], &ESSO_OSAKA],
+        circles: &[
+            "turning_oct14_14_29_49",
+            "turning_oct14_15_06_53",
+            "turning_sep14_13_51_45",
+            "turning_sep14_14_50_41",
+        ],
         wind: true,
     },
 ];
@@ -105,8 +123,7 @@ fn run(results: &Path) -> Outcome<()> {
             for &without_wind in withheld {
                 let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
                 let out = scratch.path().join(&name);
-                trace_some(set, &[record], without_wind, &out)?;
-                let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?;
+                let json = trace_some(set, &[record], &set.others(&[record]), without_wind, &out)?;
                 let label = if without_wind { format!("{record}, wind withheld") } else { record.to_owned() };
                 table.push(line(label, &json));
                 if KEPT.contains(&(record, without_wind)) {
@@ -116,10 +133,15 @@ fn run(results: &Path) -> Outcome<()> {
         }
         for (number, pool) in set.pools.iter().enumerate() {
             let out = scratch.path().join(format!("{}-pool-{number}", set.folder));
-            trace_some(set, pool, false, &out)?;
-            let json: Value = serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?;
-            let others = if pool.len() == set.records.len() { ", each left out in turn" } else { "" };
-            table.push(line(format!("together: {}{others}", pool.join(", ")), &json));
+            let others = set.others(pool);
+            let json = trace_some(set, pool, &others, false, &out)?;
+            let left = if others.is_empty() { ", each left out in turn" } else { "" };
+            let together = format!("together: {}", pool.join(", "));
+            table.push(line(format!("{together}{left}"), &json));
+            if !set.circles.is_empty() {
+                let json = trace_some(set, pool, set.circles, false, &out)?;
+                table.push(line(format!("{together}; turning circles held out"), &json));
+            }
         }
         let _ = writeln!(page, "## {}\n\n{}", set.name, table.to_markdown());
         if set.wind {
@@ -147,7 +169,8 @@ cargo run --release -p kempf-tests --bin measured -- results/measured
 ```
 
 A line is one analysis: `study trace` of one record, or of some together, with all others of its set held out; where all are fitted
-together, each is left out in turn. *heading*: error of the recorded rudder replayed over the whole record, before (the best
+together, each is left out in turn. Where K and T follow the measured speed from the start, which costs no parameter, *speed scaling*
+stands first. *heading*: error of the recorded rudder replayed over the whole record, before (the best
 first-order base) and after. *windows*: the same restarted every 20 and 60 s. On held-out records only initial states are fitted;
 errors of several records are root mean squares over them, as the ratio after over before. *band*: share of the measured headings of
 the held-out records inside the 95 % band of the final model. Terms are in the order of discovery; those marked * were believed
@@ -171,13 +194,13 @@ fn errors_table() -> Table {
     ])
 }
 
-/// Runs `study trace` on some records, the others held out.
-fn trace_some(set: &Set, records: &[&str], without_wind: bool, out: &Path) -> Outcome<()> {
+/// Runs `study trace` on some records of a set, others held out, and reads `trace.json`.
+fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool, out: &Path) -> Outcome<Value> {
     let path = |name: &str| folder().join(set.folder).join(format!("{name}.csv"));
     let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
     let request = TraceRequest {
         trials: records.iter().map(|record| path(record)).collect(),
-        validate: set.records.iter().filter(|other| !records.contains(other)).map(|other| path(other)).collect(),
+        validate: held_out.iter().map(|record| path(record)).collect(),
         columns: Some(sidecars),
         own_bias: false,
         without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
@@ -189,7 +212,8 @@ fn trace_some(set: &Set, records: &[&str], without_wind: bool, out: &Path) -> Ou
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
     eprintln!("{}: {}{}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
-    study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string().into())
+    study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string())?;
+    Ok(serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?)
 }
 
 /// One line of the table, from `trace.json`.
@@ -207,16 +231,13 @@ fn line(label: String, json: &Value) -> Vec<String> {
     let [before, after] = ["before", "after"].map(|when| pooled(fitted, when, heading));
     let ratio = |of| significant(pooled(&held_out, "after", of) / pooled(&held_out, "before", of), 2);
     let covered = held_out.iter().map(|record| number(&record["after"]["band_coverage_95"])).sum::<f64>();
-    let found: Vec<String> = json["effects"]
-        .as_array()
-        .unwrap_or(&empty)
-        .iter()
-        .map(|effect| {
-            let predicted = effect["evidence"].as_str().is_some_and(|text| text.contains("does not stand"));
-            let text = |key: &str| effect[key].as_str().unwrap_or_default().to_owned();
-            format!("{} ({}){}", text("id"), text("form"), if predicted { "*" } else { "" })
-        })
-        .collect();
+    let scaling = (!json["speed_scaling"].is_null()).then(|| String::from("speed scaling"));
+    let effects = json["effects"].as_array().unwrap_or(&empty).iter().map(|effect| {
+        let predicted = effect["evidence"].as_str().is_some_and(|text| text.contains("does not stand"));
+        let text = |key: &str| effect[key].as_str().unwrap_or_default().to_owned();
+        format!("{} ({}){}", text("id"), text("form"), if predicted { "*" } else { "" })
+    });
+    let found: Vec<String> = scaling.into_iter().chain(effects).collect();
     vec![
         label,
         if found.is_empty() { "nothing".to_owned() } else { found.join(", ") },

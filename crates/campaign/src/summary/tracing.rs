@@ -1,6 +1,7 @@
 //! What traces said, cell by cell: was everything named that was missing, and anything that was not.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
 use ::trace::analysis::Verdict;
 
@@ -69,10 +70,12 @@ impl Promised {
     }
 }
 
-/// Identifiers of all effects, each once.
+static EFFECT_IDS: LazyLock<BTreeSet<&'static str>> =
+    LazyLock::new(|| ship::effects::all().iter().map(|effect| effect.id()).collect());
+
+/// Identifiers of all effects, each once, sorted.
 pub fn effect_ids() -> impl Iterator<Item = &'static str> {
-    let ids: BTreeSet<&'static str> = ship::effects::all().iter().map(|effect| effect.id()).collect();
-    ids.into_iter()
+    EFFECT_IDS.iter().copied()
 }
 
 impl TraceSummary {

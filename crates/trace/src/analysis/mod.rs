@@ -16,6 +16,8 @@ mod side;
 mod tests;
 mod told;
 
+use std::borrow::Cow;
+
 use identify::{Identifier, maximum_likelihood, output_error};
 use rayon::prelude::*;
 use ship::{Regressor, effects};
@@ -46,15 +48,21 @@ pub use result::{
 pub use settings::{Settings, TraceError};
 use told::Told;
 
-/// Every record without the readings of its compass that belong to no ship, and their times, s. A record that cannot be
-/// looked at keeps its readings.
-fn without_spikes(trials: &[Trial]) -> (Vec<Trial>, Vec<Vec<f64>>) {
+/// Times, s, of the readings of every record's compass that belong to no ship. A record that cannot be looked at has
+/// none.
+fn spikes(trials: &[Trial]) -> Vec<Vec<f64>> {
     let one = |trial: &Trial| {
-        let spikes = maximum_likelihood::spikes(std::slice::from_ref(trial))
-            .map_or_else(|_| Vec::new(), |mut all| all.remove(0));
-        (trial.clone().without_readings(&spikes), spikes)
+        maximum_likelihood::spikes(std::slice::from_ref(trial)).map_or_else(|_| Vec::new(), |mut all| all.remove(0))
     };
-    trials.par_iter().map(one).unzip()
+    trials.par_iter().map(one).collect()
+}
+
+/// The records without some readings of their compass.
+fn without<'a>(trials: &'a [Trial], readings: &[Vec<f64>]) -> Cow<'a, [Trial]> {
+    match readings.iter().all(Vec::is_empty) {
+        true => Cow::Borrowed(trials),
+        false => trials.iter().zip(readings).map(|(trial, out)| trial.clone().without_readings(out)).collect(),
+    }
 }
 
 /// Why an effect that was asked for is not in the model.
@@ -111,9 +119,9 @@ fn change_is_better(search: &Search, base: &Model, model: &Model, sizes: &Sizes)
 pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
     settings.thresholds.check()?;
     settings.wanted.check()?;
-    let (trials, outliers) = without_spikes(trials);
-    let (validation, outliers_elsewhere) = without_spikes(validation);
-    let (trials, validation) = (trials.as_slice(), validation.as_slice());
+    let [outliers, outliers_elsewhere] = [trials, validation].map(spikes);
+    let (trials, validation) = (without(trials, &outliers), without(validation, &outliers_elsewhere));
+    let (trials, validation) = (&*trials, &*validation);
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(trials)?;
     let first = base.response;
