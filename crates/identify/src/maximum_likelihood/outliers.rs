@@ -89,8 +89,8 @@ struct Side {
     spread: f64,
 }
 
-/// How far a reading stands from both sides: where the level changes it is near to one of them, on a slope it is between
-/// them. At an end of the record there is one side, and a slope is told by the spread of the neighbours.
+/// How far a reading stands from both sides, rad: where the level changes it is near to one of them, on a slope it is
+/// between them. At an end of the record there is one side, and a slope is told by the spread of the neighbours.
 fn apart(sides: [Option<Side>; 2]) -> f64 {
     match sides {
         [Some(before), Some(after)] if before.distance * after.distance > 0.0 => {
