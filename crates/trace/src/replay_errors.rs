@@ -10,6 +10,7 @@ use nalgebra::{Matrix2, Vector2};
 use ship::dynamics::Dynamics;
 use ship::replay::replay_states;
 use ship::{EffectReal, Response, Tangent};
+use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 
 use crate::record::Record;
@@ -121,11 +122,16 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
 
 fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     let (measured, twin) = (ZigZag::of(trial).ok()?, replayed_zigzag(trial, replayed)?);
+    // Both have the executes of the recorded rudder; a peak may be seen in one of them alone.
+    let time = |zigzag: &ZigZag, overshoot: &Overshoot| zigzag.executes[overshoot.execute].time.value;
+    let other = |one: &Overshoot| {
+        let own = time(&measured, one);
+        twin.overshoots.iter().find(|other| (time(&twin, other) - own).abs() < trial.sampling_period())
+    };
     let pairs: Vec<f64> = measured
         .overshoots
         .iter()
-        .zip(&twin.overshoots)
-        .map(|(one, other)| (one.angle.value - other.angle.value).abs())
+        .filter_map(|one| Some((one.angle.value - other(one)?.angle.value).abs()))
         .filter(|d| d.is_finite())
         .collect();
     (!pairs.is_empty()).then(|| pairs.iter().sum::<f64>() / pairs.len() as f64)

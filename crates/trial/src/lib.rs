@@ -15,6 +15,7 @@ mod cells;
 pub mod channel;
 mod encoding;
 pub mod file;
+mod hygiene;
 pub mod imo;
 pub mod plausibility;
 mod quantity;

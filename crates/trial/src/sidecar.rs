@@ -34,7 +34,7 @@
 //! rudder-deg = 0.1
 //!
 //! [check]
-//! plausibility = false        # what looks implausible becomes a warning in place of an error
+//! plausibility = false        # nothing is mended, and what looks implausible is a warning in place of an error
 //! ```
 
 use std::ops::Range;

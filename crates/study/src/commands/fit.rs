@@ -6,7 +6,7 @@ use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
-use report::number::{fixed, optional, with_uncertainty};
+use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
@@ -202,7 +202,7 @@ fn characteristics(entry: &ZigZagEntry) -> String {
         .iter()
         .zip(&entry.overshoots_sd_deg)
         .take(MOST_LISTED)
-        .map(|(&angle, &sd)| with_uncertainty(angle, sd))
+        .map(|(&angle, &sd)| angle.map_or_else(|| MISSING.to_owned(), |angle| with_uncertainty(angle, sd)))
         .collect();
     let overshoots = match entry.overshoots_deg.len().saturating_sub(MOST_LISTED) {
         0 if overshoots.is_empty() => "none".to_owned(),
@@ -236,7 +236,7 @@ mod tests {
     fn very_many_overshoots_are_not_all_written_on_the_screen() {
         let entry = |count: usize| ZigZagEntry {
             initial_turning_time_s: None,
-            overshoots_deg: vec![8.25; count],
+            overshoots_deg: vec![Some(8.25); count],
             overshoots_sd_deg: vec![None; count],
             period_s: None,
             imo: Vec::new(),

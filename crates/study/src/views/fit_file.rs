@@ -42,8 +42,8 @@ pub struct CriterionEntry {
 pub struct ZigZagEntry {
     /// Initial turning time, s.
     pub initial_turning_time_s: Option<f64>,
-    /// Overshoot angles in order, deg.
-    pub overshoots_deg: Vec<f64>,
+    /// Overshoot angles in order, deg; of a peak that was not seen there is none.
+    pub overshoots_deg: Vec<Option<f64>>,
     /// Standard deviations of the overshoot angles, deg.
     pub overshoots_sd_deg: Vec<Option<f64>>,
     /// Period, s.
@@ -82,8 +82,8 @@ fn zigzag_entry(zigzag: &ZigZag, trial: &Trial) -> ZigZagEntry {
     let criteria = trial.particulars().map(|particulars| imo::criteria(zigzag, particulars)).unwrap_or_default();
     ZigZagEntry {
         initial_turning_time_s: zigzag.initial_turning_time.map(|time| time.value),
-        overshoots_deg: zigzag.overshoots.iter().map(|overshoot| to_deg(overshoot.angle.value)).collect(),
-        overshoots_sd_deg: zigzag.overshoots.iter().map(|overshoot| overshoot.angle.sd.map(to_deg)).collect(),
+        overshoots_deg: zigzag.swings().map(|swing| Some(to_deg(swing?.angle.value))).collect(),
+        overshoots_sd_deg: zigzag.swings().map(|swing| swing?.angle.sd.map(to_deg)).collect(),
         period_s: zigzag.period.map(|period| period.value),
         imo: criteria
             .iter()

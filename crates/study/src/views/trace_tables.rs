@@ -103,7 +103,7 @@ pub fn overshoots(report: &TraceReport) -> Option<Table> {
 
 fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
     let angles: Vec<String> =
-        zigzag.overshoots.iter().map(|overshoot| number::fixed(to_deg(overshoot.angle.value), 2)).collect();
+        zigzag.swings().map(|swing| optional(swing.map(|overshoot| to_deg(overshoot.angle.value)), 2)).collect();
     [name.to_owned(), label.to_owned(), angles.join(", "), optional(zigzag.period.map(|period| period.value), 1)]
 }
 

@@ -102,10 +102,15 @@ pub fn zig_zag_csv() -> String {
 
 /// The same with another ship.
 pub fn zig_zag_csv_of(ship: &Ship) -> String {
+    zig_zag_csv_every(ship, 1.0)
+}
+
+/// The same with another time between rows, s.
+pub fn zig_zag_csv_every(ship: &Ship, period: f64) -> String {
     let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Record);
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
-        recording: Recording { duration: Some(300.0), ..Recording::default() },
+        recording: Recording { period, duration: Some(300.0), ..Recording::default() },
         ..Simulation::new(Vessel::ship(ship), manoeuvre)
     };
     let simulated = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a plain zig-zag");

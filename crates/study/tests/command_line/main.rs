@@ -9,3 +9,4 @@ mod records;
 mod scenarios;
 mod stored;
 mod traces;
+mod troubles;

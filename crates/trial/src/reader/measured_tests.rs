@@ -45,6 +45,12 @@ fn difference(raw: &Trial, tidy: &Trial, channel: Channel, tolerance_s: f64) -> 
     (largest, compared)
 }
 
+/// Whether the reader says of a record what is to be said: two antennas, as on the Esso Osaka, sometimes give the same
+/// heading ten times and then another one.
+fn are_expected(warnings: &[String], of_antennas: bool) -> bool {
+    warnings.iter().all(|warning| of_antennas && warning.starts_with("the heading is frozen"))
+}
+
 #[test]
 fn raw_files_agree_with_their_tidy_twins() {
     let Some(data) = data() else { return };
@@ -59,7 +65,7 @@ fn raw_files_agree_with_their_tidy_twins() {
     for (stem, extension, twin, rows) in cases {
         let raw = read_with(&data.join("raw").join(format!("{stem}.{extension}")), Some(&measured_sidecar(stem)));
         let raw = raw.unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!(raw.warnings, [""; 0], "{stem}");
+        assert!(are_expected(&raw.warnings, stem.starts_with("esso")), "{stem}: {:?}", raw.warnings);
         let tidy = read(&data.join(twin)).unwrap_or_else(|error| panic!("{error}")).trial;
         for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::North, Channel::PropellerRate] {
             let (error, compared) = difference(&raw.trial, &tidy, channel, 1e-3);
@@ -91,13 +97,14 @@ fn every_tidy_file_is_plausible_and_no_flipped_one_is() {
             let path = entry.expect("a readable folder").path();
             let stem = path.file_stem().and_then(|stem| stem.to_str()).expect("plain names").to_owned();
             let Reading { trial, warnings } = read(&path).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(warnings, [""; 0], "{stem}");
+            let of_antennas = folder == "esso_osaka";
+            assert!(are_expected(&warnings, of_antennas), "{stem}: {warnings:?}");
             let own = if folder == "esso_osaka" { stem.as_str() } else { folder };
             let sidecar = measured_sidecar(own);
             // Circles are not part of what is published.
             if stem.starts_with("zigzag") || sidecar.exists() {
                 let described = read_with(&path, Some(&sidecar)).unwrap_or_else(|error| panic!("{error}"));
-                assert_eq!(described.warnings, [""; 0], "{stem}");
+                assert!(are_expected(&described.warnings, of_antennas), "{stem}: {:?}", described.warnings);
                 assert!(described.trial.particulars().is_some());
             }
 

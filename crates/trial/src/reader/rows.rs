@@ -11,6 +11,7 @@ use super::layout::{Layout, Meaning};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment, no_rows, spoken};
 use crate::cells::{Cell, Separator, cell};
 use crate::channel::Channel;
+use crate::hygiene::is_sentinel;
 use crate::record::{Columns, Trial};
 use crate::sidecar::Sidecar;
 use crate::words::shortened;
@@ -43,6 +44,8 @@ pub(super) struct Rows<'a> {
     columns: Vec<Vec<f64>>,
     cells: Vec<Range<usize>>,
     row: Vec<f64>,
+    /// The last number of every column, as it stands in the file.
+    last: Vec<Option<f64>>,
     /// The last row with a time, as it was read.
     before: Option<(f64, Vec<f64>)>,
     last_heading: Option<f64>,
@@ -50,6 +53,10 @@ pub(super) struct Rows<'a> {
     usable: usize,
     /// First and last time in the file.
     span: Option<(f64, f64)>,
+    /// How often a column has a number that stands for no reading, and the last such number.
+    sentinels: Vec<(usize, f64)>,
+    /// Whether such numbers are looked for.
+    checked: bool,
     /// Cells with text, by column.
     text: Vec<usize>,
     counts: Counts,
@@ -80,6 +87,9 @@ impl<'a> Rows<'a> {
             used,
             cells: Vec::new(),
             row: vec![f64::NAN; layout.names.len()],
+            last: vec![None; layout.names.len()],
+            sentinels: vec![(0, 0.0); layout.names.len()],
+            checked: sidecar.is_none_or(|sidecar| sidecar.plausibility),
             before: None,
             last_heading: None,
             usable: 0,
@@ -173,11 +183,22 @@ impl<'a> Rows<'a> {
                 Meaning::Unknown => 1.0,
                 Meaning::Ignored => continue,
             };
-            self.row[place] = match cell(text, self.separator) {
-                Cell::Number(value) => value * factor,
-                Cell::CommaNumber(value) => {
-                    self.counts.decimal_commas += 1;
-                    value * factor
+            let read = cell(text, self.separator);
+            self.row[place] = match read {
+                Cell::Number(value) | Cell::CommaNumber(value) => {
+                    self.counts.decimal_commas += usize::from(matches!(read, Cell::CommaNumber(_)));
+                    match meaning {
+                        Meaning::Channel(channel, _)
+                            if self.checked && is_sentinel(channel, value, self.last[place]) =>
+                        {
+                            self.sentinels[place] = (self.sentinels[place].0 + 1, value);
+                            f64::NAN
+                        }
+                        _ => {
+                            self.last[place] = Some(value);
+                            value * factor
+                        }
+                    }
                 }
                 Cell::Missing => f64::NAN,
                 Cell::Text if meaning == Meaning::Unknown => {
@@ -319,6 +340,12 @@ impl<'a> Rows<'a> {
         for (name, &text) in self.layout.names.iter().zip(&self.text) {
             if text > 0 {
                 warnings.push(format!("the column `{}` holds text in {text} rows, taken as missing", shortened(name)));
+            }
+        }
+        for (name, (count, value)) in self.layout.names.iter().zip(&self.sentinels) {
+            if *count > 0 {
+                let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
+                warnings.push(format!("the column `{}` holds {value} {times}, taken as missing", shortened(name)));
             }
         }
         if self.layout.order_is_rudder {

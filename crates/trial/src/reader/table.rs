@@ -11,6 +11,7 @@ use super::rows::Rows;
 use crate::cells::{Cell, Separator, cell, recognise, unquoted};
 use crate::encoding::Encoding;
 use crate::file;
+use crate::hygiene;
 use crate::plausibility;
 use crate::record::{Columns, Origin, Trial, TrialError};
 use crate::sidecar::{Quantity, Sidecar};
@@ -81,7 +82,11 @@ pub fn read_bytes(
         }
     }
     let sha256 = lines.sha256();
-    let (columns, mut warnings) = rows.finish(line).map_err(fault)?;
+    let (mut columns, mut warnings) = rows.finish(line).map_err(fault)?;
+    let checked = sidecar.is_none_or(|sidecar| sidecar.plausibility);
+    if checked {
+        warnings.extend(hygiene::mend(&mut columns.columns));
+    }
     let name = path.file_stem().map_or_else(|| "record".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let origin = Origin::Measured { file: path.display().to_string(), sha256 };
     let trial = record(name, origin, columns.columns, columns.rows).map_err(fault)?;
@@ -100,9 +105,7 @@ pub fn read_bytes(
     };
     match plausibility::check(&trial) {
         Ok(found) => warnings.extend(found),
-        Err(implausible) if sidecar.is_some_and(|sidecar| !sidecar.plausibility) => {
-            warnings.push(implausible.to_string())
-        }
+        Err(implausible) if !checked => warnings.push(implausible.to_string()),
         Err(implausible) => return Err(fault(implausible.into())),
     }
     Ok(Reading { trial, warnings })

@@ -229,4 +229,11 @@ impl ZigZag {
         self.side?;
         self.overshoots.iter().find(|overshoot| overshoot.execute == n)
     }
+
+    /// Overshoots in the order of their executes, from the first one of the record on; `None` where a peak was not seen.
+    pub fn swings(&self) -> impl Iterator<Item = Option<&Overshoot>> {
+        let end = self.overshoots.last().map_or(0, |last| last.execute + 1);
+        (usize::from(self.side.is_some())..end)
+            .map(|execute| self.overshoots.iter().find(|overshoot| overshoot.execute == execute))
+    }
 }

@@ -57,6 +57,8 @@ pub(super) struct Heading {
     pub noise: Option<f64>,
     /// Half-width of local fits for values, s.
     half_width: f64,
+    /// Longest step between headings across which a peak is believed, s.
+    longest_step: f64,
 }
 
 impl Heading {
@@ -84,7 +86,8 @@ impl Heading {
         let best = 0.35 * period * (ratio * ratio * step / period).powf(1.0 / 7.0);
         let narrowest = 2.0 * step;
         let half_width = best.clamp(narrowest, narrowest.max(WIDEST * period));
-        Some(Self { time, relative, origin, noise, half_width })
+        let longest_step = (2.0 * half_width).max(4.0 * step);
+        Some(Self { time, relative, origin, noise, half_width, longest_step })
     }
 
     /// Half-width of local fits for values, s.
@@ -130,8 +133,8 @@ impl Heading {
 
     /// Time and heading of the peak towards `side` (+1 or −1) between two times.
     ///
-    /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit: the peak was not
-    /// seen.
+    /// `None` when the heading is largest at the end of the span, or nearer to it than half a fit, or beside a gap that
+    /// is longer than a fit: the peak was not seen.
     pub fn peak(&self, side: f64, from: f64, to: f64) -> Option<(Quantity, Quantity)> {
         let rows = self.rows(from, to);
         let every = rows.len().div_ceil(MOST_FITS).max(1);
@@ -149,11 +152,19 @@ impl Heading {
         let t = fit.stationary_point()?;
         let curvature = fit.curvature(t);
         let end = to.min(self.time[self.time.len() - 1]);
-        if side * curvature >= 0.0 || t <= from || t + self.half_width > end {
+        if side * curvature >= 0.0 || t <= from || t + self.half_width > end || self.is_beside_a_gap(t) {
             return None;
         }
         let time = Quantity::new(t, self.noise.map(|sd| sd * fit.slope_gain(t) / curvature.abs()));
         Some((time, Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t)))))
+    }
+
+    /// Whether a time lies in a gap of the headings that is longer than a local fit and its usual steps, or nearer to one
+    /// than half a fit.
+    fn is_beside_a_gap(&self, t: f64) -> bool {
+        let near = self.rows(t - self.half_width, t + self.half_width);
+        let around = near.start.saturating_sub(1)..(near.end + 1).min(self.time.len());
+        self.time[around].windows(2).any(|pair| pair[1] - pair[0] > self.longest_step)
     }
 
     /// First time between two times at which the heading passes `level` in the direction `side` (+1 rising, −1
@@ -215,6 +226,10 @@ mod tests {
         assert_relative_eq!(t.value, 19.0 * std::f64::consts::FRAC_PI_2, max_relative = 1e-4);
         assert_relative_eq!(psi.value, 1.0, max_relative = 1e-5);
         assert!(heading.peak(1.0, 5.0, 30.0).is_none(), "the span ends at the peak");
+        let gap: Vec<f64> = (0..240).map(|row| if (28..46).contains(&row) { f64::NAN } else { value[row] }).collect();
+        let broken = Heading::new(&time, &gap, 119.4, None).expect("enough rows");
+        assert!(broken.peak(1.0, 5.0, 55.0).is_none(), "the peak lies in the gap");
+        assert!(broken.peak(-1.0, 60.0, 110.0).is_some(), "the other one does not");
         let t = heading.crossing(0.5, -1.0, 31.0, 80.0).expect("falls through 0.5");
         assert_relative_eq!(t.value, 19.0 * 5.0 * std::f64::consts::PI / 6.0, max_relative = 1e-5);
     }

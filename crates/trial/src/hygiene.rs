@@ -1,0 +1,330 @@
+//! What is mended in the columns of a table before they are a record: rudder angles that no rudder has, channels that
+//! repeat an old value until the next one comes, and a heading that stood still while the ship turned. Each is located
+//! and told; nothing is mended where a sound record could look the same.
+
+use crate::channel::Channel;
+use crate::record::Columns;
+
+/// Angle beyond which no rudder goes, rad.
+const NO_RUDDER: f64 = 1.6;
+
+/// Angle that the rest of a record with such values stays within, rad: otherwise its unit is wrong, not a reading.
+const ANY_RUDDER: f64 = 1.05;
+
+/// Largest share of rows that may be left out as readings of no rudder.
+const LARGEST_SHARE: f64 = 0.1;
+
+/// Longest repetition that is looked for, rows.
+const LONGEST_HOLD: usize = 100;
+
+/// Fewest changes of a channel that show a rhythm.
+const FEWEST_CHANGES: usize = 12;
+
+/// Share of the changes that keep to a rhythm of a channel that repeats old values.
+const IN_STEP: f64 = 0.97;
+
+/// Chance at which separate movements fall into one rhythm by accident; a movement of a steady rate has one of its own.
+const ACCIDENT: f64 = 2e-3;
+
+/// Fewest rows in which a heading stands still before it may be frozen.
+const FROZEN_ROWS: usize = 8;
+
+/// Rate at which a frozen heading is left against that of one row in a hundred.
+const THAW: f64 = 3.0;
+
+/// Change of heading on either side of a rest, over a time as long, in steps of its digits: at a peak that these do not
+/// resolve it is 8.
+const TURNING: f64 = 20.0;
+
+/// Numbers that loggers write where a sensor gives nothing, without their sign.
+const SENTINELS: [f64; 13] =
+    [99.9, 999.0, 999.9, 9999.0, 9999.9, 99999.0, 327.67, 327.68, 3276.7, 3276.8, 32767.0, 32768.0, 65535.0];
+
+/// Change from the last reading from which on such a number is no reading, in the unit of the column.
+const NO_READING: f64 = 60.0;
+
+/// Whether a number stands for a reading that is not there: it is one of those that loggers write then, and far from
+/// the last reading, where there was one. A position may have any value.
+pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bool {
+    !matches!(channel, Channel::North | Channel::East)
+        && SENTINELS.contains(&value.abs())
+        && last.is_none_or(|last| (value - last).abs() > NO_READING)
+}
+
+/// Mends the columns; a sentence for everything that was done.
+pub(crate) fn mend(columns: &mut Columns) -> Vec<String> {
+    let mut done = Vec::new();
+    done.extend(leave_out_no_rudder(columns));
+    done.extend(straighten_rudder(columns));
+    for channel in [Channel::Heading, Channel::YawRate] {
+        done.extend(drop_repeats(columns, channel));
+    }
+    done.extend(drop_frozen(columns));
+    done
+}
+
+/// Leaves out rows whose rudder angle no rudder has, where they are few.
+fn leave_out_no_rudder(columns: &mut Columns) -> Option<String> {
+    let rudder = columns.channels.get(&Channel::Rudder)?;
+    let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > NO_RUDDER).collect();
+    let rest = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= NO_RUDDER).fold(0.0, f64::max);
+    if wild.is_empty() || wild.len() as f64 > LARGEST_SHARE * rudder.len() as f64 || rest > ANY_RUDDER {
+        return None;
+    }
+    let times: Vec<f64> = wild.iter().map(|&row| columns.time[row]).collect();
+    let largest =
+        wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
+    let keep = |values: &mut Vec<f64>| {
+        let mut row = 0;
+        values.retain(|_| {
+            row += 1;
+            wild.binary_search(&(row - 1)).is_err()
+        });
+    };
+    keep(&mut columns.time);
+    columns.channels.values_mut().for_each(keep);
+    columns.unknown.iter_mut().for_each(|(_, values)| keep(values));
+    Some(format!(
+        "{} with a rudder angle no rudder has ({:.0}°) left out, {}; between its neighbours the rudder runs straight",
+        rows(wild.len()),
+        largest.to_degrees(),
+        at(&times)
+    ))
+}
+
+fn rows(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "row" } else { "rows" })
+}
+
+/// Up to six times.
+fn at(times: &[f64]) -> String {
+    const SHOWN: usize = 6;
+    let mut shown: Vec<String> = times.iter().take(SHOWN).map(|time| time.to_string()).collect();
+    shown.extend((times.len() > SHOWN).then(|| String::from("…")));
+    format!("at t = {} s", shown.join(", "))
+}
+
+/// A channel that repeats its values: every `every` rows, from row `first` on, it has a new one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Rhythm {
+    every: usize,
+    first: usize,
+}
+
+impl Rhythm {
+    /// The slowest rhythm that the changes of a channel keep to; `None` where it has none of two rows or more.
+    ///
+    /// A rudder of whole degrees that moves at a steady rate changes in a rhythm, too, but in another phase at every
+    /// movement: separate movements have to agree.
+    fn of(values: &[f64]) -> Option<Self> {
+        let changed = |row: &usize| {
+            let pair = [values[*row - 1], values[*row]];
+            pair[0] != pair[1] && pair.iter().all(|x| x.is_finite())
+        };
+        let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
+        if changes.len() < FEWEST_CHANGES {
+            return None;
+        }
+        let rhythm = |every: usize| {
+            let mut phases = vec![0usize; every];
+            changes.iter().for_each(|row| phases[row % every] += 1);
+            let (first, &most) = phases.iter().enumerate().max_by_key(|(_, count)| **count)?;
+            let movements = 1 + changes.windows(2).filter(|pair| pair[1] - pair[0] > 3 * every).count();
+            let accident = (every as f64).powi(1 - movements as i32);
+            // A channel that is new in nearly every such row keeps its rhythm without rests.
+            let full = most as f64 > 0.8 * (values.len() / every) as f64 && most >= FEWEST_CHANGES;
+            let keeps = most as f64 >= IN_STEP * changes.len() as f64;
+            // What is given in steps, as an order is, has no movement that goes on with the next new value.
+            let on = changes.windows(2).filter(|pair| pair[1] - pair[0] == every).count();
+            let keeps = keeps && 2 * on > changes.len();
+            (keeps && (full || accident < ACCIDENT)).then_some(Self { every, first })
+        };
+        (2..=LONGEST_HOLD.min(values.len() / FEWEST_CHANGES)).rev().find_map(rhythm)
+    }
+
+    fn is_new(self, row: usize) -> bool {
+        row % self.every == self.first
+    }
+}
+
+/// Draws straight lines between the new values of a rudder that is repeated in between.
+fn straighten_rudder(columns: &mut Columns) -> Option<String> {
+    let time = &columns.time;
+    let rudder = columns.channels.get_mut(&Channel::Rudder)?;
+    let rhythm = Rhythm::of(rudder)?;
+    let new: Vec<usize> = (0..rudder.len()).filter(|&row| rhythm.is_new(row)).collect();
+    for pair in new.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let slope = (rudder[to] - rudder[from]) / (time[to] - time[from]);
+        for row in from + 1..to {
+            rudder[row] = rudder[from] + slope * (time[row] - time[from]);
+        }
+    }
+    Some(format!(
+        "the rudder is new in every {}th row only and repeated in between; between the new values it runs straight",
+        rhythm.every
+    ))
+}
+
+/// Takes the repetitions of a channel as missing.
+fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
+    let values = columns.channels.get_mut(&channel)?;
+    let rhythm = Rhythm::of(values)?;
+    let left = (0..values.len()).filter(|&row| rhythm.is_new(row)).count();
+    if left < crate::record::Trial::FEWEST_ROWS {
+        return None;
+    }
+    for (row, value) in values.iter_mut().enumerate() {
+        if !rhythm.is_new(row) {
+            *value = f64::NAN;
+        }
+    }
+    let name = match channel {
+        Channel::YawRate => "yaw rate",
+        _ => "heading",
+    };
+    Some(format!("the {name} is new in every {}th row only; its repetitions are taken as missing", rhythm.every))
+}
+
+/// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
+/// before and after by much more than the heading resolves.
+fn drop_frozen(columns: &mut Columns) -> Option<String> {
+    let time = &columns.time;
+    let heading = columns.channels.get_mut(&Channel::Heading)?;
+    let seen: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
+    if seen.len() < 4 * FROZEN_ROWS {
+        return None;
+    }
+    let steps: Vec<f64> = seen.windows(2).map(|pair| (heading[pair[1]] - heading[pair[0]]).abs()).collect();
+    let mut rates: Vec<f64> =
+        seen.windows(2).zip(&steps).map(|(pair, step)| step / (time[pair[1]] - time[pair[0]])).collect();
+    let rates_of_rows = rates.clone();
+    let fast = (0.99 * (rates.len() - 1) as f64) as usize;
+    let usual = *rates.select_nth_unstable_by(fast, f64::total_cmp).1;
+    let rests = steps.chunk_by(|one, other| *one == 0.0 && *other == 0.0).scan(0, |begin, chunk| {
+        let own = *begin..*begin + chunk.len();
+        *begin = own.end;
+        Some(own)
+    });
+    let is_frozen = |rest: &std::ops::Range<usize>| {
+        let length = rest.len();
+        // What the digits resolve is the step by which the value is left, or was reached.
+        let step = |at: Option<usize>| at.and_then(|at| steps.get(at)).copied().unwrap_or(0.0);
+        let digit = step(rest.start.checked_sub(1)).max(step(Some(rest.end)));
+        let turned = |range: std::ops::Range<usize>| steps[range].iter().sum::<f64>() > TURNING * digit;
+        let before = turned(rest.start.saturating_sub(length)..rest.start);
+        let after = turned(rest.end..(rest.end + length).min(steps.len()));
+        let leaves = rates_of_rows.get(rest.end).is_some_and(|rate| *rate > THAW * usual);
+        length >= FROZEN_ROWS && steps[rest.start] == 0.0 && (leaves || (before && after))
+    };
+    // A rest of n steps is one of n + 1 rows, the first of which is honest.
+    let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|rest| &seen[rest.start..=rest.end]).collect();
+    let told: Vec<String> =
+        frozen.iter().map(|rows| format!("from {} s to {} s", time[rows[0]], time[rows[rows.len() - 1]])).collect();
+    frozen.iter().flat_map(|rows| &rows[1..]).for_each(|&row| heading[row] = f64::NAN);
+    (!told.is_empty()).then(|| format!("the heading is frozen {}; it is taken as missing there", told.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A zig-zag by hand: the rudder goes to 10° and back at 2.5°/s, the heading swings; 10 Hz, 300 s.
+    fn columns() -> Columns {
+        let time: Vec<f64> = (0..3000).map(|row| 0.1 * f64::from(row)).collect();
+        let rudder = |t: f64| (25.0 * (t / 9.7).sin()).clamp(-10.0, 10.0).to_radians();
+        let heading = |t: f64| (15.0 * ((t - 20.0) / 9.7).sin()).to_radians();
+        let channels = [
+            (Channel::Rudder, time.iter().map(|&t| rudder(t)).collect()),
+            (Channel::Heading, time.iter().map(|&t| heading(t)).collect()),
+        ];
+        Columns { time, channels: channels.into(), unknown: Vec::new() }
+    }
+
+    fn with(channel: Channel, change: impl Fn(usize, &[f64]) -> f64) -> Columns {
+        let mut columns = columns();
+        let values = columns.channels[&channel].clone();
+        let changed = (0..values.len()).map(|row| change(row, &values)).collect();
+        columns.channels.insert(channel, changed);
+        columns
+    }
+
+    fn rounded(degrees: f64) -> impl Fn(usize, &[f64]) -> f64 {
+        move |row, values| ((values[row].to_degrees() / degrees).round() * degrees).to_radians()
+    }
+
+    #[test]
+    fn numbers_of_loggers_are_no_readings() {
+        assert!(is_sentinel(Channel::Heading, -999.0, Some(12.0)) && is_sentinel(Channel::Rudder, 327.67, None));
+        // A ship that turns and turns has such a heading once, and a position may be anything.
+        assert!(!is_sentinel(Channel::Heading, 999.0, Some(998.2)) && !is_sentinel(Channel::North, 999.0, None));
+        assert!(!is_sentinel(Channel::Heading, -998.0, Some(12.0)));
+    }
+
+    /// Neither digits, nor an order in steps, nor a rest before the trial is a fault.
+    #[test]
+    fn a_sound_record_is_left_alone() {
+        let order = |row: usize, values: &[f64]| {
+            let held = values[row / 10 * 10];
+            if held.abs() < 0.1 { 0.0 } else { held.signum() * 0.17 }
+        };
+        let straight = |row: usize, values: &[f64]| if row < 400 { values[400] } else { values[row] };
+        for mut sound in [
+            columns(),
+            with(Channel::Rudder, rounded(1.0)),
+            with(Channel::Rudder, rounded(0.1)),
+            with(Channel::Rudder, order),
+            with(Channel::Heading, rounded(0.01)),
+            with(Channel::Heading, rounded(0.1)),
+            with(Channel::Heading, rounded(1.0)),
+            with(Channel::Heading, straight),
+        ] {
+            let before = sound.channels.clone();
+            assert_eq!(mend(&mut sound), [] as [String; 0]);
+            assert_eq!(sound.channels, before);
+        }
+    }
+
+    #[test]
+    fn a_reading_no_rudder_has_is_left_out() {
+        let mut wild = with(Channel::Rudder, |row, values| if row == 700 { -5.7 } else { values[row] });
+        let [told] = mend(&mut wild).try_into().expect("one sentence");
+        assert!(told.contains("1 row") && told.contains("-327°") && told.contains("t = 70 s"), "{told}");
+        assert_eq!((wild.time.len(), wild.channels[&Channel::Heading].len()), (2999, 2999));
+        // All of a record in degrees under a name of radians is no reading that is off.
+        let mut degrees = with(Channel::Rudder, |row, values| values[row].to_degrees());
+        assert_eq!(mend(&mut degrees), [] as [String; 0]);
+    }
+
+    #[test]
+    fn an_old_rudder_is_not_a_rudder_that_waits() {
+        for phase in [0, 3] {
+            let mut stale =
+                with(Channel::Rudder, |row, values| values[((row + 10 - phase) / 10 * 10 + phase).saturating_sub(10)]);
+            let [told] = mend(&mut stale).try_into().expect("one sentence");
+            assert!(told.contains("every 10th row"), "{told}");
+            let truth = &columns().channels[&Channel::Rudder];
+            let far = stale.channels[&Channel::Rudder].iter().zip(truth).map(|(one, other)| (one - other).abs());
+            assert!(far.fold(0.0, f64::max).to_degrees() < 0.7);
+        }
+        let mut stale = with(Channel::Heading, |row, values| values[row / 5 * 5]);
+        assert!(mend(&mut stale)[0].contains("every 5th row"));
+        let left = stale.channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
+        assert_eq!(left, 600);
+    }
+
+    #[test]
+    fn a_frozen_heading_is_missing() {
+        for degrees in [1e-9, 0.1, 1.0] {
+            let frozen = |row: usize, values: &[f64]| values[if (1000..1300).contains(&row) { 1000 } else { row }];
+            let mut stuck = with(Channel::Heading, |row, values| {
+                let value = [frozen(row, values)];
+                rounded(degrees)(0, &value)
+            });
+            let [told] = mend(&mut stuck).try_into().expect("one sentence");
+            assert!(told.contains("s to 129.9 s"), "{told}");
+            let missing = stuck.channels[&Channel::Heading].iter().filter(|psi| psi.is_nan()).count();
+            assert!((299..=315).contains(&missing), "{missing}");
+        }
+    }
+}
