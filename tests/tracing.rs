@@ -187,7 +187,7 @@ fn measured_channels_are_used_where_they_help() {
     let cases: [(Missing, Vec<Signal>); 4] = [
         ((Arc::new(SwayCouplingMeasured), vec![0.1]), vec![(Channel::Sway, |t| 0.4 * (0.11 * t).sin())]),
         (
-            (Arc::new(SpeedLoss::Measured { approach_speed: 5.0 }), vec![1.0, 2.0]),
+            (Arc::new(SpeedLoss::Measured { approach_speed: 5.0 }), vec![0.5, 1.2]),
             vec![(Channel::Speed, |t| 5.0 - 0.006 * t + 0.3 * (0.05 * t).cos())],
         ),
         (
