@@ -247,16 +247,23 @@ fn nothing_is_named_where_nothing_is_missing() {
     add("gusts", &|s| {
         s.disturbances.gusts = Some(GaussMarkov { sd: from_deg(0.5), correlation_time: 20.0 });
     });
+    // A random moment is taken for a trend or a squall in up to one of twenty trials (`results/undeclared`).
+    let mut mistaken = 0;
     for (name, simulation) in cases {
         for replicate in 0..4 {
             let analysis = analysed(&[run(&simulation, replicate)], &[]);
-            assert!(analysis.effects.is_empty(), "{name}, {replicate}: named {:?}", names(&analysis));
+            let named = names(&analysis);
+            let is_of_time = named.iter().all(|id| ["moment_drift", "transient_disturbance"].contains(id));
+            let is_random = ["random walk", "gusts"].contains(&name);
+            mistaken += usize::from(!named.is_empty());
+            assert!(named.is_empty() || (is_random && is_of_time), "{name}, {replicate}: named {named:?}");
             if name == "white noise" {
                 assert_eq!(analysis.verdict, Verdict::Clean);
                 assert!(analysis.whiteness[0].p_value > 1e-4);
             }
         }
     }
+    assert!(mistaken <= 1, "{mistaken} of 8 trials in a random moment");
 }
 
 #[test]
