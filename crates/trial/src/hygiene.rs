@@ -37,8 +37,8 @@ const THAW: f64 = 3.0;
 const TURNING: f64 = 20.0;
 
 /// Numbers that loggers write where a sensor gives nothing, without their sign.
-const SENTINELS: [f64; 13] =
-    [99.9, 999.0, 999.9, 9999.0, 9999.9, 99999.0, 327.67, 327.68, 3276.7, 3276.8, 32767.0, 32768.0, 65535.0];
+const SENTINELS: [f64; 12] =
+    [999.0, 999.9, 9999.0, 9999.9, 99999.0, 327.67, 327.68, 3276.7, 3276.8, 32767.0, 32768.0, 65535.0];
 
 /// Change from the last reading from which on such a number is no reading, in the unit of the column.
 const NO_READING: f64 = 60.0;
