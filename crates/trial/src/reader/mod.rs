@@ -6,9 +6,9 @@
 //! semicolons, tabs or blanks. Lines that start with `#` and empty lines are passed over; a commented header is used
 //! when the rows have none. Headings may wrap; cells may be empty. Rows without time or rudder are left out, so that
 //! the rudder runs straight between its neighbours; rows without heading stay. A speed that was not recorded is √(u² +
-//! v²) where surge and sway were. Numbers that loggers write for no reading, rudder angles no rudder has, repeated values
-//! and a frozen heading are left out and told, unless a sidecar has `plausibility = false`. How to describe other tables:
-//! [`crate::sidecar`].
+//! v²) where surge and sway were. Numbers that loggers write for no reading, rudder angles no rudder has, repeated
+//! values and a frozen heading are left out and told, unless a sidecar has `plausibility = false`. How to describe
+//! other tables: [`crate::sidecar`].
 
 mod error;
 mod layout;

@@ -230,7 +230,7 @@ impl ZigZag {
         self.overshoots.iter().find(|overshoot| overshoot.execute == n)
     }
 
-    /// Overshoots in the order of their executes, from the first one of the record on; `None` where a peak was not seen.
+    /// Overshoots in the order of their executes, from the first of the record on; `None` where a peak was not seen.
     pub fn swings(&self) -> impl Iterator<Item = Option<&Overshoot>> {
         let end = self.overshoots.last().map_or(0, |last| last.execute + 1);
         (usize::from(self.side.is_some())..end)

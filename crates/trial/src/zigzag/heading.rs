@@ -159,8 +159,8 @@ impl Heading {
         Some((time, Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t)))))
     }
 
-    /// Whether a time lies in a gap of the headings that is longer than a local fit and its usual steps, or nearer to one
-    /// than half a fit.
+    /// Whether a time lies in a gap of the headings that is longer than a local fit and its usual steps, or nearer to
+    /// one than half a fit.
     fn is_beside_a_gap(&self, t: f64) -> bool {
         let near = self.rows(t - self.half_width, t + self.half_width);
         let around = near.start.saturating_sub(1)..(near.end + 1).min(self.time.len());
