@@ -126,6 +126,10 @@ impl Rhythm {
             return None;
         }
         let rhythm = |every: usize| {
+            // More changes than it has new values are no rhythm: most channels end here, uncounted.
+            if IN_STEP * changes.len() as f64 > values.len().div_ceil(every) as f64 {
+                return None;
+            }
             let mut phases = vec![0usize; every];
             changes.iter().for_each(|row| phases[row % every] += 1);
             let (first, &most) = phases.iter().enumerate().max_by_key(|(_, count)| **count)?;
