@@ -5,6 +5,7 @@
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`] |
 //! | which files are opened, and how much of them is read | [`mod@file`] |
+//! | stamps of date and time | [`clock`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
@@ -13,6 +14,7 @@
 
 mod cells;
 pub mod channel;
+pub mod clock;
 mod encoding;
 pub mod file;
 mod hygiene;

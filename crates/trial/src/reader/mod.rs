@@ -17,6 +17,7 @@ mod lines;
 #[cfg(test)]
 mod measured_tests;
 mod rows;
+pub(crate) mod source;
 mod table;
 #[cfg(test)]
 mod tests;

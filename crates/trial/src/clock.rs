@@ -1,0 +1,500 @@
+//! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. It knows the notations
+//! and the calendar; what is a time column and what becomes of the seconds is decided in [`crate::reader`].
+
+/// Seconds of a day.
+pub const DAY: f64 = 86_400.0;
+
+/// A date as it stands in a stamp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Date {
+    /// Days since 1970-01-01 (Gregorian).
+    Day(i64),
+    /// Two numbers up to 31 and a year, of which the file has to show which one is the month.
+    Either { first: u32, second: u32, year: i32 },
+}
+
+/// One stamp: a date, a time of day or both, and the zone where it stands beside them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stamp {
+    date: Option<Date>,
+    /// Second of the day; `None` in a column of dates.
+    second: Option<f64>,
+    /// Minutes the local time is ahead of UTC.
+    zone: Option<i32>,
+    /// Whether the seconds have a fraction.
+    fraction: bool,
+}
+
+/// Days from 1970-01-01 to a date of the Gregorian calendar; `None` where there is no such date.
+///
+/// Counted in eras of 400 years from 1 March of year 0, so that the leap day is the last of its year.
+pub fn days(year: i32, month: u32, day: u32) -> Option<i64> {
+    const LENGTHS: [u32; 12] = [31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
+    let leap = (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+    let longest = LENGTHS.get(month.checked_sub(1)? as usize)? + u32::from(leap && month == 2);
+    if day == 0 || day > longest {
+        return None;
+    }
+    let year = i64::from(year) - i64::from(month <= 2);
+    let (era, of_era) = (year.div_euclid(400), year.rem_euclid(400));
+    let of_year = (153 * i64::from((month + 9) % 12) + 2) / 5 + i64::from(day) - 1;
+    Some(era * 146_097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719_468)
+}
+
+/// Year, month and day of a day since 1970-01-01.
+pub fn date(day: i64) -> (i64, i64, i64) {
+    let day = day + 719_468;
+    let (era, of_era) = (day.div_euclid(146_097), day.rem_euclid(146_097));
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let day = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    (era * 400 + year + i64::from(month <= 2), month, day)
+}
+
+/// Reads through the characters of a stamp.
+struct Scan<'a> {
+    rest: &'a [u8],
+}
+
+impl Scan<'_> {
+    fn eat(&mut self, wanted: &[u8]) -> Option<u8> {
+        let first = *self.rest.first()?;
+        wanted.contains(&first).then(|| {
+            self.rest = &self.rest[1..];
+            first
+        })
+    }
+
+    fn blanks(&mut self) {
+        while self.eat(b" \t").is_some() {}
+    }
+
+    /// A number of up to nine digits, and how many digits it has.
+    fn number(&mut self) -> Option<(u32, usize)> {
+        let digits = self.rest.iter().take(10).take_while(|byte| byte.is_ascii_digit()).count();
+        if digits == 0 || digits > 9 {
+            return None;
+        }
+        let value = self.rest[..digits].iter().fold(0, |sum, digit| 10 * sum + u32::from(digit - b'0'));
+        self.rest = &self.rest[digits..];
+        Some((value, digits))
+    }
+
+    /// A month by the first three letters of its English name.
+    fn month(&mut self) -> Option<u32> {
+        const MONTHS: [&[u8]; 12] =
+            [b"jan", b"feb", b"mar", b"apr", b"may", b"jun", b"jul", b"aug", b"sep", b"oct", b"nov", b"dec"];
+        let letters = self.rest.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
+        let name = self.rest.get(..3)?;
+        let place = MONTHS.iter().position(|month| name.eq_ignore_ascii_case(month))?;
+        self.rest = &self.rest[letters..];
+        Some(place as u32 + 1)
+    }
+
+    fn word(&mut self, word: &[u8]) -> bool {
+        let found = self.rest.get(..word.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(word));
+        if found {
+            self.rest = &self.rest[word.len()..];
+        }
+        found
+    }
+}
+
+fn full_year(year: u32, digits: usize) -> Option<i32> {
+    match digits {
+        4 => Some(year as i32),
+        2 => Some(if year < 70 { 2000 } else { 1900 } + year as i32),
+        _ => None,
+    }
+}
+
+fn read_date(scan: &mut Scan) -> Option<Date> {
+    if let Some(month) = scan.month() {
+        scan.blanks();
+        let (day, _) = scan.number()?;
+        while scan.eat(b", ").is_some() {}
+        let (year, digits) = scan.number()?;
+        return days(full_year(year, digits)?, month, day).map(Date::Day);
+    }
+    let (first, digits) = scan.number()?;
+    if digits == 8 {
+        return days((first / 10_000) as i32, first / 100 % 100, first % 100).map(Date::Day);
+    }
+    let mark = scan.eat(b"-/. ")?;
+    if let Some(month) = scan.month() {
+        scan.eat(b"-/. ,")?;
+        let (year, digits) = scan.number()?;
+        return days(full_year(year, digits)?, month, first).map(Date::Day);
+    }
+    let (second, _) = scan.number()?;
+    scan.eat(&[mark])?;
+    let (third, last) = scan.number()?;
+    if digits == 4 {
+        return days(first as i32, second, third).map(Date::Day);
+    }
+    let year = full_year(third, last)?;
+    if mark == b'.' {
+        return days(year, second, first).map(Date::Day);
+    }
+    let possible = days(year, second, first).or(days(year, first, second));
+    possible.map(|_| Date::Either { first, second, year })
+}
+
+/// Second of the day, and whether it has a fraction.
+fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
+    let (first, digits) = scan.number()?;
+    let (hour, minute, second) = match digits {
+        6 => (first / 10_000, first / 100 % 100, first % 100),
+        1 | 2 => {
+            scan.eat(b":h")?;
+            let (minute, _) = scan.number()?;
+            let second = if scan.eat(b":m").is_some() { scan.number()?.0 } else { 0 };
+            (first, minute, second)
+        }
+        _ => return None,
+    };
+    let mut fraction = 0.0;
+    let has_fraction = scan.eat(b".,").is_some();
+    if has_fraction {
+        let (value, digits) = scan.number()?;
+        fraction = f64::from(value) / 10f64.powi(digits as i32);
+    }
+    scan.blanks();
+    let hour = if scan.word(b"pm") || scan.word(b"p.m.") {
+        hour % 12 + 12
+    } else if scan.word(b"am") || scan.word(b"a.m.") {
+        hour % 12
+    } else {
+        hour
+    };
+    // A leap second is the 60th.
+    let valid = hour < 24 && minute < 60 && second <= 60;
+    valid.then(|| (f64::from(hour * 3600 + minute * 60 + second) + fraction, has_fraction))
+}
+
+/// Minutes ahead of UTC, as `Z`, `UTC`, `+01:00`, `+0100` or `+01`.
+fn read_zone(scan: &mut Scan) -> Option<i32> {
+    if scan.word(b"utc") || scan.word(b"gmt") || scan.word(b"z") {
+        return Some(0);
+    }
+    let sign = if scan.eat(b"+-")? == b'-' { -1 } else { 1 };
+    let (value, digits) = scan.number()?;
+    let minutes = match digits {
+        4 => value / 100 * 60 + value % 100,
+        1 | 2 => 60 * value + if scan.eat(b":").is_some() { scan.number()?.0 } else { 0 },
+        _ => return None,
+    };
+    (minutes <= 15 * 60).then_some(sign * minutes as i32)
+}
+
+impl Stamp {
+    /// Reads a stamp: ISO 8601 (`2026-11-20T14:03:05.2Z`, a blank for the T, `/` for the hyphens), `20.11.2026
+    /// 14:03:05`, `11/20/2026 2:03:05 PM`, `20-Nov-2026 14:03:05`, or a date or a time of day alone.
+    ///
+    /// `None` for anything else, a single number among it.
+    pub fn parse(text: &str) -> Option<Self> {
+        let text = text.trim().as_bytes();
+        let mut scan = Scan { rest: text };
+        let clock_alone = text.iter().take(3).any(|byte| matches!(byte, b':' | b'h'));
+        let date = if clock_alone { None } else { Some(read_date(&mut scan)?) };
+        let mut stamp = Self { date, second: None, zone: None, fraction: false };
+        if date.is_some() {
+            if scan.rest.is_empty() {
+                // Eight digits may as well be a number.
+                return text.iter().any(|byte| !byte.is_ascii_digit()).then_some(stamp);
+            }
+            scan.eat(b"Tt ,_-;")?;
+            scan.blanks();
+        }
+        let (second, fraction) = read_time(&mut scan)?;
+        (stamp.second, stamp.fraction) = (Some(second), fraction);
+        scan.blanks();
+        if !scan.rest.is_empty() {
+            stamp.zone = Some(read_zone(&mut scan)?);
+        }
+        scan.rest.is_empty().then_some(stamp)
+    }
+
+    /// A stamp of date and time from one of each.
+    pub fn joined(date: Self, time: Self) -> Self {
+        Self { date: date.date, ..time }
+    }
+
+    /// A stamp from a day since 1970-01-01, where known, and a second of the day (UTC).
+    pub fn of(day: Option<i64>, second: f64) -> Self {
+        let fraction = second.fract() != 0.0;
+        Self { date: day.map(Date::Day), second: Some(second), zone: Some(0), fraction }
+    }
+
+    /// Whether there is a time of day.
+    pub fn has_time(&self) -> bool {
+        self.second.is_some()
+    }
+
+    /// Whether there is a date.
+    pub fn has_date(&self) -> bool {
+        self.date.is_some()
+    }
+
+    /// Whether the seconds have a fraction.
+    pub fn has_fraction(&self) -> bool {
+        self.fraction
+    }
+}
+
+/// What the clock of a ship shows at time 0 of a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    /// Days since 1970-01-01; `None` where the file has times of day alone, or leaves open which number is the month.
+    pub day: Option<i64>,
+    /// Second of the day.
+    pub second: f64,
+    /// Minutes the clock is ahead of UTC, where the file says so.
+    pub zone: Option<i32>,
+}
+
+impl Clock {
+    /// The time of day at time `t` (s) of the record: `14:03:05`.
+    pub fn at(&self, t: f64) -> String {
+        let second = (self.second + t).rem_euclid(DAY).floor() as u32;
+        format!("{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
+    }
+
+    /// The date at time `t` (s) of the record: `2026-11-20`.
+    pub fn date_at(&self, t: f64) -> Option<String> {
+        let (year, month, day) = date(self.day? + ((self.second + t) / DAY).floor() as i64);
+        Some(format!("{year:04}-{month:02}-{day:02}"))
+    }
+
+    /// The time (s) of the record at a stamp; a time of day alone is the first one at or after time 0.
+    pub fn time_of(&self, stamp: &Stamp) -> Option<f64> {
+        let zone = |own: Option<i32>| f64::from(own.unwrap_or(0)) * 60.0;
+        let shift = if stamp.zone.is_some() && self.zone.is_some() { zone(self.zone) - zone(stamp.zone) } else { 0.0 };
+        let second = stamp.second? + shift - self.second;
+        match stamp.date {
+            None => Some(second.rem_euclid(DAY)),
+            Some(Date::Day(day)) => Some((day - self.day?) as f64 * DAY + second),
+            Some(Date::Either { .. }) => None,
+        }
+    }
+}
+
+/// Why a stamp has no place on the clock of its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StampFault {
+    /// It has no time of day.
+    NoTime,
+    /// The date changes, and either number may be the month.
+    EitherMonth,
+}
+
+/// Turns the stamps of one file into seconds since its first.
+#[derive(Debug, Clone, Default)]
+pub struct Stamps {
+    first: Option<Stamp>,
+    /// The date read last, and its days after the first one.
+    last: Option<(Date, i64)>,
+    /// The second of the day read last, for stamps without a date, and the midnights passed.
+    last_second: f64,
+    midnights: i64,
+    /// Whether the first of two numbers is the month, once a date has shown it.
+    month_first: Option<bool>,
+}
+
+impl Stamps {
+    /// Seconds from the first stamp to this one.
+    ///
+    /// A time of day that falls by more than half a day has passed midnight. A date such as 03/04/2026 is read either
+    /// way until one shows which number is the month: a number above 12, or the step of one day to the next date.
+    pub fn seconds(&mut self, stamp: Stamp) -> Result<f64, StampFault> {
+        let second = stamp.second.ok_or(StampFault::NoTime)?;
+        let first = *self.first.get_or_insert(stamp);
+        let day = match (stamp.date, first.date) {
+            (Some(date), Some(begin)) => self.day(begin, date)?,
+            _ => {
+                self.midnights += i64::from(self.last_second - second > 0.5 * DAY);
+                self.midnights -= i64::from(second - self.last_second > 0.5 * DAY && self.midnights > 0);
+                self.last_second = second;
+                self.midnights
+            }
+        };
+        let zone = match (stamp.zone, first.zone) {
+            (Some(own), Some(begin)) => 60.0 * f64::from(begin - own),
+            _ => 0.0,
+        };
+        Ok(day as f64 * DAY + second - first.second.unwrap_or(0.0) + zone)
+    }
+
+    /// Days from the first date to another.
+    fn day(&mut self, begin: Date, date: Date) -> Result<i64, StampFault> {
+        if let Some((last, day)) = self.last
+            && last == date
+        {
+            return Ok(day);
+        }
+        let read = |date: Date, month_first: bool| match date {
+            Date::Day(day) => Some(day),
+            Date::Either { first, second, year } if month_first => days(year, first, second),
+            Date::Either { first, second, year } => days(year, second, first),
+        };
+        let after = |month_first: bool| Some(read(date, month_first)? - read(begin, month_first)?);
+        let day = match (self.month_first, after(false), after(true)) {
+            _ if date == begin => Some(0),
+            (Some(month_first), ..) => after(month_first),
+            (None, Some(day), None) => {
+                self.month_first = Some(false);
+                Some(day)
+            }
+            (None, None, Some(day)) => {
+                self.month_first = Some(true);
+                Some(day)
+            }
+            (None, Some(one), Some(other)) if one == other => Some(one),
+            (None, Some(one), Some(other)) => {
+                let last = self.last.map_or(0, |(_, day)| day);
+                let month_first = match (one == last + 1, other == last + 1) {
+                    (true, false) => false,
+                    (false, true) => true,
+                    _ => return Err(StampFault::EitherMonth),
+                };
+                self.month_first = Some(month_first);
+                Some(if month_first { other } else { one })
+            }
+            (None, None, None) => None,
+        };
+        let day = day.ok_or(StampFault::EitherMonth)?;
+        self.last = Some((date, day));
+        Ok(day)
+    }
+
+    /// The clock at the first stamp; `None` before there was one.
+    pub fn clock(&self) -> Option<Clock> {
+        let first = self.first?;
+        let day = match (first.date, self.month_first) {
+            (Some(Date::Day(day)), _) => Some(day),
+            (Some(Date::Either { first, second, year }), order) => {
+                let [day_first, month_first] = [days(year, second, first), days(year, first, second)];
+                match order {
+                    Some(true) => month_first,
+                    Some(false) => day_first,
+                    None if day_first == month_first || month_first.is_none() => day_first,
+                    None if day_first.is_none() => month_first,
+                    None => None,
+                }
+            }
+            (None, _) => None,
+        };
+        Some(Clock { day, second: first.second?, zone: first.zone })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(stamps: &[&str]) -> Result<Vec<f64>, StampFault> {
+        let mut clock = Stamps::default();
+        stamps.iter().map(|text| clock.seconds(Stamp::parse(text).expect(text))).collect()
+    }
+
+    #[test]
+    fn the_calendar_agrees_with_known_days() {
+        // Day numbers of the Unix epoch: 2000-03-01 is day 11017, 2026-11-20 day 20777 (POSIX formula).
+        for (given, day) in [((1970, 1, 1), 0), ((2000, 3, 1), 11_017), ((2026, 11, 20), 20_777), ((1969, 12, 31), -1)]
+        {
+            assert_eq!(days(given.0, given.1, given.2), Some(day));
+        }
+        for day in (-800_000..800_000).step_by(37) {
+            let (year, month, of_month) = date(day);
+            assert_eq!(days(year as i32, month as u32, of_month as u32), Some(day));
+        }
+        assert_eq!([days(2025, 2, 29), days(2024, 13, 1), days(2024, 4, 31), days(2024, 0, 1)], [None; 4]);
+        assert!(days(2024, 2, 29).is_some() && days(1900, 2, 29).is_none() && days(2000, 2, 29).is_some());
+    }
+
+    #[test]
+    fn one_moment_in_many_notations() {
+        let same = [
+            "2026-11-20T14:03:05",
+            "2026-11-20 14:03:05",
+            "2026/11/20 14:03:05.0",
+            "20261120T140305",
+            "20.11.2026 14:03:05",
+            "20.11.26 14:03:05,00",
+            "11/20/2026 2:03:05 PM",
+            "20/11/2026 14:03:05",
+            "20-Nov-2026 14:03:05",
+            "20 November 2026 14:03:05",
+            "Nov 20, 2026 2:03:05 pm",
+        ];
+        for text in same {
+            let mut stamps = Stamps::default();
+            assert_eq!(stamps.seconds(Stamp::parse(text).expect(text)), Ok(0.0));
+            let clock = stamps.clock().expect("a stamp was read");
+            assert_eq!((clock.day, clock.second, clock.zone), (Some(20_777), 50_585.0, None), "{text}");
+            assert_eq!((clock.at(60.0), clock.date_at(60.0)), ("14:04:05".into(), Some("2026-11-20".into())));
+        }
+        let zone = |text| Stamp::parse(text).expect(text).zone;
+        assert_eq!(zone("2026-11-20T14:03:05Z"), Some(0));
+        assert_eq!(zone("2026-11-20T14:03:05.25+01:00"), Some(60));
+        assert_eq!(zone("2026-11-20 14:03:05 -0330"), Some(-210));
+        assert_eq!(zone("14:03:05 UTC"), Some(0));
+    }
+
+    #[test]
+    fn what_is_no_stamp_is_none() {
+        for text in [
+            "",
+            "12.5",
+            "20261120",
+            "2026-13-01 00:00:00",
+            "25:00:00",
+            "14:61:00",
+            "2026-11-20T",
+            "heading",
+            "31.02.2026 10:00:00",
+            "2026-11-20T14:03:05 sea",
+            "1:2:3:4",
+            "-1",
+            "123456789012",
+            "Ä",
+            "20-Nov",
+        ] {
+            assert_eq!(Stamp::parse(text), None, "{text}");
+        }
+        assert!(Stamp::parse("20.11.2026").is_some_and(|stamp| !stamp.has_time()));
+        assert!(Stamp::parse("14:03").is_some_and(|stamp| stamp.has_time()));
+    }
+
+    #[test]
+    fn time_runs_on_over_midnight_zones_and_missing_seconds() {
+        assert_eq!(seconds(&["23:59:58", "23:59:59.5", "00:00:01", "00:00:04"]), Ok(vec![0.0, 1.5, 3.0, 6.0]));
+        assert_eq!(seconds(&["31.12.2026 23:59:58", "01.01.2027 00:00:01"]), Ok(vec![0.0, 3.0]));
+        assert_eq!(seconds(&["2026-11-20T14:00:00+01:00", "2026-11-20T13:00:10Z"]), Ok(vec![0.0, 10.0]));
+        // A small step back is no midnight: it is for the reader to refuse.
+        assert_eq!(seconds(&["12:00:05", "12:00:03"]), Ok(vec![0.0, -2.0]));
+    }
+
+    #[test]
+    fn which_number_is_the_month_shows_where_the_date_changes() {
+        assert_eq!(seconds(&["03/04/2026 23:59:59", "03/04/2026 23:59:59.5"]), Ok(vec![0.0, 0.5]));
+        assert_eq!(seconds(&["03/04/2026 23:59:59", "04/04/2026 00:00:01"]), Ok(vec![0.0, 2.0]));
+        assert_eq!(seconds(&["03/04/2026 23:59:59", "03/05/2026 00:00:01"]), Ok(vec![0.0, 2.0]));
+        assert_eq!(seconds(&["12/31/2026 23:59:59", "01/01/2027 00:00:01"]), Ok(vec![0.0, 2.0]));
+        assert_eq!(seconds(&["03/04/2026 12:00:00", "09/04/2026 12:00:00"]), Err(StampFault::EitherMonth));
+        assert_eq!(seconds(&["20.11.2026"]), Err(StampFault::NoTime));
+    }
+
+    #[test]
+    fn a_clock_finds_its_times() {
+        let mut stamps = Stamps::default();
+        stamps.seconds(Stamp::parse("2026-11-20 23:00:00").expect("a stamp")).expect("it has a time");
+        let clock = stamps.clock().expect("a stamp was read");
+        let at = |text| clock.time_of(&Stamp::parse(text).expect(text));
+        assert_eq!(at("23:10"), Some(600.0));
+        assert_eq!(at("00:10:00"), Some(4200.0));
+        assert_eq!(at("2026-11-21T00:10:00"), Some(4200.0));
+    }
+}
