@@ -89,6 +89,25 @@ impl Unit {
         }
     }
 
+    /// The unit in words, for messages.
+    pub fn spoken(self) -> &'static str {
+        match self {
+            Unit::Second => "seconds",
+            Unit::Millisecond => "milliseconds",
+            Unit::Minute => "minutes",
+            Unit::Degree => "degrees",
+            Unit::Radian => "radians",
+            Unit::DegreePerSecond => "degrees per second",
+            Unit::DegreePerMinute => "degrees per minute",
+            Unit::RadianPerSecond => "radians per second",
+            Unit::MetrePerSecond => "metres per second",
+            Unit::Knot => "knots",
+            Unit::Metre => "metres",
+            Unit::PerSecond => "revolutions per second",
+            Unit::PerMinute => "revolutions per minute",
+        }
+    }
+
     /// What a number in this unit is multiplied with to be in SI units and radians.
     pub fn to_si(self) -> f64 {
         match self {

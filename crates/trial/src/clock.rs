@@ -21,7 +21,7 @@ pub struct Stamp {
     second: Option<f64>,
     /// Minutes the local time is ahead of UTC.
     zone: Option<i32>,
-    /// Whether the seconds have a fraction.
+    /// Whether the seconds have a fraction that is not zero.
     fraction: bool,
 }
 
@@ -142,7 +142,7 @@ fn read_date(scan: &mut Scan) -> Option<Date> {
     possible.map(|_| Date::Either { first, second, year })
 }
 
-/// Second of the day, and whether it has a fraction.
+/// Second of the day, and whether it has a fraction that is not zero.
 fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
     let (first, digits) = scan.number()?;
     let (hour, minute, second) = match digits {
@@ -156,8 +156,7 @@ fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
         _ => return None,
     };
     let mut fraction = 0.0;
-    let has_fraction = scan.eat(b".,").is_some();
-    if has_fraction {
+    if scan.eat(b".,").is_some() {
         let (value, digits) = scan.number()?;
         fraction = f64::from(value) / 10f64.powi(digits as i32);
     }
@@ -171,7 +170,7 @@ fn read_time(scan: &mut Scan) -> Option<(f64, bool)> {
     };
     // A leap second is the 60th.
     let valid = hour < 24 && minute < 60 && second <= 60;
-    valid.then(|| (f64::from(hour * 3600 + minute * 60 + second) + fraction, has_fraction))
+    valid.then(|| (f64::from(hour * 3600 + minute * 60 + second) + fraction, fraction > 0.0))
 }
 
 /// Minutes ahead of UTC, as `Z`, `UTC`, `+01:00`, `+0100` or `+01`.
@@ -238,7 +237,7 @@ impl Stamp {
         self.date.is_some()
     }
 
-    /// Whether the seconds have a fraction.
+    /// Whether the seconds have a fraction that is not zero.
     pub fn has_fraction(&self) -> bool {
         self.fraction
     }

@@ -74,16 +74,9 @@ fn leave_out_no_rudder(columns: &mut Columns) -> Option<String> {
     let times: Vec<f64> = wild.iter().map(|&row| columns.time[row]).collect();
     let largest =
         wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
-    let keep = |values: &mut Vec<f64>| {
-        let mut row = 0;
-        values.retain(|_| {
-            row += 1;
-            wild.binary_search(&(row - 1)).is_err()
-        });
-    };
-    keep(&mut columns.time);
-    columns.channels.values_mut().for_each(keep);
-    columns.unknown.iter_mut().for_each(|(_, values)| keep(values));
+    let mut keep = vec![true; columns.time.len()];
+    wild.iter().for_each(|&row| keep[row] = false);
+    columns.retain(&keep);
     Some(format!(
         "{} with a rudder angle no rudder has ({:.0}°) left out, {}; between its neighbours the rudder runs straight",
         rows(wild.len()),

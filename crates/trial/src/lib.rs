@@ -3,7 +3,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | the record itself | [`record`] |
-//! | names of columns and their units | [`channel`] |
+//! | names of columns and their units | [`channel`], [`names`] |
 //! | which files are opened, and how much of them is read | [`mod@file`] |
 //! | stamps of date and time | [`clock`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
@@ -19,6 +19,7 @@ mod encoding;
 pub mod file;
 mod hygiene;
 pub mod imo;
+pub mod names;
 pub mod plausibility;
 mod quantity;
 pub mod reader;
@@ -32,7 +33,7 @@ pub mod zigzag;
 pub use channel::Channel;
 pub use file::FileError;
 pub use quantity::Quantity;
-pub use reader::{ReadError, Reading, read, read_with};
+pub use reader::{Log, ReadError, Reading, read, read_with};
 pub use record::{Columns, Noise, Origin, Trial, TrialError};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;

@@ -184,7 +184,7 @@ fn range_deg(values: &[f64]) -> f64 {
 }
 
 /// How often the rudder goes from one side of its range to the other, by more than half of it.
-fn reversals(rudder: &[f64]) -> usize {
+pub(crate) fn reversals(rudder: &[f64]) -> usize {
     let low = rudder.iter().copied().fold(f64::INFINITY, f64::min);
     let high = rudder.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let (middle, quarter) = (0.5 * (low + high), 0.25 * (high - low));

@@ -52,6 +52,19 @@ pub struct Columns {
     pub unknown: Vec<(String, Vec<f64>)>,
 }
 
+impl Columns {
+    /// Leaves out rows; `keep` has one answer for each.
+    pub(crate) fn retain(&mut self, keep: &[bool]) {
+        let of = |values: &mut Vec<f64>| {
+            let mut keep = keep.iter();
+            values.retain(|_| keep.next().is_none_or(|keep| *keep));
+        };
+        of(&mut self.time);
+        self.channels.values_mut().for_each(of);
+        self.unknown.iter_mut().for_each(|(_, values)| of(values));
+    }
+}
+
 /// Why columns do not make a record.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TrialError {

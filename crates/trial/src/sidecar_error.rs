@@ -66,6 +66,9 @@ pub enum SidecarProblem {
         /// Names in the header.
         found: Vec<String>,
     },
+    /// Columns described in a log of sentences.
+    #[error("the file holds sentences (NMEA 0183), which have no columns; remove every [[column]]")]
+    NoTable,
     /// The index is larger than the number of columns.
     #[error("there is no column {index}; {} has {columns} columns", table.display())]
     IndexBeyond {

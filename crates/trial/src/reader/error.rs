@@ -114,6 +114,112 @@ pub enum Problem {
         /// Names of the columns found.
         found: Vec<String>,
     },
+    /// A course over ground and no heading.
+    #[error(
+        "line {line}: no column holds the heading; `{column}` is the course over ground, which is no heading (they differ by the \
+         drift angle, up to 20 degrees in a turn); use a record with the compass, or write `is = \"heading_deg\"` for the column in \
+         a sidecar NAME.trial.toml if it is a heading"
+    )]
+    CourseOnly {
+        /// Line of the header.
+        line: usize,
+        /// Name of the column.
+        column: String,
+    },
+    /// Files or sentences without a needed channel.
+    #[error(
+        "there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found)
+    )]
+    NoChannel {
+        /// What is missing.
+        wanted: &'static str,
+        /// What is there.
+        found: Vec<String>,
+    },
+    /// Rudder and heading of different times.
+    #[error(
+        "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; check \
+         that both belong to one trial and count time from the same moment", rudder_s[0], rudder_s[1], heading_s[0], heading_s[1]
+    )]
+    NoOverlap {
+        /// First and last time of the rudder, s.
+        rudder_s: [f64; 2],
+        /// First and last time of the heading, s.
+        heading_s: [f64; 2],
+    },
+    /// Two files that count time in different ways.
+    #[error(
+        "{} counts time {}, and this file {}: nobody can tell how they belong together; give both stamps of date and time, \
+         or both seconds from the same moment", other.display(), if *stamped { "by its stamps" } else { "in seconds" },
+        if *stamped { "in seconds" } else { "by its stamps" }
+    )]
+    TwoClocks {
+        /// The other file.
+        other: PathBuf,
+        /// Whether the other file has stamps.
+        stamped: bool,
+    },
+    /// A format that is recognised and not read.
+    #[error("this is {format}; {cure}")]
+    Format {
+        /// What it is.
+        format: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// A needed column without a unit.
+    #[error(
+        "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it {}, or write in \
+         a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"{}\"",
+        channel.accepted_names(), channel.column_name()
+    )]
+    OpenUnit {
+        /// Line of the header.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// What it holds.
+        quantity: &'static str,
+        /// Its largest number, without its sign.
+        largest: f64,
+        /// The channel.
+        channel: Channel,
+    },
+    /// A time without a unit that cannot be seconds.
+    #[error(
+        "line {line}: the time `{column}` has no unit, and no ship answers its rudder like that in seconds; name it t_s, t_ms or t_min, \
+         or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_ms\""
+    )]
+    OpenTime {
+        /// Line of the header.
+        line: usize,
+        /// Name of the column.
+        column: String,
+    },
+    /// A cell that should be a stamp.
+    #[error(
+        "line {line}, column `{column}`: found `{value}`, expected a date and time such as `2026-11-20T14:03:05.2` or \
+         `20.11.2026 14:03:05`; correct the cell"
+    )]
+    NotAStamp {
+        /// Line of the cell.
+        line: usize,
+        /// Name of its column.
+        column: String,
+        /// What it holds, shortened.
+        value: String,
+    },
+    /// A date that can be read two ways.
+    #[error(
+        "line {line}: `{value}` can be read with the day or the month first, and the dates before do not show which; write dates as \
+         2026-11-20"
+    )]
+    EitherMonth {
+        /// The line.
+        line: usize,
+        /// The stamp.
+        value: String,
+    },
     /// Two columns for one quantity.
     #[error(
         "line {line}: the columns `{first}` and `{second}` both hold the {quantity}; remove one, or write `ignore = true` for \

@@ -7,7 +7,7 @@ use crate::record::Trial;
 use super::error::Problem;
 
 /// Most rows a record may have: 27 hours at 20 Hz, far beyond any manoeuvre.
-pub const MAX_ROWS: usize = 2_000_000;
+pub const MAX_ROWS: usize = 20_000_000;
 
 /// Most numbers a record may have; bounds the memory of tables with very many columns (8 bytes each).
 pub const MAX_CELLS: usize = 50_000_000;

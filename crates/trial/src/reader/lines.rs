@@ -99,8 +99,17 @@ impl<R: Read> Lines<R> {
 
     /// SHA-256 of all bytes read, hexadecimal.
     pub fn sha256(self) -> String {
-        self.hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        in_hex(&self.hasher.finalize())
     }
+}
+
+fn in_hex(hash: &[u8]) -> String {
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// SHA-256 of a text, hexadecimal.
+pub fn sha256(bytes: &[u8]) -> String {
+    in_hex(&Sha256::digest(bytes))
 }
 
 #[cfg(test)]

@@ -10,22 +10,29 @@
 //! values and a frozen heading are left out and told, unless a sidecar has `plausibility = false`. How to describe
 //! other tables: [`crate::sidecar`].
 
+mod assemble;
 mod error;
+mod head;
+mod input;
+mod instants;
+mod kept;
 mod layout;
 mod limits;
 mod lines;
+mod log;
 #[cfg(test)]
 mod measured_tests;
 mod rows;
 pub(crate) mod source;
 mod table;
+mod units;
 #[cfg(test)]
 mod tests;
 
 pub use error::{Problem, ReadError};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
 pub use lines::LONGEST_LINE;
-pub use table::{Reading, read, read_bytes, read_with};
+pub use log::{Log, Reading, read, read_bytes, read_with};
 
 pub use crate::cells::Separator;
 pub use crate::encoding::Encoding;

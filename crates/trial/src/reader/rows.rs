@@ -1,100 +1,128 @@
 //! The rows of a table, one after the other: cells to SI units, the part and thinning asked for, rows that are left
-//! out, and the bound on memory. Only the rows kept are held.
+//! out, and the bound on memory. Only the rows kept are held; what becomes of them is in [`super::kept`].
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use ship::angle::unwrap_heading;
 
 use super::error::Problem;
 use super::layout::{Layout, Meaning};
-use super::limits::{MAX_CELLS, MAX_ROWS, is_comment, no_rows, spoken};
+use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
 use crate::cells::{Cell, Separator, cell};
 use crate::channel::Channel;
+use crate::clock::{Stamp, StampFault, Stamps};
 use crate::hygiene::is_sentinel;
-use crate::record::{Columns, Trial};
+use crate::record::Trial;
 use crate::sidecar::Sidecar;
 use crate::words::shortened;
 
 /// What was counted on the way, for warnings.
 #[derive(Debug, Default)]
-struct Counts {
-    rows: usize,
-    no_time: usize,
-    no_rudder: usize,
-    repeated: usize,
-    short: usize,
-    decimal_commas: usize,
+pub(super) struct Counts {
+    pub rows: usize,
+    pub no_time: usize,
+    /// Rows with neither rudder nor heading nor yaw rate.
+    pub nothing: usize,
+    pub repeated: usize,
+    /// Times that do not fit those around them.
+    pub astray: Vec<f64>,
+    pub short: usize,
+    pub decimal_commas: usize,
+}
+
+/// The last rows, to tell one that does not follow from one after which time starts anew.
+#[derive(Debug, Default)]
+struct Before {
+    /// The last row with a time, as it was read.
+    last: Option<(f64, Vec<f64>)>,
+    /// Time of the row before that.
+    earlier: Option<f64>,
+    /// Whether the last row was kept.
+    kept: bool,
+    /// A row left out because its time is before that of the last one: its line and time.
+    astray: Option<(usize, f64)>,
 }
 
 /// The rows kept so far.
 pub(super) struct Rows<'a> {
-    layout: &'a Layout,
+    pub(super) layout: &'a Layout,
     separator: Separator,
     time_step: Option<f64>,
-    part: (f64, f64),
-    every: usize,
+    pub(super) part: (f64, f64),
+    pub(super) every: usize,
     /// Places of the columns that are not left out.
-    used: Vec<usize>,
-    time_place: Option<usize>,
-    rudder_place: Option<usize>,
+    pub(super) used: Vec<usize>,
+    pub(super) time_place: Option<usize>,
+    date_place: Option<usize>,
     heading_place: Option<usize>,
+    /// Places of the channels of which a row has to have one.
+    wanted: Vec<usize>,
+    pub(super) stamps: Option<Stamps>,
+    /// Whether no stamp has had a fraction of a second so far.
+    pub(super) whole_seconds: bool,
 
-    time: Vec<f64>,
-    columns: Vec<Vec<f64>>,
+    pub(super) time: Vec<f64>,
+    pub(super) columns: Vec<Vec<f64>>,
     cells: Vec<Range<usize>>,
     row: Vec<f64>,
     /// The last number of every column, as it stands in the file.
     last: Vec<Option<f64>>,
-    /// The last row with a time, as it was read.
-    before: Option<(f64, Vec<f64>)>,
+    /// Largest number of every column, without its sign.
+    pub(super) largest: Vec<f64>,
+    before: Before,
     last_heading: Option<f64>,
-    /// Rows of the part with time and rudder.
-    usable: usize,
+    /// Rows of the part with time and one of the wanted channels.
+    pub(super) usable: usize,
     /// First and last time in the file.
-    span: Option<(f64, f64)>,
+    pub(super) span: Option<(f64, f64)>,
     /// How often a column has a number that stands for no reading, and the last such number.
-    sentinels: Vec<(usize, f64)>,
+    pub(super) sentinels: Vec<(usize, f64)>,
     /// Whether such numbers are looked for.
     checked: bool,
     /// Cells with text, by column.
-    text: Vec<usize>,
-    counts: Counts,
-}
-
-/// The columns of the rows kept, and how many rows the file has.
-pub(super) struct Kept {
-    pub columns: Columns,
-    pub rows: usize,
+    pub(super) text: Vec<usize>,
+    pub(super) counts: Counts,
 }
 
 impl<'a> Rows<'a> {
     pub fn new(layout: &'a Layout, separator: Separator, sidecar: Option<&Sidecar>) -> Self {
-        let used: Vec<usize> = (0..layout.names.len())
-            .filter(|&place| matches!(layout.meanings[place], Meaning::Channel(..) | Meaning::Unknown))
-            .collect();
+        let columns = layout.names.len();
+        let places = |is_one: fn(&Meaning) -> bool| -> Vec<usize> {
+            (0..columns).filter(|&place| is_one(&layout.meanings[place])).collect()
+        };
+        let used = places(|meaning| !matches!(meaning, Meaning::Time(_) | Meaning::Stamp | Meaning::Date | Meaning::Ignored));
+        let main = [layout.rudder(), layout.place(Channel::Heading), layout.place(Channel::YawRate)];
+        let main: Vec<usize> = main.into_iter().flatten().collect();
+        // A table that holds some other channel of a record only.
+        let wanted = if main.is_empty() { places(|meaning| matches!(meaning, Meaning::Channel(..))) } else { main };
+        let time_place = layout.time();
+        let stamped = time_place.is_some_and(|place| layout.meanings[place] == Meaning::Stamp);
         Self {
             layout,
             separator,
             time_step: sidecar.and_then(|sidecar| sidecar.time_step),
             part: sidecar.map_or((f64::NEG_INFINITY, f64::INFINITY), |sidecar| (sidecar.from, sidecar.until)),
             every: sidecar.map_or(1, |sidecar| sidecar.every),
-            time_place: layout.time(),
-            rudder_place: layout.rudder(),
+            time_place,
+            date_place: layout.date(),
             heading_place: layout.place(Channel::Heading),
+            wanted,
+            stamps: stamped.then(Stamps::default),
+            whole_seconds: true,
             time: Vec::new(),
             columns: vec![Vec::new(); used.len()],
             used,
             cells: Vec::new(),
-            row: vec![f64::NAN; layout.names.len()],
-            last: vec![None; layout.names.len()],
-            sentinels: vec![(0, 0.0); layout.names.len()],
+            row: vec![f64::NAN; columns],
+            last: vec![None; columns],
+            largest: vec![0.0; columns],
+            sentinels: vec![(0, 0.0); columns],
             checked: sidecar.is_none_or(|sidecar| sidecar.plausibility),
-            before: None,
+            before: Before::default(),
             last_heading: None,
             usable: 0,
             span: None,
-            text: vec![0; layout.names.len()],
+            text: vec![0; columns],
             counts: Counts::default(),
         }
     }
@@ -137,6 +165,7 @@ impl<'a> Rows<'a> {
         self.parse(line, number)?;
         let time = match (self.time_step, self.time_place) {
             (Some(step), _) => step * index as f64,
+            (None, Some(place)) if self.stamps.is_some() => self.stamp(line, number, place)?,
             (None, Some(place)) => self.row[place],
             (None, None) => f64::NAN,
         };
@@ -148,21 +177,45 @@ impl<'a> Rows<'a> {
         if time < self.part.0 || time > self.part.1 || !self.follows(time, number)? {
             return Ok(());
         }
+        self.before.kept = false;
         if let Some(place) = self.heading_place {
             self.unwrap(place);
         }
-        if self.rudder_place.is_none_or(|place| self.row[place].is_nan()) {
-            self.counts.no_rudder += 1;
+        if self.wanted.iter().all(|&place| self.row[place].is_nan()) {
+            self.counts.nothing += 1;
             return Ok(());
         }
         self.usable += 1;
-        if (self.usable - 1).is_multiple_of(self.every) {
+        // Rows may share a stamp: which of them is used is decided when their instants are known.
+        if self.stamps.is_some() || (self.usable - 1).is_multiple_of(self.every) {
+            self.before.kept = true;
             self.time.push(time);
             for (values, &place) in self.columns.iter_mut().zip(&self.used) {
                 values.push(self.row[place]);
             }
         }
         Ok(())
+    }
+
+    /// Seconds of the stamp of a row since the first one; NaN for an empty cell.
+    fn stamp(&mut self, line: &str, number: usize, place: usize) -> Result<f64, Problem> {
+        let text = |place: usize| self.cells.get(place).map_or("", |range| &line[range.clone()]);
+        let own = text(place);
+        let read = Stamp::parse(own).and_then(|time| match self.date_place {
+            Some(date) => Some(Stamp::joined(Stamp::parse(text(date))?, time)),
+            None => Some(time),
+        });
+        let value = || shortened(own);
+        let no_stamp = || Problem::NotAStamp { line: number, column: self.layout.names[place].clone(), value: value() };
+        let (Some(stamp), Some(stamps)) = (read, &mut self.stamps) else {
+            let missing = cell(own, self.separator) == Cell::Missing;
+            return if missing { Ok(f64::NAN) } else { Err(no_stamp()) };
+        };
+        self.whole_seconds &= !stamp.has_fraction();
+        stamps.seconds(stamp).map_err(|fault| match fault {
+            StampFault::EitherMonth => Problem::EitherMonth { line: number, value: value() },
+            StampFault::NoTime => no_stamp(),
+        })
     }
 
     /// Cells to numbers in SI units, into `self.row`.
@@ -180,10 +233,13 @@ impl<'a> Rows<'a> {
             let meaning = self.layout.meanings[place];
             let factor = match meaning {
                 Meaning::Time(factor) | Meaning::Channel(_, factor) => factor,
-                Meaning::Unknown => 1.0,
-                Meaning::Ignored => continue,
+                Meaning::Unknown | Meaning::Latitude | Meaning::Longitude => 1.0,
+                Meaning::Stamp | Meaning::Date | Meaning::Ignored => continue,
             };
-            let read = cell(text, self.separator);
+            let read = match cell(text, self.separator) {
+                Cell::Text => side(text, meaning, self.separator).map_or(Cell::Text, Cell::Number),
+                read => read,
+            };
             self.row[place] = match read {
                 Cell::Number(value) | Cell::CommaNumber(value) => {
                     self.counts.decimal_commas += usize::from(matches!(read, Cell::CommaNumber(_)));
@@ -196,6 +252,7 @@ impl<'a> Rows<'a> {
                         }
                         _ => {
                             self.last[place] = Some(value);
+                            self.largest[place] = self.largest[place].max(value.abs());
                             value * factor
                         }
                     }
@@ -214,25 +271,43 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    /// Whether the row comes after the one before; a row that repeats the one before in every value does not.
+    /// Whether the row comes after the one before. A row that repeats the one before in every value does not, nor does
+    /// a single row whose time does not fit those around it; where time goes on from an earlier one it is an error.
     fn follows(&mut self, time: f64, number: usize) -> Result<bool, Problem> {
-        if let Some((before, row)) = &mut self.before {
-            if time < *before {
-                return Err(Problem::TimeBackwards { line: number, before: *before, found: time });
+        let may_share = self.stamps.is_some() && self.whole_seconds;
+        let Some((last, row)) = &mut self.before.last else {
+            self.before.last = Some((time, self.row.clone()));
+            return Ok(true);
+        };
+        if time < *last {
+            if let Some((line, found)) = self.before.astray {
+                return Err(Problem::TimeBackwards { line, before: *last, found });
             }
-            if time == *before {
-                let same = row.iter().zip(&self.row).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
-                if !same {
-                    return Err(Problem::TimeRepeats { line: number, time });
-                }
-                self.counts.repeated += 1;
+            if self.before.earlier.is_none_or(|earlier| time <= earlier) {
+                self.counts.astray.push(time);
+                self.before.astray = Some((number, time));
                 return Ok(false);
             }
-            *before = time;
-            row.copy_from_slice(&self.row);
+            // It fits the row but one before: the row before was ahead of time.
+            self.counts.astray.push(*last);
+            if self.before.kept {
+                self.time.pop();
+                self.columns.iter_mut().for_each(|values| drop(values.pop()));
+                self.usable -= 1;
+            }
+        } else if time == *last && !may_share {
+            let same = row.iter().zip(&self.row).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()));
+            if !same {
+                return Err(Problem::TimeRepeats { line: number, time });
+            }
+            self.counts.repeated += 1;
+            return Ok(false);
         } else {
-            self.before = Some((time, self.row.clone()));
+            self.before.earlier = Some(*last);
         }
+        self.before.astray = None;
+        *last = time;
+        row.copy_from_slice(&self.row);
         Ok(true)
     }
 
@@ -247,114 +322,33 @@ impl<'a> Rows<'a> {
         self.row[place] = pair[1];
         self.last_heading = Some(pair[1]);
     }
+}
 
-    /// The columns of all rows kept, with warnings; `line` is where the header stands.
-    pub fn finish(mut self, line: usize) -> Result<(Kept, Vec<String>), Problem> {
-        if self.counts.rows == 0 {
-            return Err(no_rows(line));
-        }
-        self.check_values()?;
-        let mut warnings = self.warnings();
-        let mut channels = BTreeMap::new();
-        let mut unknown = Vec::new();
-        for (values, &place) in std::mem::take(&mut self.columns).into_iter().zip(&self.used) {
-            let missing = values.iter().all(|value| value.is_nan());
-            match self.layout.meanings[place] {
-                // A channel nobody needs and nobody recorded is as good as absent.
-                Meaning::Channel(..) if missing => {
-                    warnings.push(format!(
-                        "the column `{}` has no value and is left out",
-                        shortened(&self.layout.names[place])
-                    ));
-                }
-                Meaning::Channel(channel, _) => {
-                    channels.insert(channel, values);
-                }
-                _ if missing && self.text[place] > 0 => {}
-                _ => unknown.push((self.layout.names[place].clone(), values)),
+/// A rudder angle with its side (`P 10.5`, `10.5 S`, `10L`; port is negative), or an angle with its sign (`10.5°`).
+fn side(text: &str, meaning: Meaning, separator: Separator) -> Option<f64> {
+    let Meaning::Channel(channel, _) = meaning else { return None };
+    let plain = text.trim_end_matches(['°', 'º']).trim();
+    let (number, sign) = match channel {
+        Channel::Rudder | Channel::RudderOrder => {
+            let letter = |c: char| match c.to_ascii_uppercase() {
+                'P' | 'L' => Some(-1.0),
+                'S' | 'R' => Some(1.0),
+                _ => None,
+            };
+            let begin = plain.chars().next().and_then(letter);
+            let end = plain.chars().next_back().and_then(letter);
+            match (begin, end) {
+                (Some(sign), None) => (&plain[1..], sign),
+                (None, Some(sign)) => (&plain[..plain.len() - 1], sign),
+                (None, None) => (plain, 1.0),
+                (Some(_), Some(_)) => return None,
             }
         }
-        if self.layout.order_is_rudder
-            && let Some(order) = channels.get(&Channel::RudderOrder)
-        {
-            let order = order.clone();
-            channels.insert(Channel::Rudder, order);
-        }
-        if !channels.contains_key(&Channel::Speed)
-            && let (Some(surge), Some(sway)) = (channels.get(&Channel::Surge), channels.get(&Channel::Sway))
-        {
-            let speed = surge.iter().zip(sway).map(|(u, v)| u.hypot(*v)).collect();
-            channels.insert(Channel::Speed, speed);
-        }
-        let columns = Columns { time: self.time, channels, unknown };
-        Ok((Kept { columns, rows: self.counts.rows }, warnings))
-    }
-
-    /// Refuses a part without rows, and needed columns without a value.
-    fn check_values(&self) -> Result<(), Problem> {
-        let counts = &self.counts;
-        let all_missing =
-            |place: usize, quantity| Err(Problem::AllMissing { column: self.layout.names[place].clone(), quantity });
-        if let Some(place) = self.time_place.filter(|_| counts.no_time == counts.rows) {
-            return all_missing(place, "time");
-        }
-        if self.usable == 0 && counts.no_rudder == 0 {
-            let (from_s, until_s) = self.part;
-            let (first_s, last_s) = self.span.expect("some row has a time, or all_missing had returned");
-            return Err(Problem::EmptyPart { from_s, until_s, first_s, last_s });
-        }
-        if let Some(place) = self.rudder_place.filter(|_| self.usable == 0) {
-            return all_missing(place, spoken(Channel::Rudder));
-        }
-        let empty = |channel| {
-            let place = self.layout.place(channel)?;
-            let column = self.used.iter().position(|&used| used == place)?;
-            self.columns[column].iter().all(|value| value.is_nan()).then_some(place)
-        };
-        let has_rate = self.layout.place(Channel::YawRate).is_some() && empty(Channel::YawRate).is_none();
-        match empty(Channel::Heading) {
-            Some(place) if !has_rate => all_missing(place, spoken(Channel::Heading)),
-            None if self.heading_place.is_none() && !has_rate => {
-                let place = self.layout.place(Channel::YawRate).expect("a layout without heading has a yaw rate");
-                all_missing(place, spoken(Channel::YawRate))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        let counts = &self.counts;
-        let mut warnings = Vec::new();
-        let mut count = |number: usize, text: &str| {
-            if number > 0 {
-                warnings.push(format!("{number} {} {text}", if number == 1 { "row" } else { "rows" }));
-            }
-        };
-        count(counts.no_time, "without time left out");
-        count(counts.no_rudder, "without rudder angle left out; between its neighbours the rudder runs straight");
-        count(counts.repeated, "left out as exact copies of the row before");
-        count(counts.short, "with fewer cells than the header; the last columns were taken as missing there");
-        if counts.decimal_commas > 0 {
-            warnings.push(format!("{} numbers were read with a decimal comma", counts.decimal_commas));
-        }
-        for (name, &text) in self.layout.names.iter().zip(&self.text) {
-            if text > 0 {
-                warnings.push(format!("the column `{}` holds text in {text} rows, taken as missing", shortened(name)));
-            }
-        }
-        for (name, (count, value)) in self.layout.names.iter().zip(&self.sentinels) {
-            if *count > 0 {
-                let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
-                warnings.push(format!("the column `{}` holds {value} {times}, taken as missing", shortened(name)));
-            }
-        }
-        if self.layout.order_is_rudder {
-            let name = self.rudder_place.map_or("", |place| &self.layout.names[place]);
-            warnings.push(format!(
-                "there is no rudder angle; the order `{}` stands for it, so the lag of the steering gear is in the response",
-                shortened(name)
-            ));
-        }
-        warnings
+        _ => (plain, 1.0),
+    };
+    let is_marked = number.len() < text.len();
+    match cell(number.trim().trim_end_matches(['°', 'º']), separator) {
+        Cell::Number(value) | Cell::CommaNumber(value) if is_marked => Some(sign * value),
+        _ => None,
     }
 }

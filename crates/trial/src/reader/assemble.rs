@@ -1,0 +1,249 @@
+//! Channels at their own instants become the columns of one record. A row is an instant at which heading, rudder or yaw
+//! rate was read; what was not read then is missing there. The rudder, which acts at every instant, runs straight between
+//! its readings, as the steering gear moves; so do the inputs of a model such as speed and wind. Nothing is made up over
+//! a gap.
+
+use std::collections::BTreeMap;
+
+use super::error::Problem;
+use super::limits::spoken;
+use super::source::Series;
+use crate::channel::{Channel, Unit};
+use crate::record::Columns;
+
+/// Longest way between two readings over which a channel runs straight, in its usual intervals.
+const LONGEST_WAY: f64 = 3.0;
+
+/// Instants nearer than this are one, s.
+const SAME: f64 = 1e-6;
+
+/// Channels that are observed: their readings make the rows.
+const OBSERVED: [Channel; 4] = [Channel::Heading, Channel::Rudder, Channel::RudderOrder, Channel::YawRate];
+
+/// The columns of channels that have instants of their own.
+pub(super) fn columns(series: Vec<Series>) -> Columns {
+    let of_rows = |series: &&Series| OBSERVED.contains(&series.channel);
+    let mut time: Vec<f64> = series.iter().filter(of_rows).flat_map(|series| series.time.iter().copied()).collect();
+    time.sort_unstable_by(f64::total_cmp);
+    time.dedup_by(|later, earlier| *later - *earlier < SAME);
+    let channels = series.into_iter().map(|series| (series.channel, at_rows(&series, &time))).collect();
+    Columns { time, channels, unknown: Vec::new() }
+}
+
+/// The values of a channel at the rows: where it was read, and for an input of a model between its readings.
+fn at_rows(series: &Series, time: &[f64]) -> Vec<f64> {
+    let mut values = vec![f64::NAN; time.len()];
+    if OBSERVED.contains(&series.channel) {
+        let mut row = 0;
+        for (&instant, &value) in series.time.iter().zip(&series.values) {
+            while row + 1 < time.len() && time[row] < instant - SAME {
+                row += 1;
+            }
+            if (time[row] - instant).abs() <= SAME {
+                values[row] = value;
+            }
+        }
+        return values;
+    }
+    let longest = LONGEST_WAY * usual_interval(&series.time).unwrap_or(f64::INFINITY);
+    let mut next = 0;
+    for (value, &instant) in values.iter_mut().zip(time) {
+        while next < series.time.len() && series.time[next] < instant {
+            next += 1;
+        }
+        if next < series.time.len() && series.time[next] - instant <= SAME {
+            *value = series.values[next];
+        } else if next > 0 && next < series.time.len() && series.time[next] - series.time[next - 1] <= longest {
+            let share = (instant - series.time[next - 1]) / (series.time[next] - series.time[next - 1]);
+            let (from, to) = (series.values[next - 1], series.values[next]);
+            let way = if is_direction(series.channel) { shortest(to - from) } else { to - from };
+            *value = from + share * way;
+        }
+    }
+    values
+}
+
+fn is_direction(channel: Channel) -> bool {
+    matches!(channel, Channel::WindRelativeFrom | Channel::WindTrueFrom)
+}
+
+/// The same turn by the shortest way, rad.
+fn shortest(turn: f64) -> f64 {
+    turn - (turn / std::f64::consts::TAU).round() * std::f64::consts::TAU
+}
+
+/// Median time between instants, s.
+fn usual_interval(time: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// The readings of the channels of a table; nothing of what it does not know.
+pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
+    let Columns { time, channels, .. } = columns;
+    let readings = |(channel, values): (Channel, Vec<f64>)| {
+        let (time, values) =
+            time.iter().zip(values).filter(|(_, value)| value.is_finite()).map(|(t, value)| (t + offset, value)).unzip();
+        Series { channel, name: channel.quantity().to_owned(), time, values }
+    };
+    channels.into_iter().map(readings).collect()
+}
+
+/// What a record has that was not recorded: the rudder where only its order is known, the speed of surge and sway.
+pub(super) fn complete(columns: &mut Columns) -> Option<String> {
+    let channels = &mut columns.channels;
+    if !channels.contains_key(&Channel::Speed)
+        && let (Some(surge), Some(sway)) = (channels.get(&Channel::Surge), channels.get(&Channel::Sway))
+    {
+        let speed = surge.iter().zip(sway).map(|(u, v)| u.hypot(*v)).collect();
+        channels.insert(Channel::Speed, speed);
+    }
+    if channels.contains_key(&Channel::Rudder) {
+        return None;
+    }
+    let order = channels.get(&Channel::RudderOrder)?.clone();
+    channels.insert(Channel::Rudder, order);
+    Some(String::from(
+        "there is no rudder angle; the order stands for it, so the lag of the steering gear is in the response",
+    ))
+}
+
+/// Gives every row a rudder: between two readings that are no gap apart it runs straight, other rows are left out.
+pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
+    let time = &columns.time;
+    let rudder = columns.channels.get_mut(&Channel::Rudder)?;
+    let read: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].is_finite()).collect();
+    if read.len() == rudder.len() || read.is_empty() {
+        return None;
+    }
+    let instants: Vec<f64> = read.iter().map(|&row| time[row]).collect();
+    let longest = LONGEST_WAY * usual_interval(&instants)? + SAME;
+    let mut filled = 0;
+    for pair in read.windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        if time[to] - time[from] <= longest {
+            let slope = (rudder[to] - rudder[from]) / (time[to] - time[from]);
+            for row in from + 1..to {
+                rudder[row] = rudder[from] + slope * (time[row] - time[from]);
+                filled += 1;
+            }
+        }
+    }
+    let keep: Vec<bool> = rudder.iter().map(|delta| delta.is_finite()).collect();
+    let left_out = keep.iter().filter(|keep| !**keep).count();
+    columns.retain(&keep);
+    let rows = |count: usize| format!("{count} {}", if count == 1 { "row" } else { "rows" });
+    let mut told = Vec::new();
+    if filled > 0 {
+        told.push(format!("{} without rudder angle, which runs straight between its readings there", rows(filled)));
+    }
+    if left_out > 0 {
+        told.push(format!("{} without rudder angle left out, where none was read before or after for long", rows(left_out)));
+    }
+    Some(told.join("; "))
+}
+
+/// Puts position in degrees on a plane about its first point, m (a sphere of the mean radius; 0.5 % of the distance).
+pub(super) fn on_plane([latitude, longitude]: [Vec<f64>; 2]) -> Option<[(Channel, Vec<f64>); 2]> {
+    const RADIUS: f64 = 6_371_008.8;
+    let first = (0..latitude.len()).find(|&row| latitude[row].is_finite() && longitude[row].is_finite())?;
+    let degree = Unit::Degree.to_si();
+    let north = latitude.iter().map(|value| (value - latitude[first]) * degree * RADIUS).collect();
+    let parallel = (latitude[first] * degree).cos();
+    let east = longitude
+        .iter()
+        .map(|value| {
+            let turn = shortest((value - longitude[first]) * degree);
+            turn * RADIUS * parallel
+        })
+        .collect();
+    Some([(Channel::North, north), (Channel::East, east)])
+}
+
+/// Refuses channels whose readings have no time in common, and names what is missing altogether.
+pub(super) fn check(series: &[Series]) -> Result<(), Problem> {
+    let find = |wanted: &[Channel]| wanted.iter().find_map(|channel| series.iter().find(|s| s.channel == *channel));
+    let rudder = find(&[Channel::Rudder, Channel::RudderOrder]);
+    let heading = find(&[Channel::Heading, Channel::YawRate]);
+    let found: Vec<String> = series.iter().map(|series| spoken(series.channel).to_owned()).collect();
+    let (Some(rudder), Some(heading)) = (rudder, heading) else {
+        let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
+        return Err(Problem::NoChannel { wanted, found });
+    };
+    let span = |series: &Series| (series.time.first().copied(), series.time.last().copied());
+    if let ((Some(a), Some(b)), (Some(c), Some(d))) = (span(rudder), span(heading))
+        && (a > d || c > b)
+    {
+        return Err(Problem::NoOverlap { rudder_s: [a, b], heading_s: [c, d] });
+    }
+    Ok(())
+}
+
+/// One of each channel; the first file that has it gives it. The names of those that are not used.
+pub(super) fn once(series: Vec<Series>) -> (Vec<Series>, Vec<Channel>) {
+    let mut kept: BTreeMap<Channel, Series> = BTreeMap::new();
+    let mut doubled = Vec::new();
+    for series in series {
+        let channel = series.channel;
+        if kept.contains_key(&channel) {
+            doubled.push(channel);
+        } else {
+            kept.insert(channel, series);
+        }
+    }
+    (kept.into_values().collect(), doubled)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn series_of(channel: Channel, first: f64, step: f64, count: usize, value: impl Fn(f64) -> f64) -> Series {
+        let time: Vec<f64> = (0..count).map(|k| first + step * k as f64).collect();
+        let values = time.iter().map(|&t| value(t)).collect();
+        Series { channel, name: String::new(), time, values }
+    }
+
+    #[test]
+    fn channels_keep_their_own_instants() {
+        let heading = series_of(Channel::Heading, 0.0, 0.5, 21, |t| t);
+        let rudder = series_of(Channel::Rudder, 0.2, 1.0, 10, |t| 2.0 * t);
+        let speed = series_of(Channel::Speed, -1.0, 2.0, 8, |t| 3.0 * t);
+        let mut columns = columns(vec![heading, rudder, speed]);
+        assert_eq!(columns.time[..4], [0.0, 0.2, 0.5, 1.0]);
+        let told = straight_rudder(&mut columns).expect("rows were filled");
+        assert!(told.contains("runs straight"), "{told}");
+        // From the first reading of the rudder to its last.
+        assert_eq!((columns.time[0], columns.time[columns.time.len() - 1]), (0.2, 9.2));
+        for (row, &t) in columns.time.iter().enumerate() {
+            approx::assert_relative_eq!(columns.channels[&Channel::Rudder][row], 2.0 * t, max_relative = 1e-12);
+            approx::assert_relative_eq!(columns.channels[&Channel::Speed][row], 3.0 * t, max_relative = 1e-12);
+            let psi = columns.channels[&Channel::Heading][row];
+            assert!(psi == t || psi.is_nan());
+        }
+        let read = columns.channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
+        assert_eq!(read, 18);
+    }
+
+    #[test]
+    fn nothing_is_made_up_over_a_gap() {
+        let heading = series_of(Channel::Heading, 0.0, 1.0, 100, |t| t);
+        let mut rudder = series_of(Channel::Rudder, 0.0, 1.0, 100, |t| t);
+        rudder.time.drain(40..50);
+        rudder.values.drain(40..50);
+        let mut columns = columns(vec![heading, rudder]);
+        let told = straight_rudder(&mut columns).expect("rows were left out");
+        assert!(told.starts_with("10 rows without rudder angle left out"), "{told}");
+        assert_eq!(columns.time.len(), 90);
+    }
+
+    #[test]
+    fn a_minute_of_latitude_is_a_sea_mile() {
+        let north = [54.0, 54.0 + 1.0 / 60.0].to_vec();
+        let east = [179.999, -179.999].to_vec();
+        let [(_, north), (_, east)] = on_plane([north, east]).expect("there are positions");
+        approx::assert_relative_eq!(north[1], 1852.0, max_relative = 2e-3);
+        approx::assert_relative_eq!(east[1], 0.002 * 60.0 * 1852.0 * 54f64.to_radians().cos(), max_relative = 2e-3);
+    }
+}

@@ -1,0 +1,286 @@
+//! Units that a table does not name, found from its values where these leave one reading only. Where two are possible
+//! the table is refused, or the channel left out if nobody needs it: nothing is guessed.
+
+use std::collections::BTreeMap;
+
+use super::error::Problem;
+use super::kept::{Kept, Open};
+use super::limits::spoken;
+use crate::channel::{Channel, Unit};
+use crate::clock::Clock;
+use crate::plausibility::reversals;
+use crate::words::shortened;
+
+/// Largest angle of a rudder in radians: 45°. In degrees a rudder of a manoeuvre goes further.
+const RUDDER_RAD: f64 = 0.8;
+
+/// Largest angle that may still be radians: a rudder of 90°.
+const RUDDER_EITHER: f64 = 1.6;
+
+/// Least and largest range of the heading over that of the rudder in a zig-zag: factor 56 apart, less than the 57.3
+/// between degrees and radians.
+const ZIG_ZAG: [f64; 2] = [0.25, 14.0];
+
+/// The same where the rudder is laid to one side: course changes and turning circles.
+const TURN: [f64; 2] = [1.0, 500.0];
+
+/// Beyond this a heading is no continuous angle in radians: six circles.
+const SIX_CIRCLES: f64 = 38.0;
+
+/// Parts of a record over which changes of heading are summed, so that noise counts little.
+const PARTS: usize = 100;
+
+/// Mean rates of turn that ships and models have in a manoeuvre, rad/s: 0.01 to 8 °/s.
+const MEAN_RATE: [f64; 2] = [1.7e-4, 0.14];
+
+/// Slowest rudder, rad/s: 0.2 °/s.
+const SLOWEST_RUDDER: f64 = 3.5e-3;
+
+/// Seconds since 1970 from the years 1990 to 2100.
+const EPOCH: [f64; 2] = [6.3e8, 4.1e9];
+
+/// Days since 1899-12-30, as spreadsheets count, from the years 2000 to 2100.
+const SERIAL_DAY: [f64; 2] = [36_526.0, 73_415.0];
+
+/// Day 0 of spreadsheets, counted from 1970-01-01.
+const SERIAL_ZERO: i64 = -25_569;
+
+type Channels = BTreeMap<Channel, Vec<f64>>;
+
+/// Finds the open units; what was decided, in words.
+///
+/// Fails where heading, rudder, a yaw rate that stands for the heading, or time could have two units.
+pub(super) fn settle(kept: &mut Kept, line: usize) -> Result<Vec<String>, Problem> {
+    let mut decided = Vec::new();
+    let mut left_out = Vec::new();
+    let open = std::mem::take(&mut kept.open);
+    let find = |channel| open.iter().find(|open| open.channel == channel);
+    let channels = &mut kept.columns.channels;
+    for channel in [Channel::Rudder, Channel::RudderOrder] {
+        if let Some(open) = find(channel) {
+            let unit = rudder(open).ok_or_else(|| refusal(open, line))?;
+            scale(channels, channel, unit);
+            decided.push(in_words(open, unit));
+        }
+    }
+    if let Some(open) = find(Channel::Heading) {
+        let unit = heading(channels, open).ok_or_else(|| refusal(open, line))?;
+        scale(channels, Channel::Heading, unit);
+        decided.push(in_words(open, unit));
+    }
+    if let Some(open) = find(Channel::YawRate) {
+        match yaw_rate(&kept.columns.time, channels) {
+            Some(unit) => {
+                scale(channels, Channel::YawRate, unit);
+                decided.push(in_words(open, unit));
+            }
+            None if !channels.contains_key(&Channel::Heading) => return Err(refusal(open, line)),
+            None => left_out.push(open),
+        }
+    }
+    let done = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
+    for open in open.iter().filter(|open| !done.contains(&open.channel)) {
+        let is_angle = open.channel.units().contains(&Unit::Radian);
+        if is_angle && open.largest > std::f64::consts::TAU + 0.01 {
+            decided.push(in_words(open, Unit::Degree));
+        } else if open.channel == Channel::Speed
+            && let Some(unit) = speed(&kept.columns.time, channels)
+        {
+            scale(channels, open.channel, unit);
+            decided.push(in_words(open, unit));
+        } else if open.channel.units().len() > 1 {
+            left_out.push(open);
+        }
+    }
+    for open in &left_out {
+        channels.remove(&open.channel);
+    }
+    let mut told = Vec::new();
+    if !decided.is_empty() {
+        told.push(format!("columns without a unit: {}, the only unit that fits their values", decided.join(", ")));
+    }
+    for Open { channel, name, .. } in left_out {
+        let names: Vec<String> =
+            channel.units().iter().map(|unit| format!("`{}_{}`", channel.quantity(), unit.id())).collect();
+        told.push(format!(
+            "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = {}` for it in a sidecar",
+            spoken(*channel),
+            shortened(name),
+            names.join(" or "),
+            names[0].replace('`', "\"")
+        ));
+    }
+    if let Some(name) = kept.open_time.take() {
+        told.extend(time(kept, &name, line)?);
+    }
+    Ok(told)
+}
+
+fn in_words(open: &Open, unit: Unit) -> String {
+    format!("`{}` is the {} in {}", shortened(&open.name), spoken(open.channel), unit.spoken())
+}
+
+fn refusal(open: &Open, line: usize) -> Problem {
+    let Open { channel, name, largest } = open.clone();
+    Problem::OpenUnit { line, column: name, quantity: spoken(channel), largest, channel }
+}
+
+/// Values were read as if in the unit files are written in.
+fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
+    let factor = unit.to_si() / channel.written_unit().to_si();
+    if factor != 1.0
+        && let Some(values) = channels.get_mut(&channel)
+    {
+        values.iter_mut().for_each(|value| *value *= factor);
+    }
+}
+
+fn rudder(open: &Open) -> Option<Unit> {
+    match open.largest {
+        largest if largest <= RUDDER_RAD => Some(Unit::Radian),
+        largest if largest > RUDDER_EITHER => Some(Unit::Degree),
+        _ => None,
+    }
+}
+
+fn range(values: &[f64]) -> f64 {
+    let finite = values.iter().filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &value| (l.min(value), h.max(value)));
+    (high - low).max(0.0)
+}
+
+/// The unit of a heading that was read as degrees; removes the wrap at 2π where it is in radians.
+fn heading(channels: &mut Channels, open: &Open) -> Option<Unit> {
+    let degree = Unit::Degree.to_si();
+    let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
+    let values = channels.get_mut(&Channel::Heading)?;
+    let seen = values.iter().filter(|psi| psi.is_finite()).map(|psi| psi / degree);
+    let steps = seen.clone().zip(seen.skip(1)).map(|(one, next)| (next - one).abs());
+    let (mut wraps, mut others) = (0, 0);
+    for step in steps {
+        wraps += usize::from((step - std::f64::consts::TAU).abs() < 0.3);
+        others += usize::from((1.0..5.9).contains(&step));
+    }
+    if open.largest <= std::f64::consts::TAU + 0.01 && wraps > 0 && others == 0 {
+        let mut last = f64::NAN;
+        for value in values.iter_mut().filter(|psi| psi.is_finite()) {
+            if last.is_finite() {
+                let turns = ((*value - last) / degree / std::f64::consts::TAU).round();
+                *value -= turns * std::f64::consts::TAU * degree;
+            }
+            last = *value;
+        }
+        return Some(Unit::Radian);
+    }
+    if open.largest > SIX_CIRCLES {
+        return Some(Unit::Degree);
+    }
+    let rudder = rudder?;
+    let ratio = range(values) / range(&rudder);
+    let [least, largest] = if reversals(&rudder) >= 2 { ZIG_ZAG } else { TURN };
+    let fits = |ratio: f64| (least..=largest).contains(&ratio);
+    match (fits(ratio), fits(ratio / degree)) {
+        (true, false) => Some(Unit::Degree),
+        (false, true) => Some(Unit::Radian),
+        _ => None,
+    }
+}
+
+/// Changes of a channel and of the integral of another over equal parts of a record.
+fn changes(time: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    let seen: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
+    let step = (seen.len() / PARTS).max(1);
+    let ends: Vec<usize> = seen.into_iter().step_by(step).collect();
+    ends.windows(2).map(|pair| (values[pair[1]] - values[pair[0]], time[pair[1]] - time[pair[0]])).collect()
+}
+
+/// The unit of a yaw rate that was read as deg/s, from the heading.
+fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
+    let (heading, rate) = (channels.get(&Channel::Heading)?, channels.get(&Channel::YawRate)?);
+    let (mut last, mut integral) = (None, 0.0);
+    let integrals: Vec<f64> = (0..time.len())
+        .map(|row| {
+            if rate[row].is_finite() {
+                if let Some((before, value)) = last {
+                    integral += 0.5 * (rate[row] + value) * (time[row] - before);
+                }
+                last = Some((time[row], rate[row]));
+            }
+            if heading[row].is_finite() { integral } else { f64::NAN }
+        })
+        .collect();
+    let pairs = changes(time, heading).into_iter().zip(changes(time, &integrals));
+    let (product, square) =
+        pairs.fold((0.0, 0.0), |(xy, xx), ((psi, _), (sum, _))| (xy + psi * sum, xx + sum * sum));
+    // A rate of the opposite sign is for the checks of a record to find.
+    let ratio = (product / square).abs();
+    let near = |unit: &&Unit| {
+        let factor = unit.to_si() / Unit::DegreePerSecond.to_si();
+        (0.7..1.4).contains(&(ratio / factor))
+    };
+    Channel::YawRate.units().iter().find(near).copied()
+}
+
+/// The unit of a speed that was read as m/s, from the positions.
+fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
+    let (north, east) = (channels.get(&Channel::North)?, channels.get(&Channel::East)?);
+    let values: Vec<f64> = channels.get(&Channel::Speed)?.iter().copied().filter(|speed| speed.is_finite()).collect();
+    let way: f64 = changes(time, north).iter().zip(changes(time, east)).map(|((n, _), (e, _))| n.hypot(e)).sum();
+    let duration: f64 = changes(time, north).iter().map(|(_, time)| time).sum();
+    let ratio = way / duration / (values.iter().sum::<f64>() / values.len() as f64);
+    Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.to_si()))).copied()
+}
+
+/// Time without a unit: seconds where ships can turn like that, or the count of a clock.
+fn time(kept: &mut Kept, name: &str, line: usize) -> Result<Option<String>, Problem> {
+    let name = shortened(name);
+    let times = &mut kept.columns.time;
+    let first = times[0];
+    for (factor, unit) in [(1.0, "seconds"), (1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds")] {
+        if (EPOCH[0]..EPOCH[1]).contains(&(first * factor)) {
+            times.iter_mut().for_each(|time| *time = (*time - first) * factor);
+            kept.clock = Some(clock(first * factor, 0));
+            return Ok(Some(format!("`{name}` is read as {unit} since 1970-01-01, UTC; time 0 is the first row")));
+        }
+    }
+    let last = times[times.len() - 1];
+    if SERIAL_DAY[0] < first && last < SERIAL_DAY[1] && last - first < 31.0 {
+        times.iter_mut().for_each(|time| *time = (*time - first) * 86_400.0);
+        kept.clock = Some(Clock { zone: None, ..clock(first * 86_400.0, SERIAL_ZERO) });
+        return Ok(Some(format!("`{name}` is read as days since 1899-12-30, as spreadsheets count; time 0 is the first row")));
+    }
+    let refusal = || Problem::OpenTime { line, column: name.clone() };
+    let channels = &kept.columns.channels;
+    if let Some(heading) = channels.get(&Channel::Heading) {
+        let (turned, duration) = changes(times, heading).iter().fold((0.0, 0.0), |(psi, t), (dpsi, dt)| (psi + dpsi.abs(), t + dt));
+        if !(MEAN_RATE[0]..MEAN_RATE[1]).contains(&(turned / duration)) {
+            return Err(refusal());
+        }
+    }
+    if let Some(rudder) = channels.get(&Channel::Rudder) {
+        let fastest = (1..times.len())
+            .map(|row| ((rudder[row] - rudder[row - 1]) / (times[row] - times[row - 1])).abs())
+            .filter(|rate| rate.is_finite())
+            .fold(0.0, f64::max);
+        if fastest > 0.0 && fastest < SLOWEST_RUDDER {
+            return Err(refusal());
+        }
+    }
+    // A second in minutes is 0.016667: no clock counts seconds in such steps.
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    if !steps.is_empty() {
+        let step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let is_round = |step: f64| (100.0 * step - (100.0 * step).round()).abs() < 0.02;
+        if step < 1.0 && !is_round(step) && is_round(60.0 * step) {
+            return Err(refusal());
+        }
+    }
+    Ok(Some(format!("`{name}` has no unit and is read as seconds")))
+}
+
+/// The clock at a number of seconds after a day, which is counted from 1970-01-01.
+fn clock(seconds: f64, zero: i64) -> Clock {
+    let day = (seconds / crate::clock::DAY).floor();
+    Clock { day: Some(zero + day as i64), second: seconds - day * crate::clock::DAY, zone: Some(0) }
+}
