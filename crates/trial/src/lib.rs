@@ -8,6 +8,7 @@
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
+//! | finding the manoeuvres inside a long log | [`find`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
 //! | IMO criteria | [`imo`] |
 
@@ -15,6 +16,7 @@ mod cells;
 pub mod channel;
 mod encoding;
 pub mod file;
+pub mod find;
 mod hygiene;
 pub mod imo;
 pub mod plausibility;
