@@ -6,7 +6,7 @@ use super::quality::{Approach, Quality};
 use super::rest::{Stretch, usual};
 use super::{Kind, Manoeuvre, Pattern, Record};
 use crate::zigzag::executes::Rudder;
-use crate::zigzag::holds::Hold;
+use crate::zigzag::holds::{Hold, LAID};
 
 /// Rudder off its middle in a steady approach, and how far its middle may be off amidships, as shares of the rudder
 /// of the manoeuvre.
@@ -18,8 +18,9 @@ const AMIDSHIPS: f64 = 0.35;
 const STEADY_RATE: f64 = 0.2;
 const STEADY_HEADING: f64 = 0.05;
 
-/// Change of speed and revolutions, as a share, over an approach of full length that is steady.
-const STEADY_SPEED: f64 = 0.05;
+/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 % over
+/// all of it.
+pub(super) const STEADY_SPEED: f64 = 0.033;
 
 /// Shortest steady piece that is taken along, as a share of the longest; a log that begins with it may be shorter.
 const SHORTEST_APPROACH: f64 = 0.25;
@@ -32,6 +33,9 @@ const GAP: f64 = 30.0;
 
 /// Holds at the beginning that time the first execute: later ones make it no more certain.
 const ENOUGH_HOLDS: usize = 4;
+
+/// Rows whose middle is the rudder angle just before a movement.
+const ENOUGH_ROWS: usize = 8;
 
 /// The manoeuvres of patterns that are in order of time and apart.
 pub(super) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
@@ -109,10 +113,44 @@ fn first_execute(record: &Record, pattern: &Pattern, free: usize) -> usize {
         last: hold.last - window,
         level: hold.level,
     };
-    let local: Vec<Hold> = holds.iter().map(local).collect();
-    let rudder = Rudder::new(&time[window..=end], &record.rest.angle[window..=end], &local, Some(record.rest.noise));
+    let mut local: Vec<Hold> = holds.iter().map(local).collect();
+    // The last of a movement is slow and says nothing of its speed: there a hold begins before the rudder rests.
+    let angle = &record.rest.angle[window..=end];
+    let laid = |&row: &usize| {
+        let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
+        before < after && before >= LAID * hold.level.abs()
+    };
+    local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
+    if let ([_], Some(row)) = (local.as_slice(), single_ramp(&time[window..=end], angle, &local[0], record.rest.noise))
+    {
+        return window + row;
+    }
+    let rudder = Rudder::new(&time[window..=end], angle, &local, Some(record.rest.noise));
     let start = rudder.first().map_or(hold.from, |movement| movement.start.value);
     time.partition_point(|&t| t < start).clamp(window, hold.first)
+}
+
+/// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`
+/// where the record does not show it.
+fn single_ramp(time: &[f64], angle: &[f64], hold: &Hold, noise: f64) -> Option<usize> {
+    let laid = hold.first;
+    let half = (0..laid).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())?;
+    let rate = (angle[laid] - angle[half]) / (time[laid] - time[half]);
+    let look_back = (0.2 * hold.level.abs()).max(8.0 * noise) / rate.abs();
+    let mut row = half;
+    while row > 0 {
+        let earlier = time.partition_point(|&t| t <= time[row] - look_back).saturating_sub(1).min(row - 1);
+        if (angle[row] - angle[earlier]) / (time[row] - time[earlier]) / rate < 0.3 {
+            break;
+        }
+        row -= 1;
+    }
+    let clear = time.partition_point(|&t| t <= time[row] - 0.3 * look_back).saturating_sub(1).min(row);
+    let before = middle(&angle[clear.saturating_sub(ENOUGH_ROWS)..=clear])?;
+    let start = time[half] - (angle[half] - before) / rate;
+    let tolerance = (2.5 * noise).max(0.01 * hold.level.abs());
+    let first = time.partition_point(|&t| t < start).min(laid);
+    Some((first..laid).find(|&row| (angle[row] - before).abs() > tolerance).unwrap_or(laid))
 }
 
 /// What of the approach belongs to a manoeuvre.

@@ -4,6 +4,7 @@
 use ship::angle::to_deg;
 
 use super::Record;
+use super::bounds::STEADY_SPEED;
 
 /// Share of missing headings worth a remark.
 const MISSING: f64 = 0.01;
@@ -13,9 +14,6 @@ const GAP: f64 = 10.0;
 
 /// Difference between holds to one side worth a remark, degrees.
 const SPREAD_DEG: f64 = 1.5;
-
-/// Change of speed in the approach worth a remark, as a share.
-const SPEED: f64 = 0.05;
 
 /// How a manoeuvre was approached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,8 +39,8 @@ pub struct Quality {
     pub rudder_spread: f64,
     /// How it was approached; `None` for a pull-out and a straight piece.
     pub approach: Option<Approach>,
-    /// Change of speed in the approach, at most one hold long, as a share of the larger; positive where it grew; `None`
-    /// where it is not known.
+    /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the larger;
+    /// positive where it grew; `None` where it is not known.
     pub speed_change: Option<f64>,
 }
 
@@ -77,7 +75,7 @@ impl Quality {
             }
             Some(Approach::Steady) | None => {}
         }
-        if let Some(change) = self.speed_change.filter(|change| change.abs() > SPEED) {
+        if let Some(change) = self.speed_change.filter(|change| change.abs() > STEADY_SPEED) {
             let verb = if change > 0.0 { "grew" } else { "fell" };
             remarks.push(format!("The speed still {verb} by {:.0} % in the approach.", 100.0 * change.abs()));
         }

@@ -26,6 +26,9 @@ const SAME_LEVEL: f64 = 0.15;
 /// Pause between such stretches as a share of their time together.
 const SHORT_PAUSE: f64 = 0.5;
 
+/// A stretch shorter than this share of another is no hold beside it.
+const SHORT: f64 = 0.2;
+
 /// Rows off the level that do not end a stretch.
 const STRAY_ROWS: usize = 2;
 
@@ -162,6 +165,13 @@ impl Rest {
 fn merged(stretches: &[Stretch], floor: f64) -> Vec<Stretch> {
     let mut merged: Vec<Stretch> = Vec::new();
     for &next in stretches {
+        // What is short beside both is a pause or the end of a movement.
+        if let [.., before, between] = merged.as_slice()
+            && between.duration() < SHORT * before.duration().min(next.duration())
+            && is_same(before, &next, floor)
+        {
+            merged.pop();
+        }
         match merged.last_mut() {
             Some(last) if is_same(last, &next, floor) => *last = last.joined(next),
             _ => merged.push(next),
@@ -171,8 +181,11 @@ fn merged(stretches: &[Stretch], floor: f64) -> Vec<Stretch> {
 }
 
 fn is_same(a: &Stretch, b: &Stretch, floor: f64) -> bool {
-    (a.level - b.level).abs() <= floor.max(SAME_LEVEL * a.level.abs().max(b.level.abs()))
-        && b.from - a.until <= SHORT_PAUSE * (a.duration() + b.duration())
+    let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
+    // The end of a movement is near the level, too.
+    let tolerance =
+        if shorter < SHORT * longer { 0.5 * floor } else { floor.max(SAME_LEVEL * a.level.abs().max(b.level.abs())) };
+    (a.level - b.level).abs() <= tolerance && b.from - a.until <= SHORT_PAUSE * (a.duration() + b.duration())
 }
 
 /// Every value with its two neighbours, the middle of the three.

@@ -22,10 +22,15 @@ const QUICK: f64 = 0.5;
 const PAUSE: f64 = 0.2;
 
 /// Shortest hold as a share of the usual one.
-const SHORTEST: f64 = 0.25;
+const SHORTEST: f64 = 0.4;
 
-/// How steady a turn is, and how much against the rudder its rate may change, as shares of the range of rates.
-const STEADY: f64 = 0.15;
+/// Largest ratio of the rudder angles to both sides.
+const SIDES: f64 = 2.0;
+
+/// How much the rate of a turn changes in its last thirds, and how much it may change against the rudder from one to the
+/// next, as shares of the range of rates.
+const STEADY: f64 = 0.04;
+const AGAINST: f64 = 0.15;
 
 /// The spirals of a log.
 pub(super) fn spirals(record: &Record) -> Vec<Pattern> {
@@ -80,7 +85,8 @@ fn ways(holds: &[Stretch]) -> Vec<&[Stretch]> {
 
 fn is_from_side_to_side(way: &[Stretch]) -> bool {
     let (first, last) = (way[0].level, way[way.len() - 1].level);
-    way.len() >= FEWEST && first.min(last) <= -BOTH_SIDES && first.max(last) >= BOTH_SIDES
+    let (port, starboard) = (-first.min(last), first.max(last));
+    way.len() >= FEWEST && port.min(starboard) >= BOTH_SIDES && port.max(starboard) <= SIDES * port.min(starboard)
 }
 
 /// Whether the ship turns steadily in every hold, the more to the side the rudder went to.
@@ -102,5 +108,5 @@ fn is_answered(record: &Record, way: &[Stretch]) -> bool {
     let sense = (last - first).signum();
     range > 0.0
         && rates.iter().all(|(earlier, later)| (later - earlier).abs() <= STEADY * range)
-        && rates.windows(2).all(|pair| sense * (pair[1].1 - pair[0].1) >= -STEADY * range)
+        && rates.windows(2).all(|pair| sense * (pair[1].1 - pair[0].1) >= -AGAINST * range)
 }

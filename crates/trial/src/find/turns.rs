@@ -61,7 +61,8 @@ fn pull_out(record: &Record, turn: &Stretch, amidships: &Stretch) -> Option<Patt
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT / rate;
     let neutral = record.rest.neutral;
-    let is_amidships = (amidships.level - neutral).abs() <= AMIDSHIPS * (turn.level - neutral).abs();
+    let off = (amidships.level - neutral).abs();
+    let is_amidships = off <= AMIDSHIPS * (turn.level - neutral).abs() && off < SMALLEST_RUDDER;
     let quick = amidships.from - turn.until <= time.max(0.25 * turn.duration());
     if !is_amidships || !quick || amidships.duration() < FEWEST_TIMES * time || !is_whole(record, amidships) {
         return None;

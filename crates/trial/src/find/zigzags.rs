@@ -1,6 +1,7 @@
 //! Zig-zags in a log: the rudder rests at nearly the same angle to alternate sides, goes over quickly, and the heading
 //! swings about a course with it. Where the part to analyse begins and ends is decided in `bounds`.
 
+use super::course::middle;
 use super::rest::Stretch;
 use super::{Kind, Pattern, Record};
 use crate::zigzag::median::median;
@@ -27,7 +28,12 @@ const SWINGS: f64 = 1.7;
 /// Change of heading in the first hold, as a share of the swings: half a swing from the base course, somewhat more
 /// where the hold begins within a reversal. With only three holds nothing else tells a trial from chance.
 const FIRST_SWING: (f64, f64) = (0.15, 1.6);
-const ONLY_SWING: (f64, f64) = (0.25, 0.85);
+const ONLY_SWING: (f64, f64) = (0.35, 0.7);
+
+/// Before a trial of three holds, for a time of [`PAUSE`] holds: change of heading as a share of the swings, and rudder
+/// off amidships as a share of its level.
+const STRAIGHT: f64 = 0.12;
+const AMIDSHIPS: f64 = 0.5;
 
 /// Rudder angle from which on the smallest change of heading makes a zig-zag, and change of heading from which on the
 /// smallest rudder angle does, rad: an autopilot that keeps a course uses 3 degrees and lets it vary by one.
@@ -49,12 +55,14 @@ const FEWEST: usize = 3;
 
 /// The zig-zags among stretches that are in order of time.
 pub(super) fn zigzags(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
-    let mut found = Vec::new();
+    let mut found: Vec<Pattern> = Vec::new();
     let mut start = 0;
     while start < stretches.len() {
         let chain = Chain::from(start, stretches, record.rest.neutral);
         found.extend(answered(record, &chain.holds));
-        start = chain.next;
+        let ends =
+            found.last().is_some_and(|pattern| pattern.last() >= stretches[chain.next.min(stretches.len() - 1)].last);
+        start = chain.next + usize::from(ends);
     }
     found
 }
@@ -82,7 +90,10 @@ impl Chain {
             {
                 holds.push(stretch);
                 next = index;
-            } else if is_level(last.level, stretch.level) && gap <= 0.5 * longer {
+            } else if is_level(last.level, stretch.level)
+                && gap <= 0.5 * longer
+                && stretch.duration() >= PAUSE * last.duration()
+            {
                 holds[count - 1] = last.joined(stretch);
             } else if last.level * stretch.level > 0.0
                 && last.duration() < PAUSE * stretch.duration()
@@ -145,9 +156,13 @@ fn answered(record: &Record, holds: &[Stretch]) -> Vec<Pattern> {
         found.extend(pattern(record, &holds[begin - 1..=index + 1], &headings[begin - 1..=index + 1]));
         index += 1;
     }
-    found.dedup_by(|next, last| {
-        // Runs of swings of different size may share the holds where one ends and the next begins.
-        next.first() <= last.last()
+    // Runs of swings of different size share the holds where one ends and the next begins.
+    found.dedup_by(|next: &mut Pattern, last: &mut Pattern| {
+        let shared = next.first() <= last.last();
+        if shared && next.holds.len() > last.holds.len() {
+            std::mem::swap(next, last);
+        }
+        shared
     });
     found
 }
@@ -161,7 +176,7 @@ fn side(holds: &[Stretch], index: usize) -> f64 {
 /// Heading when the rudder leaves a hold.
 fn heading_at_end(record: &Record, hold: &Stretch) -> Option<f64> {
     let scale = hold.duration();
-    record.course.near(hold.until, 0.05 * scale, 0.5 * scale)
+    record.course.near(hold.until, 0.02 * scale, 0.5 * scale)
 }
 
 /// A zig-zag of holds whose swings agree, with the headings at their ends; `None` where it is none.
@@ -177,7 +192,8 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
         let share = side(holds, 0) * (ended - began) / swing;
         let (least, most) = if holds.len() == FEWEST { ONLY_SWING } else { FIRST_SWING };
         let at_start = holds[0].first == 0;
-        first = usize::from(share > most || share < least && !at_start);
+        let manoeuvring = holds.len() == FEWEST && !is_straight_before(record, holds, began, swing);
+        first = usize::from(manoeuvring || share > most || share < least && !at_start);
     }
     let mut last = holds.len() - 1;
     let turned = record.course.change(holds[last].from, holds[last].until).unwrap_or(0.0).abs();
@@ -201,6 +217,18 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
         scale,
         swing,
     })
+}
+
+/// Whether the ship went straight with the rudder about amidships before the first of three holds, which began at the
+/// heading `began`; also where the log does not tell.
+fn is_straight_before(record: &Record, holds: &[Stretch], began: f64, swing: f64) -> bool {
+    let (from, time) = (holds[0].from, PAUSE * holds[0].duration());
+    let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
+    let [one, other] = [holds[0].level, holds[1].level];
+    let rudder = middle(&record.rest.angle[rows[0]..rows[1]]);
+    let heading = record.course.near(from - time, 0.1 * time, 0.5 * time);
+    rudder.is_none_or(|rudder| (rudder - 0.5 * (one + other)).abs() <= AMIDSHIPS * 0.5 * (one - other).abs())
+        && heading.is_none_or(|heading| (began - heading).abs() <= STRAIGHT * swing)
 }
 
 /// Whether the rudder is held most of the time, and no gap of the log hides a hold.

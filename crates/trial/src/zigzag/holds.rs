@@ -8,7 +8,7 @@ use super::median::median;
 
 /// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
 /// before a first execute can use more than half the rudder of the trial.
-pub(super) const LAID: f64 = 0.85;
+pub(crate) const LAID: f64 = 0.85;
 
 /// Smallest rudder angle of a zig-zag, degrees.
 const SMALLEST_RUDDER_DEG: f64 = 0.5;
