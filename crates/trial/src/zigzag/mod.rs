@@ -8,12 +8,12 @@
 //! fits (`heading`), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
 
 mod characteristics;
-mod executes;
+pub(crate) mod executes;
 mod findings;
 mod heading;
-mod holds;
+pub(crate) mod holds;
 mod local;
-mod median;
+pub(crate) mod median;
 pub mod points;
 #[cfg(test)]
 pub(crate) mod simulator;

@@ -1,0 +1,229 @@
+//! Where the part of a manoeuvre begins and ends: from the first execute, or from the steady approach before it, until
+//! the last row before the rudder leaves its last hold or the propeller stops.
+
+use super::course::middle;
+use super::quality::{Approach, Quality};
+use super::rest::{Stretch, usual};
+use super::{Kind, Manoeuvre, Pattern, Record};
+use crate::zigzag::executes::Rudder;
+use crate::zigzag::holds::{Hold, LAID};
+
+/// Rudder off its middle in a steady approach, and how far its middle may be off amidships, as shares of the rudder
+/// of the manoeuvre.
+const STEADY_RUDDER: f64 = 0.15;
+const AMIDSHIPS: f64 = 0.35;
+
+/// Change of heading in a steady approach: as a share of the usual rate of the manoeuvre, and in all as a share of a
+/// swing, which noise and waves make of nothing.
+const STEADY_RATE: f64 = 0.2;
+const STEADY_HEADING: f64 = 0.05;
+
+/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 % over
+/// all of it.
+pub(super) const STEADY_SPEED: f64 = 0.033;
+
+/// Shortest steady piece that is taken along, as a share of the longest; a log that begins with it may be shorter.
+const SHORTEST_APPROACH: f64 = 0.25;
+
+/// Revolutions, as a share of the usual ones, below which the engine is stopped.
+const STOPPED: f64 = 0.5;
+
+/// A step of so many usual ones between rows is a gap in the approach.
+const GAP: f64 = 30.0;
+
+/// Holds at the beginning that time the first execute: later ones make it no more certain.
+const ENOUGH_HOLDS: usize = 4;
+
+/// Rows whose middle is the rudder angle just before a movement.
+const ENOUGH_ROWS: usize = 8;
+
+/// The manoeuvres of patterns that are in order of time and apart.
+pub(super) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
+    let time = record.log.time;
+    let mut free = 0;
+    let mut list = Vec::new();
+    for pattern in found {
+        let last = before_stop(record, pattern);
+        let (start, approach) = match pattern.kind {
+            Kind::PullOut { .. } => (pattern.first(), None),
+            _ => {
+                let start = first_execute(record, pattern, free);
+                (start, Some(Lead::of(record, pattern, start, free)))
+            }
+        };
+        let first = approach.as_ref().map_or(start, |lead| lead.first);
+        let last = last.max(start);
+        let executes = match pattern.kind {
+            Kind::Straight => 0,
+            _ => pattern.holds.iter().filter(|hold| hold.first <= last).count(),
+        };
+        let mut quality = Quality::of(record, first, last);
+        quality.rudder_spread = spread(pattern);
+        if let Some(lead) = approach {
+            quality.approach = Some(lead.approach);
+            quality.speed_change = lead.speed_change;
+        }
+        list.push(Manoeuvre {
+            kind: pattern.kind,
+            from: time[first],
+            until: time[last],
+            start: time[start],
+            executes,
+            quality,
+        });
+        free = last + 1;
+    }
+    list
+}
+
+/// Largest difference between holds to one side, rad; 0 for a spiral, which means it.
+fn spread(pattern: &Pattern) -> f64 {
+    if !matches!(pattern.kind, Kind::ZigZag { .. }) {
+        return 0.0;
+    }
+    let range = |offset: usize| {
+        let levels = || pattern.holds.iter().skip(offset).step_by(2).map(|hold| hold.level);
+        levels().fold(f64::NEG_INFINITY, f64::max) - levels().fold(f64::INFINITY, f64::min)
+    };
+    range(0).max(range(1))
+}
+
+/// Last row of a manoeuvre in which the propeller turns.
+fn before_stop(record: &Record, pattern: &Pattern) -> usize {
+    let (first, last) = (pattern.first(), pattern.last());
+    let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
+    let stopped = STOPPED * usual(propeller.iter().map(|n| n.abs()));
+    let is_stopped = |row: usize| propeller.get(row).is_none_or(|n| n.abs() < stopped);
+    // A single row without revolutions is a fault of the channel; the last row has no next.
+    (0..propeller.len())
+        .find(|&row| is_stopped(row) && is_stopped(row + 1))
+        .map_or(last, |row| (first + row).max(first + 1) - 1)
+}
+
+/// First row in which the rudder moves into the first hold of a manoeuvre.
+fn first_execute(record: &Record, pattern: &Pattern, free: usize) -> usize {
+    let time = record.log.time;
+    let holds = &pattern.holds[..pattern.holds.len().min(ENOUGH_HOLDS)];
+    let hold = holds[0];
+    let window = time.partition_point(|&t| t < hold.from - pattern.scale).max(free).min(hold.first);
+    let end = holds[holds.len() - 1].last;
+    let local = |hold: &Stretch| Hold {
+        side: if hold.level < 0.0 { -1.0 } else { 1.0 },
+        first: hold.first - window,
+        last: hold.last - window,
+        level: hold.level,
+    };
+    let mut local: Vec<Hold> = holds.iter().map(local).collect();
+    // The last of a movement is slow and says nothing of its speed: there a hold begins before the rudder rests.
+    let angle = &record.rest.angle[window..=end];
+    let laid = |&row: &usize| {
+        let [before, after] = [row, row + 1].map(|row| local[0].side * angle[row]);
+        before < after && before >= LAID * hold.level.abs()
+    };
+    local[0].first = (0..local[0].first).rev().take_while(laid).last().unwrap_or(local[0].first);
+    if let ([_], Some(row)) = (local.as_slice(), single_ramp(&time[window..=end], angle, &local[0], record.rest.noise))
+    {
+        return window + row;
+    }
+    let rudder = Rudder::new(&time[window..=end], angle, &local, Some(record.rest.noise));
+    let start = rudder.first().map_or(hold.from, |movement| movement.start.value);
+    time.partition_point(|&t| t < start).clamp(window, hold.first)
+}
+
+/// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`
+/// where the record does not show it.
+fn single_ramp(time: &[f64], angle: &[f64], hold: &Hold, noise: f64) -> Option<usize> {
+    let laid = hold.first;
+    let half = (0..laid).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())?;
+    let rate = (angle[laid] - angle[half]) / (time[laid] - time[half]);
+    let look_back = (0.2 * hold.level.abs()).max(8.0 * noise) / rate.abs();
+    let mut row = half;
+    while row > 0 {
+        let earlier = time.partition_point(|&t| t <= time[row] - look_back).saturating_sub(1).min(row - 1);
+        if (angle[row] - angle[earlier]) / (time[row] - time[earlier]) / rate < 0.3 {
+            break;
+        }
+        row -= 1;
+    }
+    let clear = time.partition_point(|&t| t <= time[row] - 0.3 * look_back).saturating_sub(1).min(row);
+    let before = middle(&angle[clear.saturating_sub(ENOUGH_ROWS)..=clear])?;
+    let start = time[half] - (angle[half] - before) / rate;
+    let tolerance = (2.5 * noise).max(0.01 * hold.level.abs());
+    let first = time.partition_point(|&t| t < start).min(laid);
+    Some((first..laid).find(|&row| (angle[row] - before).abs() > tolerance).unwrap_or(laid))
+}
+
+/// What of the approach belongs to a manoeuvre.
+struct Lead {
+    first: usize,
+    approach: Approach,
+    speed_change: Option<f64>,
+}
+
+impl Lead {
+    fn of(record: &Record, pattern: &Pattern, start: usize, free: usize) -> Self {
+        let time = record.log.time;
+        let earliest = time.partition_point(|&t| t < time[start] - pattern.scale).max(free).min(start);
+        let speed_change = change(record.log.speed, earliest, start);
+        let none = |approach| Self { first: start, approach, speed_change };
+        if earliest == start {
+            return none(if start == 0 { Approach::Absent } else { Approach::Unsteady });
+        }
+        let is_steady = |change: Option<f64>| change.is_none_or(|change| change.abs() <= STEADY_SPEED);
+        if !is_steady(speed_change) || !is_steady(change(record.log.propeller, earliest, start)) {
+            return none(Approach::Unsteady);
+        }
+        let Some(rudder_from) = steady_rudder(record, pattern, earliest, start) else {
+            return none(Approach::Unsteady);
+        };
+        let longest = time[start] - time[rudder_from];
+        let rate = pattern.swing / pattern.scale;
+        // The nearer to the execute the steadier: a course reached a while before it leaves the last piece.
+        for share in [1.0, 0.5, 0.25] {
+            let first = time.partition_point(|&t| t < time[start] - share * longest).max(rudder_from);
+            let duration = time[start] - time[first];
+            let long = duration >= SHORTEST_APPROACH * pattern.scale * (1.0 - 1e-9) || first == 0;
+            let turned = record.course.change(time[first], time[start - 1]);
+            let limit = STEADY_RATE * rate * duration + STEADY_HEADING * pattern.swing;
+            if long && first < start && turned.is_none_or(|turned| turned.abs() <= limit) {
+                return Self { first, approach: Approach::Steady, speed_change };
+            }
+        }
+        none(Approach::Unsteady)
+    }
+}
+
+/// First row from which on the rudder stays about amidships until row `start`; `None` where it does not in the end.
+fn steady_rudder(record: &Record, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
+    let (time, angle) = (record.log.time, &record.rest.angle);
+    let levels = || pattern.holds.iter().map(|hold| hold.level);
+    let largest = levels().map(f64::abs).fold(0.0, f64::max);
+    let amidships = match pattern.kind {
+        Kind::TurningCircle { .. } => record.rest.neutral,
+        _ => 0.5 * (levels().fold(f64::NEG_INFINITY, f64::max) + levels().fold(f64::INFINITY, f64::min)),
+    };
+    let level = middle(&angle[start - (start - earliest).div_ceil(4)..start])?;
+    if (level - amidships).abs() > AMIDSHIPS * largest {
+        return None;
+    }
+    let tolerance = (STEADY_RUDDER * largest).max(3.0 * record.rest.noise);
+    let is_steady = |row: &usize| {
+        let gap = time[row + 1] - time[*row] > GAP * record.rest.step;
+        (angle[*row] - level).abs() <= tolerance && !gap
+    };
+    (earliest..start).rev().take_while(is_steady).last()
+}
+
+/// Change of a channel from the first third of some rows to the last, as a share; `None` where it is not known.
+fn change(channel: Option<&[f64]>, first: usize, end: usize) -> Option<f64> {
+    let values = channel?.get(first..end)?;
+    let third = values.len().div_ceil(3);
+    let mean = |values: &[f64]| {
+        let read = || values.iter().filter(|x| x.is_finite());
+        let count = read().count();
+        (count > 0).then(|| read().sum::<f64>() / count as f64)
+    };
+    let (early, late) = (mean(&values[..third])?, mean(&values[values.len() - third..])?);
+    let size = early.abs().max(late.abs());
+    (size > 0.0).then(|| (late - early) / size)
+}

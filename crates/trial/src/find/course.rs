@@ -1,0 +1,74 @@
+//! The heading of a log where it was read: what it is near a time, and how it changes between two. Gaps are bridged
+//! only as far as the caller says.
+
+use super::Log;
+use crate::zigzag::median::median;
+
+/// Most rows that a middle value is taken of: more make it no better, and the search slower.
+const ENOUGH: usize = 64;
+
+/// The headings that were read.
+#[derive(Debug)]
+pub(super) struct Course {
+    /// Times, s.
+    pub time: Vec<f64>,
+    /// Headings, rad.
+    pub heading: Vec<f64>,
+}
+
+impl Course {
+    pub fn of(log: &Log) -> Self {
+        let read = log.time.iter().zip(log.heading).filter(|(_, psi)| psi.is_finite());
+        let (time, heading) = read.map(|(&t, &psi)| (t, psi)).unzip();
+        Self { time, heading }
+    }
+
+    /// Heading at a time, rad: the middle of those within `half_width` of it, else between its neighbours where both are
+    /// within `reach`.
+    pub fn near(&self, time: f64, half_width: f64, reach: f64) -> Option<f64> {
+        // As wide to either side: at the end of a record a middle value would lag behind a turn.
+        let (begin, end) = (*self.time.first()?, *self.time.last()?);
+        let half_width = half_width.min(time - begin).min(end - time).max(0.0);
+        let first = self.time.partition_point(|&t| t < time - half_width);
+        let last = self.time.partition_point(|&t| t <= time + half_width);
+        if last > first {
+            return middle(&self.heading[first..last]);
+        }
+        let neighbours = [first.checked_sub(1), Some(first)];
+        let [before, after] = neighbours
+            .map(|row| row.filter(|&row| (self.time.get(row).copied().unwrap_or(f64::INFINITY) - time).abs() <= reach));
+        match (before, after) {
+            (Some(a), Some(b)) => {
+                let share = (time - self.time[a]) / (self.time[b] - self.time[a]);
+                Some(self.heading[a] + share * (self.heading[b] - self.heading[a]))
+            }
+            (Some(row), None) | (None, Some(row)) => Some(self.heading[row]),
+            (None, None) => None,
+        }
+    }
+
+    /// Change of heading between two times, rad; each end is smoothed over a twentieth of the time between them.
+    pub fn change(&self, from: f64, to: f64) -> Option<f64> {
+        let time = to - from;
+        let [before, after] = [from, to].map(|t| self.near(t, 0.05 * time, 0.25 * time));
+        Some(after? - before?)
+    }
+
+    /// Mean rate between two times, rad/s.
+    pub fn rate(&self, from: f64, to: f64) -> Option<f64> {
+        (to > from).then(|| self.change(from, to))?.map(|change| change / (to - from))
+    }
+}
+
+/// Median of at most [`ENOUGH`] values, spread evenly over those given.
+pub(super) fn middle(values: &[f64]) -> Option<f64> {
+    median(&mut thinned(values))
+}
+
+/// At most about [`ENOUGH`] values, spread evenly, all of them finite.
+pub(super) fn thinned(values: &[f64]) -> Vec<f64> {
+    let step = values.len().div_ceil(ENOUGH).max(1);
+    // Centred, so that a slope is thinned to its middle.
+    let skip = values.len().saturating_sub(1) % step / 2;
+    values.iter().skip(skip).step_by(step).copied().filter(|x| x.is_finite()).collect()
+}

@@ -1,0 +1,113 @@
+//! Straight pieces between the manoeuvres of a log: the heading stays near one course and the rudder near amidships, by
+//! hand, by autopilot or without either. A ship at rest keeps her heading, too, and is left out where her speed or her
+//! propeller tells.
+
+use super::quality::Quality;
+use super::rest::usual;
+use super::{Kind, Manoeuvre, Pattern, Record};
+
+/// Range of headings on one course, rad: an autopilot keeps ±1 degree, in waves ±2.
+const COURSE: f64 = 5.0_f64.to_radians();
+
+/// Rudder off its neutral angle, rad.
+const RUDDER: f64 = 7.0_f64.to_radians();
+
+/// Shortest piece in usual holds of the manoeuvres of the log.
+const SHORTEST: f64 = 2.0;
+
+/// Shortest piece of a log without manoeuvres, as a share of it.
+const SHORTEST_SHARE: f64 = 0.02;
+
+/// Fewest rows.
+const FEWEST_ROWS: usize = 20;
+
+/// Speed and revolutions of a ship at rest, as shares of the usual ones.
+const AT_REST: f64 = 0.2;
+
+/// Adds the straight pieces to the manoeuvres of a log, in order of time.
+pub(super) fn add(record: &Record, found: &[Pattern], list: &mut Vec<Manoeuvre>) {
+    let time = record.log.time;
+    let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
+    let scale = usual(found.iter().map(|pattern| pattern.scale));
+    let shortest = if scale > 0.0 { SHORTEST * scale } else { SHORTEST_SHARE * (end - begin) };
+    let mut pieces = Vec::new();
+    let mut first = 0;
+    for manoeuvre in list.iter() {
+        pieces.extend(pieces_in(record, first, time.partition_point(|&t| t < manoeuvre.from), shortest));
+        first = time.partition_point(|&t| t <= manoeuvre.until);
+    }
+    pieces.extend(pieces_in(record, first, time.len(), shortest));
+    list.extend(pieces);
+    list.sort_by(|a, b| a.from.total_cmp(&b.from));
+}
+
+/// The straight pieces among rows `first..end`.
+fn pieces_in(record: &Record, first: usize, end: usize, shortest: f64) -> Vec<Manoeuvre> {
+    let log = record.log;
+    let under_way = [log.speed, log.propeller].map(|channel| {
+        let values = channel.filter(|values| values.len() == log.time.len())?;
+        Some((values, AT_REST * usual(values.iter().map(|x| x.abs()))))
+    });
+    let goes_straight = |row: usize| {
+        let moves =
+            under_way.iter().flatten().all(|(values, least)| values[row].is_nan() || values[row].abs() >= *least);
+        moves && (record.rest.angle[row] - record.rest.neutral).abs() <= RUDDER
+    };
+    let mut pieces = Vec::new();
+    let mut piece: Option<Piece> = None;
+    for row in first..end {
+        let psi = log.heading[row];
+        let straight = goes_straight(row);
+        if let Some(open) = piece.as_mut()
+            && straight
+            && log.time[row] - open.read <= 0.25 * shortest
+        {
+            if psi.is_nan() || open.takes(row, psi, log.time[row]) {
+                continue;
+            }
+        }
+        pieces.extend(piece.take().and_then(|piece| piece.manoeuvre(record, shortest)));
+        piece = (straight && psi.is_finite()).then(|| Piece::new(row, psi, log.time[row]));
+    }
+    pieces.extend(piece.and_then(|piece| piece.manoeuvre(record, shortest)));
+    pieces
+}
+
+/// Rows on one course.
+struct Piece {
+    first: usize,
+    last: usize,
+    lowest: f64,
+    highest: f64,
+    /// Time of the last heading, s.
+    read: f64,
+}
+
+impl Piece {
+    fn new(row: usize, psi: f64, time: f64) -> Self {
+        Self { first: row, last: row, lowest: psi, highest: psi, read: time }
+    }
+
+    /// Takes a row along unless its heading is off the course.
+    fn takes(&mut self, row: usize, psi: f64, time: f64) -> bool {
+        let (lowest, highest) = (self.lowest.min(psi), self.highest.max(psi));
+        // NaN and infinite headings fail the comparison.
+        let near = highest - lowest <= COURSE && psi.is_finite();
+        if near {
+            *self = Self { first: self.first, last: row, lowest, highest, read: time };
+        }
+        near
+    }
+
+    fn manoeuvre(&self, record: &Record, shortest: f64) -> Option<Manoeuvre> {
+        let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
+        (until - from >= shortest && self.last + 1 - self.first >= FEWEST_ROWS).then(|| Manoeuvre {
+            kind: Kind::Straight,
+            from,
+            until,
+            start: from,
+            executes: 0,
+            quality: Quality::of(record, self.first, self.last),
+        })
+    }
+}

@@ -1,0 +1,254 @@
+//! Logs of a simulated ship with one manoeuvre or several, and logs that hold none.
+
+mod confusers;
+mod measured;
+mod ship;
+
+use ::ship::angle::{from_deg, to_deg};
+
+use self::ship::Sea;
+use super::{Approach, Kind, Manoeuvre, manoeuvres};
+
+/// A zig-zag after twelve minutes on a course, and straight on.
+fn half_an_hour(step: f64) -> (Sea, (f64, f64)) {
+    let mut sea = Sea::new(step);
+    sea.keep(720.0);
+    sea.hold(0.0, 60.0);
+    let part = sea.zig_zag(10.0, 10.0, 12);
+    sea.hold(0.0, 60.0);
+    let course = sea.course;
+    sea.steer(course, 600.0);
+    (sea, part)
+}
+
+fn assert_part(found: &Manoeuvre, (start, until): (f64, f64), step: f64) {
+    assert!((found.start - start).abs() <= 2.001 * step, "starts at {} for {start}", found.start);
+    assert!((found.until - until).abs() <= 2.001 * step, "ends at {} for {until}", found.until);
+}
+
+#[test]
+fn a_zig_zag_in_half_an_hour_is_found_to_the_row() {
+    for step in [0.1, 0.5, 1.0] {
+        let (sea, part) = half_an_hour(step);
+        let found = sea.found();
+        assert_eq!(found.len(), 1, "{:?}", sea.names());
+        assert_part(&found[0], part, step);
+        assert_eq!(found[0].executes, 12);
+        let Kind::ZigZag { rudder, heading } = found[0].kind else { panic!("a zig-zag") };
+        assert!((to_deg(rudder) - 10.0).abs() < 0.01, "{}", to_deg(rudder));
+        assert!((to_deg(heading) - 10.0).abs() < 0.8, "{}", to_deg(heading));
+        assert_eq!(found[0].quality.approach, Some(Approach::Steady));
+        assert!(found[0].from < part.0 - 5.0 && found[0].from > part.0 - 60.0, "from {}", found[0].from);
+        assert_eq!(sea.names(), ["straight", "zig-zag 10/10", "straight"]);
+    }
+}
+
+#[test]
+fn an_unsteady_approach_is_left_out() {
+    let (mut sea, part) = half_an_hour(0.2);
+    let rows = sea.time.len();
+    for row in 0..rows {
+        // The ship gathers way until some time in the trial.
+        sea.speed[row] = 8.0 * (sea.time[row] / 900.0).min(1.0);
+    }
+    let found = sea.found();
+    assert_eq!(found.len(), 1);
+    assert!((found[0].from - part.0).abs() < 0.41, "{} for {}", found[0].from, part.0);
+    assert_eq!(found[0].quality.approach, Some(Approach::Unsteady));
+    assert!(found[0].quality.remarks().iter().any(|remark| remark.contains("grew")));
+}
+
+#[test]
+fn the_stop_of_the_propeller_ends_a_part() {
+    let (mut sea, part) = half_an_hour(0.2);
+    let stop = part.1 - 15.0;
+    (0..sea.time.len())
+        .filter(|&row| sea.time[row] > stop)
+        .collect::<Vec<_>>()
+        .iter()
+        .for_each(|&row| sea.propeller[row] = 0.0);
+    let found = sea.found();
+    assert!((found[0].until - stop).abs() < 0.41, "{} for {stop}", found[0].until);
+}
+
+/// Periods of 20 s at 50 Hz and of 15 minutes at 1 Hz, fast and slow gear.
+#[test]
+fn models_and_tankers() {
+    for (step, factor, gear_deg) in
+        [(0.02, 0.15, 20.0), (0.01, 0.2, 1e4), (1.0, 8.0, 2.3), (1.0, 8.0, 1e4), (2.0, 4.0, 3.0)]
+    {
+        for (delta_deg, psi_deg) in [(10.0, 10.0), (20.0, 20.0), (20.0, 10.0), (35.0, 20.0)] {
+            let mut sea = Sea::scaled(step, factor);
+            sea.gear = from_deg(gear_deg);
+            sea.hold(0.0, 200.0 * factor);
+            let part = sea.zig_zag(delta_deg, psi_deg, 5);
+            sea.hold(0.0, 200.0 * factor);
+            let found = sea.found();
+            assert_eq!(found.len(), 1, "{step} {factor} {delta_deg}/{psi_deg}: {:?}", sea.names());
+            assert_part(&found[0], part, step);
+            assert_eq!(found[0].executes, 5);
+            let Kind::ZigZag { heading, .. } = found[0].kind else { panic!("a zig-zag") };
+            let share = to_deg(heading) / psi_deg;
+            assert!(share > 0.95 && share < 1.25, "{step} {factor} {delta_deg}/{psi_deg}: {share}");
+        }
+    }
+}
+
+#[test]
+fn faults_of_a_rudder_do_not_hide_a_zig_zag() {
+    type Fault = fn(&mut Sea);
+    let faults: [(&str, Fault, f64); 5] = [
+        (
+            "noise",
+            |sea| (0..sea.rudder.len()).for_each(|row| sea.rudder[row] += from_deg(0.3) * sea.chance.draw()),
+            0.9,
+        ),
+        ("whole degrees", |sea| sea.rudder.iter_mut().for_each(|x| *x = from_deg(to_deg(*x).round())), 0.5),
+        ("offset", |sea| sea.rudder.iter_mut().for_each(|x| *x += from_deg(1.5)), 0.41),
+        ("spikes", |sea| sea.rudder.iter_mut().step_by(97).for_each(|x| *x = 0.5), 0.41),
+        ("no headings at times", |sea| sea.heading.iter_mut().skip(3).step_by(3).for_each(|x| *x = f64::NAN), 0.41),
+    ];
+    for (name, fault, tolerance) in faults {
+        let (mut sea, part) = half_an_hour(0.2);
+        fault(&mut sea);
+        let found = sea.found();
+        assert_eq!(found.len(), 1, "{name}: {:?}", sea.names());
+        assert_eq!((found[0].kind.name().as_str(), found[0].executes), ("zig-zag 10/10", 12), "{name}");
+        assert!((found[0].start - part.0).abs() < tolerance, "{name}: {} for {}", found[0].start, part.0);
+        assert!((found[0].until - part.1).abs() < tolerance, "{name}: {} for {}", found[0].until, part.1);
+    }
+}
+
+#[test]
+fn a_neutral_rudder_of_two_degrees() {
+    let mut sea = Sea::new(0.2);
+    sea.neutral = from_deg(2.0);
+    sea.keep(600.0);
+    sea.hold(sea.neutral, 60.0);
+    let part = sea.zig_zag(10.0, 10.0, 6);
+    sea.keep(600.0);
+    let found = sea.found();
+    assert_eq!(found.len(), 1, "{:?}", sea.names());
+    assert_part(&found[0], part, 0.2);
+    assert_eq!(found[0].quality.approach, Some(Approach::Steady));
+}
+
+#[test]
+fn zig_zags_of_two_angles_or_with_a_pause_are_two() {
+    for (second_deg, pause) in [(20.0, 300.0), (20.0, 60.0), (20.0, 0.0), (10.0, 150.0), (10.0, 300.0)] {
+        let mut sea = Sea::new(0.5);
+        sea.keep(300.0);
+        let first = sea.zig_zag(10.0, 10.0, 5);
+        if pause > 0.0 {
+            sea.keep(pause);
+        }
+        let second = sea.zig_zag(second_deg, second_deg, 5);
+        sea.keep(300.0);
+        let found = sea.found();
+        assert_eq!(found.len(), 2, "{second_deg} after {pause} s: {found:?}");
+        assert_part(&found[0], first, 0.5);
+        assert_part(&found[1], second, 0.5);
+        assert!(found[1].from > found[0].until);
+        let names: Vec<String> = found.iter().map(|found| found.kind.name()).collect();
+        assert_eq!(names, [String::from("zig-zag 10/10"), format!("zig-zag {second_deg:.0}/{second_deg:.0}")]);
+    }
+}
+
+/// A day's work: straight, zig-zag, turn with pull-out, spiral.
+fn all_kinds(step: f64) -> Sea {
+    let mut sea = Sea::new(step);
+    sea.keep(600.0);
+    sea.zig_zag(20.0, 20.0, 5);
+    sea.keep(400.0);
+    sea.hold(from_deg(35.0), 200.0);
+    sea.hold(0.0, 150.0);
+    sea.keep(400.0);
+    sea.zig_zag(10.0, 10.0, 5);
+    sea.keep(400.0);
+    for step in (-3..=3).rev().chain(-2..=3) {
+        sea.hold(from_deg(5.0 * f64::from(step)), 120.0);
+    }
+    sea.keep(600.0);
+    sea.hold(from_deg(-20.0), 150.0);
+    sea.keep(300.0);
+    sea
+}
+
+#[test]
+fn all_kinds_are_told_apart() {
+    let sea = all_kinds(0.5);
+    let expected = [
+        "straight",
+        "zig-zag 20/20",
+        "straight",
+        "turning circle 35 to starboard",
+        "pull-out",
+        "straight",
+        "zig-zag 10/10",
+        "straight",
+        "spiral",
+        "straight",
+        "turning circle 20 to port",
+        "straight",
+    ];
+    let mut list = manoeuvres(&sea.log());
+    assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from && pair[0].from <= pair[0].start));
+    // A course that is reached slowly may be two.
+    list.dedup_by_key(|found| found.kind);
+    let names: Vec<String> = list.iter().map(|found| found.kind.name()).collect();
+    assert_eq!(names, expected);
+    let Kind::Spiral { largest, steps } = list[8].kind else { panic!("a spiral") };
+    assert_eq!((to_deg(largest).round(), steps), (15.0, 13));
+    let Kind::PullOut { rudder } = list[4].kind else { panic!("a pull-out") };
+    assert_eq!(to_deg(rudder).round(), 35.0);
+}
+
+/// Parts, without what changes its sign.
+fn parts(list: &[Manoeuvre]) -> Vec<(f64, f64, f64, usize)> {
+    list.iter().map(|found| (found.from, found.until, found.start, found.executes)).collect()
+}
+
+#[test]
+fn mirrored_logs_have_the_same_parts() {
+    let mut sea = all_kinds(0.5);
+    let list = manoeuvres(&sea.log());
+    sea.rudder.iter_mut().chain(&mut sea.heading).for_each(|x| *x = -*x);
+    let mirrored = manoeuvres(&sea.log());
+    assert_eq!(parts(&list), parts(&mirrored));
+    assert_eq!(mirrored[3].kind.name(), "turning circle 35 to port");
+}
+
+#[test]
+fn the_unit_of_time_does_not_matter() {
+    let mut sea = all_kinds(0.5);
+    let list = manoeuvres(&sea.log());
+    sea.time.iter_mut().for_each(|t| *t *= 10.0);
+    let slow = manoeuvres(&sea.log());
+    assert_eq!(list.len(), slow.len());
+    for (a, b) in parts(&list).iter().zip(parts(&slow)) {
+        for (a, b) in [(a.0, b.0), (a.1, b.1), (a.2, b.2)] {
+            assert!((10.0 * a - b).abs() < 1e-6 * b.max(1.0), "{a} and {b}");
+        }
+    }
+}
+
+/// A day at 10 Hz; run by hand in a release build for the time it takes.
+#[test]
+fn a_day_at_ten_hertz_takes_little_time() {
+    let mut sea = Sea::new(0.1);
+    while sea.time.len() < 864_000 {
+        sea.keep(1800.0);
+        sea.zig_zag(10.0, 10.0, 6);
+        sea.keep(1800.0);
+        sea.zig_zag(20.0, 20.0, 6);
+        sea.keep(1800.0);
+        sea.hold(from_deg(35.0), 600.0);
+        sea.keep(1800.0);
+    }
+    for noise_deg in [0.0, 0.3] {
+        (0..sea.rudder.len()).for_each(|row| sea.rudder[row] += from_deg(noise_deg) * sea.chance.draw());
+        let start = std::time::Instant::now();
+        let found = sea.found();
+        println!("{} rows with {} manoeuvres in {:?}", sea.time.len(), found.len(), start.elapsed());
+    }
+}

@@ -1,0 +1,138 @@
+//! Logs that hold no manoeuvre, and logs that are none: nothing is found, and nothing panics.
+
+use proptest::prelude::*;
+use ship::angle::{from_deg, to_deg};
+
+use super::ship::Sea;
+use crate::find::{Log, manoeuvres};
+
+#[test]
+fn an_autopilot_keeps_a_straight_piece() {
+    let mut sea = Sea::new(0.5);
+    sea.keep(3600.0);
+    let spread = sea.rudder.iter().map(|x| to_deg(x.abs())).fold(0.0, f64::max);
+    assert!(spread > 1.0, "{spread}");
+    assert_eq!(sea.names(), ["straight"]);
+    // Its order in steps of three degrees, as of an autopilot with a dead band.
+    let mut sea = Sea::new(0.5);
+    let base = sea.course;
+    let mut order = from_deg(3.0);
+    for _ in 0..7200 {
+        if (sea.course - base).abs() > from_deg(0.6) {
+            order = from_deg(3.0) * (base - sea.course).signum();
+        }
+        sea.row(order);
+    }
+    assert_eq!(sea.names(), ["straight"]);
+}
+
+#[test]
+fn changes_of_course_are_nothing() {
+    let mut sea = Sea::new(0.5);
+    let mut course = sea.course;
+    for change_deg in [20.0, -40.0, 60.0, -20.0, 30.0, -60.0, 60.0] {
+        sea.steer(course, 300.0);
+        course += from_deg(change_deg);
+        sea.steer(course, 60.0);
+    }
+    sea.steer(course, 300.0);
+    assert_eq!(sea.found(), []);
+}
+
+/// Random orders for random times, any angle or multiples of five degrees, about the times a zig-zag would have.
+#[test]
+fn harbour_manoeuvring_is_nothing() {
+    let mut found = Vec::new();
+    for seed in 0..20 {
+        for in_fives in [false, true] {
+            let mut sea = Sea::new(0.5);
+            sea.chance = crate::zigzag::simulator::Gaussian::new(seed);
+            for _ in 0..400 {
+                let (order, time) = (15.0 * sea.chance.draw(), 15.0 + 10.0 * sea.chance.draw().abs());
+                let order = if in_fives { 5.0 * (order / 5.0).round() } else { order };
+                sea.hold(from_deg(order.clamp(-35.0, 35.0)), time);
+            }
+            found.extend(sea.found().into_iter().map(|found| (seed, in_fives, found)));
+        }
+    }
+    assert!(found.is_empty(), "{} in 16 000 orders: {found:?}", found.len());
+}
+
+#[test]
+fn a_ship_that_does_not_answer_makes_no_zig_zag() {
+    let mut sea = Sea::new(0.5);
+    sea.keep(300.0);
+    sea.zig_zag(10.0, 10.0, 6);
+    sea.keep(300.0);
+    let headings = std::mem::replace(&mut sea.heading, vec![f64::NAN; sea.time.len()]);
+    assert_eq!(sea.names(), [""; 0]);
+    sea.heading = headings.iter().map(|psi| -psi).collect();
+    assert_eq!(sea.found(), []);
+}
+
+#[test]
+fn a_gap_of_the_log_ends_a_zig_zag() {
+    let mut sea = Sea::new(0.5);
+    sea.keep(300.0);
+    sea.zig_zag(10.0, 10.0, 4);
+    let rows = sea.time.len();
+    sea.zig_zag(10.0, 10.0, 5);
+    sea.keep(300.0);
+    sea.time[rows - 5..].iter_mut().for_each(|t| *t += 7200.0);
+    let found = sea.found();
+    assert!(found.iter().all(|found| found.until - found.from < 1000.0), "{found:?}");
+}
+
+/// No log of constants, of few rows or with unsound channels has anything.
+#[test]
+fn logs_that_are_none() {
+    for rows in 0..9 {
+        let time: Vec<f64> = (0..rows).map(f64::from).collect();
+        for rudder in [0.0, 0.2, f64::NAN] {
+            for heading in [0.0, f64::NAN, f64::INFINITY] {
+                let (rudder, heading) = (vec![rudder; time.len()], vec![heading; time.len()]);
+                let channel = Some(&rudder[..]);
+                let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: channel, propeller: channel };
+                assert_eq!(manoeuvres(&log), []);
+                let shorter = Log { rudder: &rudder[..rudder.len() / 2], propeller: Some(&[]), ..log };
+                assert_eq!(manoeuvres(&shorter), []);
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Any steps of time, any holds and headings: parts are in order, inside the log, and each has its start in it.
+    #[test]
+    fn nothing_panics(
+        holds in prop::collection::vec((-40i32..40, 1usize..60, 0.0..1.0f64), 0..60),
+        gaps in prop::collection::vec((0usize..2000, 0.0..1e5f64), 0..5),
+        missing in 0.0..1.0f64,
+        swing in -1.0..1.0f64,
+        seed in any::<u64>(),
+    ) {
+        let mut chance = crate::zigzag::simulator::Gaussian::new(seed);
+        let (mut time, mut rudder, mut heading) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut t, mut psi) = (0.0, 0.0);
+        for (level, rows, noise) in holds {
+            for _ in 0..rows {
+                t += 0.1 + chance.draw().abs();
+                time.push(t);
+                rudder.push(from_deg(f64::from(level) + noise * chance.draw()));
+                psi += swing * rudder[rudder.len() - 1];
+                heading.push(if chance.draw() < 2.0 * missing - 1.0 { f64::NAN } else { psi });
+            }
+        }
+        for (row, gap) in gaps {
+            time.iter_mut().skip(row).for_each(|t| *t += gap);
+        }
+        let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: Some(&heading), propeller: Some(&heading) };
+        let list = manoeuvres(&log);
+        for found in &list {
+            prop_assert!(time[0] <= found.from && found.from <= found.start && found.start <= found.until);
+            prop_assert!(found.until <= time[time.len() - 1]);
+            found.quality.remarks();
+        }
+        prop_assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from));
+    }
+}

@@ -1,0 +1,90 @@
+//! Turning circles and pull-outs in a log: the rudder rests at one angle until the ship has turned, and then amidships.
+//! A change of course is neither.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::rest::Stretch;
+use super::{Kind, Pattern, Record};
+
+/// Smallest rudder angle of a turn, rad.
+const SMALLEST_RUDDER: f64 = 3.0_f64.to_radians();
+
+/// Change of heading from which on a turn is a turning circle, rad: there the tactical diameter is known.
+const CIRCLE: f64 = PI;
+
+/// Change of heading from which on what follows a turn is a pull-out, rad.
+const TURN: f64 = FRAC_PI_2;
+
+/// Largest rudder amidships, as a share of that of the turn.
+const AMIDSHIPS: f64 = 0.3;
+
+/// Change of heading at the rate of the turn whose time is the scale of a pull-out, rad.
+const PULL_OUT: f64 = 30.0_f64.to_radians();
+
+/// Fewest such times in which the rudder rests amidships.
+const FEWEST_TIMES: f64 = 2.0;
+
+/// Change of the rate from one such time to the next, as a share of the rate of the turn, below which it is steady.
+const STEADY: f64 = 0.04;
+
+/// The turning circles and pull-outs among stretches that are in order of time.
+pub(super) fn turns(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
+    let mut found = Vec::new();
+    for (index, &hold) in stretches.iter().enumerate() {
+        let rudder = hold.level - record.rest.neutral;
+        if hold.level.abs() < SMALLEST_RUDDER || rudder.abs() < SMALLEST_RUDDER || !is_whole(record, &hold) {
+            continue;
+        }
+        let Some(turned) = record.course.change(hold.from, hold.until) else { continue };
+        if turned * rudder.signum() < TURN {
+            continue;
+        }
+        let rate = turned.abs() / hold.duration();
+        if turned.abs() >= CIRCLE {
+            let kind = Kind::TurningCircle { rudder: hold.level, turned };
+            found.push(Pattern { kind, holds: vec![hold], scale: TURN / rate, swing: TURN });
+        }
+        found.extend(stretches.get(index + 1).and_then(|next| pull_out(record, &hold, next)));
+    }
+    found
+}
+
+/// Whether the log has no gap in a turn in which the rudder may have been elsewhere.
+fn is_whole(record: &Record, hold: &Stretch) -> bool {
+    let rows = &record.log.time[hold.first..=hold.last];
+    rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
+}
+
+/// The rudder amidships from the end of a turn until the rate is steady or the rudder moves.
+fn pull_out(record: &Record, turn: &Stretch, amidships: &Stretch) -> Option<Pattern> {
+    let end_of_turn = turn.until - 0.25 * turn.duration();
+    let rate = record.course.rate(end_of_turn, turn.until)?.abs();
+    let time = PULL_OUT / rate;
+    let neutral = record.rest.neutral;
+    let off = (amidships.level - neutral).abs();
+    let is_amidships = off <= AMIDSHIPS * (turn.level - neutral).abs() && off < SMALLEST_RUDDER;
+    let quick = amidships.from - turn.until <= time.max(0.25 * turn.duration());
+    if !is_amidships || !quick || amidships.duration() < FEWEST_TIMES * time || !is_whole(record, amidships) {
+        return None;
+    }
+    let rate_in = |piece: f64| record.course.rate(amidships.from + piece * time, amidships.from + (piece + 1.0) * time);
+    let mut pieces = 1.0;
+    while (pieces + 1.0) * time <= amidships.duration() {
+        let change = rate_in(pieces)? - rate_in(pieces - 1.0)?;
+        pieces += 1.0;
+        if change.abs() <= STEADY * rate {
+            break;
+        }
+    }
+    let settled = amidships.from + pieces * time;
+    let last = if (pieces + 1.0) * time > amidships.duration() {
+        amidships.last
+    } else {
+        record.log.time.partition_point(|&t| t <= settled).saturating_sub(1).clamp(amidships.first, amidships.last)
+    };
+    // The rudder moves from the row after the turn on.
+    let first = (turn.last + 1).min(amidships.first);
+    let [from, until] = [first, last].map(|row| record.log.time[row]);
+    let hold = Stretch { first, last, from, until, level: amidships.level };
+    Some(Pattern { kind: Kind::PullOut { rudder: turn.level }, holds: vec![hold], scale: time, swing: PULL_OUT })
+}
