@@ -34,20 +34,27 @@ struct Ahead<'a, R> {
 
 impl<R: Read> Ahead<'_, R> {
     fn next(&mut self) -> Result<Option<(usize, String)>, Problem> {
-        if let Some(line) = self.pending.pop_front() {
-            return Ok(Some(line));
-        }
         loop {
-            let number = self.lines.number() + 1;
-            match self.lines.next_line()? {
-                None => return Ok(None),
-                Some(text) if is_comment(text) => {
-                    self.comment = Some((number, text.trim_start_matches([' ', '#']).to_owned()));
-                }
-                Some(text) if text.trim().is_empty() => {}
-                Some(text) => return Ok(Some((number, text.to_owned()))),
+            let (number, text) = match self.pending.pop_front() {
+                Some(line) => line,
+                None => match self.lines.next_line()?.map(str::to_owned) {
+                    Some(text) => (self.lines.number(), text),
+                    None => return Ok(None),
+                },
+            };
+            if is_comment(&text) {
+                self.comment = Some((number, text.trim_start_matches([' ', '#']).to_owned()));
+            } else if !text.trim().is_empty() {
+                return Ok(Some((number, text)));
             }
         }
+    }
+}
+
+impl<R> Ahead<'_, R> {
+    /// The first row, and the lines after it that were read already.
+    fn rows(&mut self, first: (usize, String)) -> Vec<(usize, String)> {
+        std::iter::once(first).chain(self.pending.drain(..)).collect()
     }
 }
 
@@ -57,15 +64,8 @@ pub(super) fn find<R: Read>(
     lines: &mut Lines<R>,
     sidecar: Option<&Sidecar>,
 ) -> Result<Found, Problem> {
-    let mut ahead = Ahead { lines, pending: Default::default(), comment: None };
     let skipped = sidecar.map_or(0, |sidecar| sidecar.skip_lines);
-    for (number, text) in first {
-        if number > skipped && is_comment(&text) {
-            ahead.comment = Some((number, text.trim_start_matches([' ', '#']).to_owned()));
-        } else if number > skipped && !text.trim().is_empty() {
-            ahead.pending.push_back((number, text));
-        }
-    }
+    let mut ahead = Ahead { lines, pending: first.into(), comment: None };
     while ahead.lines.number() < skipped {
         if !ahead.lines.skip()? {
             return Err(if ahead.lines.number() == 0 { Problem::Empty } else { no_rows(ahead.lines.number()) });
@@ -82,20 +82,20 @@ pub(super) fn find<R: Read>(
         let first = owned(&names, separator);
         let columns = (1..=first.len()).map(|place| format!("column_{place}")).collect();
         let head = Head { names: columns, units: Vec::new(), line, first, separator };
-        return Ok(Found { head, rows: vec![(line, names)], passed: 0 });
+        return Ok(Found { head, rows: ahead.rows((line, names)), passed: 0 });
     }
     let known = |cells: &[&str]| cells.iter().filter(|name| is_known(name, sidecar)).count();
     let known_of = |line: &str, separator: Separator| known(&split(line, separator));
     if let Some(separator) = numbers {
         // Rows from the first line on. Some programs write the names into the comment above.
         let separator = declared.unwrap_or(separator);
-        if let Some((line, comment)) = ahead.comment.take() {
+        if let Some((of_comment, comment)) = ahead.comment.take() {
             let of_names = declared.unwrap_or_else(|| recognise(&comment, known));
             if known_of(&comment, of_names) >= 2 {
                 let columns = split(&comment, of_names).into_iter().map(unquoted).collect();
                 let first = owned(&names, separator);
-                let head = Head { names: columns, units: Vec::new(), line, first, separator };
-                return Ok(Found { head, rows: vec![(ahead.lines.number(), names)], passed: 0 });
+                let head = Head { names: columns, units: Vec::new(), line: of_comment, first, separator };
+                return Ok(Found { head, rows: ahead.rows((line, names)), passed: 0 });
             }
         }
         return Err(Problem::NoHeader { line, found: shortened(&names) });
@@ -124,6 +124,7 @@ pub(super) fn find<R: Read>(
             separator = own;
             passed = read.len() + 1;
         } else {
+            read.extend(std::mem::take(&mut ahead.pending));
             ahead.pending = read.into();
         }
     }
@@ -137,7 +138,7 @@ pub(super) fn find<R: Read>(
         next = ahead.next()?;
     }
     let first = next.as_ref().map_or_else(Vec::new, |(_, text)| owned(text, separator));
-    let rows = next.into_iter().chain(std::mem::take(&mut ahead.pending)).collect();
+    let rows = next.map_or_else(Vec::new, |first| ahead.rows(first));
     Ok(Found { head: Head { names: columns, units, line, first, separator }, rows, passed })
 }
 

@@ -6,7 +6,7 @@ use crate::record::Trial;
 
 use super::error::Problem;
 
-/// Most rows a record may have: 27 hours at 20 Hz, far beyond any manoeuvre.
+/// Most rows a log may have: eleven days at 20 Hz.
 pub const MAX_ROWS: usize = 20_000_000;
 
 /// Most numbers a record may have; bounds the memory of tables with very many columns (8 bytes each).

@@ -19,6 +19,7 @@ mod kept;
 mod layout;
 mod limits;
 mod lines;
+mod nmea;
 mod log;
 #[cfg(test)]
 mod measured_tests;

@@ -137,13 +137,27 @@ impl<'a> Rows<'a> {
         MAX_ROWS.min(MAX_CELLS / (self.used.len() + 1)).max(Trial::FEWEST_ROWS)
     }
 
+    /// Rows of the whole file by its size, after `consumed` of its bytes.
+    fn estimate(&self, consumed: u64, size: Option<u64>) -> Option<f64> {
+        let size = size.filter(|&size| consumed > 0 && size > consumed)?;
+        Some(self.kept() as f64 * (size as f64 / consumed as f64))
+    }
+
+    /// Whether the size of the file says early that it is far too long, so that nobody has to wait for it.
+    pub fn will_be_too_many(&self, consumed: u64, size: Option<u64>) -> bool {
+        const EARLY: usize = 10_000;
+        const FAR: f64 = 1.5;
+        let whole = self.part.0 == f64::NEG_INFINITY && self.part.1 == f64::INFINITY;
+        self.kept() == EARLY
+            && whole
+            && self.estimate(consumed, size).is_some_and(|rows| rows > FAR * self.limit() as f64)
+    }
+
     /// The complaint about a table that is too long, after `consumed` of its `size` bytes.
     pub fn too_many(&self, consumed: u64, size: Option<u64>) -> Problem {
         let limit = self.limit();
-        let estimate = size.filter(|&size| consumed > 0 && size > consumed).map(|size| {
-            let share = size as f64 / consumed as f64;
+        let estimate = self.estimate(consumed, size).map(|rows| {
             // Two digits: more would claim a precision the estimate does not have.
-            let rows = self.kept() as f64 * share;
             let digit = 10f64.powi(rows.log10().floor() as i32 - 1);
             ((rows / digit).round() * digit) as u64
         });
@@ -292,7 +306,7 @@ impl<'a> Rows<'a> {
             self.counts.astray.push(*last);
             if self.before.kept {
                 self.time.pop();
-                self.columns.iter_mut().for_each(|values| drop(values.pop()));
+                self.columns.iter_mut().for_each(|values| values.truncate(self.time.len()));
                 self.usable -= 1;
             }
         } else if time == *last && !may_share {

@@ -40,7 +40,7 @@ pub(super) fn read<R: Read>(
             Some(text) => rows.add(text, number).map_err(fault)?,
             None => break,
         }
-        if rows.kept() > rows.limit() {
+        if rows.kept() > rows.limit() || rows.will_be_too_many(consumed, size) {
             return Err(fault(rows.too_many(consumed, size)));
         }
     }
