@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::commands::{check, fit, list, merge, overview, report, run, simulate, trace};
-use crate::options::{Common, FitRequest, Listed, RunRequest, SimulateRequest, Style, TraceRequest};
+use crate::commands::{check, find, fit, list, merge, overview, report, run, simulate, trace};
+use crate::options::{Common, FindRequest, FitRequest, Listed, RunRequest, SimulateRequest, Style, TraceRequest};
 use crate::{screen, threads};
 use clap::{CommandFactory, Parser, Subcommand};
 use scenario::failure::{Blame, Failure};
@@ -40,6 +40,13 @@ enum Command {
     Trace {
         #[command(flatten)]
         request: TraceRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// List the manoeuvres inside long logs: zig-zags, turning circles, pull-outs, spirals, straight pieces
+    Find {
+        #[command(flatten)]
+        request: FindRequest,
         #[command(flatten)]
         common: Common,
     },
@@ -148,6 +155,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
             threads::start(&common)?;
             trace::run(&request, &common)
         }
+        (Some(Command::Find { request, common }), _) => find::run(&request, &common),
         (Some(Command::Simulate { request, common }), _) => {
             threads::start(&common)?;
             simulate::run(&request, &common)

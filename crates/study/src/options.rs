@@ -11,6 +11,7 @@ use report::theme::{DPI, WIDTH_MM};
 use report::{Table, Theme};
 use scenario::failure::Failure;
 use scenario::problem::suggestion;
+use trial::clock::Stamp;
 
 /// How a scenario is run.
 #[derive(Debug, Clone, Args)]
@@ -107,10 +108,76 @@ impl Format {
     }
 }
 
+/// How records are read, which part of them is used, and what is known of the ship.
+#[derive(Debug, Clone, Args)]
+pub struct ReadingOptions {
+    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
+    #[arg(long, value_name = "FILE.toml|DIR")]
+    pub columns: Option<PathBuf>,
+    /// Another file of the one record given, for example with its rudder; joined by time
+    #[arg(long, value_name = "FILE")]
+    pub with_columns: Vec<PathBuf>,
+    /// Use the manoeuvre with this number in `study find` [default: the zig-zag, where there is one]
+    #[arg(long, value_name = "N", conflicts_with_all = ["from", "until"])]
+    pub trial: Option<usize>,
+    /// Use the record from this time on: seconds on its clock (0 is its begin), or a time of day such as 14:03:05
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub from: Option<Moment>,
+    /// Use the record until this time
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
+    pub until: Option<Moment>,
+    /// Length of the ship between perpendiculars, m
+    #[arg(long, value_name = "L", value_parser = within([0.1, 1000.0]))]
+    pub length_m: Option<f64>,
+    /// Approach speed, m/s [default: that of the record]
+    #[arg(long, value_name = "V", value_parser = within([0.01, 100.0]), requires = "length_m", conflicts_with = "speed_kn")]
+    pub speed_m_s: Option<f64>,
+    /// Approach speed, kn
+    #[arg(long, value_name = "V", value_parser = within([0.01, 200.0]), requires = "length_m")]
+    pub speed_kn: Option<f64>,
+}
+
+/// A time in a record.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Moment {
+    /// Seconds on the clock of the record.
+    Seconds(f64),
+    /// What the clock of the ship shows.
+    Clock(Stamp, String),
+}
+
+impl FromStr for Moment {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(seconds) = text.parse().ok().filter(|seconds: &f64| seconds.is_finite()) {
+            return Ok(Self::Seconds(seconds));
+        }
+        let stamp = Stamp::parse(text).filter(Stamp::has_time);
+        stamp
+            .map(|stamp| Self::Clock(stamp, text.to_owned()))
+            .ok_or_else(|| "expected seconds, or a time such as 14:03:05 or 2026-11-20T14:03:05".to_owned())
+    }
+}
+
+/// What `study find` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct FindRequest {
+    /// Logs in which manoeuvres are looked for; a folder stands for all its records
+    #[arg(required = true, value_name = "LOG")]
+    pub logs: Vec<PathBuf>,
+    /// Description of the columns of the logs (a sidecar), or a folder with a NAME.trial.toml for each
+    #[arg(long, value_name = "FILE.toml|DIR")]
+    pub columns: Option<PathBuf>,
+    /// Another file of the one log given, for example with its rudder; joined by time
+    #[arg(long, value_name = "FILE")]
+    pub with_columns: Vec<PathBuf>,
+}
+
 /// What `study fit` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct FitRequest {
-    /// Records of one ship, identified together
+    /// Records of one ship, identified together; a folder stands for all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
     /// Records on which the identified responses are replayed; only their initial state is fitted
@@ -119,9 +186,9 @@ pub struct FitRequest {
     /// Methods to use [default: all]
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
-    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
-    #[arg(long, value_name = "FILE.toml|DIR")]
-    pub columns: Option<PathBuf>,
+    /// How the records are read
+    #[command(flatten)]
+    pub reading: ReadingOptions,
 }
 
 /// What `study simulate` is asked to do.
@@ -161,16 +228,16 @@ impl FromStr for Replicates {
 /// What `study trace` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct TraceRequest {
-    /// Records of one ship, analysed together
+    /// Records of one ship, analysed together; a folder stands for all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
     /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not
     /// kept
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
-    /// Description of the columns of the records (a sidecar), or a folder with a NAME.trial.toml for each
-    #[arg(long, value_name = "FILE.toml|DIR")]
-    pub columns: Option<PathBuf>,
+    /// How the records are read
+    #[command(flatten)]
+    pub reading: ReadingOptions,
     /// Give every record a rudder bias of its own
     #[arg(long)]
     pub own_bias: bool,
@@ -240,4 +307,8 @@ pub enum Listed {
     Sensors,
     /// Every key that says how a trial is made
     Keys,
+    /// What columns of a record may be called
+    Columns,
+    /// What a sidecar may say
+    Sidecar,
 }

@@ -2,14 +2,58 @@
 
 use std::path::{Path, PathBuf};
 
-use trial::{Origin, Reading, Trial};
+use ship::Particulars;
+use ship::angle::KNOT;
+use trial::find::{Kind, Manoeuvre};
+use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
-use scenario::failure::Failure;
+use crate::options::{Moment, ReadingOptions};
+use scenario::failure::{Failure, OnPath};
 use scenario::name;
 
-/// Reads a record; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder
-/// that holds one for it.
-pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
+/// Endings of files that a folder of records is looked through for.
+const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];
+
+/// A part this much shorter than its record is cut out: the rest is a run-up, a stop or something else.
+const REST: f64 = 0.2;
+
+/// The files that were named; a folder stands for all its records, in the order of their names.
+///
+/// Fails for a folder without any.
+pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let is_record = |file: &PathBuf| {
+            let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+            file.is_file() && ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
+        };
+        let entries = std::fs::read_dir(path).on("read", path)?;
+        let mut own: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_record).collect();
+        own.sort();
+        if own.is_empty() {
+            let endings = ENDINGS.join(", .");
+            return Err(Failure::input(format!(
+                "{}: this folder holds no record; expected files that end in .{endings}",
+                path.display()
+            )));
+        }
+        files.extend(own);
+    }
+    Ok(files)
+}
+
+/// Opens a log; what the reader noticed goes to `warnings`. `columns` is a description of its columns, or a folder
+/// that holds one for it; the channels of `others` are joined with it.
+pub fn open(
+    path: &Path,
+    columns: Option<&Path>,
+    others: &[PathBuf],
+    warnings: &mut Vec<String>,
+) -> Result<Log, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") && !path.to_string_lossy().ends_with(".trial.toml")
     {
         return Err(Failure::input(format!(
@@ -25,14 +69,160 @@ pub fn read(path: &Path, columns: Option<&Path>, warnings: &mut Vec<String>) -> 
     });
     // Folders and figures are named after the record.
     name::of_file(path)?;
-    let reading = match (columns, &own) {
-        (_, Some(own)) => trial::read_with(path, Some(own)),
-        (Some(columns), None) if !columns.is_dir() => trial::read_with(path, Some(columns)),
-        _ => trial::read(path),
+    let beside = Some(Sidecar::beside(path)).filter(|beside| beside.is_file());
+    let sidecar = own.or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf)).or(beside);
+    let mut log = Log::open(path, sidecar.as_deref(), others).map_err(Failure::input)?;
+    let found = std::mem::take(&mut log.warnings);
+    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+    Ok(log)
+}
+
+/// Reads the records that are to be identified: of each the part that was asked for, or its zig-zag.
+///
+/// Fails when one cannot be read, and when a log holds several zig-zags and nobody said which.
+pub fn read_all(
+    paths: &[PathBuf],
+    options: &ReadingOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Trial>, Failure> {
+    let files = expand(paths)?;
+    let one_only = [
+        ("--with-columns", !options.with_columns.is_empty()),
+        ("--trial", options.trial.is_some()),
+        ("--from and --until", options.from.is_some() || options.until.is_some()),
+    ];
+    if let Some((option, _)) = one_only.iter().find(|(_, given)| *given && files.len() > 1) {
+        return Err(Failure::input(format!("{option} is for one record, {} are given; give one", files.len())));
+    }
+    files.iter().map(|path| read(path, options, warnings)).collect()
+}
+
+/// Reads records that are only replayed: of each its zig-zag.
+pub fn read_others(
+    paths: &[PathBuf],
+    options: &ReadingOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Trial>, Failure> {
+    let plain = ReadingOptions { with_columns: Vec::new(), trial: None, from: None, until: None, ..options.clone() };
+    expand(paths)?.iter().map(|path| read(path, &plain, warnings)).collect()
+}
+
+fn read(path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
+    let log = open(path, options.columns.as_deref(), &options.with_columns, warnings)?;
+    let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
+    let log = if from.is_some() || until.is_some() {
+        log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(Failure::input)?
+    } else {
+        chosen(log, path, options.trial, warnings)?
     };
-    let Reading { trial, warnings: found } = reading.map_err(Failure::input)?;
+    let ship = ship(&log, path, options, warnings)?;
+    let Reading { trial, warnings: found } = log.into_trial(ship).map_err(Failure::input)?;
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
     Ok(trial)
+}
+
+/// A time on the clock of a record, s.
+fn moment(log: &Log, path: &Path, asked: Option<&Moment>) -> Result<Option<f64>, Failure> {
+    match asked {
+        None => Ok(None),
+        Some(Moment::Seconds(seconds)) => Ok(Some(*seconds)),
+        Some(Moment::Clock(stamp, text)) => {
+            let time = log.clock().and_then(|clock| clock.time_of(stamp));
+            time.map(Some).ok_or_else(|| {
+                Failure::input(format!(
+                    "{}: `{text}` is a time of day, and this record has no clock that shows it; give seconds",
+                    path.display()
+                ))
+            })
+        }
+    }
+}
+
+/// The manoeuvre that was asked for; else the zig-zag where the log holds one and much beside it.
+fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String>) -> Result<Log, Failure> {
+    let file = path.display();
+    if asked.is_none() && log.has_declared_part() {
+        return Ok(log);
+    }
+    let found = log.manoeuvres();
+    let manoeuvre = match asked {
+        Some(number) => number.checked_sub(1).and_then(|place| found.get(place)).ok_or_else(|| {
+            Failure::input(format!(
+                "{file}: there is no manoeuvre {number}; `study find {file}` lists {}",
+                match found.len() {
+                    0 => String::from("none"),
+                    count => format!("{count}"),
+                }
+            ))
+        })?,
+        None => {
+            let zigzags: Vec<(usize, &Manoeuvre)> =
+                (1..).zip(&found).filter(|(_, one)| matches!(one.kind, Kind::ZigZag { .. })).collect();
+            match zigzags.as_slice() {
+                [] => return Ok(log),
+                [(_, only)] => *only,
+                several => return Err(ask(&log, path, several)),
+            }
+        }
+    };
+    let (from, until) = (manoeuvre.from, manoeuvre.until);
+    let time = log.time();
+    let beside = (from - time[0]) + (time[time.len() - 1] - until);
+    if asked.is_none() && beside <= REST * (until - from) {
+        return Ok(log);
+    }
+    warnings.push(format!(
+        "{file}: the {} from {} to {} is used, the rest is left out; --from and --until choose another part",
+        manoeuvre.kind.name(),
+        at(&log, from),
+        at(&log, until)
+    ));
+    log.part(from, until).map_err(Failure::input)
+}
+
+/// The question which of several zig-zags is meant.
+fn ask(log: &Log, path: &Path, several: &[(usize, &Manoeuvre)]) -> Failure {
+    let lines: String = several
+        .iter()
+        .map(|(number, one)| {
+            format!("\n  --trial {number}: {}, {} to {}", one.kind.name(), at(log, one.from), at(log, one.until))
+        })
+        .collect();
+    Failure::input(format!("{}: there are {} zig-zags in this log; say which one{lines}", path.display(), several.len()))
+}
+
+/// A time of a log for people: seconds, and what the clock shows.
+pub fn at(log: &Log, time: f64) -> String {
+    let clock = log.clock().map(|clock| format!(" ({})", clock.at(time)));
+    format!("{} s{}", report::number::fixed(time, 1), clock.unwrap_or_default())
+}
+
+/// Length and approach speed from the options; the speed from the record where it is not given.
+fn ship(
+    log: &Log,
+    path: &Path,
+    options: &ReadingOptions,
+    warnings: &mut Vec<String>,
+) -> Result<Option<Particulars>, Failure> {
+    let Some(length) = options.length_m else { return Ok(None) };
+    if let Some(speed) = options.speed_m_s.or(options.speed_kn.map(|speed| speed * KNOT)) {
+        return Ok(Some(Particulars { length, speed }));
+    }
+    let file = path.display();
+    let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
+    let mut speeds: Vec<f64> = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0).collect();
+    if speeds.is_empty() {
+        return Err(Failure::input(format!(
+            "{file}: the record has no speed; give the approach speed beside --length-m, --speed-kn or --speed-m-s"
+        )));
+    }
+    let middle = speeds.len() / 2;
+    let speed = *speeds.select_nth_unstable_by(middle, f64::total_cmp).1;
+    warnings.push(format!(
+        "{file}: the approach speed is taken from the record, {} kn in its first tenth",
+        report::number::fixed(speed / KNOT, 2)
+    ));
+    Ok(Some(Particulars { length, speed }))
 }
 
 /// The same record counts only once: given twice for identification its errors come out too small, and on a record that

@@ -1,6 +1,6 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
@@ -11,7 +11,7 @@ use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
 use crate::options::{Common, FitRequest, Format};
-use crate::records::{default_folder, file_of, names, read, warn_of_repetition};
+use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_repetition};
 use crate::views::fit_figures::{self, Drawn};
 use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
 use crate::views::method_table;
@@ -29,14 +29,8 @@ const FIT: &str = "fit.json";
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, common.seed)?;
     let mut warnings = Vec::new();
-    let mut read_all = |paths: &[PathBuf]| {
-        paths
-            .iter()
-            .map(|path| read(path, request.columns.as_deref(), &mut warnings))
-            .collect::<Result<Vec<Trial>, _>>()
-    };
-    let trials = read_all(&request.trials)?;
-    let others = read_all(&request.validate)?;
+    let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
+    let others = read_others(&request.validate, &request.reading, &mut warnings)?;
     warn_of_repetition(&trials, &others, &mut warnings);
 
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
@@ -211,6 +205,9 @@ fn characteristics(entry: &ZigZagEntry) -> String {
     };
     let mut text = format!("zig-zag: initial turning time {}", seconds(entry.initial_turning_time_s, 2));
     text += &format!(", period {}\n  overshoots {overshoots}\n", seconds(entry.period_s, 1));
+    if entry.imo.is_empty() && !entry.overshoots_deg.is_empty() {
+        text += "  IMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
+    }
     for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
         text += &format!(
             "  IMO {}: {} {}, limit {}: {}\n",

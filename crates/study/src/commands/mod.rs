@@ -2,6 +2,7 @@
 //! [`crate::views`].
 
 pub mod check;
+pub mod find;
 pub mod fit;
 pub mod list;
 pub mod merge;

@@ -1,14 +1,12 @@
 //! `study trace`: close the loop on measured records. The analysis is that of the crate [`trace`]; here its words,
 //! tables, figures and files are made.
 
-use std::path::PathBuf;
-
 use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
 use crate::commands::planned;
 use crate::options::{Common, Format, TraceRequest, Withheld};
-use crate::records::{default_folder, names, read, warn_of_repetition};
+use crate::records::{default_folder, names, read_all, read_others, warn_of_repetition};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
 use crate::views::{missing_moment, trace_figures, trace_page, trace_tables};
@@ -26,14 +24,9 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let theme = request.style.theme()?;
     let mut warnings = Vec::new();
     let withheld: Vec<Channel> = request.without.iter().flat_map(|what| channels(*what)).copied().collect();
-    let mut read_all = |paths: &[PathBuf]| {
-        paths
-            .iter()
-            .map(|path| Ok(read(path, request.columns.as_deref(), &mut warnings)?.without(&withheld)))
-            .collect::<Result<Vec<Trial>, Failure>>()
-    };
-    let trials = read_all(&request.trials)?;
-    let others = read_all(&request.validate)?;
+    let without = |trials: Vec<Trial>| trials.into_iter().map(|trial| trial.without(&withheld)).collect::<Vec<Trial>>();
+    let trials = without(read_all(&request.trials, &request.reading, &mut warnings)?);
+    let others = without(read_others(&request.validate, &request.reading, &mut warnings)?);
     warn_of_repetition(&trials, &others, &mut warnings);
     let settings =
         Settings { own_bias: request.own_bias, rule: request.rule, wanted: request.wanted(), ..Settings::default() };
