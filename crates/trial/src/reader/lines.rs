@@ -97,6 +97,50 @@ impl<R: Read> Lines<R> {
         }
     }
 
+    /// The next line without its end as it stands, text or not: for logs, where noise spoils a line and not the file.
+    ///
+    /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and the rest of it read past; `None` at the end
+    /// of the file.
+    pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
+        self.bytes.clear();
+        let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
+        let length = limited.read_until(b'\n', &mut self.bytes).map_err(FileError::from)?;
+        if length == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        self.consumed += length as u64;
+        self.hasher.update(&self.bytes);
+        if length > LONGEST_LINE && self.bytes.last() != Some(&b'\n') {
+            self.pass_line_end()?;
+        }
+        let mark: &[u8] = &[0xef, 0xbb, 0xbf];
+        let begin = if self.number == 1 && self.bytes.starts_with(mark) { mark.len() } else { 0 };
+        while self.bytes.len() > begin && matches!(self.bytes.last(), Some(b'\n' | b'\r')) {
+            self.bytes.pop();
+        }
+        Ok(Some(&self.bytes[begin..]))
+    }
+
+    /// Reads past the end of a line too long to be held.
+    fn pass_line_end(&mut self) -> Result<(), Problem> {
+        loop {
+            let block = match self.input.fill_buf() {
+                Ok(block) => block,
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(FileError::from(error).into()),
+            };
+            let end = block.iter().position(|&byte| byte == b'\n');
+            let length = end.map_or(block.len(), |end| end + 1);
+            self.hasher.update(&block[..length]);
+            self.consumed += length as u64;
+            self.input.consume(length);
+            if end.is_some() || length == 0 {
+                return Ok(());
+            }
+        }
+    }
+
     /// SHA-256 of all bytes read, hexadecimal.
     pub fn sha256(self) -> String {
         self.hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
@@ -129,6 +173,24 @@ mod tests {
         let mut lines = Lines::new(&b"ok\nZ20\xb0\n"[..], Encoding::Utf8);
         lines.next_line().expect("text");
         assert!(matches!(lines.next_line(), Err(Problem::NotUtf8 { line: 2, byte: 0xb0 })));
+    }
+
+    #[test]
+    fn bytes_of_a_log_are_given_whatever_they_are() {
+        let mut file = b"\xef\xbb\xbf$A\r\nb\0\xffc\n".to_vec();
+        file.extend(vec![b'7'; 3 * LONGEST_LINE]);
+        file.extend(b"\nlast");
+        let mut lines = Lines::new(&file[..], Encoding::Utf8);
+        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"$A"[..]));
+        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"b\0\xffc"[..]));
+        assert_eq!(lines.next_bytes().expect("bytes").map(<[u8]>::len), Some(LONGEST_LINE + 1));
+        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"last"[..]));
+        assert_eq!(lines.next_bytes().expect("bytes"), None);
+        assert_eq!((lines.number(), lines.consumed()), (4, file.len() as u64));
+        let mut table = Lines::new(&file[..], Encoding::Utf8);
+        assert_eq!(table.next_line().expect("text"), Some("$A"));
+        let whole: String = Sha256::digest(&file).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(lines.sha256(), whole);
     }
 
     #[test]
