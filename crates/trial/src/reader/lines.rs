@@ -12,11 +12,24 @@ use crate::file::FileError;
 /// Longest line that is taken for one of a table, bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
 
+/// Takes the digest of all that passes, in large pieces: of lines, the digest would wait for the copying of each.
+struct Digested<R> {
+    input: R,
+    hasher: Sha256,
+}
+
+impl<R: Read> Read for Digested<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let length = self.input.read(buffer)?;
+        self.hasher.update(&buffer[..length]);
+        Ok(length)
+    }
+}
+
 /// The lines of a file, one after the other.
 pub struct Lines<R> {
-    input: BufReader<R>,
+    input: BufReader<Digested<R>>,
     encoding: Encoding,
-    hasher: Sha256,
     bytes: Vec<u8>,
     text: String,
     number: usize,
@@ -27,9 +40,8 @@ impl<R: Read> Lines<R> {
     /// Lines of `input` in `encoding`.
     pub fn new(input: R, encoding: Encoding) -> Self {
         Self {
-            input: BufReader::with_capacity(1 << 16, input),
+            input: BufReader::with_capacity(1 << 16, Digested { input, hasher: Sha256::new() }),
             encoding,
-            hasher: Sha256::new(),
             bytes: Vec::new(),
             text: String::new(),
             number: 0,
@@ -57,7 +69,6 @@ impl<R: Read> Lines<R> {
         }
         self.number += 1;
         self.consumed += length as u64;
-        self.hasher.update(&self.bytes);
         if self.number == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
             return Err(Problem::Utf16);
         }
@@ -110,7 +121,6 @@ impl<R: Read> Lines<R> {
         }
         self.number += 1;
         self.consumed += length as u64;
-        self.hasher.update(&self.bytes);
         if length > LONGEST_LINE && self.bytes.last() != Some(&b'\n') {
             self.pass_line_end()?;
         }
@@ -132,7 +142,6 @@ impl<R: Read> Lines<R> {
             };
             let end = block.iter().position(|&byte| byte == b'\n');
             let length = end.map_or(block.len(), |end| end + 1);
-            self.hasher.update(&block[..length]);
             self.consumed += length as u64;
             self.input.consume(length);
             if end.is_some() || length == 0 {
@@ -141,9 +150,9 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// SHA-256 of all bytes read, hexadecimal.
+    /// SHA-256 of all bytes read, hexadecimal; that of the file after its last line.
     pub fn sha256(self) -> String {
-        self.hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        self.input.into_inner().hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
 

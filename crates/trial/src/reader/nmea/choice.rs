@@ -125,7 +125,8 @@ impl<'a> Choice<'a> {
     }
 
     fn push(&mut self, channel: Channel, name: String, time: &[f64], values: impl Iterator<Item = f64>) {
-        let mut series = Series { channel, name, time: Vec::new(), values: Vec::new() };
+        let room = || Vec::with_capacity(time.len());
+        let mut series = Series { channel, name, time: room(), values: room() };
         for (&time, value) in time.iter().zip(values) {
             let time = rounded(time);
             // Two readings at one instant would be a step without time.

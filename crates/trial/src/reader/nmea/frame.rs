@@ -37,16 +37,15 @@ const LONGEST: usize = 4096;
 
 /// Tells what a line is.
 pub(super) fn frame(line: &[u8]) -> Line<'_> {
-    if line.len() > LONGEST || line.contains(&0) {
+    if line.len() > LONGEST {
         return Line::Damaged;
     }
-    let Ok(text) = std::str::from_utf8(line) else { return Line::Damaged };
-    let Some(start) = line.iter().position(|&byte| byte == b'$') else { return without_start(text) };
-    let before = &text[..start];
+    let Some(start) = line.iter().position(|&byte| byte == b'$') else { return without_start(line) };
+    let (before, rest) = (&line[..start], &line[start + 1..]);
+    let Some(before) = text(before) else { return Line::Damaged };
     if before.trim_start().starts_with('#') {
         return Line::Blank;
     }
-    let rest = &line[start + 1..];
     // The star stands third from the end of most lines.
     let star = match rest.len().checked_sub(3) {
         Some(place) if rest[place] == b'*' => Some(place),
@@ -64,7 +63,8 @@ pub(super) fn frame(line: &[u8]) -> Line<'_> {
         None => {
             let end = rest.iter().position(|byte| matches!(byte, b'"' | b'\r')).unwrap_or(rest.len());
             let body = rest[..end].trim_ascii_end();
-            if body.contains(&b'$') {
+            // Where there is a right checksum, there is nothing else to see to.
+            if body.contains(&b'$') || text(body).is_none() {
                 return Line::Damaged;
             }
             (body, false)
@@ -83,8 +83,17 @@ pub(super) fn frame(line: &[u8]) -> Line<'_> {
     }
 }
 
+/// Bytes that are text, which has no zero byte.
+fn text(bytes: &[u8]) -> Option<&str> {
+    if bytes.is_empty() {
+        return Some("");
+    }
+    std::str::from_utf8(bytes).ok().filter(|_| !bytes.contains(&0))
+}
+
 /// What a line without the start of a sentence is.
-fn without_start(text: &str) -> Line<'_> {
+fn without_start(line: &[u8]) -> Line<'_> {
+    let Some(text) = text(line) else { return Line::Damaged };
     let text = text.trim();
     if text.is_empty() || text.starts_with('#') {
         Line::Blank

@@ -12,7 +12,6 @@ use crate::words::shortened;
 /// The sentences of one instrument.
 #[derive(Debug)]
 pub(super) struct Sensor {
-    key: u64,
     pub kind: Kind,
     /// Talker and sentence.
     pub address: [u8; 5],
@@ -70,6 +69,8 @@ pub(super) struct Counts {
 #[derive(Debug)]
 pub(super) struct Log {
     pub sensors: Vec<Sensor>,
+    /// What tells them apart, in the same order: apart from the tables, because every sentence looks through it.
+    keys: Vec<u64>,
     pub counts: Counts,
     pub leading: Leading,
     pub stamps: Stamps,
@@ -87,6 +88,7 @@ impl Log {
     pub fn new(stamped: bool) -> Self {
         Self {
             sensors: Vec::new(),
+            keys: Vec::new(),
             counts: Counts::default(),
             leading: Leading::default(),
             stamps: Stamps::default(),
@@ -168,11 +170,11 @@ impl Log {
     fn add(&mut self, kind: Kind, frame: &Frame, source: u8, at: f64, row: &Row) -> bool {
         let [a, b, c, d, e] = frame.address;
         let key = u64::from_be_bytes([a, b, c, d, e, row.part[0], row.part[1], source]);
-        let place = match self.sensors.iter().position(|sensor| sensor.key == key) {
+        let place = match self.keys.iter().position(|&own| own == key) {
             Some(place) => place,
             None if self.sensors.len() < MOST_SENSORS => {
+                self.keys.push(key);
                 self.sensors.push(Sensor {
-                    key,
                     kind,
                     address: frame.address,
                     part: row.part,

@@ -24,20 +24,36 @@ pub(super) struct Leading {
     window: Option<(usize, usize)>,
     last: String,
     found: (Option<Stamp>, u8),
+    /// Bytes before and behind the stamp in `last`.
+    around: Option<(usize, usize)>,
 }
 
 impl Leading {
     /// The stamp before a sentence and the number of its source.
     pub fn read(&mut self, before: &str) -> (Option<Stamp>, u8) {
-        if before != self.last {
-            self.last.clear();
-            self.last.push_str(before);
-            self.found = self.look(before);
+        if before == self.last {
+            return self.found;
         }
+        match self.alike(before) {
+            Some(stamp) => self.found.0 = Some(stamp),
+            None => self.found = self.look(before),
+        }
+        self.last.clear();
+        self.last.push_str(before);
         self.found
     }
 
+    /// The stamp where all around it is as it was in the line before.
+    fn alike(&self, before: &str) -> Option<Stamp> {
+        let (front, behind) = self.around?;
+        let until = before.len().checked_sub(behind)?;
+        let same = before.get(..front)? == self.last.get(..front)?
+            && before.get(until..)? == self.last.get(self.last.len() - behind..)?;
+        parse(before.get(front..until)?).filter(|_| same)
+    }
+
     fn look(&mut self, before: &str) -> (Option<Stamp>, u8) {
+        self.around = None;
         if before.len() > LONGEST {
             return (None, 0);
         }
@@ -81,17 +97,15 @@ impl Leading {
             }
         }
         let words = &words[..count];
-        let parse = |&(from, until): &(usize, usize)| {
+        let read = |&(from, until): &(usize, usize)| {
             let (first, last) = (words.get(from)?, words.get(until - 1)?);
-            let text = &self.text[first.start..last.end];
-            let stamp = Stamp::parse(text).or_else(|| since_1970(text));
-            stamp.filter(Stamp::has_time).map(|stamp| (stamp, (from, until)))
+            parse(&self.text[first.start..last.end]).map(|stamp| (stamp, (from, until)))
         };
         let search = || {
             let windows = (1..=count).rev().flat_map(|length| (0..=count - length).map(move |at| (at, at + length)));
-            windows.into_iter().find_map(|window| parse(&window))
+            windows.into_iter().find_map(|window| read(&window))
         };
-        let found = self.window.as_ref().and_then(parse).or_else(search);
+        let found = self.window.as_ref().and_then(read).or_else(search);
         let (stamp, taken) = found.map_or((None, (0, 0)), |(stamp, window)| (Some(stamp), window));
         self.name.clear();
         for (place, word) in words.iter().enumerate() {
@@ -104,6 +118,10 @@ impl Leading {
             }
         }
         self.window = stamp.map(|_| taken);
+        if stamp.is_some() {
+            let text = &self.text[words[taken.0].start..words[taken.1 - 1].end];
+            self.around = before.find(text).map(|front| (front, before.len() - front - text.len()));
+        }
         (stamp, self.source())
     }
 
@@ -122,6 +140,11 @@ impl Leading {
             None => 0,
         }
     }
+}
+
+/// A stamp with a time of day in any notation.
+fn parse(text: &str) -> Option<Stamp> {
+    Stamp::parse(text).or_else(|| since_1970(text)).filter(Stamp::has_time)
 }
 
 /// A stamp from seconds, milliseconds or microseconds since 1970-01-01 UTC; their digits tell them apart.
