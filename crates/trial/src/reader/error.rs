@@ -347,6 +347,77 @@ pub enum Problem {
         /// Thinning that makes the file fit.
         every: u64,
     },
+    /// A log of which little can be read.
+    #[error(
+        "{damaged} of {lines} lines are damaged ({wrong} with a wrong checksum, {broken} cut short or not text), expected at \
+         most half; check the speed and the wiring of the serial line, or export the log again"
+    )]
+    DamagedLog {
+        /// Lines with text or a sentence in them.
+        lines: usize,
+        /// Lines that cannot be read.
+        damaged: usize,
+        /// Those of them with a wrong checksum.
+        wrong: usize,
+        /// All others of them.
+        broken: usize,
+    },
+    /// Sentences without time.
+    #[error(
+        "the log has no time: found no time stamp before its {sentences} sentences and {clocks} valid times in ZDA, RMC, GGA \
+         or GLL, expected the one or at least two of the other; record it with time stamps, or with the sentences of a GPS \
+         (`time-step-s` is not possible for sentences)"
+    )]
+    NoClock {
+        /// Sentences that could be read.
+        sentences: usize,
+        /// Different times in sentences that carry one.
+        clocks: usize,
+    },
+    /// A log whose clock starts anew.
+    #[error(
+        "line {line}: the clock of the log goes back from {before} to {found}, expected one recording; cut the log there and \
+         give the parts one by one"
+    )]
+    ClockBack {
+        /// The first line of the earlier time.
+        line: usize,
+        /// Time of day before.
+        before: String,
+        /// Time of day found.
+        found: String,
+    },
+    /// Dates that can be read in two ways.
+    #[error(
+        "line {line}: the date of the stamp `{found}` has two numbers that may be the month, expected the day after the one \
+         before; write the dates as 2026-11-20"
+    )]
+    EitherMonth {
+        /// The line.
+        line: usize,
+        /// What stands before its sentence, shortened.
+        found: String,
+    },
+    /// A log without a quantity of a record.
+    #[error(
+        "none of the {sentences} sentences of the log gives a quantity that is used; expected a heading (HDT, THS, HDG) and \
+         a rudder angle (RSA), check which sentences were recorded"
+    )]
+    NoReadings {
+        /// Sentences that could be read.
+        sentences: usize,
+    },
+    /// More readings than a record may have.
+    #[error(
+        "line {line}: the log holds more than {limit} numbers, which is the most that is read; use the part of it with the \
+         manoeuvre"
+    )]
+    TooManyReadings {
+        /// The line where the limit is passed.
+        line: usize,
+        /// Most numbers that are read.
+        limit: usize,
+    },
     /// The record contradicts itself.
     #[error(transparent)]
     Implausible(#[from] Implausible),

@@ -58,14 +58,10 @@ impl<R> Ahead<'_, R> {
     }
 }
 
-/// Reads up to the first row; `first` are lines that were read already.
-pub(super) fn find<R: Read>(
-    first: Vec<(usize, String)>,
-    lines: &mut Lines<R>,
-    sidecar: Option<&Sidecar>,
-) -> Result<Found, Problem> {
+/// Reads up to the first row.
+pub(super) fn find<R: Read>(lines: &mut Lines<R>, sidecar: Option<&Sidecar>) -> Result<Found, Problem> {
     let skipped = sidecar.map_or(0, |sidecar| sidecar.skip_lines);
-    let mut ahead = Ahead { lines, pending: first.into(), comment: None };
+    let mut ahead = Ahead { lines, pending: Default::default(), comment: None };
     while ahead.lines.number() < skipped {
         if !ahead.lines.skip()? {
             return Err(if ahead.lines.number() == 0 { Problem::Empty } else { no_rows(ahead.lines.number()) });

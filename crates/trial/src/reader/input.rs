@@ -8,28 +8,21 @@ use flate2::read::MultiGzDecoder;
 
 use super::error::Problem;
 use super::limits::RECORD;
-use super::lines::Lines;
 use super::nmea;
-use crate::encoding::Encoding;
 use crate::file::{self, FileError};
-use crate::sidecar::Sidecar;
 
-/// Lines that are looked at to tell sentences from a table.
-const LOOKED_AT: usize = 30;
+/// Bytes and lines that are looked at to tell sentences from a table.
+const LOOKED_AT: (u64, usize) = (1 << 14, 60);
 
 /// The bytes of a file, from the first one on.
 pub(super) type Bytes<'a> = Chain<Cursor<Vec<u8>>, Box<dyn Read + 'a>>;
 
 /// The content of a file.
 pub(super) enum Content<'a> {
-    /// Lines of text.
-    Text(Bytes<'a>),
-}
-
-/// A text by what its lines hold, with the lines that were read to tell.
-pub(super) enum Text<'a> {
-    Table { first: Vec<(usize, String)>, lines: Lines<Bytes<'a>> },
-    Sentences { first: Vec<String>, lines: Lines<Bytes<'a>> },
+    /// A table.
+    Table(Bytes<'a>),
+    /// Sentences, one a line.
+    Sentences(Bytes<'a>),
 }
 
 /// Stops where a packed file gives more than a record may have.
@@ -66,10 +59,10 @@ pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Probl
     Ok((content, size))
 }
 
-/// The first bytes, as many as there are up to sixteen.
+/// The first bytes, as many as there are up to what is looked at.
 fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Bytes<'a>), Problem> {
     let mut first = Vec::new();
-    (&mut input).take(16).read_to_end(&mut first).map_err(FileError::from)?;
+    (&mut input).take(LOOKED_AT.0).read_to_end(&mut first).map_err(FileError::from)?;
     Ok((first.clone(), Cursor::new(first).chain(input)))
 }
 
@@ -90,30 +83,11 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
         [b'P', b'A', b'R', b'1', ..] => refused("a Parquet file", AS_CSV),
         [0x89, b'H', b'D', b'F', ..] => refused("an HDF5 file (MATLAB 7.3 writes these)", AS_CSV),
         start if start.starts_with(b"MATLAB 5.0") => refused("a MATLAB file", AS_CSV),
-        _ => Ok(Content::Text(bytes)),
+        start if start.split(|&byte| byte == b'\n').take(LOOKED_AT.1).any(is_sentence) => Ok(Content::Sentences(bytes)),
+        _ => Ok(Content::Table(bytes)),
     }
 }
 
-/// Tells sentences from a table.
-pub(super) fn text<'a>(input: Bytes<'a>, sidecar: Option<&Sidecar>) -> Result<Text<'a>, Problem> {
-    let mut lines = Lines::new(input, sidecar.map_or(Encoding::Utf8, |sidecar| sidecar.encoding));
-    // Lines that a sidecar skips need not be text.
-    if sidecar.is_some_and(|sidecar| sidecar.skip_lines > 0) {
-        return Ok(Text::Table { first: Vec::new(), lines });
-    }
-    let mut first = Vec::new();
-    while first.len() < LOOKED_AT {
-        match lines.next_line() {
-            Ok(Some(text)) => {
-                let is_sentence = nmea::is_sentence(text);
-                first.push(text.to_owned());
-                if is_sentence {
-                    return Ok(Text::Sentences { first, lines });
-                }
-            }
-            Ok(None) => break,
-            Err(error) => return Err(error),
-        }
-    }
-    Ok(Text::Table { first: first.into_iter().enumerate().map(|(place, text)| (place + 1, text)).collect(), lines })
+fn is_sentence(line: &[u8]) -> bool {
+    nmea::is_sentence(&String::from_utf8_lossy(line))
 }

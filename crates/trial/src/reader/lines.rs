@@ -12,11 +12,24 @@ use crate::file::FileError;
 /// Longest line that is taken for one of a table, bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
 
+/// Takes the digest of all that passes, in large pieces: of lines, the digest would wait for the copying of each.
+struct Digested<R> {
+    input: R,
+    hasher: Sha256,
+}
+
+impl<R: Read> Read for Digested<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let length = self.input.read(buffer)?;
+        self.hasher.update(&buffer[..length]);
+        Ok(length)
+    }
+}
+
 /// The lines of a file, one after the other.
 pub struct Lines<R> {
-    input: BufReader<R>,
+    input: BufReader<Digested<R>>,
     encoding: Encoding,
-    hasher: Sha256,
     bytes: Vec<u8>,
     text: String,
     number: usize,
@@ -27,9 +40,8 @@ impl<R: Read> Lines<R> {
     /// Lines of `input` in `encoding`.
     pub fn new(input: R, encoding: Encoding) -> Self {
         Self {
-            input: BufReader::with_capacity(1 << 16, input),
+            input: BufReader::with_capacity(1 << 16, Digested { input, hasher: Sha256::new() }),
             encoding,
-            hasher: Sha256::new(),
             bytes: Vec::new(),
             text: String::new(),
             number: 0,
@@ -57,7 +69,6 @@ impl<R: Read> Lines<R> {
         }
         self.number += 1;
         self.consumed += length as u64;
-        self.hasher.update(&self.bytes);
         if self.number == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
             return Err(Problem::Utf16);
         }
@@ -97,9 +108,51 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// SHA-256 of all bytes read, hexadecimal.
+    /// The next line without its end as it stands, text or not: for logs, where noise spoils a line and not the file.
+    ///
+    /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and the rest of it read past; `None` at the end
+    /// of the file.
+    pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
+        self.bytes.clear();
+        let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
+        let length = limited.read_until(b'\n', &mut self.bytes).map_err(FileError::from)?;
+        if length == 0 {
+            return Ok(None);
+        }
+        self.number += 1;
+        self.consumed += length as u64;
+        if length > LONGEST_LINE && self.bytes.last() != Some(&b'\n') {
+            self.pass_line_end()?;
+        }
+        let mark: &[u8] = &[0xef, 0xbb, 0xbf];
+        let begin = if self.number == 1 && self.bytes.starts_with(mark) { mark.len() } else { 0 };
+        while self.bytes.len() > begin && matches!(self.bytes.last(), Some(b'\n' | b'\r')) {
+            self.bytes.pop();
+        }
+        Ok(Some(&self.bytes[begin..]))
+    }
+
+    /// Reads past the end of a line too long to be held.
+    fn pass_line_end(&mut self) -> Result<(), Problem> {
+        loop {
+            let block = match self.input.fill_buf() {
+                Ok(block) => block,
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(FileError::from(error).into()),
+            };
+            let end = block.iter().position(|&byte| byte == b'\n');
+            let length = end.map_or(block.len(), |end| end + 1);
+            self.consumed += length as u64;
+            self.input.consume(length);
+            if end.is_some() || length == 0 {
+                return Ok(());
+            }
+        }
+    }
+
+    /// SHA-256 of all bytes read, hexadecimal; that of the file after its last line.
     pub fn sha256(self) -> String {
-        in_hex(&self.hasher.finalize())
+        in_hex(&self.input.into_inner().hasher.finalize())
     }
 }
 
@@ -138,6 +191,24 @@ mod tests {
         let mut lines = Lines::new(&b"ok\nZ20\xb0\n"[..], Encoding::Utf8);
         lines.next_line().expect("text");
         assert!(matches!(lines.next_line(), Err(Problem::NotUtf8 { line: 2, byte: 0xb0 })));
+    }
+
+    #[test]
+    fn bytes_of_a_log_are_given_whatever_they_are() {
+        let mut file = b"\xef\xbb\xbf$A\r\nb\0\xffc\n".to_vec();
+        file.extend(vec![b'7'; 3 * LONGEST_LINE]);
+        file.extend(b"\nlast");
+        let mut lines = Lines::new(&file[..], Encoding::Utf8);
+        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"$A"[..]));
+        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"b\0\xffc"[..]));
+        assert_eq!(lines.next_bytes().expect("bytes").map(<[u8]>::len), Some(LONGEST_LINE + 1));
+        assert_eq!(lines.next_bytes().expect("bytes"), Some(&b"last"[..]));
+        assert_eq!(lines.next_bytes().expect("bytes"), None);
+        assert_eq!((lines.number(), lines.consumed()), (4, file.len() as u64));
+        let mut table = Lines::new(&file[..], Encoding::Utf8);
+        assert_eq!(table.next_line().expect("text"), Some("$A"));
+        let whole: String = Sha256::digest(&file).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert_eq!(lines.sha256(), whole);
     }
 
     #[test]

@@ -6,10 +6,13 @@ use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
 use super::input::{self, Content};
 use super::limits::spoken;
+use super::lines::Lines;
+use super::nmea;
 use super::source::{Series, Source};
 use super::table;
 use crate::channel::Channel;
 use crate::clock::Clock;
+use crate::encoding::Encoding;
 use crate::find::{self, Manoeuvre};
 use crate::hygiene;
 use crate::plausibility;
@@ -270,23 +273,21 @@ fn of_content(
     let fault = |problem| ReadError::table(path, problem);
     let checked = sidecar.is_none_or(|sidecar| sidecar.plausibility);
     let mut piece = match content {
-        Content::Text(input) => match input::text(input, sidecar).map_err(fault)? {
-            input::Text::Table { first, lines } => table::read(path, first, lines, size, sidecar, whole)?,
-            input::Text::Sentences { first, lines } => {
-                if let Some(sidecar) = sidecar.filter(|sidecar| !sidecar.columns.is_empty()) {
-                    return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
-                }
-                let source = super::nmea::read(first, lines).map_err(fault)?;
-                let mut piece = Piece::of_source(source, checked);
-                if let Some(sidecar) = sidecar {
-                    piece.columns = kept_part(piece.columns, sidecar);
-                }
-                if whole {
-                    check(&series(piece.columns.clone(), 0.0)).map_err(fault)?;
-                }
-                piece
+        Content::Table(input) => table::read(path, input, size, sidecar, whole)?,
+        Content::Sentences(input) => {
+            if let Some(sidecar) = sidecar.filter(|sidecar| !sidecar.columns.is_empty()) {
+                return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
-        },
+            let source = nmea::read(Vec::new(), Lines::new(input, Encoding::Utf8)).map_err(fault)?;
+            let mut piece = Piece::of_source(source, checked);
+            if let Some(sidecar) = sidecar {
+                piece.columns = kept_part(piece.columns, sidecar);
+            }
+            if whole {
+                check(&series(piece.columns.clone(), 0.0)).map_err(fault)?;
+            }
+            piece
+        }
     };
     if whole {
         piece.warnings.extend(complete(&mut piece.columns));

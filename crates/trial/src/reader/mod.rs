@@ -19,10 +19,12 @@ mod kept;
 mod layout;
 mod limits;
 mod lines;
-mod nmea;
+
 mod log;
 #[cfg(test)]
 mod measured_tests;
+#[cfg_attr(not(test), expect(dead_code, reason = "the reader of files calls it once it tells logs from tables"))]
+mod nmea;
 mod rows;
 pub(crate) mod source;
 mod table;

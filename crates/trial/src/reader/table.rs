@@ -11,21 +11,22 @@ use super::lines::Lines;
 use super::log::Piece;
 use super::rows::Rows;
 use super::units;
+use crate::encoding::Encoding;
 use crate::hygiene;
 use crate::sidecar::Sidecar;
 use crate::words::listed;
 
-/// Reads a table; `first` are lines that were read already, and `whole` says whether it has to hold a whole record.
-pub(super) fn read<R: Read>(
+/// Reads a table; `whole` says whether it has to hold a whole record.
+pub(super) fn read(
     path: &Path,
-    first: Vec<(usize, String)>,
-    mut lines: Lines<R>,
+    input: impl Read,
     size: Option<u64>,
     sidecar: Option<&Sidecar>,
     whole: bool,
 ) -> Result<Piece, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
-    let Found { head, rows: pending, passed } = head::find(first, &mut lines, sidecar).map_err(fault)?;
+    let mut lines = Lines::new(input, sidecar.map_or(Encoding::Utf8, |sidecar| sidecar.encoding));
+    let Found { head, rows: pending, passed } = head::find(&mut lines, sidecar).map_err(fault)?;
     let separator = head.separator;
     let layout = Layout::new(head, path, sidecar, whole)?;
     let mut rows = Rows::new(&layout, separator, sidecar);

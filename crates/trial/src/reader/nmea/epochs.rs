@@ -1,0 +1,280 @@
+//! When each sentence was sent. Sentences that carry UTC open epochs, or the stamps before sentences do; several
+//! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
+//! the others is filled at the usual pace, and the rest of it stays empty.
+
+use super::super::error::Problem;
+use super::log::{Log, Sensor};
+use super::sentence::{Kind, Slot};
+use crate::clock::{Clock, DAY, Stamp, Stamps};
+
+/// An epoch longer than the usual one by this factor is a gap.
+const GAP: f64 = 1.5;
+
+/// Rows of one instrument in one epoch.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    begin: usize,
+    end: usize,
+    /// Time of its begin, s.
+    time: f64,
+    /// Time to the next one, s.
+    length: f64,
+}
+
+/// The instants of a log.
+pub(super) struct Timed {
+    /// What the clock shows at time 0.
+    pub clock: Option<Clock>,
+    /// One sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// Gives every sentence its instant where the time is in stamps before the sentences.
+pub(super) fn from_stamps(log: &mut Log) -> Timed {
+    let (mut spread, mut disordered) = (0, 0);
+    for sensor in &mut log.sensors {
+        let mut latest = f64::NEG_INFINITY;
+        for at in sensor.at.iter_mut().filter(|at| at.is_finite()) {
+            if *at < latest {
+                *at = f64::NAN;
+                disordered += 1;
+            } else {
+                latest = *at;
+            }
+        }
+        drop_rows(sensor);
+        spread += usize::from(spread_stamps(&mut sensor.at));
+    }
+    let mut warnings = Vec::new();
+    if log.counts.strayed > 0 {
+        warnings.push(format!(
+            "{} with a stamp far from {} neighbours {} left out",
+            counted(log.counts.strayed, "sentence"),
+            if log.counts.strayed == 1 { "its" } else { "their" },
+            are(log.counts.strayed)
+        ));
+    }
+    if disordered > 0 {
+        warnings.push(format!(
+            "{} with an earlier stamp than the one before of the same instrument {} left out",
+            counted(disordered, "sentence"),
+            are(disordered)
+        ));
+    }
+    if log.counts.unstamped > 0 {
+        warnings.push(format!(
+            "{} without a time stamp {} left out",
+            counted(log.counts.unstamped, "sentence"),
+            are(log.counts.unstamped)
+        ));
+    }
+    if spread > 0 {
+        warnings.push(
+            "several sentences of one instrument have the same time stamp; they are spread evenly over the time to the \
+             next stamp"
+                .to_owned(),
+        );
+    }
+    Timed { clock: log.stamps.clock(), warnings }
+}
+
+/// Spreads sentences with the same stamp; whether there were such.
+fn spread_stamps(at: &mut [f64]) -> bool {
+    if at.windows(2).all(|pair| pair[0] < pair[1]) {
+        return false;
+    }
+    let mut groups: Vec<Group> = Vec::new();
+    for (row, &time) in at.iter().enumerate() {
+        match groups.last_mut() {
+            Some(group) if group.time == time => group.end = row + 1,
+            _ => groups.push(Group { begin: row, end: row + 1, time, length: 0.0 }),
+        }
+    }
+    if groups.len() < 2 {
+        return false;
+    }
+    for place in 0..groups.len() - 1 {
+        groups[place].length = groups[place + 1].time - groups[place].time;
+    }
+    let last = groups.len() - 1;
+    groups[last].length = groups[last - 1].length;
+    let usual = median(groups.iter().map(|group| group.length));
+    spread(at, &groups, usual)
+}
+
+/// Gives every sentence its instant where the time is in some of the sentences.
+///
+/// Fails without at least two different times, and where they go back for more than one sentence.
+pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
+    let times = |sensor: &Sensor| sensor.place(Slot::Second).map_or(0, |place| sensor.readings(place));
+    let rank = |kind: Kind| [Kind::Zda, Kind::Rmc, Kind::Gga, Kind::Gll].iter().position(|&own| own == kind);
+    let driver = (0..log.sensors.len()).filter(|&sensor| times(&log.sensors[sensor]) > 0).min_by_key(|&place| {
+        let sensor = &log.sensors[place];
+        (std::cmp::Reverse(times(sensor)), rank(sensor.kind), place)
+    });
+    let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
+    let driver = driver.ok_or_else(|| none(0))?;
+    let (mut epochs, mut clock, strayed) = epochs(&log.sensors[driver])?;
+    if epochs.len() < 2 {
+        return Err(none(epochs.len()));
+    }
+    if clock.day.is_none() {
+        clock.day = log.sensors.iter().find_map(|sensor| first_day(sensor, &epochs, clock.second));
+    }
+    for place in 0..epochs.len() - 1 {
+        epochs[place].length = epochs[place + 1].time - epochs[place].time;
+    }
+    let last = epochs.len() - 1;
+    epochs[last].length = epochs[last - 1].length;
+    let usual = median(epochs.iter().map(|epoch| epoch.length));
+    let (mut several, mut before) = (false, 0);
+    let mut groups = Vec::new();
+    let name = super::choice::name(log, driver);
+    let driven = times(&log.sensors[driver]);
+    for sensor in &mut log.sensors {
+        groups.clear();
+        let mut row = sensor.at.partition_point(|&line| line < epochs[0].line);
+        before += row;
+        sensor.at[..row].fill(f64::NAN);
+        for (place, epoch) in epochs.iter().enumerate() {
+            let begin = row;
+            let until = epochs.get(place + 1).map_or(f64::INFINITY, |next| next.line);
+            row += sensor.at[row..].iter().take_while(|&&line| line < until).count();
+            if row > begin {
+                groups.push(Group { begin, end: row, time: epoch.time, length: epoch.length });
+            }
+        }
+        several |= spread(&mut sensor.at, &groups, usual);
+        drop_rows(sensor);
+    }
+    let mut warnings = vec![format!(
+        "the time is that of {name} ({driven} times){}",
+        if several { ", and sentences between two of them are spread evenly over the time between" } else { "" }
+    )];
+    if before > 0 {
+        warnings.push(format!("{} before the first time {} left out", counted(before, "sentence"), are(before)));
+    }
+    if strayed > 0 {
+        warnings.push(format!("{} of {name} far from its neighbours left out", counted(strayed, "time")));
+    }
+    Ok(Timed { clock: Some(clock), warnings })
+}
+
+/// One time of the clock.
+#[derive(Debug, Clone, Copy)]
+struct Epoch {
+    line: f64,
+    time: f64,
+    length: f64,
+}
+
+/// The times of one instrument, strictly increasing, what the clock shows at time 0, and times that were left out.
+fn epochs(sensor: &Sensor) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
+    let second = &sensor.columns[sensor.place(Slot::Second).expect("only instruments with times are asked")];
+    let days = sensor.place(Slot::Day).map(|place| &sensor.columns[place]);
+    // Dates that are there at times only would be mixed with times of day alone.
+    let dated = days.filter(|days| second.iter().zip(*days).all(|(second, day)| second.is_nan() || day.is_finite()));
+    let mut stamps = Stamps::default();
+    let read = |row: usize| {
+        let stamp = Stamp::of(dated.map(|days| days[row] as i64), second[row]);
+        stamps.seconds(stamp).ok().map(|time| Epoch { line: sensor.at[row], time: rounded(time), length: 0.0 })
+    };
+    let all: Vec<Epoch> = (0..second.len()).filter(|&row| second[row].is_finite()).filter_map(read).collect();
+    let clock = stamps.clock().expect("there is a time, and each has a second");
+    let mut kept: Vec<Epoch> = Vec::with_capacity(all.len());
+    let mut strayed = 0;
+    for (place, &epoch) in all.iter().enumerate() {
+        let Some(&last) = kept.last() else {
+            kept.push(epoch);
+            continue;
+        };
+        if epoch.time > last.time {
+            kept.push(epoch);
+        } else if epoch.time < last.time {
+            let next = all.get(place + 1);
+            strayed += 1;
+            if next.is_none_or(|next| next.time >= last.time) {
+                continue;
+            }
+            let ahead = kept.len() == 1 || epoch.time >= kept[kept.len() - 2].time;
+            if !ahead || next.is_some_and(|next| next.time < epoch.time) {
+                let line = epoch.line as usize;
+                return Err(Problem::ClockBack { line, before: clock.at(last.time), found: clock.at(epoch.time) });
+            }
+            // The one before was ahead of its time.
+            kept.pop();
+            if kept.last().is_none_or(|last| last.time < epoch.time) {
+                kept.push(epoch);
+            }
+        }
+    }
+    Ok((kept, clock, strayed))
+}
+
+/// The day at time 0, from the first date of an instrument; `second` is what the clock shows then.
+fn first_day(sensor: &Sensor, epochs: &[Epoch], second: f64) -> Option<i64> {
+    let (seconds, days) = (sensor.place(Slot::Second)?, sensor.place(Slot::Day)?);
+    let (seconds, days) = (&sensor.columns[seconds], &sensor.columns[days]);
+    let row = (0..seconds.len()).find(|&row| seconds[row].is_finite() && days[row].is_finite())?;
+    let epoch = epochs.partition_point(|epoch| epoch.line <= sensor.at[row]).saturating_sub(1);
+    let passed = (second + epochs[epoch].time - seconds[row]) / DAY;
+    Some(days[row] as i64 - passed.round() as i64)
+}
+
+/// Spreads the rows of every group over it; whether a group had several.
+///
+/// The k-th of n rows comes k/n of the time to the next group after its begin, and in a group longer than usual no
+/// slower than in the others.
+fn spread(at: &mut [f64], groups: &[Group], usual: f64) -> bool {
+    let normal = groups.iter().filter(|group| group.length <= GAP * usual);
+    let (time, rows) =
+        normal.fold((0.0, 0), |(time, rows), group| (time + group.length, rows + group.end - group.begin));
+    let pace = if rows > 0 { time / rows as f64 } else { f64::INFINITY };
+    let mut several = false;
+    for group in groups {
+        let rows = group.end - group.begin;
+        let own = group.length / rows as f64;
+        let step = if group.length <= GAP * usual { own } else { own.min(pace) };
+        for (k, at) in at[group.begin..group.end].iter_mut().enumerate() {
+            *at = group.time + k as f64 * step;
+        }
+        several |= rows > 1;
+    }
+    several
+}
+
+/// Takes the rows without an instant out of the table of an instrument.
+fn drop_rows(sensor: &mut Sensor) {
+    if sensor.at.iter().all(|at| at.is_finite()) {
+        return;
+    }
+    for column in &mut sensor.columns {
+        let mut at = sensor.at.iter();
+        column.retain(|_| at.next().is_some_and(|at| at.is_finite()));
+    }
+    sensor.at.retain(|at| at.is_finite());
+}
+
+/// Seconds to the microsecond: finer than any clock here, and without what subtracting large numbers leaves.
+pub(super) fn rounded(time: f64) -> f64 {
+    (time * 1e6).round() / 1e6
+}
+
+/// The middle one of some lengths, s; infinite where there is none.
+pub(super) fn median(lengths: impl Iterator<Item = f64>) -> f64 {
+    let mut lengths: Vec<f64> = lengths.collect();
+    let middle = lengths.len() / 2;
+    if lengths.is_empty() {
+        return f64::INFINITY;
+    }
+    *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// `1 sentence`, `12 sentences`.
+pub(super) fn counted(number: usize, of: &str) -> String {
+    format!("{number} {of}{}", if number == 1 { "" } else { "s" })
+}
+
+pub(super) fn are(number: usize) -> &'static str {
+    if number == 1 { "is" } else { "are" }
+}

@@ -1,0 +1,151 @@
+//! A log of NMEA 0183 sentences becomes a [`Source`]: every quantity that is used at the instants its instrument sent
+//! it. Headings, rudder angles and orders, yaw rate, speeds, position, propeller and wind are read; AIS and the
+//! sentences of single makers are passed over. Time comes from stamps before the sentences, or from the sentences of a
+//! GPS or clock. What is damaged is left out and counted; a course over ground never stands for a heading. Whether
+//! heading and rudder are enough for a record is not decided here: they may lie in two files.
+
+mod choice;
+mod epochs;
+mod frame;
+mod log;
+mod position;
+mod sentence;
+mod stamp;
+#[cfg(test)]
+mod tests;
+
+use std::io::Read;
+
+use self::choice::Choice;
+use self::epochs::{are, counted, from_sentences, from_stamps, rounded};
+use self::frame::{Line, frame};
+use self::log::{Counts, Log};
+use self::stamp::Leading;
+use super::error::Problem;
+use super::lines::Lines;
+use super::source::{Series, Source};
+use crate::clock::{Clock, DAY};
+
+/// Sentences that show whether a log has stamps.
+const LOOKED_AT: usize = 64;
+/// Lines among which they are looked for.
+const FIRST_LINES: usize = 1024;
+
+/// Whether a line is a sentence, or carries one behind a leading stamp.
+pub(super) fn is_sentence(line: &str) -> bool {
+    let address = |rest: &[u8], letters: usize| {
+        rest.get(letters) == Some(&b',')
+            && rest[..letters].iter().all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit())
+    };
+    let bytes = line.as_bytes();
+    let Some(start) = bytes.iter().position(|&byte| matches!(byte, b'$' | b'!')) else { return false };
+    let rest = &bytes[start + 1..];
+    let of_maker = bytes[start] == b'$' && rest.first() == Some(&b'P') && (4..10).any(|letters| address(rest, letters));
+    !line.trim_start().starts_with('#') && (address(rest, 5) || of_maker)
+}
+
+/// Reads the whole log; `first` are lines already taken from `lines`, in order from line 1.
+///
+/// Fails where more than half of its lines are damaged, where there is no time or it goes back, where dates may be read
+/// in two ways, and where no sentence gives a quantity that is used.
+pub(super) fn read<R: Read>(first: Vec<String>, mut lines: Lines<R>) -> Result<Source, Problem> {
+    let mut begin: Vec<Vec<u8>> = first.into_iter().map(String::into_bytes).collect();
+    let is_framed = |line: &Vec<u8>| matches!(frame(line), Line::Sentence(_));
+    let mut sentences = begin.iter().filter(|line| is_framed(line)).count();
+    while sentences < LOOKED_AT && begin.len() < FIRST_LINES {
+        let Some(line) = lines.next_bytes()? else { break };
+        let line = line.to_vec();
+        sentences += usize::from(is_framed(&line));
+        begin.push(line);
+    }
+    let mut log = Log::new(is_stamped(&begin));
+    for (place, line) in begin.iter().enumerate() {
+        log.take(line, place + 1)?;
+    }
+    drop(begin);
+    loop {
+        // The line borrows its source: hence the detour over `number`.
+        let number = lines.number() + 1;
+        let Some(line) = lines.next_bytes()? else { break };
+        log.take(line, number)?;
+    }
+    let number = lines.number();
+    finish(log, number, lines.sha256())
+}
+
+/// Whether at least half of the sentences have a stamp before them.
+fn is_stamped(lines: &[Vec<u8>]) -> bool {
+    let mut leading = Leading::default();
+    let (mut sentences, mut stamps) = (0, 0);
+    for line in lines {
+        if let Line::Sentence(frame) = frame(line) {
+            sentences += 1;
+            stamps += usize::from(leading.read(frame.before).0.is_some());
+        }
+    }
+    stamps > 0 && 2 * stamps >= sentences
+}
+
+/// Makes channels of all that was read.
+fn finish(mut log: Log, lines: usize, sha256: String) -> Result<Source, Problem> {
+    let counts = log.counts;
+    let written = lines - counts.blank;
+    let damaged = counts.wrong + counts.broken;
+    if 2 * damaged > written {
+        return Err(Problem::DamagedLog { lines: written, damaged, wrong: counts.wrong, broken: counts.broken });
+    }
+    if log.sensors.is_empty() {
+        return Err(if counts.unstamped > 0 {
+            Problem::NoClock { sentences: counts.sentences, clocks: 0 }
+        } else {
+            Problem::NoReadings { sentences: counts.sentences }
+        });
+    }
+    let timed = if log.is_stamped() { from_stamps(&mut log) } else { from_sentences(&mut log)? };
+    let mut warnings = of_counts(&counts, lines);
+    warnings.extend(timed.warnings);
+    let Choice { mut series, warnings: choices, .. } = Choice::of(&log);
+    warnings.extend(choices);
+    if series.is_empty() {
+        return Err(Problem::NoReadings { sentences: counts.sentences });
+    }
+    let clock = begin_at_zero(&mut series, timed.clock);
+    Ok(Source { series, clock, warnings, lines, sha256 })
+}
+
+/// Makes the first instant time 0.
+fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
+    let first = series.iter().filter_map(|series| series.time.first()).copied().fold(f64::INFINITY, f64::min);
+    for series in series {
+        series.time.iter_mut().for_each(|time| *time = rounded(*time - first));
+    }
+    let clock = clock?;
+    let second = rounded(clock.second + first);
+    let days = (second / DAY).floor();
+    Some(Clock { day: clock.day.map(|day| day + days as i64), second: second - days * DAY, zone: clock.zone })
+}
+
+/// What was left out, one sentence each.
+fn of_counts(counts: &Counts, lines: usize) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let of_lines = |number: usize| format!("{number} of {}", counted(lines, "line"));
+    if counts.wrong > 0 {
+        let number = counts.wrong;
+        warnings.push(format!("{} had a wrong checksum and {} left out", of_lines(number), are(number)));
+    }
+    if counts.broken > 0 {
+        let number = counts.broken;
+        warnings.push(format!("{} {} cut short or not text, and left out", of_lines(number), are(number)));
+    }
+    if counts.text > 0 {
+        let number = counts.text;
+        warnings.push(format!("{} hold no sentence and {} left out", of_lines(number), are(number)));
+    }
+    if counts.unsummed > 0 {
+        let number = counts.unsummed;
+        warnings.push(format!("{} {} no checksum, so damage would not be seen", counted(number, "sentence"), {
+            if number == 1 { "has" } else { "have" }
+        }));
+    }
+    warnings
+}
