@@ -34,6 +34,9 @@ const GAP: f64 = 30.0;
 /// Holds at the beginning that time the first execute: later ones make it no more certain.
 const ENOUGH_HOLDS: usize = 4;
 
+/// Rudder off the line of its movement, as a share of the band in which it rests.
+const ON_RAMP: f64 = 0.6;
+
 /// Rows whose middle is the rudder angle just before a movement.
 const ENOUGH_ROWS: usize = 8;
 
@@ -47,7 +50,7 @@ pub(super) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
         let (start, approach) = match pattern.kind {
             Kind::PullOut { .. } => (pattern.first(), None),
             _ => {
-                let start = first_execute(record, pattern, free);
+                let start = first_execute(record, &pattern.holds, pattern.scale, free);
                 (start, Some(Lead::of(record, pattern, start, free)))
             }
         };
@@ -100,12 +103,13 @@ fn before_stop(record: &Record, pattern: &Pattern) -> usize {
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first hold of a manoeuvre.
-fn first_execute(record: &Record, pattern: &Pattern, free: usize) -> usize {
+/// First row in which the rudder moves into the first of some holds, looked for from row `free` on and at most `scale`
+/// seconds before the hold.
+pub(super) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free: usize) -> usize {
     let time = record.log.time;
-    let holds = &pattern.holds[..pattern.holds.len().min(ENOUGH_HOLDS)];
+    let holds = &holds[..holds.len().min(ENOUGH_HOLDS)];
     let hold = holds[0];
-    let window = time.partition_point(|&t| t < hold.from - pattern.scale).max(free).min(hold.first);
+    let window = time.partition_point(|&t| t < hold.from - scale).max(free).min(hold.first);
     let end = holds[holds.len() - 1].last;
     let local = |hold: &Stretch| Hold {
         side: if hold.level < 0.0 { -1.0 } else { 1.0 },
@@ -126,8 +130,20 @@ fn first_execute(record: &Record, pattern: &Pattern, free: usize) -> usize {
         return window + row;
     }
     let rudder = Rudder::new(&time[window..=end], angle, &local, Some(record.rest.noise));
-    let start = rudder.first().map_or(hold.from, |movement| movement.start.value);
-    time.partition_point(|&t| t < start).clamp(window, hold.first)
+    let Some(movement) = rudder.first() else { return hold.first };
+    let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
+    let rate = movement.rate.map(f64::abs).or(rudder.rate());
+    rate.map_or(start, |rate| {
+        start.max(window + on_ramp(&time[window..=end], angle, &local[0], rate, record.rest.floor))
+    })
+}
+
+/// First row on the line through a movement into a hold at a rate, rad/s. Steering to the same side just before moves
+/// the foot of that line, but is not on it.
+fn on_ramp(time: &[f64], angle: &[f64], hold: &Hold, rate: f64, floor: f64) -> usize {
+    let half = (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs()).unwrap_or(0);
+    let line = |row: usize| angle[half] + hold.side * rate * (time[row] - time[half]);
+    (0..=half).rev().take_while(|&row| (angle[row] - line(row)).abs() <= ON_RAMP * floor).last().unwrap_or(half)
 }
 
 /// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`
