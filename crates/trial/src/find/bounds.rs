@@ -34,8 +34,9 @@ const GAP: f64 = 30.0;
 /// Holds at the beginning that time the first execute: later ones make it no more certain.
 const ENOUGH_HOLDS: usize = 4;
 
-/// Rudder off the line of its movement, as a share of the band in which it rests.
+/// Rudder off the line of its movement, as a share of the band in which it rests, and fewest rows that show such a line.
 const ON_RAMP: f64 = 0.6;
+const FEWEST_ON_RAMP: usize = 3;
 
 /// Rows whose middle is the rudder angle just before a movement.
 const ENOUGH_ROWS: usize = 8;
@@ -103,12 +104,16 @@ fn before_stop(record: &Record, pattern: &Pattern) -> usize {
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first of some holds, looked for from row `free` on and at most `scale`
-/// seconds before the hold.
+/// First row in which the rudder moves into the first of some holds, looked for from row `free` on and `scale` seconds
+/// before the hold or, where the rudder is slow, somewhat earlier.
 pub(super) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(ENOUGH_HOLDS)];
     let hold = holds[0];
+    // A slow rudder takes longer than a short first hold.
+    let longest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
+    let movement = longest(&mut holds.windows(2).map(|pair| pair[1].from - pair[0].until));
+    let scale = scale.max(movement + longest(&mut holds.iter().map(Stretch::duration)));
     let window = time.partition_point(|&t| t < hold.from - scale).max(free).min(hold.first);
     let end = holds[holds.len() - 1].last;
     let local = |hold: &Stretch| Hold {
@@ -142,8 +147,18 @@ pub(super) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free
 /// the foot of that line, but is not on it.
 fn on_ramp(time: &[f64], angle: &[f64], hold: &Hold, rate: f64, floor: f64) -> usize {
     let half = (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs()).unwrap_or(0);
-    let line = |row: usize| angle[half] + hold.side * rate * (time[row] - time[half]);
-    (0..=half).rev().take_while(|&row| (angle[row] - line(row)).abs() <= ON_RAMP * floor).last().unwrap_or(half)
+    let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
+    // The other half tells how well the rows of a movement keep to a line: rounding and uneven times take them off.
+    let ramp: Vec<usize> =
+        (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID * hold.level.abs()).collect();
+    if ramp.len() < FEWEST_ON_RAMP {
+        return 0;
+    }
+    let usual = ramp.iter().map(|&row| off(row)).fold(0.0, f64::max);
+    let most = (ON_RAMP * floor).max(1.2 * usual);
+    // Noise takes a row or two further off.
+    let is_on = |&row: &usize| (row.saturating_sub(2)..=row).any(|row| off(row) <= most);
+    (0..=half).rev().take_while(is_on).last().unwrap_or(half)
 }
 
 /// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`

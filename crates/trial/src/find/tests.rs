@@ -232,9 +232,9 @@ fn the_unit_of_time_does_not_matter() {
     }
 }
 
-/// A day at 10 Hz; run by hand in a release build for the time it takes.
+/// A day at 10 Hz, with and without noise; its time is printed, 0.5 s is meant.
 #[test]
-fn a_day_at_ten_hertz_takes_little_time() {
+fn a_day_at_ten_hertz() {
     let mut sea = Sea::new(0.1);
     while sea.time.len() < 864_000 {
         sea.keep(1800.0);
@@ -249,7 +249,9 @@ fn a_day_at_ten_hertz_takes_little_time() {
         (0..sea.rudder.len()).for_each(|row| sea.rudder[row] += from_deg(noise_deg) * sea.chance.draw());
         let start = std::time::Instant::now();
         let found = sea.found();
-        println!("{} rows with {} manoeuvres in {:?}", sea.time.len(), found.len(), start.elapsed());
+        println!("{} rows in {:.3} s", sea.time.len(), start.elapsed().as_secs_f64());
+        let executes: Vec<usize> = found.iter().map(|found| found.executes).collect();
+        assert_eq!(executes, [6, 6, 1].repeat(11), "{noise_deg} deg of noise");
     }
 }
 
@@ -284,7 +286,7 @@ fn explore() {
                     let part = sea.zig_zag(delta, psi, executes);
                     sea.keep(400.0 * factor);
                     let n = sea.time.len();
-                    let mut tol = 2.001 * step;
+                    let mut tol = (2.001 * step).max(0.3);
                     for row in 0..n {
                         match mode {
                             2 => {
@@ -313,7 +315,7 @@ fn explore() {
                         }
                     }
                     if mode == 9 {
-                        tol += 0.6 * step;
+                        tol += 2.0 * step;
                     }
                     total += 1;
                     let found = sea.found();
