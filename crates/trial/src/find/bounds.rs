@@ -34,6 +34,10 @@ const GAP: f64 = 30.0;
 /// Holds at the beginning that time the first execute: later ones make it no more certain.
 const ENOUGH_HOLDS: usize = 4;
 
+/// Rudder off the line of its movement, as a share of the band in which it rests, and fewest rows that show such a line.
+const ON_RAMP: f64 = 0.6;
+const FEWEST_ON_RAMP: usize = 3;
+
 /// Rows whose middle is the rudder angle just before a movement.
 const ENOUGH_ROWS: usize = 8;
 
@@ -47,7 +51,7 @@ pub(super) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
         let (start, approach) = match pattern.kind {
             Kind::PullOut { .. } => (pattern.first(), None),
             _ => {
-                let start = first_execute(record, pattern, free);
+                let start = first_execute(record, &pattern.holds, pattern.scale, free);
                 (start, Some(Lead::of(record, pattern, start, free)))
             }
         };
@@ -100,12 +104,17 @@ fn before_stop(record: &Record, pattern: &Pattern) -> usize {
         .map_or(last, |row| (first + row).max(first + 1) - 1)
 }
 
-/// First row in which the rudder moves into the first hold of a manoeuvre.
-fn first_execute(record: &Record, pattern: &Pattern, free: usize) -> usize {
+/// First row in which the rudder moves into the first of some holds, looked for from row `free` on and `scale` seconds
+/// before the hold or, where the rudder is slow, somewhat earlier.
+pub(super) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free: usize) -> usize {
     let time = record.log.time;
-    let holds = &pattern.holds[..pattern.holds.len().min(ENOUGH_HOLDS)];
+    let holds = &holds[..holds.len().min(ENOUGH_HOLDS)];
     let hold = holds[0];
-    let window = time.partition_point(|&t| t < hold.from - pattern.scale).max(free).min(hold.first);
+    // A slow rudder takes longer than a short first hold.
+    let longest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
+    let movement = longest(&mut holds.windows(2).map(|pair| pair[1].from - pair[0].until));
+    let scale = scale.max(movement + longest(&mut holds.iter().map(Stretch::duration)));
+    let window = time.partition_point(|&t| t < hold.from - scale).max(free).min(hold.first);
     let end = holds[holds.len() - 1].last;
     let local = |hold: &Stretch| Hold {
         side: if hold.level < 0.0 { -1.0 } else { 1.0 },
@@ -126,8 +135,30 @@ fn first_execute(record: &Record, pattern: &Pattern, free: usize) -> usize {
         return window + row;
     }
     let rudder = Rudder::new(&time[window..=end], angle, &local, Some(record.rest.noise));
-    let start = rudder.first().map_or(hold.from, |movement| movement.start.value);
-    time.partition_point(|&t| t < start).clamp(window, hold.first)
+    let Some(movement) = rudder.first() else { return hold.first };
+    let start = time.partition_point(|&t| t < movement.start.value).clamp(window, hold.first);
+    let rate = movement.rate.map(f64::abs).or(rudder.rate());
+    rate.map_or(start, |rate| {
+        start.max(window + on_ramp(&time[window..=end], angle, &local[0], rate, record.rest.floor))
+    })
+}
+
+/// First row on the line through a movement into a hold at a rate, rad/s. Steering to the same side just before moves
+/// the foot of that line, but is not on it.
+fn on_ramp(time: &[f64], angle: &[f64], hold: &Hold, rate: f64, floor: f64) -> usize {
+    let half = (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs()).unwrap_or(0);
+    let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
+    // The other half tells how well the rows of a movement keep to a line: rounding and uneven times take them off.
+    let ramp: Vec<usize> =
+        (half + 1..hold.first).take_while(|&row| hold.side * angle[row] < LAID * hold.level.abs()).collect();
+    if ramp.len() < FEWEST_ON_RAMP {
+        return 0;
+    }
+    let usual = ramp.iter().map(|&row| off(row)).fold(0.0, f64::max);
+    let most = (ON_RAMP * floor).max(1.2 * usual);
+    // Noise takes a row or two further off.
+    let is_on = |&row: &usize| (row.saturating_sub(2)..=row).any(|row| off(row) <= most);
+    (0..=half).rev().take_while(is_on).last().unwrap_or(half)
 }
 
 /// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`

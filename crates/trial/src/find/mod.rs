@@ -64,7 +64,7 @@ impl Log<'_> {
 pub enum Kind {
     /// A zig-zag; angles as executed.
     ZigZag {
-        /// Rudder laid, rad: median over the holds.
+        /// Rudder laid, rad: median over the holds to each side, and the mean of both sides.
         rudder: f64,
         /// Change of heading from the base course at which the rudder was reversed, rad: median over the executes.
         heading: f64,

@@ -73,6 +73,8 @@ pub(super) struct Rest {
     pub angle: Vec<f64>,
     /// Standard deviation of the rudder noise, rad.
     pub noise: f64,
+    /// Half-width of the narrowest band in which the rudder rests, rad.
+    pub floor: f64,
     /// Usual time between rows, s; 0 for less than two rows.
     pub step: f64,
     /// Rudder angle of a straight course, rad: what the rudder has mostly, or 0 where that is no small angle.
@@ -94,20 +96,20 @@ impl Rest {
         let floor = (3.0 * noise).max(1.1 * quantum).clamp(NARROWEST_BAND, WIDEST_BAND);
         let most = usual(angle.iter().copied());
         let neutral = if most.abs() <= LARGEST_NEUTRAL { most } else { 0.0 };
-        let mut rest = Self { angle, noise, step, neutral, stretches: Vec::new(), merged: Vec::new() };
-        rest.stretches = rest.cut(time, floor);
+        let mut rest = Self { angle, noise, floor, step, neutral, stretches: Vec::new(), merged: Vec::new() };
+        rest.stretches = rest.cut(time);
         rest.merged = merged(&rest.stretches, floor);
         rest
     }
 
     /// Cuts the log where the rudder leaves the band about the mean of the rows since the last cut.
-    fn cut(&self, time: &[f64], floor: f64) -> Vec<Stretch> {
+    fn cut(&self, time: &[f64]) -> Vec<Stretch> {
         let mut stretches = Vec::new();
         let (mut first, mut last, mut sum, mut count) = (0, 0, 0.0, 0.0);
         for row in 0..self.angle.len() {
             let gap = row > 0 && time[row] - time[row - 1] > GAP * self.step;
             let level: f64 = sum / count;
-            let band = floor.max(BAND * level.abs());
+            let band = self.floor.max(BAND * level.abs());
             let inside = |row: usize| self.angle.get(row).is_some_and(|x| (x - level).abs() <= band);
             if count > 0.0 && !gap && !inside(row) && (row + 1..=row + STRAY_ROWS).any(inside) {
                 continue;
@@ -119,7 +121,7 @@ impl Rest {
             (sum, count, last) = (sum + self.angle[row], count + 1.0, row);
         }
         if count > 0.0 {
-            let band = floor.max(BAND * (sum / count).abs());
+            let band = self.floor.max(BAND * (sum / count).abs());
             stretches.extend(self.stretch(time, first, last, band));
         }
         stretches

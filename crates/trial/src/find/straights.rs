@@ -30,34 +30,27 @@ pub(super) fn add(record: &Record, found: &[Pattern], list: &mut Vec<Manoeuvre>)
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = usual(found.iter().map(|pattern| pattern.scale));
     let shortest = if scale > 0.0 { SHORTEST * scale } else { SHORTEST_SHARE * (end - begin) };
+    let steering = Steering::of(record);
     let mut pieces = Vec::new();
     let mut first = 0;
     for manoeuvre in list.iter() {
-        pieces.extend(pieces_in(record, first, time.partition_point(|&t| t < manoeuvre.from), shortest));
+        pieces.extend(pieces_in(&steering, first, time.partition_point(|&t| t < manoeuvre.from), shortest));
         first = time.partition_point(|&t| t <= manoeuvre.until);
     }
-    pieces.extend(pieces_in(record, first, time.len(), shortest));
+    pieces.extend(pieces_in(&steering, first, time.len(), shortest));
     list.extend(pieces);
     list.sort_by(|a, b| a.from.total_cmp(&b.from));
 }
 
 /// The straight pieces among rows `first..end`.
-fn pieces_in(record: &Record, first: usize, end: usize, shortest: f64) -> Vec<Manoeuvre> {
+fn pieces_in(steering: &Steering, first: usize, end: usize, shortest: f64) -> Vec<Manoeuvre> {
+    let record = steering.record;
     let log = record.log;
-    let under_way = [log.speed, log.propeller].map(|channel| {
-        let values = channel.filter(|values| values.len() == log.time.len())?;
-        Some((values, AT_REST * usual(values.iter().map(|x| x.abs()))))
-    });
-    let goes_straight = |row: usize| {
-        let moves =
-            under_way.iter().flatten().all(|(values, least)| values[row].is_nan() || values[row].abs() >= *least);
-        moves && (record.rest.angle[row] - record.rest.neutral).abs() <= RUDDER
-    };
     let mut pieces = Vec::new();
     let mut piece: Option<Piece> = None;
     for row in first..end {
         let psi = log.heading[row];
-        let straight = goes_straight(row);
+        let straight = steering.is_straight(row);
         if let Some(open) = piece.as_mut()
             && straight
             && log.time[row] - open.read <= 0.25 * shortest
@@ -71,6 +64,30 @@ fn pieces_in(record: &Record, first: usize, end: usize, shortest: f64) -> Vec<Ma
     }
     pieces.extend(piece.and_then(|piece| piece.manoeuvre(record, shortest)));
     pieces
+}
+
+/// What of a row, but for its heading, tells that the ship goes straight.
+struct Steering<'a> {
+    record: &'a Record<'a>,
+    /// Speed and revolutions where they are known, and the least of each for a ship under way.
+    under_way: [Option<(&'a [f64], f64)>; 2],
+}
+
+impl<'a> Steering<'a> {
+    fn of(record: &'a Record<'a>) -> Self {
+        let log = record.log;
+        let under_way = [log.speed, log.propeller].map(|channel| {
+            let values = channel.filter(|values| values.len() == log.time.len())?;
+            Some((values, AT_REST * usual(values.iter().map(|x| x.abs()))))
+        });
+        Self { record, under_way }
+    }
+
+    fn is_straight(&self, row: usize) -> bool {
+        let rest = self.record.rest;
+        let mut known = self.under_way.iter().flatten().map(|(values, least)| (values[row].abs(), *least));
+        known.all(|(value, least)| value.is_nan() || value >= least) && (rest.angle[row] - rest.neutral).abs() <= RUDDER
+    }
 }
 
 /// Rows on one course.

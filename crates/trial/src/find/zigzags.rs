@@ -1,6 +1,7 @@
 //! Zig-zags in a log: the rudder rests at nearly the same angle to alternate sides, goes over quickly, and the heading
 //! swings about a course with it. Where the part to analyse begins and ends is decided in `bounds`.
 
+use super::bounds::first_execute;
 use super::course::middle;
 use super::rest::Stretch;
 use super::{Kind, Pattern, Record};
@@ -14,13 +15,16 @@ const SAME_SIDE: f64 = 0.15;
 const SAME_SIDE_AT_LEAST: f64 = 1.5_f64.to_radians();
 
 /// Longest movement from side to side, as a share of the longer hold beside it. A first hold may be short.
-const QUICK: f64 = 0.75;
+const QUICK: f64 = 1.25;
 
 /// A stretch shorter than this share of the hold before it is a pause of the movement.
 const PAUSE: f64 = 0.3;
 
+/// How long after a hold, as a multiple of it, such pauses are passed over.
+const REACH: f64 = 4.0;
+
 /// Least share of the time between first and last row with the rudder held. A first-order 35/5 trial has 0.5.
-const LEAST_HELD: f64 = 0.35;
+const LEAST_HELD: f64 = 0.3;
 
 /// Largest ratio of one swing of the heading, from execute to execute, to the next.
 const SWINGS: f64 = 1.7;
@@ -28,10 +32,11 @@ const SWINGS: f64 = 1.7;
 /// Change of heading in the first hold, as a share of the swings: half a swing from the base course, somewhat more
 /// where the hold begins within a reversal. With only three holds nothing else tells a trial from chance.
 const FIRST_SWING: (f64, f64) = (0.15, 1.6);
-const ONLY_SWING: (f64, f64) = (0.35, 0.7);
+const ONLY_SWING: (f64, f64) = (0.4, 0.62);
 
-/// Before a trial of three holds, for a time of [`PAUSE`] holds: change of heading as a share of the swings, and rudder
-/// off amidships as a share of its level.
+/// Before a trial of three holds, for a share of the first: change of heading as a share of the swings, and rudder off
+/// amidships as a share of its level.
+const BEFORE: f64 = 0.5;
 const STRAIGHT: f64 = 0.12;
 const AMIDSHIPS: f64 = 0.5;
 
@@ -103,7 +108,9 @@ impl Chain {
                 // The rudder paused on its way to this hold.
                 holds[count - 1] = stretch;
                 next = index;
-            } else if stretch.duration() < PAUSE * last.duration() && stretch.until - last.until <= last.duration() {
+            } else if stretch.duration() < PAUSE * last.duration()
+                && stretch.until - last.until <= REACH * last.duration()
+            {
                 continue;
             } else {
                 break;
@@ -187,12 +194,13 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
     }
     let swing = median(&mut sizes)?;
     let mut first = 0;
-    let began = record.course.near(holds[0].from, 0.02 * holds[0].duration(), holds[0].duration());
+    let execute = record.log.time[first_execute(record, holds, holds[0].duration(), 0)];
+    let began = record.course.near(execute, 0.02 * holds[0].duration(), holds[0].duration());
     if let (Some(began), Some(ended)) = (began, headings[0]) {
         let share = side(holds, 0) * (ended - began) / swing;
         let (least, most) = if holds.len() == FEWEST { ONLY_SWING } else { FIRST_SWING };
         let at_start = holds[0].first == 0;
-        let manoeuvring = holds.len() == FEWEST && !is_straight_before(record, holds, began, swing);
+        let manoeuvring = holds.len() == FEWEST && !is_straight_before(record, holds, (execute, began), swing);
         first = usize::from(manoeuvring || share > most || share < least && !at_start);
     }
     let mut last = holds.len() - 1;
@@ -204,8 +212,10 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
     if holds.len() < FEWEST || !is_held(record, holds) {
         return None;
     }
-    let mut levels: Vec<f64> = holds.iter().map(|hold| hold.level.abs()).collect();
-    let rudder = median(&mut levels)?;
+    // Between the sides: a neutral rudder off zero adds to one what it takes from the other.
+    let level =
+        |first: usize| median(&mut holds.iter().skip(first).step_by(2).map(|hold| hold.level).collect::<Vec<_>>());
+    let rudder = 0.5 * (level(0)? - level(1)?).abs();
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
     let kind = Kind::ZigZag { rudder, heading };
@@ -219,10 +229,14 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
     })
 }
 
-/// Whether the ship went straight with the rudder about amidships before the first of three holds, which began at the
-/// heading `began`; also where the log does not tell.
-fn is_straight_before(record: &Record, holds: &[Stretch], began: f64, swing: f64) -> bool {
-    let (from, time) = (holds[0].from, PAUSE * holds[0].duration());
+/// Whether the ship went straight with the rudder about amidships before the first of three holds, which began at
+/// the time and heading `began`; also where the log does not tell.
+fn is_straight_before(record: &Record, holds: &[Stretch], (from, began): (f64, f64), swing: f64) -> bool {
+    // The second hold has twice the way of heading to go, and stops a turn first.
+    if holds[1].duration() <= holds[0].duration() {
+        return false;
+    }
+    let time = BEFORE * holds[0].duration();
     let rows = [from - time, from].map(|end| record.log.time.partition_point(|&t| t < end));
     let [one, other] = [holds[0].level, holds[1].level];
     let rudder = middle(&record.rest.angle[rows[0]..rows[1]]);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ship::angle::from_deg;
 
-use crate::find::{Kind, Log, Manoeuvre, manoeuvres};
+use crate::find::{Approach, Log, Manoeuvre, manoeuvres};
 
 /// The columns of a measured record that a search looks at.
 struct Table {
@@ -53,31 +53,87 @@ impl Table {
     }
 }
 
+/// Parts bounded by hand (`scenarios/measured`): the row in which the first full order is given, and the last before the
+/// rudder is ordered amidships. The approaches are manual, and the model still gathers way.
+const BY_HAND: [(&str, &str, f64, f64); 5] = [
+    ("zigzag_13_04_24", "zig-zag 20/20", 44.2, 124.3),
+    ("zigzag_13_14_21", "zig-zag 30/30", 18.4, 110.5),
+    ("zigzag_13_42_53", "zig-zag 30/30", 33.7, 189.5),
+    ("zigzag_13_57_45", "zig-zag 20/20", 26.5, 108.1),
+    ("zigzag_14_10_05", "zig-zag 20/20", 32.5, 149.2),
+];
+
 #[test]
-fn show() {
-    let folder = "/work/shared/data";
-    for set in ["esso_osaka", "kvlcc2_hsva", "kvlcc2_marin"] {
-        let mut files: Vec<_> = std::fs::read_dir(format!("{folder}/{set}"))
-            .unwrap()
-            .map(|x| x.unwrap().file_name().into_string().unwrap())
-            .collect();
-        files.sort();
-        for file in files {
-            let table = measured(&format!("{set}/{file}")).unwrap();
-            println!("{set}/{file} {:.2}..{:.2}", table.time[0], table.time.last().unwrap());
-            for m in table.manoeuvres() {
-                println!(
-                    "    {:<30} {:.2} .. {:.2} start {:.2} executes {} {:?} {:?}",
-                    m.kind.name(),
-                    m.from,
-                    m.until,
-                    m.start,
-                    m.executes,
-                    m.quality.remarks(),
-                    m.kind
-                );
-            }
-        }
+fn whole_logs_of_esso_osaka_give_the_parts_bounded_by_hand() {
+    for (file, name, from, until) in BY_HAND {
+        let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
+        let found = table.manoeuvres();
+        assert_eq!(found.len(), 1, "{file}: {found:?}");
+        assert_eq!(found[0].kind.name(), name, "{file}");
+        assert!((found[0].from - from).abs() < 0.11, "{file}: from {}", found[0].from);
+        assert!((found[0].until - until).abs() < 0.11, "{file}: until {}", found[0].until);
+        assert_eq!(found[0].quality.approach, Some(Approach::Unsteady), "{file}");
     }
-    let _ = Kind::Straight;
+}
+
+/// Begin of the turn as ordered, end before the propeller stops or the rudder is ordered amidships.
+const CIRCLES: [(&str, &str, f64, f64); 4] = [
+    ("turning_oct14_14_29_49", "turning circle 20 to starboard", 110.0, 440.1),
+    ("turning_oct14_15_06_53", "turning circle 20 to port", 110.0, 420.5),
+    ("turning_sep14_13_51_45", "turning circle 35 to starboard", 120.0, 401.4),
+    ("turning_sep14_14_50_41", "turning circle 35 to starboard", 160.0, 517.3),
+];
+
+#[test]
+fn turns_of_esso_osaka_are_found() {
+    for (file, name, from, until) in CIRCLES {
+        let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
+        let found = table.manoeuvres();
+        assert_eq!(found.len(), 1, "{file}: {found:?}");
+        assert_eq!(found[0].kind.name(), name, "{file}");
+        assert!((found[0].from - from).abs() < 0.21, "{file}: from {}", found[0].from);
+        assert!((found[0].until - until).abs() < 0.11, "{file}: until {}", found[0].until);
+    }
+}
+
+/// Name, first row with the rudder under way (s) and number of executes of records that a zig-zag fills.
+const FILLED: [(&str, &str, f64, usize); 11] = [
+    ("kvlcc2_hsva/zigzag_05_01.csv", "zig-zag 5/1", 0.8, 9),
+    ("kvlcc2_hsva/zigzag_10_05.csv", "zig-zag 10/5", 1.7, 6),
+    ("kvlcc2_hsva/zigzag_10_10_s.csv", "zig-zag 10/10", 0.9, 3),
+    ("kvlcc2_hsva/zigzag_15_05.csv", "zig-zag 15/5", 1.4, 8),
+    ("kvlcc2_hsva/zigzag_20_05.csv", "zig-zag 20/5", 1.4, 9),
+    ("kvlcc2_hsva/zigzag_20_10_s.csv", "zig-zag 20/10", 0.9, 8),
+    ("kvlcc2_hsva/zigzag_30_05.csv", "zig-zag 30/5", 0.5, 11),
+    ("kvlcc2_hsva/zigzag_35_05.csv", "zig-zag 35/5", 0.9, 12),
+    ("kvlcc2_marin/zigzag_-20.csv", "zig-zag 20/20", 7.0, 4),
+    ("kvlcc2_marin/zigzag_10.csv", "zig-zag 10/10", 7.6, 3),
+    ("kvlcc2_marin/zigzag_20.csv", "zig-zag 20/20", 6.5, 4),
+];
+
+#[test]
+fn records_filled_by_a_zig_zag_are_taken_whole() {
+    for (file, name, start, executes) in FILLED {
+        let Some(table) = measured(file) else { return };
+        let found = table.manoeuvres();
+        assert_eq!(found.len(), 1, "{file}: {found:?}");
+        assert_eq!((found[0].kind.name().as_str(), found[0].executes), (name, executes), "{file}");
+        let ends = (table.time[0], table.time[table.time.len() - 1]);
+        assert_eq!((found[0].from, found[0].until), ends, "{file}");
+        let row = 1.01 * (table.time[1] - table.time[0]);
+        assert!((found[0].start - start).abs() < row, "{file}: starts at {}", found[0].start);
+        assert_eq!(found[0].quality.remarks(), [""; 0], "{file}");
+    }
+}
+
+/// The record of MARIN goes on with the rudder amidships.
+#[test]
+fn a_turning_circle_is_followed_by_its_pull_out() {
+    let Some(table) = measured("kvlcc2_marin/turning_35.csv") else { return };
+    let found = table.manoeuvres();
+    let names: Vec<String> = found.iter().map(|found| found.kind.name()).collect();
+    assert_eq!(names, ["turning circle 35 to port", "pull-out"]);
+    assert_eq!(found[0].from, 0.0);
+    assert!((found[0].start - 4.1).abs() < 0.6 && (found[0].until - 1513.0).abs() < 1.1, "{found:?}");
+    assert!(found[1].from > found[0].until && found[1].from - found[0].until < 0.6);
 }
