@@ -218,9 +218,17 @@ const UNITS: [(&str, Unit); 61] = {
     ]
 };
 
+/// What people call the columns of a record, with what it says.
+pub fn names() -> impl Iterator<Item = (&'static str, Said)> {
+    NAMES.into_iter()
+}
+
+/// How units are written.
+pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
+    UNITS.into_iter()
+}
+
 /// The unit a text stands for, brackets around it left out: `[deg]`, `(°/min)`, `kn`.
-///
-/// `ms` is a time only where time is asked for: `is_time` keeps it from being taken for m/s or the other way round.
 pub fn unit(text: &str) -> Option<Unit> {
     let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}']);
     let plain: String = inner

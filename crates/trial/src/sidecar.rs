@@ -2,40 +2,7 @@
 //! describes; reading is done in [`crate::reader`].
 //!
 //! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
-//! All keys, none of which is required:
-//!
-//! ```toml
-//! [table]
-//! skip-lines = 4              # lines before the header, or before the rows when there is none; not even decoded
-//! separator = "blank"         # "comma", "semicolon", "tab" or "blank"; recognised when absent
-//! encoding = "windows-1252"   # or "utf-8", the default
-//! header = false              # whether a line with names comes before the rows; default true
-//! time-step-s = 0.1           # row i (from 0, empty lines not counted) is at i times this; a time column is ignored
-//!
-//! [part]                      # which rows are used
-//! from-s = 20.0               # first time, on the clock of the record (the rebuilt one with time-step-s)
-//! until-s = 110.0             # last time
-//! every = 4                   # first row of the part and every 4th after it that has time and rudder
-//!
-//! [[column]]                  # one for each column that needs words; the others keep the meaning of their names
-//! index = 4                   # which: counted from 1 ...
-//! name = "psi [rad]"          # ... or by its name in the header (one of the two)
-//! is = "heading_rad"          # a column name of the contract; default: the own name
-//! flip = true                 # change the sign
-//! ignore = true               # leave the column out (stands alone)
-//!
-//! [ship]                      # both or none
-//! length-m = 7.0
-//! speed-m-s = 1.18            # or speed-kn
-//!
-//! [noise]                     # declared standard deviations of the sensors
-//! heading-deg = 0.1
-//! yaw-rate-deg-s = 0.05
-//! rudder-deg = 0.1
-//!
-//! [check]
-//! plausibility = false        # nothing is mended, and what looks implausible is a warning in place of an error
-//! ```
+//! [`KEYS`] lists what it may say; none of it is required.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -51,6 +18,55 @@ use crate::encoding::Encoding;
 use crate::file::{Kind, read_text};
 use crate::record::Noise;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
+
+/// A key of a sidecar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Key {
+    /// Table and key.
+    pub key: &'static str,
+    /// What it may be.
+    pub value: &'static str,
+    /// What it says, and what holds where it is absent.
+    pub meaning: &'static str,
+}
+
+const fn key(key: &'static str, value: &'static str, meaning: &'static str) -> Key {
+    Key { key, value, meaning }
+}
+
+/// All keys, in the order in which they are written.
+pub const KEYS: [Key; 21] = [
+    key("[table] skip-lines", "number", "Lines before the header, or before the rows when there is none; not even decoded."),
+    key("[table] separator", "comma, semicolon, tab or blank", "What stands between cells; recognised when absent."),
+    key("[table] encoding", "utf-8 or windows-1252", "How bytes stand for letters; utf-8 when absent."),
+    key("[table] header", "true or false", "Whether a line with names comes before the rows; true when absent."),
+    key(
+        "[table] time-step-s",
+        "s",
+        "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not used. Rows that are missing \
+         shift all that follow: for tables without time only.",
+    ),
+    key("[part] from-s", "s", "First time that is used, on the clock of the record."),
+    key("[part] until-s", "s", "Last time that is used."),
+    key("[part] every", "number", "The first row of the part and every n-th after it."),
+    key("[[column]] index", "number", "Which column: counted from 1; this or its name."),
+    key("[[column]] name", "text", "Which column: its name in the header."),
+    key("[[column]] is", "name such as heading_rad", "What it holds: a name of `study list columns`; its own name when absent."),
+    key("[[column]] flip", "true", "Change the sign."),
+    key("[[column]] ignore", "true", "Leave the column out."),
+    key("[ship] length-m", "m", "Length between perpendiculars; needs a speed beside it."),
+    key("[ship] speed-m-s", "m/s", "Approach speed."),
+    key("[ship] speed-kn", "kn", "The same in knots."),
+    key("[noise] heading-deg", "deg", "Standard deviation of the heading, where it is known."),
+    key("[noise] yaw-rate-deg-s", "deg/s", "The same of the yaw rate."),
+    key("[noise] rudder-deg", "deg", "The same of the rudder."),
+    key(
+        "[check] plausibility",
+        "true or false",
+        "With false nothing is mended, and what looks implausible is a warning in place of an error.",
+    ),
+    key("#", "text", "A remark, to the end of the line."),
+];
 
 /// A sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
@@ -324,6 +340,17 @@ mod tests {
 
     fn parse(text: &str) -> Result<Sidecar, SidecarError> {
         Sidecar::parse(text, Path::new("run.trial.toml"))
+    }
+
+    /// A key that is listed is understood, though a value may not fit beside the others.
+    #[test]
+    fn every_listed_key_is_known() {
+        for Key { key, .. } in KEYS.iter().filter(|key| key.key.starts_with('[')) {
+            let (table, name) = key.split_once(' ').expect("a table and a key");
+            let text = format!("{table}\n{name} = {{}}\n");
+            let error = parse(&text).expect_err("no key is a table").to_string();
+            assert!(!error.contains("unknown field"), "{error}");
+        }
     }
 
     #[test]

@@ -8,9 +8,13 @@ use ship::{effects, ships};
 
 use crate::options::{Common, Format, Listed};
 use crate::screen;
+use trial::Channel;
+use trial::names::{self, Said};
+use trial::sidecar::Key;
+
 use scenario::effect_keys;
 use scenario::failure::Failure;
-use simulate::settings::{self, Key};
+use simulate::settings;
 
 /// Prints the list.
 pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
@@ -21,8 +25,16 @@ pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
         Listed::Manoeuvres => keys_below("manoeuvre."),
         Listed::Sensors => keys_below("sensor."),
         Listed::Keys => keys_below(""),
+        Listed::Columns => columns(),
+        Listed::Sidecar => sidecar(),
     };
-    let head = if (what, common.format) == (Listed::Keys, Format::Markdown) { PAGE } else { "" };
+    let head = match what {
+        _ if common.format != Format::Markdown => "",
+        Listed::Keys => PAGE,
+        Listed::Columns => COLUMNS,
+        Listed::Sidecar => SIDECAR,
+        _ => "",
+    };
     screen::say(&format!("{head}{}", common.format.render(&table).trim_end()))
 }
 
@@ -89,7 +101,7 @@ fn ships() -> Table {
 fn keys_below(part: &str) -> Table {
     let mut table =
         Table::new([Column::left("key"), Column::left("unit"), Column::left("default"), Column::left("meaning")]);
-    for Key { key, unit, default, meaning } in settings::keys() {
+    for settings::Key { key, unit, default, meaning } in settings::keys() {
         if let Some(key) = key.strip_prefix(part) {
             // A table shows the marks of code as they are.
             table.push([key, &unit, &default.to_string(), &meaning.replace('`', "")]);
@@ -97,6 +109,81 @@ fn keys_below(part: &str) -> Table {
     }
     table
 }
+
+/// What columns may be called.
+fn columns() -> Table {
+    let mut table = Table::new([Column::left("holds"), Column::left("names"), Column::left("understood as well")]);
+    let usual = |wanted: &dyn Fn(Said) -> bool| {
+        let names: Vec<&str> = names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect();
+        names.join(", ")
+    };
+    let time = usual(&|said| matches!(said, Said::Time(_)));
+    table.push(["time", "t_s, t_ms, t_min", &format!("{time}; seconds, or stamps of date and time")]);
+    table.push(["date beside the time", "", &usual(&|said| said == Said::Date)]);
+    for channel in Channel::ALL {
+        let accepted = channel.accepted_names().replace(" or ", ", ");
+        let of_channel = |said| matches!(said, Said::Channel(found, _) if found == channel);
+        let over_ground = |said| channel == Channel::Speed && matches!(said, Said::OverGround(_));
+        let holds = channel.quantity().replace('_', " ");
+        table.push([&holds, &accepted, &usual(&|said| of_channel(said) || over_ground(said))]);
+    }
+    table.push(["position, deg", "", &usual(&|said| matches!(said, Said::Latitude | Said::Longitude))]);
+    table.push(["no heading", "", &usual(&|said| said == Said::Course)]);
+    table
+}
+
+fn sidecar() -> Table {
+    let mut table = Table::new([Column::left("key"), Column::left("value"), Column::left("meaning")]);
+    for Key { key, value, meaning } in trial::sidecar::KEYS {
+        table.push([key, value, &meaning.replace('`', "")]);
+    }
+    table
+}
+
+/// What stands before the names of columns in Markdown, which is a page of the documentation.
+const COLUMNS: &str = "\
+# Columns of a record
+
+What the columns of a table may be called. The names in the middle say their unit and are read without a word. Other names are
+understood, too, whatever the case of their letters and the marks between their words; a unit may follow the name (`ROT deg/min`,
+`Heading [°]`, `STW (kn)`) or stand in a row below the names. Where no unit is written it is found from the values if only one fits
+them; otherwise the table is refused, or a channel that nobody needs is left out. What was understood is said. Made by `study list
+columns --format markdown`.
+
+";
+
+/// What stands before the keys of a sidecar in Markdown, which is a page of the documentation.
+const SIDECAR: &str = "\
+# Sidecar of a record
+
+A table that does not speak for itself is described by a file `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, …), which is
+found by itself, or by any file named with `--columns`. None of its keys is required. `study sidecar LOG` writes a first one with
+everything that was understood or guessed, for a person to check. Made by `study list sidecar --format markdown`.
+
+```toml
+[table]
+skip-lines = 4
+separator = \"blank\"
+
+[part]
+from-s = 20.0
+until-s = 110.0
+
+[[column]]
+name = \"psi [rad]\"
+is = \"heading_rad\"
+
+[[column]]
+index = 9
+is = \"rudder_deg\"
+flip = true
+
+[ship]
+length-m = 7.0
+speed-m-s = 1.18
+```
+
+";
 
 /// What stands before the keys in Markdown, which is a page of the documentation.
 const PAGE: &str = "\

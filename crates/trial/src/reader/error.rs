@@ -387,17 +387,6 @@ pub enum Problem {
         /// Time of day found.
         found: String,
     },
-    /// Dates that can be read in two ways.
-    #[error(
-        "line {line}: the date of the stamp `{found}` has two numbers that may be the month, expected the day after the one \
-         before; write the dates as 2026-11-20"
-    )]
-    EitherMonth {
-        /// The line.
-        line: usize,
-        /// What stands before its sentence, shortened.
-        found: String,
-    },
     /// A log without a quantity of a record.
     #[error(
         "none of the {sentences} sentences of the log gives a quantity that is used; expected a heading (HDT, THS, HDG) and \

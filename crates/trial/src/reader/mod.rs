@@ -23,7 +23,6 @@ mod lines;
 mod log;
 #[cfg(test)]
 mod measured_tests;
-#[cfg_attr(not(test), expect(dead_code, reason = "the reader of files calls it once it tells logs from tables"))]
 mod nmea;
 mod rows;
 pub(crate) mod source;

@@ -133,7 +133,7 @@ impl Log {
             };
             at = self.stamps.seconds(stamp).map_err(|fault| match fault {
                 StampFault::EitherMonth | StampFault::NoTime => {
-                    Problem::EitherMonth { line: number, found: shortened(frame.before.trim()) }
+                    Problem::EitherMonth { line: number, value: shortened(frame.before.trim()) }
                 }
             })?;
             if !self.follows(at, number)? {
