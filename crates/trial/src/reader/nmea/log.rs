@@ -1,5 +1,5 @@
-//! What was read from a log so far: one table for each instrument, as large as its sentences are many, and counts of all
-//! that was left out. Which instruments are used is not decided before the end of the log.
+//! What was read from a log so far: one table for each instrument, as long as its sentences are many, and counts of
+//! all that was left out. Which instruments are used is not decided before the end of the log.
 
 use super::super::error::Problem;
 use super::super::limits::MAX_CELLS;
