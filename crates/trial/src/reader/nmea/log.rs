@@ -197,8 +197,10 @@ impl Log {
         for (column, value) in sensor.columns.iter_mut().zip(row.values) {
             column.push(value);
         }
-        for (count, odd) in sensor.odd.iter_mut().zip(row.odd) {
-            *count += usize::from(odd);
+        if row.odd != [false; MOST_SLOTS] {
+            for (count, odd) in sensor.odd.iter_mut().zip(row.odd) {
+                *count += usize::from(odd);
+            }
         }
         self.numbers += 1 + sensor.columns.len();
         true

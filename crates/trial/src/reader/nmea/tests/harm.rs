@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::super::frame::{Fields, Number, number};
+use super::super::frame::{Fields, MOST_FIELDS, Number, number};
 use super::*;
 
 fn any_sentence() -> impl Strategy<Value = String> {
@@ -95,7 +95,7 @@ proptest! {
                 prop_assert_eq!(&own.address[2..], other.sentence_type.as_bytes());
                 prop_assert_eq!(&own.address[..2], other.talker.as_bytes());
                 let fields = Fields::new(own.body);
-                for (place, field) in other.fields.iter().take(16).enumerate() {
+                for (place, field) in other.fields.iter().take(MOST_FIELDS).enumerate() {
                     prop_assert_eq!(fields.at(place + 1), field.as_bytes());
                 }
             }
