@@ -113,8 +113,8 @@ pub(super) fn sum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Most fields that are looked at.
-const MOST_FIELDS: usize = 16;
+/// Most fields that are looked at: the ninth of RMC is its date.
+pub(super) const MOST_FIELDS: usize = 9;
 
 /// The fields of a sentence, as many as are looked at; those that are not there are empty.
 pub(super) struct Fields<'a> {

@@ -1,5 +1,5 @@
-//! What was read from a log so far: one table for each instrument, as large as its sentences are many, and counts of all
-//! that was left out. Which instruments are used is not decided before the end of the log.
+//! What was read from a log so far: one table for each instrument, as long as its sentences are many, and counts of
+//! all that was left out. Which instruments are used is not decided before the end of the log.
 
 use super::super::error::Problem;
 use super::super::limits::MAX_CELLS;
@@ -197,8 +197,10 @@ impl Log {
         for (column, value) in sensor.columns.iter_mut().zip(row.values) {
             column.push(value);
         }
-        for (count, odd) in sensor.odd.iter_mut().zip(row.odd) {
-            *count += usize::from(odd);
+        if row.odd != [false; MOST_SLOTS] {
+            for (count, odd) in sensor.odd.iter_mut().zip(row.odd) {
+                *count += usize::from(odd);
+            }
         }
         self.numbers += 1 + sensor.columns.len();
         true

@@ -105,6 +105,7 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<Source, Problem>
     let mut warnings = of_counts(&counts, lines);
     warnings.extend(timed.warnings);
     let Choice { mut series, warnings: choices, .. } = Choice::of(&log);
+    drop(log);
     warnings.extend(choices);
     if series.is_empty() {
         return Err(Problem::NoReadings { sentences: counts.sentences });
@@ -139,13 +140,14 @@ fn of_counts(counts: &Counts, lines: usize) -> Vec<String> {
     }
     if counts.text > 0 {
         let number = counts.text;
-        warnings.push(format!("{} hold no sentence and {} left out", of_lines(number), are(number)));
+        let hold = if number == 1 { "holds" } else { "hold" };
+        warnings.push(format!("{} {hold} no sentence and {} left out", of_lines(number), are(number)));
     }
     if counts.unsummed > 0 {
         let number = counts.unsummed;
-        warnings.push(format!("{} {} no checksum, so damage would not be seen", counted(number, "sentence"), {
-            if number == 1 { "has" } else { "have" }
-        }));
+        let (have, them) = if number == 1 { ("has", "it") } else { ("have", "them") };
+        let sentences = counted(number, "sentence");
+        warnings.push(format!("{sentences} {have} no checksum, so damage to {them} would not be seen"));
     }
     warnings
 }
