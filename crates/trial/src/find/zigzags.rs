@@ -100,6 +100,7 @@ impl Chain {
                 && stretch.duration() >= PAUSE * last.duration()
             {
                 holds[count - 1] = last.joined(stretch);
+                next = index;
             } else if last.level * stretch.level > 0.0
                 && last.duration() < PAUSE * stretch.duration()
                 && gap <= QUICK * stretch.duration()
