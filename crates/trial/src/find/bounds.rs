@@ -18,8 +18,8 @@ const AMIDSHIPS: f64 = 0.35;
 const STEADY_RATE: f64 = 0.2;
 const STEADY_HEADING: f64 = 0.05;
 
-/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 % over
-/// all of it.
+/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 %
+/// over all of it.
 pub(super) const STEADY_SPEED: f64 = 0.033;
 
 /// Shortest steady piece that is taken along, as a share of the longest; a log that begins with it may be shorter.
@@ -34,7 +34,8 @@ const GAP: f64 = 30.0;
 /// Holds at the beginning that time the first execute: later ones make it no more certain.
 const ENOUGH_HOLDS: usize = 4;
 
-/// Rudder off the line of its movement, as a share of the band in which it rests, and fewest rows that show such a line.
+/// Rudder off the line of its movement, as a share of the band in which it rests, and fewest rows that show such a
+/// line.
 const ON_RAMP: f64 = 0.6;
 const FEWEST_ON_RAMP: usize = 3;
 

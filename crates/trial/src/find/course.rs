@@ -23,8 +23,8 @@ impl Course {
         Self { time, heading }
     }
 
-    /// Heading at a time, rad: the middle of those within `half_width` of it, else between its neighbours where both are
-    /// within `reach`.
+    /// Heading at a time, rad: the middle of those within `half_width` of it, else between its neighbours where both
+    /// are within `reach`.
     pub fn near(&self, time: f64, half_width: f64, reach: f64) -> Option<f64> {
         // As wide to either side: at the end of a record a middle value would lag behind a turn.
         let (begin, end) = (*self.time.first()?, *self.time.last()?);

@@ -39,8 +39,8 @@ pub struct Quality {
     pub rudder_spread: f64,
     /// How it was approached; `None` for a pull-out and a straight piece.
     pub approach: Option<Approach>,
-    /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the larger;
-    /// positive where it grew; `None` where it is not known.
+    /// Change of speed from the first third of the approach, at most one hold long, to the last, as a share of the
+    /// larger; positive where it grew; `None` where it is not known.
     pub speed_change: Option<f64>,
 }
 

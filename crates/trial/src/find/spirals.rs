@@ -27,8 +27,8 @@ const SHORTEST: f64 = 0.4;
 /// Largest ratio of the rudder angles to both sides.
 const SIDES: f64 = 2.0;
 
-/// How much the rate of a turn changes in its last thirds, and how much it may change against the rudder from one to the
-/// next, as shares of the range of rates.
+/// How much the rate of a turn changes in its last thirds, and how much it may change against the rudder from one to
+/// the next, as shares of the range of rates.
 const STEADY: f64 = 0.04;
 const AGAINST: f64 = 0.15;
 

@@ -54,10 +54,9 @@ fn pieces_in(steering: &Steering, first: usize, end: usize, shortest: f64) -> Ve
         if let Some(open) = piece.as_mut()
             && straight
             && log.time[row] - open.read <= 0.25 * shortest
+            && (psi.is_nan() || open.takes(row, psi, log.time[row]))
         {
-            if psi.is_nan() || open.takes(row, psi, log.time[row]) {
-                continue;
-            }
+            continue;
         }
         pieces.extend(piece.take().and_then(|piece| piece.manoeuvre(record, shortest)));
         piece = (straight && psi.is_finite()).then(|| Piece::new(row, psi, log.time[row]));

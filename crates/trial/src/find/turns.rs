@@ -44,7 +44,7 @@ pub(super) fn turns(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
             let kind = Kind::TurningCircle { rudder: hold.level, turned };
             found.push(Pattern { kind, holds: vec![hold], scale: TURN / rate, swing: TURN });
         }
-        found.extend(stretches.get(index + 1).and_then(|next| pull_out(record, &hold, next)));
+        found.extend(pull_out(record, &hold, &stretches[index + 1..]));
     }
     found
 }
@@ -56,15 +56,16 @@ fn is_whole(record: &Record, hold: &Stretch) -> bool {
 }
 
 /// The rudder amidships from the end of a turn until the rate is steady or the rudder moves.
-fn pull_out(record: &Record, turn: &Stretch, amidships: &Stretch) -> Option<Pattern> {
+fn pull_out(record: &Record, turn: &Stretch, next: &[Stretch]) -> Option<Pattern> {
     let end_of_turn = turn.until - 0.25 * turn.duration();
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT / rate;
+    let soon = |stretch: &&Stretch| stretch.from - turn.until <= time.max(0.25 * turn.duration());
+    let amidships = next.iter().take_while(soon).find(|stretch| stretch.duration() >= FEWEST_TIMES * time)?;
     let neutral = record.rest.neutral;
     let off = (amidships.level - neutral).abs();
     let is_amidships = off <= AMIDSHIPS * (turn.level - neutral).abs() && off < SMALLEST_RUDDER;
-    let quick = amidships.from - turn.until <= time.max(0.25 * turn.duration());
-    if !is_amidships || !quick || amidships.duration() < FEWEST_TIMES * time || !is_whole(record, amidships) {
+    if !is_amidships || !is_whole(record, amidships) {
         return None;
     }
     let rate_in = |piece: f64| record.course.rate(amidships.from + piece * time, amidships.from + (piece + 1.0) * time);

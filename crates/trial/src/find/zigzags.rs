@@ -100,10 +100,11 @@ impl Chain {
                 && stretch.duration() >= PAUSE * last.duration()
             {
                 holds[count - 1] = last.joined(stretch);
+                next = index;
             } else if last.level * stretch.level > 0.0
                 && last.duration() < PAUSE * stretch.duration()
                 && gap <= QUICK * stretch.duration()
-                && is_level(same_side.unwrap_or(stretch.level), stretch.level)
+                && count.checked_sub(3).is_none_or(|same| is_level(holds[same].level, stretch.level))
             {
                 // The rudder paused on its way to this hold.
                 holds[count - 1] = stretch;

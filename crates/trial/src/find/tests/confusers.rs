@@ -127,7 +127,8 @@ proptest! {
         for (row, gap) in gaps {
             time.iter_mut().skip(row).for_each(|t| *t += gap);
         }
-        let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: Some(&heading), propeller: Some(&heading) };
+        let any = Some(&heading[..]);
+        let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: any, propeller: any };
         let list = manoeuvres(&log);
         for found in &list {
             prop_assert!(time[0] <= found.from && found.from <= found.start && found.start <= found.until);

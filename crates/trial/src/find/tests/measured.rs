@@ -53,8 +53,8 @@ impl Table {
     }
 }
 
-/// Parts bounded by hand (`scenarios/measured`): the row in which the first full order is given, and the last before the
-/// rudder is ordered amidships. The approaches are manual, and the model still gathers way.
+/// Parts bounded by hand (`scenarios/measured`): the row in which the first full order is given, and the last before
+/// the rudder is ordered amidships. The approaches are manual, and the model still gathers way.
 const BY_HAND: [(&str, &str, f64, f64); 5] = [
     ("zigzag_13_04_24", "zig-zag 20/20", 44.2, 124.3),
     ("zigzag_13_14_21", "zig-zag 30/30", 18.4, 110.5),
