@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::commands::{check, find, fit, list, merge, overview, report, run, simulate, trace};
+use crate::commands::{check, find, fit, list, merge, overview, report, run, sidecar, simulate, trace};
 use crate::options::{Common, FindRequest, FitRequest, Listed, RunRequest, SimulateRequest, Style, TraceRequest};
 use crate::{screen, threads};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -47,6 +47,14 @@ enum Command {
     Find {
         #[command(flatten)]
         request: FindRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Write a first description of the columns of a table, NAME.trial.toml beside it, for a person to check
+    Sidecar {
+        /// The table
+        #[arg(value_name = "LOG")]
+        log: PathBuf,
         #[command(flatten)]
         common: Common,
     },
@@ -155,6 +163,7 @@ fn answer(cli: Cli) -> Result<(), Failure> {
             threads::start(&common)?;
             trace::run(&request, &common)
         }
+        (Some(Command::Sidecar { log, common }), _) => sidecar::run(&log, &common),
         (Some(Command::Find { request, common }), _) => find::run(&request, &common),
         (Some(Command::Simulate { request, common }), _) => {
             threads::start(&common)?;

@@ -14,8 +14,9 @@ use scenario::name;
 /// Endings of files that a folder of records is looked through for.
 const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "gz", "parquet", "xlsx", "mat"];
 
-/// A part this much shorter than its record is cut out: the rest is a run-up, a stop or something else.
-const REST: f64 = 0.2;
+/// A record with this much beside its zig-zag is cut: that is a run-up, a stop, the way back to the course or another
+/// manoeuvre.
+const REST: f64 = 0.02;
 
 /// The files that were named; a folder stands for all its records, in the order of their names.
 ///
@@ -188,7 +189,11 @@ fn ask(log: &Log, path: &Path, several: &[(usize, &Manoeuvre)]) -> Failure {
             format!("\n  --trial {number}: {}, {} to {}", one.kind.name(), at(log, one.from), at(log, one.until))
         })
         .collect();
-    Failure::input(format!("{}: there are {} zig-zags in this log; say which one{lines}", path.display(), several.len()))
+    Failure::input(format!(
+        "{}: there are {} zig-zags in this log; say which one{lines}",
+        path.display(),
+        several.len()
+    ))
 }
 
 /// A time of a log for people: seconds, and what the clock shows.

@@ -20,6 +20,9 @@ const LONGEST_HOLD: usize = 100;
 /// Fewest changes of a channel that show a rhythm.
 const FEWEST_CHANGES: usize = 12;
 
+/// Share of the rows in which a channel is read that may repeat old values.
+const READ_IN: f64 = 0.8;
+
 /// Share of the changes that keep to a rhythm of a channel that repeats old values.
 const IN_STEP: f64 = 0.97;
 
@@ -89,6 +92,17 @@ fn rows(count: usize) -> String {
     format!("{count} {}", if count == 1 { "row" } else { "rows" })
 }
 
+/// 2nd, 3rd, 4th, …
+fn ordinal(number: usize) -> String {
+    let ending = match (number % 10, number % 100) {
+        (1, rest) if rest != 11 => "st",
+        (2, rest) if rest != 12 => "nd",
+        (3, rest) if rest != 13 => "rd",
+        _ => "th",
+    };
+    format!("{number}{ending}")
+}
+
 /// Up to six times.
 fn at(times: &[f64]) -> String {
     const SHOWN: usize = 6;
@@ -114,6 +128,11 @@ impl Rhythm {
             let pair = [values[*row - 1], values[*row]];
             pair[0] != pair[1] && pair.iter().all(|x| x.is_finite())
         };
+        // A channel that is not read in every row has a rhythm of its own, which is no repetition.
+        let read = values.iter().filter(|value| value.is_finite()).count();
+        if (read as f64) < READ_IN * values.len() as f64 {
+            return None;
+        }
         let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
         if changes.len() < FEWEST_CHANGES {
             return None;
@@ -158,8 +177,8 @@ fn straighten_rudder(columns: &mut Columns) -> Option<String> {
         }
     }
     Some(format!(
-        "the rudder is new in every {}th row only and repeated in between; between the new values it runs straight",
-        rhythm.every
+        "the rudder is new in every {} row only and repeated in between; between the new values it runs straight",
+        ordinal(rhythm.every)
     ))
 }
 
@@ -180,7 +199,8 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
         Channel::YawRate => "yaw rate",
         _ => "heading",
     };
-    Some(format!("the {name} is new in every {}th row only; its repetitions are taken as missing", rhythm.every))
+    let every = ordinal(rhythm.every);
+    Some(format!("the {name} is new in every {every} row only; its repetitions are taken as missing"))
 }
 
 /// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned

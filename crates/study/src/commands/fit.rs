@@ -208,6 +208,9 @@ fn characteristics(entry: &ZigZagEntry) -> String {
     if entry.imo.is_empty() && !entry.overshoots_deg.is_empty() {
         text += "  IMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
     }
+    if !entry.imo.is_empty() && entry.imo.iter().all(|criterion| criterion.measured.is_none()) {
+        text += "  IMO: this record measures none of the criteria, which are for zig-zags 10/10 and 20/20 from a straight course\n";
+    }
     for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
         text += &format!(
             "  IMO {}: {} {}, limit {}: {}\n",

@@ -10,5 +10,6 @@ pub mod overview;
 mod planned;
 pub mod report;
 pub mod run;
+pub mod sidecar;
 pub mod simulate;
 pub mod trace;

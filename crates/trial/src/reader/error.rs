@@ -127,9 +127,7 @@ pub enum Problem {
         column: String,
     },
     /// Files or sentences without a needed channel.
-    #[error(
-        "there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found)
-    )]
+    #[error("there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found))]
     NoChannel {
         /// What is missing.
         wanted: &'static str,
@@ -159,6 +157,9 @@ pub enum Problem {
         /// Whether the other file has stamps.
         stamped: bool,
     },
+    /// A file that speaks for itself.
+    #[error("this file holds sentences (NMEA 0183), which say themselves what they hold; it needs no sidecar")]
+    NeedsNoSidecar,
     /// A format that is recognised and not read.
     #[error("this is {format}; {cure}")]
     Format {

@@ -148,7 +148,7 @@ fn units_of(cells: &[&str], separator: Separator) -> Option<Vec<Option<Unit>>> {
 }
 
 /// The separator between the cells of a line that holds numbers alone; the one with the most cells.
-fn numbers_of(line: &str) -> Option<Separator> {
+pub(super) fn numbers_of(line: &str) -> Option<Separator> {
     let count = |separator: Separator| {
         let cells = split(line, separator);
         let all = cells.iter().all(|text| cell(text, separator) != Cell::Text);

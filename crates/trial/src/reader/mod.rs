@@ -11,6 +11,7 @@
 //! other tables: [`crate::sidecar`].
 
 mod assemble;
+mod description;
 mod error;
 mod head;
 mod input;
@@ -27,10 +28,11 @@ mod nmea;
 mod rows;
 pub(crate) mod source;
 mod table;
-mod units;
 #[cfg(test)]
 mod tests;
+mod units;
 
+pub use description::describe;
 pub use error::{Problem, ReadError};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};
 pub use lines::LONGEST_LINE;

@@ -152,18 +152,17 @@ impl Heading {
         let t = fit.stationary_point()?;
         let curvature = fit.curvature(t);
         let end = to.min(self.time[self.time.len() - 1]);
-        if side * curvature >= 0.0 || t <= from || t + self.half_width > end || self.is_beside_a_gap(t) {
+        if side * curvature >= 0.0 || t <= from || t + self.half_width > end || self.has_a_gap(from, t + self.half_width) {
             return None;
         }
         let time = Quantity::new(t, self.noise.map(|sd| sd * fit.slope_gain(t) / curvature.abs()));
         Some((time, Quantity::new(fit.value(t), self.noise.map(|sd| sd * fit.value_gain(t)))))
     }
 
-    /// Whether a time lies in a gap of the headings that is longer than a local fit and its usual steps, or nearer to
-    /// one than half a fit.
-    fn is_beside_a_gap(&self, t: f64) -> bool {
-        let near = self.rows(t - self.half_width, t + self.half_width);
-        let around = near.start.saturating_sub(1)..(near.end + 1).min(self.time.len());
+    /// Whether there is a gap of the headings between two times, longer than a local fit and its usual steps.
+    fn has_a_gap(&self, from: f64, to: f64) -> bool {
+        let within = self.rows(from, to);
+        let around = within.start.saturating_sub(1)..(within.end + 1).min(self.time.len());
         self.time[around].windows(2).any(|pair| pair[1] - pair[0] > self.longest_step)
     }
 
