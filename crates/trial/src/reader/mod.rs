@@ -11,6 +11,7 @@
 //! other tables: [`crate::sidecar`].
 
 mod assemble;
+mod columnar;
 mod error;
 mod head;
 mod input;
