@@ -127,9 +127,7 @@ pub enum Problem {
         column: String,
     },
     /// Files or sentences without a needed channel.
-    #[error(
-        "there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found)
-    )]
+    #[error("there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found))]
     NoChannel {
         /// What is missing.
         wanted: &'static str,

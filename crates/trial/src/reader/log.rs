@@ -212,7 +212,8 @@ impl Log {
         let checked = sidecar.as_ref().is_none_or(|sidecar| sidecar.plausibility);
         let name = input::stem(&path);
         // Two parts of one file are two records.
-        let sha256 = part.map_or_else(|| sha256.clone(), |[from, until]| joined_hash(&sha256, &format!("{from} {until}")));
+        let sha256 =
+            part.map_or_else(|| sha256.clone(), |[from, until]| joined_hash(&sha256, &format!("{from} {until}")));
         let origin = Origin::Measured { file: path.display().to_string(), sha256 };
         let trial = Trial::new(name, origin, columns).map_err(|error| {
             fault(match error {

@@ -28,9 +28,9 @@ mod nmea;
 mod rows;
 pub(crate) mod source;
 mod table;
-mod units;
 #[cfg(test)]
 mod tests;
+mod units;
 
 pub use error::{Problem, ReadError};
 pub use limits::{MAX_CELLS, MAX_ROWS, RECORD};

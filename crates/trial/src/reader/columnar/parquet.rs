@@ -69,8 +69,8 @@ impl Meaning {
                 _ => Self::Plain,
             },
         };
-        let other_bytes = column.physical_type() == Type::FIXED_LEN_BYTE_ARRAY
-            && !matches!(meaning, Self::Decimal(_) | Self::Half);
+        let other_bytes =
+            column.physical_type() == Type::FIXED_LEN_BYTE_ARRAY && !matches!(meaning, Self::Decimal(_) | Self::Half);
         (!other_bytes).then_some(meaning)
     }
 }
