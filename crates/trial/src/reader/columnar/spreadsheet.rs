@@ -7,7 +7,7 @@
 use std::io::{Cursor, Read};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
-use calamine::{DataRef, Reader, Xlsx, XlsxCellReader};
+use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 
 use super::decoding::guarded;
 use super::text::{self, Lines, Written};
@@ -65,7 +65,13 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
 
 /// Hands on the lines of the sheet with the table.
 fn decode(bytes: Vec<u8>, send: &SyncSender<Chunk>) -> Result<(), Problem> {
-    let mut book: Book = Xlsx::new(Cursor::new(bytes)).map_err(damaged)?;
+    let mut book: Book = Xlsx::new(Cursor::new(bytes)).map_err(|error| match error {
+        XlsxError::FileNotFound(_) => Problem::Format {
+            format: "an archive (ZIP) without the parts of an Excel workbook",
+            cure: "export the table as CSV",
+        },
+        error => damaged(error),
+    })?;
     let is_1904 = book.has_1904_epoch();
     let names = book.sheet_names();
     let Some(first) = names.first() else { return Err(damaged("it has no sheet")) };

@@ -52,7 +52,9 @@ fn book(sheets: &[String], is_1904: bool) -> Vec<u8> {
         u8::from(is_1904)
     );
     let styles = [0, 22, 14, 21].map(|format| format!("<xf numFmtId=\"{format}\"/>")).concat();
+    let root = format!("<Relationship Id=\"r1\" Type=\"{LINKS}/officeDocument\" Target=\"xl/workbook.xml\"/>");
     let mut all = vec![
+        ("_rels/.rels", format!("<Relationships xmlns=\"{package}\">{root}</Relationships>")),
         ("xl/workbook.xml", workbook),
         ("xl/_rels/workbook.xml.rels", format!("<Relationships xmlns=\"{package}\">{links}</Relationships>")),
         ("xl/styles.xml", format!("<styleSheet xmlns=\"{MAIN}\"><cellXfs>{styles}</cellXfs></styleSheet>")),
@@ -133,8 +135,8 @@ fn values_of_every_kind_are_written_as_text() {
 
 #[test]
 fn damaged_books_and_other_archives_are_told() {
-    assert_sound(&book(&[sheet(HEADER, 1, 25, |t| t.to_string())], false), "a spreadsheet");
-    assert_told(parse(&archive(&[("notes.txt", "nothing".to_owned())])), &["a spreadsheet or an archive (ZIP)"]);
+    assert_sound(&book(&[sheet(HEADER, 1, 8, |t| t.to_string())], false), "(ZIP)");
+    assert_told(parse(&archive(&[("notes.txt", "nothing".to_owned())])), &["archive (ZIP) without", "CSV"]);
     let astray = [row(4, &["1".to_owned()]), row(2, &["1".to_owned()])].concat();
     assert_told(parse(&book(&[astray], false)), &["a spreadsheet", "row 2 has no place"]);
 }
