@@ -279,8 +279,7 @@ pub fn said(name: &str) -> Option<Said> {
     if let Some((channel, unit)) = column(name) {
         return Some(Said::Channel(channel, Some(unit)));
     }
-    let marks =
-        name.char_indices().filter(|(_, c)| c.is_whitespace() || matches!(c, '[' | '(' | '{' | ',' | '/' | '_'));
+    let marks = name.char_indices().filter(|(_, c)| c.is_whitespace() || matches!(c, '[' | '(' | '{' | ',' | '/' | '_'));
     for (at, mark) in marks {
         let rest = name[at + usize::from(!matches!(mark, '[' | '(' | '{')) * mark.len_utf8()..].trim();
         let rest = rest.strip_prefix("in ").unwrap_or(rest);
@@ -358,9 +357,7 @@ mod tests {
             assert_eq!(said(name), said_of, "{name}");
         }
         // Neither what is not known nor a unit that the quantity cannot have.
-        for name in
-            ["", "helm", "rudder port", "heading_m", "Heading [kn]", "course_deg_x", "wind speed", "load_t", "Ä["]
-        {
+        for name in ["", "helm", "rudder port", "heading_m", "Heading [kn]", "course_deg_x", "wind speed", "load_t", "Ä["] {
             assert_eq!(said(name), None, "{name}");
         }
     }

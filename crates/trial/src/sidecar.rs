@@ -36,11 +36,7 @@ const fn key(key: &'static str, value: &'static str, meaning: &'static str) -> K
 
 /// All keys, in the order in which they are written.
 pub const KEYS: [Key; 21] = [
-    key(
-        "[table] skip-lines",
-        "number",
-        "Lines before the header, or before the rows when there is none; not even decoded.",
-    ),
+    key("[table] skip-lines", "number", "Lines before the header, or before the rows when there is none; not even decoded."),
     key("[table] separator", "comma, semicolon, tab or blank", "What stands between cells; recognised when absent."),
     key("[table] encoding", "utf-8 or windows-1252", "How bytes stand for letters; utf-8 when absent."),
     key("[table] header", "true or false", "Whether a line with names comes before the rows; true when absent."),
@@ -55,11 +51,7 @@ pub const KEYS: [Key; 21] = [
     key("[part] every", "number", "The first row of the part and every n-th after it."),
     key("[[column]] index", "number", "Which column: counted from 1; this or its name."),
     key("[[column]] name", "text", "Which column: its name in the header."),
-    key(
-        "[[column]] is",
-        "name such as heading_rad",
-        "What it holds: a name of `study list columns`; its own name when absent.",
-    ),
+    key("[[column]] is", "name such as heading_rad", "What it holds: a name of `study list columns`; its own name when absent."),
     key("[[column]] flip", "true", "Change the sign."),
     key("[[column]] ignore", "true", "Leave the column out."),
     key("[ship] length-m", "m", "Length between perpendiculars; needs a speed beside it."),

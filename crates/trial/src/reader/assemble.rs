@@ -83,12 +83,8 @@ fn usual_interval(time: &[f64]) -> Option<f64> {
 pub(super) fn series(columns: Columns, offset: f64) -> Vec<Series> {
     let Columns { time, channels, .. } = columns;
     let readings = |(channel, values): (Channel, Vec<f64>)| {
-        let (time, values) = time
-            .iter()
-            .zip(values)
-            .filter(|(_, value)| value.is_finite())
-            .map(|(t, value)| (t + offset, value))
-            .unzip();
+        let (time, values) =
+            time.iter().zip(values).filter(|(_, value)| value.is_finite()).map(|(t, value)| (t + offset, value)).unzip();
         Series { channel, name: channel.quantity().to_owned(), time, values }
     };
     channels.into_iter().map(readings).collect()
@@ -143,10 +139,7 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
         told.push(format!("{} without rudder angle, which runs straight between its readings there", rows(filled)));
     }
     if left_out > 0 {
-        told.push(format!(
-            "{} without rudder angle left out, where none was read before or after for long",
-            rows(left_out)
-        ));
+        told.push(format!("{} without rudder angle left out, where none was read before or after for long", rows(left_out)));
     }
     Some(told.join("; "))
 }

@@ -120,8 +120,7 @@ impl Layout {
             layout.check(&claims).map_err(fault)?;
         }
         if layout.time().is_none() && !rebuilt {
-            let accepted =
-                "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".to_owned();
+            let accepted = "t_s (or t_ms or t_min), a column of dates and times, or `time-step-s` in a sidecar".to_owned();
             let found = head.names;
             return Err(fault(Problem::NoColumn { line: head.line, wanted: "time", accepted, found }));
         }
@@ -195,11 +194,15 @@ impl Layout {
     }
 
     /// Finds the column of time, and the dates that belong to it.
-    fn settle_time(&mut self, claims: &[Option<(Said, Rank)>], signs: &[f64], head: &Head) -> Result<(), Problem> {
+    fn settle_time(
+        &mut self,
+        claims: &[Option<(Said, Rank)>],
+        signs: &[f64],
+        head: &Head,
+    ) -> Result<(), Problem> {
         let first = |place: usize| head.first.get(place).map_or("", String::as_str);
         let stamp = |place: usize| Stamp::parse(first(place));
-        let is_number =
-            |place: usize| matches!(cell(first(place), head.separator), Cell::Number(_) | Cell::CommaNumber(_));
+        let is_number = |place: usize| matches!(cell(first(place), head.separator), Cell::Number(_) | Cell::CommaNumber(_));
         // Described or of the contract, then a number with a unit, a stamp with its date, a time of day, a number.
         let mut candidates: Vec<(Rank, u8, usize, Option<Unit>)> = claims
             .iter()

@@ -90,8 +90,7 @@ impl<'a> Rows<'a> {
         let places = |is_one: fn(&Meaning) -> bool| -> Vec<usize> {
             (0..columns).filter(|&place| is_one(&layout.meanings[place])).collect()
         };
-        let used =
-            places(|meaning| !matches!(meaning, Meaning::Time(_) | Meaning::Stamp | Meaning::Date | Meaning::Ignored));
+        let used = places(|meaning| !matches!(meaning, Meaning::Time(_) | Meaning::Stamp | Meaning::Date | Meaning::Ignored));
         let main = [layout.rudder(), layout.place(Channel::Heading), layout.place(Channel::YawRate)];
         let main: Vec<usize> = main.into_iter().flatten().collect();
         // A table that holds some other channel of a record only.

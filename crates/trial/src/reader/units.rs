@@ -210,7 +210,8 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
         })
         .collect();
     let pairs = changes(time, heading).into_iter().zip(changes(time, &integrals));
-    let (product, square) = pairs.fold((0.0, 0.0), |(xy, xx), ((psi, _), (sum, _))| (xy + psi * sum, xx + sum * sum));
+    let (product, square) =
+        pairs.fold((0.0, 0.0), |(xy, xx), ((psi, _), (sum, _))| (xy + psi * sum, xx + sum * sum));
     // A rate of the opposite sign is for the checks of a record to find.
     let ratio = (product / square).abs();
     let near = |unit: &&Unit| {
@@ -246,15 +247,12 @@ fn time(kept: &mut Kept, name: &str, line: usize) -> Result<Option<String>, Prob
     if SERIAL_DAY[0] < first && last < SERIAL_DAY[1] && last - first < 31.0 {
         times.iter_mut().for_each(|time| *time = (*time - first) * 86_400.0);
         kept.clock = Some(Clock { zone: None, ..clock(first * 86_400.0, SERIAL_ZERO) });
-        return Ok(Some(format!(
-            "`{name}` is read as days since 1899-12-30, as spreadsheets count; time 0 is the first row"
-        )));
+        return Ok(Some(format!("`{name}` is read as days since 1899-12-30, as spreadsheets count; time 0 is the first row")));
     }
     let refusal = || Problem::OpenTime { line, column: name.clone() };
     let channels = &kept.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
-        let (turned, duration) =
-            changes(times, heading).iter().fold((0.0, 0.0), |(psi, t), (dpsi, dt)| (psi + dpsi.abs(), t + dt));
+        let (turned, duration) = changes(times, heading).iter().fold((0.0, 0.0), |(psi, t), (dpsi, dt)| (psi + dpsi.abs(), t + dt));
         if !(MEAN_RATE[0]..MEAN_RATE[1]).contains(&(turned / duration)) {
             return Err(refusal());
         }

@@ -1,4 +1,4 @@
-//! Files that are tables and no text: Parquet, spreadsheets (with the feature `spreadsheets`) and MATLAB variables.
+//! Files that are tables and no text: Parquet, MATLAB variables, and spreadsheets with the feature `spreadsheets`.
 //!
 //! Each becomes the text of a table, a line at a time, and goes the way of every other table from there: names, units,
 //! stamps and sidecars are no matter of this module, and nothing is chosen or left out here but what no table can

@@ -118,7 +118,8 @@ fn stamps_of_every_unit_are_those_of_the_csv() {
         for utc in [true, false] {
             let stamps = time.iter().map(|t| Some(begin * per_second + *t as i64 * per_second / 10)).collect();
             let schema = format!(
-                "optional int64 time (TIMESTAMP({unit},{utc})); optional double heading_deg; optional double rudder_deg;"
+                "optional int64 time (TIMESTAMP({unit},{utc})); optional double heading_deg; \
+                 optional double rudder_deg;"
             );
             let columns: Vec<Values> = std::iter::once(Values::Longs(stamps)).chain(rest()).collect();
             let bytes = file(&schema, &columns, Compression::SNAPPY, 100);
@@ -149,7 +150,8 @@ fn stamps_of_every_unit_are_those_of_the_csv() {
 fn values_of_every_type_are_written_as_text() {
     let schema = "optional int64 __index_level_0__; optional boolean on; optional int32 small (INTEGER(32,false)); \
                   optional int32 date (DATE); optional int32 price (DECIMAL(9,2)); optional float speed; \
-                  optional binary note (UTF8); optional int64 at (TIME(MICROS,true)); optional binary big (DECIMAL(20,1)); \
+                  optional binary note (UTF8); optional int64 at (TIME(MICROS,true)); \
+                  optional binary big (DECIMAL(20,1)); \
                   optional group inner { optional double x; }";
     let columns = [
         Values::Longs(vec![Some(-7), None]),

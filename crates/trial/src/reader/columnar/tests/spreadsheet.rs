@@ -48,7 +48,8 @@ fn book(sheets: &[String], is_1904: bool) -> Vec<u8> {
     let package = "http://schemas.openxmlformats.org/package/2006/relationships";
     links += &format!("<Relationship Id=\"r0\" Type=\"{LINKS}/styles\" Target=\"styles.xml\"/>");
     let workbook = format!(
-        "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{LINKS}\"><workbookPr date1904=\"{}\"/><sheets>{listed}</sheets></workbook>",
+        "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{LINKS}\"><workbookPr date1904=\"{}\"/>\
+         <sheets>{listed}</sheets></workbook>",
         u8::from(is_1904)
     );
     let styles = [0, 22, 14, 21].map(|format| format!("<xf numFmtId=\"{format}\"/>")).concat();
