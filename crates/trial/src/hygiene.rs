@@ -133,12 +133,14 @@ impl Rhythm {
         if (read as f64) < READ_IN * values.len() as f64 {
             return None;
         }
-        let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
-        if changes.len() < FEWEST_CHANGES {
+        // More changes than the quickest rhythm has new values are none: most channels end here.
+        let count = (1..values.len()).filter(changed).count();
+        if count < FEWEST_CHANGES || IN_STEP * count as f64 > values.len().div_ceil(2) as f64 {
             return None;
         }
+        let changes: Vec<usize> = (1..values.len()).filter(changed).collect();
         let rhythm = |every: usize| {
-            // More changes than it has new values are no rhythm: most channels end here, uncounted.
+            // More changes than it has new values are no rhythm, and need no counting.
             if IN_STEP * changes.len() as f64 > values.len().div_ceil(every) as f64 {
                 return None;
             }
@@ -203,11 +205,27 @@ fn drop_repeats(columns: &mut Columns, channel: Channel) -> Option<String> {
     Some(format!("the {name} is new in every {every} row only; its repetitions are taken as missing"))
 }
 
+/// Whether a channel keeps one value over as many readings as a freeze has.
+fn rests(values: &[f64]) -> bool {
+    let (mut last, mut count) = (f64::NAN, 0);
+    for &value in values.iter().filter(|value| value.is_finite()) {
+        count = if value == last { count + 1 } else { 0 };
+        last = value;
+        if count >= FROZEN_ROWS {
+            return true;
+        }
+    }
+    false
+}
+
 /// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
 /// before and after by much more than the heading resolves.
 fn drop_frozen(columns: &mut Columns) -> Option<String> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
+    if !rests(heading) {
+        return None;
+    }
     let seen: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
     if seen.len() < 4 * FROZEN_ROWS {
         return None;

@@ -22,6 +22,9 @@ pub enum Said {
     Course,
 }
 
+/// Longest name and unit that are looked at, bytes.
+const LONGEST: usize = 80;
+
 /// Names of the quantities in small letters, words separated by one blank: English first, then German, French, Spanish.
 const NAMES: [(&str, Said); 115] = {
     use Channel::*;
@@ -230,6 +233,9 @@ pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
 
 /// The unit a text stands for, brackets around it left out: `[deg]`, `(°/min)`, `kn`.
 pub fn unit(text: &str) -> Option<Unit> {
+    if text.len() > LONGEST {
+        return None;
+    }
     let inner = text.trim().trim_matches(['[', ']', '(', ')', '{', '}']);
     let plain: String = inner
         .chars()
@@ -273,6 +279,9 @@ fn known(words: &str) -> Option<Said> {
 /// before it or not. Case does not matter.
 pub fn said(name: &str) -> Option<Said> {
     let name = name.trim();
+    if name.len() > LONGEST {
+        return None;
+    }
     if let Some(unit) = time_column(name) {
         return Some(Said::Time(Some(unit)));
     }

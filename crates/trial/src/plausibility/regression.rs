@@ -23,7 +23,7 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
     let (mut once, mut twice, mut heading) = (0.0, 0.0, 0.0);
     let mut last: Option<usize> = None;
-    let mut rows = Vec::new();
+    let mut rows = Thinned::of(psi.iter().filter(|psi| psi.is_finite()).count());
     for i in 0..time.len() {
         if i > 0 {
             // Exact for a rudder that is linear between rows.
@@ -40,17 +40,17 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
             rows.push([1.0, t, t * t, heading, twice, psi[i]]);
         }
     }
-    partial_slope(thin(&rows))
+    partial_slope(rows.kept)
 }
 
 /// K (1/s) of a ship that turns steadily, ∫δ dψ / ∫δ² dt, and the share of ∫|δ dψ| with that sign. `None` without a
 /// rudder.
 pub(super) fn turn_with_rudder(trial: &Trial) -> Option<Slope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
-    let seen: Vec<usize> = (0..time.len()).filter(|&i| psi[i].is_finite()).collect();
+    let mut seen = (0..time.len()).filter(|&i| psi[i].is_finite());
     let (mut with, mut against, mut square) = (0.0, 0.0, 0.0);
-    for pair in seen.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
+    let mut from = seen.next()?;
+    for to in seen {
         let rudder = 0.5 * (delta[from] + delta[to]);
         let work = rudder * (psi[to] - psi[from]);
         if work > 0.0 {
@@ -59,6 +59,7 @@ pub(super) fn turn_with_rudder(trial: &Trial) -> Option<Slope> {
             against -= work
         }
         square += rudder * rudder * (time[to] - time[from]);
+        from = to;
     }
     let share = f64::max(with, against) / (with + against);
     Some(Slope { value: (with - against) / square, share })
@@ -75,7 +76,8 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<Slope> {
     let (time, psi, rate) = (trial.time(), trial.heading(), trial.yaw_rate()?);
     let mut integral = 0.0;
     let mut last: Option<usize> = None;
-    let mut rows = Vec::new();
+    let both = psi.iter().zip(rate).filter(|(psi, rate)| psi.is_finite() && rate.is_finite());
+    let mut rows = Thinned::of(both.count());
     for i in (0..time.len()).filter(|&i| rate[i].is_finite()) {
         if let Some(last) = last {
             integral += 0.5 * (time[i] - time[last]) * (rate[i] + rate[last]);
@@ -85,11 +87,27 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<Slope> {
             rows.push([1.0, time[i] - time[0], integral, psi[i]]);
         }
     }
-    partial_slope(thin(&rows))
+    partial_slope(rows.kept)
 }
 
-fn thin<const N: usize>(rows: &[[f64; N]]) -> Vec<[f64; N]> {
-    rows.iter().step_by(rows.len() / ROWS + 1).copied().collect()
+/// Every n-th of the rows that are given, so that at most [`ROWS`] are kept.
+struct Thinned<const N: usize> {
+    kept: Vec<[f64; N]>,
+    every: usize,
+    given: usize,
+}
+
+impl<const N: usize> Thinned<N> {
+    fn of(rows: usize) -> Self {
+        Self { kept: Vec::new(), every: rows / ROWS + 1, given: 0 }
+    }
+
+    fn push(&mut self, row: [f64; N]) {
+        if self.given.is_multiple_of(self.every) {
+            self.kept.push(row);
+        }
+        self.given += 1;
+    }
 }
 
 /// Slope of the last column on the last but one, all others taken out of both (Frisch and Waugh 1933).

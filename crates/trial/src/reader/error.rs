@@ -168,6 +168,24 @@ pub enum Problem {
         /// What to do.
         cure: &'static str,
     },
+    /// A format that is read, and a file that is not as it should be.
+    #[error("this is {format} and cannot be read: {found}; it is damaged or cut short: copy or export it again")]
+    Damaged {
+        /// What it is.
+        format: &'static str,
+        /// What is wrong with it.
+        found: String,
+    },
+    /// A format that holds tables, and a file without one.
+    #[error("this is {format} without a table: expected {wanted}, found {}; export the table as CSV", listed(found))]
+    NoTable {
+        /// What it is.
+        format: &'static str,
+        /// What a table is made of there.
+        wanted: &'static str,
+        /// Names of what is there.
+        found: Vec<String>,
+    },
     /// A needed column without a unit.
     #[error(
         "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it {}, or write in \

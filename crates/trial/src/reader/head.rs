@@ -58,8 +58,12 @@ impl<R> Ahead<'_, R> {
     }
 }
 
-/// Reads up to the first row.
-pub(super) fn find<R: Read>(lines: &mut Lines<R>, sidecar: Option<&Sidecar>) -> Result<Found, Problem> {
+/// Reads up to the first row; `declared` is the separator where it is known.
+pub(super) fn find<R: Read>(
+    lines: &mut Lines<R>,
+    declared: Option<Separator>,
+    sidecar: Option<&Sidecar>,
+) -> Result<Found, Problem> {
     let skipped = sidecar.map_or(0, |sidecar| sidecar.skip_lines);
     let mut ahead = Ahead { lines, pending: Default::default(), comment: None };
     while ahead.lines.number() < skipped {
@@ -71,7 +75,6 @@ pub(super) fn find<R: Read>(lines: &mut Lines<R>, sidecar: Option<&Sidecar>) -> 
         let last = ahead.lines.number();
         return Err(if last == 0 { Problem::Empty } else { no_rows(last) });
     };
-    let declared = sidecar.and_then(|sidecar| sidecar.separator);
     let numbers = numbers_of(&names);
     if sidecar.is_some_and(|sidecar| !sidecar.header) {
         let separator = declared.or(numbers).unwrap_or(Separator::Blank);

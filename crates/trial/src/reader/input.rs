@@ -1,28 +1,75 @@
 //! What kind of file it is, told from its first bytes and lines, whatever its name: packed or plain, a table or
 //! sentences.
 
-use std::io::{self, Chain, Cursor, ErrorKind, Read};
+use std::cell::RefCell;
+use std::io::{self, Cursor, ErrorKind, Read};
 use std::path::Path;
+use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
+use sha2::{Digest, Sha256};
 
+use super::columnar::Kind;
 use super::error::Problem;
 use super::limits::RECORD;
+use super::lines::in_hex;
 use super::nmea;
 use crate::file::{self, FileError};
 
 /// Bytes and lines that are looked at to tell sentences from a table.
 const LOOKED_AT: (u64, usize) = (1 << 14, 60);
 
-/// The bytes of a file, from the first one on.
-pub(super) type Bytes<'a> = Chain<Cursor<Vec<u8>>, Box<dyn Read + 'a>>;
+/// The text of a file, from its first byte on.
+pub(super) struct Text<'a> {
+    pub bytes: Box<dyn Read + 'a>,
+    /// The hash of the file where that is not the hash of its text.
+    pub on_disk: Option<Hash>,
+    /// Whether it was written here from a file that is no text.
+    pub is_made: bool,
+}
 
 /// The content of a file.
 pub(super) enum Content<'a> {
     /// A table.
-    Table(Bytes<'a>),
+    Table(Text<'a>),
     /// Sentences, one a line.
-    Sentences(Bytes<'a>),
+    Sentences(Text<'a>),
+}
+
+/// SHA-256 of what has been read of a file.
+#[derive(Clone, Default)]
+pub(super) struct Hash(Rc<RefCell<Sha256>>);
+
+impl Hash {
+    fn of(bytes: &[u8]) -> Self {
+        Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
+    }
+
+    /// The hash, hexadecimal; that of the file when its text has been read to the end.
+    pub fn finish(self) -> String {
+        in_hex(&self.0.take().finalize())
+    }
+}
+
+/// Hashes what is read.
+struct Hashed<R> {
+    inner: R,
+    hash: Hash,
+}
+
+impl<R: Read> Read for Hashed<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.hash.0.borrow_mut().update(&buffer[..count]);
+        Ok(count)
+    }
+}
+
+impl Problem {
+    /// What went wrong while a file was read; a problem found by a reader below comes back as it was.
+    pub(super) fn of_input(error: io::Error) -> Self {
+        error.downcast::<Self>().unwrap_or_else(|error| FileError::from(error).into())
+    }
 }
 
 /// Stops where a packed file gives more than a record may have.
@@ -56,14 +103,15 @@ pub(super) fn open(path: &Path) -> Result<(Content<'static>, Option<u64>), Probl
     let file = file::open(path, RECORD)?;
     let size = file.size();
     let content = recognise(Box::new(file))?;
-    Ok((content, size))
+    let plain = matches!(&content, Content::Table(text) | Content::Sentences(text) if text.on_disk.is_none());
+    Ok((content, size.filter(|_| plain)))
 }
 
-/// The first bytes, as many as there are up to what is looked at.
-fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Bytes<'a>), Problem> {
+/// The first bytes, as many as there are up to what is looked at, and all bytes.
+fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Box<dyn Read + 'a>), Problem> {
     let mut first = Vec::new();
     (&mut input).take(LOOKED_AT.0).read_to_end(&mut first).map_err(FileError::from)?;
-    Ok((first.clone(), Cursor::new(first).chain(input)))
+    Ok((first.clone(), Box::new(Cursor::new(first).chain(input))))
 }
 
 /// Tells what a file holds.
@@ -71,20 +119,35 @@ fn peek<'a>(mut input: Box<dyn Read + 'a>) -> Result<(Vec<u8>, Bytes<'a>), Probl
 /// Fails for formats that are recognised and not read, and for packed data that are damaged.
 pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Problem> {
     let (mut first, mut bytes) = peek(input)?;
+    let mut on_disk = None;
     if first.starts_with(&[0x1f, 0x8b]) {
-        let unpacked = Unpacked { inner: MultiGzDecoder::new(bytes), left: RECORD.largest };
+        let hash = Hash::default();
+        let hashed = Hashed { inner: bytes, hash: hash.clone() };
+        on_disk = Some(hash);
+        let unpacked = Unpacked { inner: MultiGzDecoder::new(hashed), left: RECORD.largest };
         (first, bytes) = peek(Box::new(unpacked))?;
     }
     let refused = |format, cure| Err(Problem::Format { format, cure });
     const AS_CSV: &str = "export it as CSV";
+    const MATLAB_7_3: &str = "an HDF5 file (MATLAB 7.3 writes these)";
+    const AS_LEVEL_5: &str = "save it with the option `-v7`, or export it as CSV";
+    if let Some(kind) = Kind::of(&first) {
+        let mut all = Vec::new();
+        bytes.read_to_end(&mut all).map_err(FileError::from)?;
+        let hash = on_disk.unwrap_or_else(|| Hash::of(&all));
+        return Ok(Content::Table(Text { bytes: kind.text(all)?, on_disk: Some(hash), is_made: true }));
+    }
     match first.as_slice() {
-        [b'P', b'K', 3, 4, ..] => refused("a spreadsheet or an archive (ZIP)", AS_CSV),
         [0xd0, 0xcf, 0x11, 0xe0, ..] => refused("an old spreadsheet (XLS)", AS_CSV),
-        [b'P', b'A', b'R', b'1', ..] => refused("a Parquet file", AS_CSV),
-        [0x89, b'H', b'D', b'F', ..] => refused("an HDF5 file (MATLAB 7.3 writes these)", AS_CSV),
-        start if start.starts_with(b"MATLAB 5.0") => refused("a MATLAB file", AS_CSV),
-        start if start.split(|&byte| byte == b'\n').take(LOOKED_AT.1).any(is_sentence) => Ok(Content::Sentences(bytes)),
-        _ => Ok(Content::Table(bytes)),
+        [b'P', b'A', b'R', b'E', ..] => refused("an encrypted Parquet file", "write it without encryption"),
+        [0x89, b'H', b'D', b'F', ..] => refused(MATLAB_7_3, AS_LEVEL_5),
+        start if start.starts_with(b"MATLAB 7.3") => refused(MATLAB_7_3, AS_LEVEL_5),
+        start => {
+            let mut lines = start.split(|&byte| byte == b'\n').take(LOOKED_AT.1);
+            let has_sentence = lines.any(is_sentence);
+            let text = Text { bytes, on_disk, is_made: false };
+            Ok(if has_sentence { Content::Sentences(text) } else { Content::Table(text) })
+        }
     }
 }
 

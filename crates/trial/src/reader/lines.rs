@@ -7,7 +7,6 @@ use sha2::{Digest, Sha256};
 
 use super::error::Problem;
 use crate::encoding::{Encoding, windows_1252};
-use crate::file::FileError;
 
 /// Longest line that is taken for one of a table, bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
@@ -63,7 +62,7 @@ impl<R: Read> Lines<R> {
     pub fn skip(&mut self) -> Result<bool, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
-        let length = limited.read_until(b'\n', &mut self.bytes).map_err(FileError::from)?;
+        let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::of_input)?;
         if length == 0 {
             return Ok(false);
         }
@@ -115,7 +114,7 @@ impl<R: Read> Lines<R> {
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
-        let length = limited.read_until(b'\n', &mut self.bytes).map_err(FileError::from)?;
+        let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::of_input)?;
         if length == 0 {
             return Ok(None);
         }
@@ -138,7 +137,7 @@ impl<R: Read> Lines<R> {
             let block = match self.input.fill_buf() {
                 Ok(block) => block,
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
-                Err(error) => return Err(FileError::from(error).into()),
+                Err(error) => return Err(Problem::of_input(error)),
             };
             let end = block.iter().position(|&byte| byte == b'\n');
             let length = end.map_or(block.len(), |end| end + 1);
@@ -156,7 +155,8 @@ impl<R: Read> Lines<R> {
     }
 }
 
-fn in_hex(hash: &[u8]) -> String {
+/// The bytes of a hash, hexadecimal.
+pub fn in_hex(hash: &[u8]) -> String {
     hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

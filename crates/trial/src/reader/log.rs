@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::assemble::{check, columns, complete, once, series, straight_rudder};
 use super::error::{Problem, ReadError};
-use super::input::{self, Content};
+use super::input::{self, Content, Text};
 use super::limits::spoken;
 use super::lines::Lines;
 use super::nmea;
@@ -273,9 +273,11 @@ fn of_content(
 ) -> Result<Piece, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let checked = sidecar.is_none_or(|sidecar| sidecar.plausibility);
+    let (Content::Table(text) | Content::Sentences(text)) = &content;
+    let on_disk = text.on_disk.clone();
     let mut piece = match content {
-        Content::Table(input) => table::read(path, input, size, sidecar, whole)?,
-        Content::Sentences(input) => {
+        Content::Table(text) => table::read(path, text, size, sidecar, whole)?,
+        Content::Sentences(Text { bytes: input, .. }) => {
             if let Some(sidecar) = sidecar.filter(|sidecar| !sidecar.columns.is_empty()) {
                 return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
@@ -290,6 +292,9 @@ fn of_content(
             piece
         }
     };
+    if let Some(hash) = on_disk {
+        piece.sha256 = hash.finish();
+    }
     if whole {
         piece.warnings.extend(complete(&mut piece.columns));
         piece.warnings.extend(straight_rudder(&mut piece.columns));

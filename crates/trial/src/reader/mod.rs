@@ -1,4 +1,4 @@
-//! Reading a measured trial: a text table, with a sidecar where its columns need words, becomes a
+//! Reading a measured trial: a table, text or not, with a sidecar where its columns need words, becomes a
 //! [`Trial`](crate::Trial) or one message that says what is wrong, where, and what to do. Nothing is guessed silently:
 //! what the reader had to decide is a warning.
 //!
@@ -11,6 +11,7 @@
 //! other tables: [`crate::sidecar`].
 
 mod assemble;
+mod columnar;
 mod description;
 mod error;
 mod head;

@@ -332,10 +332,12 @@ impl<'a> Rows<'a> {
         if heading.is_nan() {
             return;
         }
-        let mut pair = [self.last_heading.unwrap_or(heading), heading];
-        unwrap_heading(&mut pair);
-        self.row[place] = pair[1];
-        self.last_heading = Some(pair[1]);
+        if let Some(last) = self.last_heading.filter(|last| (heading - last).abs() > std::f64::consts::PI) {
+            let mut pair = [last, heading];
+            unwrap_heading(&mut pair);
+            self.row[place] = pair[1];
+        }
+        self.last_heading = Some(self.row[place]);
     }
 }
 

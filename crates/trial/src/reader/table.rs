@@ -1,16 +1,17 @@
 //! A table from its first line to its columns.
 
-use std::io::Read;
 use std::path::Path;
 
 use super::assemble::on_plane;
 use super::error::ReadError;
 use super::head::{self, Found};
+use super::input::Text;
 use super::layout::Layout;
 use super::lines::Lines;
 use super::log::Piece;
 use super::rows::Rows;
 use super::units;
+use crate::cells::Separator;
 use crate::encoding::Encoding;
 use crate::hygiene;
 use crate::sidecar::Sidecar;
@@ -19,14 +20,17 @@ use crate::words::listed;
 /// Reads a table; `whole` says whether it has to hold a whole record.
 pub(super) fn read(
     path: &Path,
-    input: impl Read,
+    input: Text,
     size: Option<u64>,
     sidecar: Option<&Sidecar>,
     whole: bool,
 ) -> Result<Piece, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
-    let mut lines = Lines::new(input, sidecar.map_or(Encoding::Utf8, |sidecar| sidecar.encoding));
-    let Found { head, rows: pending, passed } = head::find(&mut lines, sidecar).map_err(fault)?;
+    // What was written here has tabs between its cells and is UTF-8, whatever is said of other files.
+    let declared = sidecar.filter(|_| !input.is_made);
+    let separator = if input.is_made { Some(Separator::Tab) } else { declared.and_then(|sidecar| sidecar.separator) };
+    let mut lines = Lines::new(input.bytes, declared.map_or(Encoding::Utf8, |sidecar| sidecar.encoding));
+    let Found { head, rows: pending, passed } = head::find(&mut lines, separator, sidecar).map_err(fault)?;
     let separator = head.separator;
     let layout = Layout::new(head, path, sidecar, whole)?;
     let mut rows = Rows::new(&layout, separator, sidecar);

@@ -15,7 +15,7 @@ use crate::record::Origin;
 use crate::sidecar::{Sidecar, SidecarProblem};
 
 /// Time, heading and rudder (s, deg, deg) of a plausible 10/10 zig-zag, one row a second, headings wrapped to 0..360.
-fn rows() -> Vec<[f64; 3]> {
+pub(super) fn rows() -> Vec<[f64; 3]> {
     let (mut psi, mut r, mut delta) = (350.0_f64, 0.0, 10.0);
     (0..240)
         .map(|t| {
@@ -40,7 +40,7 @@ fn table(header: &str, separator: &str) -> String {
     text
 }
 
-fn simple() -> String {
+pub(super) fn simple() -> String {
     table("t_s,heading_deg,rudder_deg", ",")
 }
 

@@ -1,0 +1,298 @@
+//! MATLAB files of level 5 (`save -v6`, `-v7`) as text: numeric variables of one length are the columns of a table.
+//! Texts, cells, structures, sparse and complex variables are left out, and so is what has more than two dimensions.
+//!
+//! Source of the layout: MathWorks, "MAT-File Format", chapter 1 (level 5 MAT-files).
+
+use std::io::Read;
+
+use flate2::read::ZlibDecoder;
+
+use super::text::{self, Lines, Written};
+use crate::file::FileError;
+use crate::names;
+use crate::reader::error::Problem;
+use crate::reader::{MAX_CELLS, RECORD};
+
+/// Length of the head of a file, bytes.
+const HEAD: usize = 128;
+
+/// Bytes of an unpacked variable up to the end of its flags.
+const UP_TO_FLAGS: usize = 24;
+
+/// Most bytes of all variables when they are unpacked.
+const MOST_UNPACKED: u64 = 8 * MAX_CELLS as u64;
+
+/// Kinds of data elements.
+const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+
+/// How the numbers of a variable are stored.
+#[derive(Debug, Clone, Copy)]
+enum Stored {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+    I64,
+    U64,
+}
+
+impl Stored {
+    fn of(kind: u32) -> Option<Self> {
+        Some(match kind {
+            1 => Self::I8,
+            2 => Self::U8,
+            3 => Self::I16,
+            4 => Self::U16,
+            5 => Self::I32,
+            6 => Self::U32,
+            7 => Self::F32,
+            9 => Self::F64,
+            12 => Self::I64,
+            13 => Self::U64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of a number.
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 | Self::I64 | Self::U64 => 8,
+        }
+    }
+}
+
+/// A numeric variable.
+struct Variable {
+    name: String,
+    rows: usize,
+    columns: usize,
+    stored: Stored,
+    /// The numbers, column by column.
+    bytes: Vec<u8>,
+}
+
+/// What is said of other variables.
+const NO_NUMBERS: &str = "a variable without numbers";
+
+/// Bytes that are read from the front.
+struct Scan<'a> {
+    rest: &'a [u8],
+    big_endian: bool,
+}
+
+impl<'a> Scan<'a> {
+    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.rest.split_at_checked(length)?;
+        self.rest = rest;
+        Some(taken)
+    }
+
+    fn word(&mut self) -> Option<u32> {
+        let bytes = self.take(4)?.try_into().ok()?;
+        Some(if self.big_endian { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) })
+    }
+
+    /// The next data element: its kind and its bytes. What fills it up to eight bytes is passed over.
+    fn element(&mut self) -> Option<(u32, &'a [u8])> {
+        let tag = self.word()?;
+        if tag >> 16 != 0 {
+            // Short elements stand in their own tag.
+            let data = self.take(4)?;
+            return Some((tag & 0xffff, data.get(..(tag >> 16) as usize)?));
+        }
+        let length = self.word()? as usize;
+        let data = self.take(length)?;
+        if tag != COMPRESSED {
+            let filling = (8 - length % 8) % 8;
+            self.rest = self.rest.get(filling..).unwrap_or_default();
+        }
+        Some((tag, data))
+    }
+}
+
+/// What a variable is, found out from the bytes inside its element.
+enum Found {
+    Numbers(Variable),
+    /// Its name and size, or what it is.
+    Other(String),
+}
+
+fn damaged(found: &str) -> Problem {
+    Problem::Damaged { format: "a MATLAB file", found: found.to_owned() }
+}
+
+/// Class of the numbers of a variable, and whether they are complex.
+fn flags(word: u32) -> (u32, bool) {
+    (word & 0xff, word & 0x0800 != 0)
+}
+
+fn is_numeric(class: u32) -> bool {
+    (6..=15).contains(&class)
+}
+
+/// Reads a variable; `None` where the bytes are none.
+fn variable(bytes: &[u8], big_endian: bool) -> Option<Found> {
+    let mut scan = Scan { rest: bytes, big_endian };
+    let (_, own) = scan.element()?;
+    let (class, complex) = flags(Scan { rest: own, big_endian }.word()?);
+    if !is_numeric(class) {
+        return Some(Found::Other(NO_NUMBERS.to_owned()));
+    }
+    let mut sizes = Scan { rest: scan.element()?.1, big_endian };
+    let mut dimensions = Vec::new();
+    while !sizes.rest.is_empty() {
+        dimensions.push(usize::try_from(sizes.word()?).ok()?);
+    }
+    let name = String::from_utf8_lossy(scan.element()?.1).into_owned();
+    let size = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
+    // What MATLAB keeps for objects is a variable of bytes without a name.
+    if name.is_empty() || complex || dimensions.len() != 2 {
+        return Some(Found::Other(format!("{name} ({size})")));
+    }
+    let (kind, data) = scan.element()?;
+    let stored = Stored::of(kind)?;
+    let [rows, columns] = *dimensions.first_chunk()?;
+    (rows.checked_mul(columns)?.checked_mul(stored.size())? == data.len()).then_some(())?;
+    // A row is as good as a column.
+    let (rows, columns) = if rows == 1 { (columns, 1) } else { (rows, columns) };
+    Some(Found::Numbers(Variable { name, rows, columns, stored, bytes: data.to_vec() }))
+}
+
+/// Unpacks a variable, with its tag; one that holds no numbers up to its flags alone.
+fn unpacked(packed: &[u8], big_endian: bool, left: &mut u64) -> Result<Vec<u8>, Problem> {
+    let mut decoder = ZlibDecoder::new(packed);
+    let mut bytes = Vec::new();
+    let mut read = |bytes: &mut Vec<u8>, most: u64| {
+        let from = bytes.len() as u64;
+        let result = (&mut decoder).take(most).read_to_end(bytes);
+        *left = left.saturating_sub(bytes.len() as u64 - from);
+        result.map(|_| *left).map_err(|_| damaged("a variable cannot be unpacked"))
+    };
+    read(&mut bytes, UP_TO_FLAGS as u64)?;
+    let flag_word = bytes.get(16..20).and_then(|word| Scan { rest: word, big_endian }.word());
+    if flag_word.is_some_and(|word| is_numeric(flags(word).0)) {
+        let length = Scan { rest: &bytes[4..], big_endian }.word().unwrap_or(0);
+        let rest = (u64::from(length) + 8).saturating_sub(UP_TO_FLAGS as u64);
+        if read(&mut bytes, rest.min(MOST_UNPACKED))? == 0 {
+            return Err(FileError::TooLarge { kind: RECORD, size: None }.into());
+        }
+    }
+    Ok(bytes)
+}
+
+/// The numeric variables of a file, and the names and sizes of all others.
+fn variables(bytes: &[u8]) -> Result<(Vec<Variable>, Vec<String>), Problem> {
+    let big_endian = match bytes.get(HEAD - 2..HEAD) {
+        Some(b"IM") => false,
+        Some(b"MI") => true,
+        _ => return Err(damaged("its head is incomplete")),
+    };
+    let mut scan = Scan { rest: &bytes[HEAD..], big_endian };
+    let (mut numeric, mut others) = (Vec::new(), Vec::new());
+    let mut left = MOST_UNPACKED;
+    while !scan.rest.is_empty() {
+        let (kind, data) = scan.element().ok_or_else(|| damaged("its last variable is incomplete"))?;
+        let inner = match kind {
+            COMPRESSED => &unpacked(data, big_endian, &mut left)?,
+            _ => data,
+        };
+        let found = match kind {
+            COMPRESSED if inner.len() <= UP_TO_FLAGS => Some(Found::Other(NO_NUMBERS.to_owned())),
+            COMPRESSED => Scan { rest: inner, big_endian }
+                .element()
+                .filter(|(kind, _)| *kind == MATRIX)
+                .and_then(|(_, data)| variable(data, big_endian)),
+            MATRIX => variable(data, big_endian),
+            _ => continue,
+        };
+        match found.ok_or_else(|| damaged("a variable of it contradicts itself"))? {
+            Found::Numbers(variable) => numeric.push(variable),
+            Found::Other(other) => others.push(other),
+        }
+    }
+    Ok((numeric, others))
+}
+
+/// The rows of the variables of one length.
+struct Rows {
+    variables: Vec<Variable>,
+    big_endian: bool,
+    /// Lines written, with that of the names.
+    lines: usize,
+}
+
+/// The text of a file: of the variables of one length with the most known names, or else the most numbers.
+pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+    let (numeric, mut others) = variables(&bytes)?;
+    let worth = |rows: usize| {
+        let of_length = || numeric.iter().filter(|variable| variable.rows == rows);
+        let known = of_length().filter(|variable| names::said(&variable.name).is_some()).count();
+        (known, rows * of_length().map(|variable| variable.columns).sum::<usize>(), rows)
+    };
+    let mut lengths: Vec<usize> = numeric.iter().map(|variable| variable.rows).filter(|&rows| rows > 1).collect();
+    lengths.sort_unstable();
+    lengths.dedup();
+    let Some(length) = lengths.into_iter().max_by_key(|&rows| worth(rows)) else {
+        let sizes = numeric.iter().map(|Variable { name, rows, columns, .. }| format!("{name} ({rows}x{columns})"));
+        others.splice(0..0, sizes);
+        let wanted = "numeric variables of one length";
+        return Err(Problem::NoTable { format: "a MATLAB file", wanted, found: others });
+    };
+    let variables = numeric.into_iter().filter(|variable| variable.rows == length).collect();
+    let big_endian = bytes.get(HEAD - 2) == Some(&b'M');
+    Ok(Box::new(Written::new(Rows { variables, big_endian, lines: 0 })))
+}
+
+impl Lines for Rows {
+    fn write_line(&mut self, text: &mut String) -> Result<bool, Problem> {
+        if self.variables.first().is_none_or(|first| self.lines > first.rows) {
+            return Ok(false);
+        }
+        for (first, variable) in self.variables.iter().enumerate() {
+            for column in 0..variable.columns {
+                if first + column > 0 {
+                    text.push('\t');
+                }
+                match self.lines {
+                    0 if variable.columns == 1 => text::words(text, &variable.name),
+                    0 => text::words(text, &format!("{}_{}", variable.name, column + 1)),
+                    line => variable.write(text, column * variable.rows + line - 1, self.big_endian),
+                }
+            }
+        }
+        text.push('\n');
+        self.lines += 1;
+        Ok(true)
+    }
+}
+
+impl Variable {
+    /// Writes a number by its place.
+    fn write(&self, text: &mut String, place: usize, big_endian: bool) {
+        let size = self.stored.size();
+        let mut bytes = [0; 8];
+        let Some(own) = self.bytes.get(place * size..(place + 1) * size) else { return };
+        bytes[..size].copy_from_slice(own);
+        if big_endian {
+            bytes[..size].reverse();
+        }
+        let all = u64::from_le_bytes(bytes);
+        match self.stored {
+            Stored::I8 => text::whole(text, all as i8),
+            Stored::I16 => text::whole(text, all as i16),
+            Stored::I32 => text::whole(text, all as i32),
+            Stored::I64 => text::whole(text, all as i64),
+            Stored::U8 | Stored::U16 | Stored::U32 | Stored::U64 => text::whole(text, all),
+            Stored::F32 => text::single(text, f32::from_bits(all as u32)),
+            Stored::F64 => text::number(text, f64::from_bits(all)),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Files that are tables and no text: Parquet, MATLAB variables, and spreadsheets with the feature `spreadsheets`.
+//!
+//! Each becomes the text of a table, a line at a time, and goes the way of every other table from there: names, units,
+//! stamps and sidecars are no matter of this module, and nothing is chosen or left out here but what no table can
+//! hold (columns inside columns, variables of other lengths).
+
+mod decoding;
+mod matlab;
+mod parquet;
+#[cfg(feature = "spreadsheets")]
+mod spreadsheet;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use std::io::Read;
+
+use super::error::Problem;
+
+/// A kind of such a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Parquet,
+    Spreadsheet,
+    Matlab,
+}
+
+impl Kind {
+    /// The kind of a file by its first bytes; `None` for every other file.
+    pub fn of(start: &[u8]) -> Option<Self> {
+        match start {
+            [b'P', b'A', b'R', b'1', ..] => Some(Self::Parquet),
+            [b'P', b'K', 3, 4, ..] => Some(Self::Spreadsheet),
+            start if start.starts_with(b"MATLAB 5.0") => Some(Self::Matlab),
+            _ => None,
+        }
+    }
+
+    /// The text of the table that a file of this kind holds: names in the first line, a tab between two cells.
+    ///
+    /// Fails when the file is damaged, packed in a way that is not read, or holds no table.
+    pub fn text(self, bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
+        match self {
+            Self::Parquet => parquet::text(bytes),
+            #[cfg(feature = "spreadsheets")]
+            Self::Spreadsheet => spreadsheet::text(bytes),
+            #[cfg(not(feature = "spreadsheets"))]
+            Self::Spreadsheet => Err(Problem::Format {
+                format: "a spreadsheet or an archive (ZIP)",
+                cure: "export it as CSV, or use a build with the feature `spreadsheets`",
+            }),
+            Self::Matlab => matlab::text(bytes),
+        }
+    }
+}

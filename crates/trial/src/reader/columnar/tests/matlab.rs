@@ -1,0 +1,126 @@
+//! MATLAB files, written here byte by byte.
+
+use super::*;
+
+/// A data element, filled up to eight bytes.
+fn element(kind: u32, data: &[u8], big: bool) -> Vec<u8> {
+    let word = |value: u32| if big { value.to_be_bytes() } else { value.to_le_bytes() };
+    let mut bytes = [word(kind), word(data.len() as u32)].concat();
+    bytes.extend(data);
+    bytes.resize(bytes.len().next_multiple_of(8), 0);
+    bytes
+}
+
+/// A variable of a class: its size, and its numbers as they are stored.
+fn variable(name: &str, size: [u32; 2], class: u32, stored: u32, numbers: &[u8], big: bool) -> Vec<u8> {
+    let words = |values: [u32; 2]| values.map(|value| if big { value.to_be_bytes() } else { value.to_le_bytes() });
+    let parts = [
+        element(6, &words([class, 0]).concat(), big),
+        element(5, &words(size).concat(), big),
+        element(1, name.as_bytes(), big),
+        element(stored, numbers, big),
+    ];
+    element(14, &parts.concat(), big)
+}
+
+fn doubles(name: &str, size: [u32; 2], values: &[f64], big: bool) -> Vec<u8> {
+    let bytes: Vec<u8> =
+        values.iter().flat_map(|value| if big { value.to_be_bytes() } else { value.to_le_bytes() }).collect();
+    variable(name, size, 6, 9, &bytes, big)
+}
+
+fn head(big: bool) -> Vec<u8> {
+    let mut head = b"MATLAB 5.0 MAT-file, Platform: GLNXA64, Created on: Fri Nov 20 14:03:05 2026".to_vec();
+    head.resize(124, b' ');
+    head.extend(if big { *b"\x01\x00MI" } else { *b"\x00\x01IM" });
+    head
+}
+
+/// A variable as `save -v7` packs it.
+fn compressed(variable: &[u8]) -> Vec<u8> {
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    packed.write_all(variable).expect("memory takes all");
+    let packed = packed.finish().expect("memory takes all");
+    let mut bytes = [15_u32.to_le_bytes(), (packed.len() as u32).to_le_bytes()].concat();
+    bytes.extend(packed);
+    bytes
+}
+
+fn plain(rows: usize, big: bool) -> Vec<Vec<u8>> {
+    let [time, heading, rudder] = columns().map(|values| values[..rows].to_vec());
+    let n = rows as u32;
+    let heading = doubles("heading_deg", [1, n], &heading, big);
+    vec![doubles("t_s", [n, 1], &time, big), heading, doubles("rudder_deg", [n, 1], &rudder, big)]
+}
+
+#[test]
+fn vectors_are_columns_in_either_order_of_bytes_and_packed() {
+    for big in [false, true] {
+        assert_plain(&[head(big), plain(240, big).concat()].concat());
+    }
+    let packed: Vec<u8> = plain(240, false).iter().flat_map(|variable| compressed(variable)).collect();
+    assert_plain(&[head(false), packed].concat());
+}
+
+#[test]
+fn other_variables_are_left_out() {
+    let text = variable("ship", [1, 4], 4, 16, b"Esso", false);
+    let mut variables = vec![
+        doubles("mass", [1, 1], &[5.0], false),
+        text.clone(),
+        compressed(&text),
+        doubles("table", [300, 2], &[1.0; 600], false),
+        variable("", [1, 4], 9, 2, b"keep", false),
+    ];
+    variables.extend(plain(240, false));
+    assert_plain(&[head(false), variables.concat()].concat());
+    let nothing = [head(false), variables[..3].concat(), doubles("cube", [1, 1], &[2.0], false)].concat();
+    assert_told(parse(&nothing), &["a MATLAB file without a table", "mass (1x1)", "cube (1x1)"]);
+}
+
+#[test]
+fn matrices_and_numbers_of_every_kind_are_columns() {
+    // Short names and few numbers stand in the tag of their element.
+    let short = |kind: u32, data: &[u8]| {
+        let mut bytes = (((data.len() as u32) << 16) | kind).to_le_bytes().to_vec();
+        bytes.extend(data);
+        bytes.resize(8, 0);
+        bytes
+    };
+    let size = [2_u32.to_le_bytes(), 1_u32.to_le_bytes()].concat();
+    let flags = [6_u32.to_le_bytes(), [0; 4]].concat();
+    let parts = [element(6, &flags, false), element(5, &size, false), short(1, b"b"), short(2, &[3, 255])].concat();
+    let singles = [0.1_f32, f32::NAN].map(f32::to_le_bytes).concat();
+    let file = [
+        head(false),
+        doubles("a", [2, 3], &[1.5, f64::NAN, 3.0, 4.0, 5.0, 6.0], false),
+        element(14, &parts, false),
+        variable("c", [2, 1], 8, 1, &[0xff, 1], false),
+        variable("d", [1, 2], 7, 7, &singles, false),
+    ]
+    .concat();
+    let mut text = String::new();
+    crate::reader::columnar::Kind::Matlab.text(file).expect("a table").read_to_string(&mut text).expect("UTF-8");
+    assert_eq!(text, "a_1\ta_2\ta_3\tb\tc\td\n1.5\t3.0\t5.0\t3\t-1\t0.1\n\t4.0\t6.0\t255\t1\t\n");
+}
+
+#[test]
+fn damaged_files_are_told() {
+    let plain = plain(30, false);
+    let packed: Vec<u8> = plain.iter().flat_map(|variable| compressed(variable)).collect();
+    for file in [[head(false), plain.concat()].concat(), [head(false), packed].concat()] {
+        let mut bytes = file.clone();
+        for place in 0..file.len() {
+            for change in [0xff, 1 << (place % 8)] {
+                bytes[place] ^= change;
+                let _ = parse(&bytes);
+                bytes[place] = file[place];
+            }
+        }
+        for end in (10..file.len()).step_by(7) {
+            let _ = parse(&file[..end]).expect_err("it is cut short");
+        }
+        assert_told(parse(&file[..file.len() - 9]), &["a MATLAB file", "damaged"]);
+        assert_told(parse(&file[..100]), &["a MATLAB file", "head is incomplete"]);
+    }
+}

@@ -1,0 +1,123 @@
+//! Files that are no text give the record that their table gives as CSV, and damaged ones a message.
+
+mod matlab;
+mod parquet;
+#[cfg(feature = "spreadsheets")]
+mod spreadsheet;
+
+use std::io::{Read, Write};
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use crate::reader::lines::in_hex;
+use crate::reader::tests::{rows, simple};
+use crate::reader::{ReadError, Reading, read, read_bytes};
+use crate::record::Origin;
+use crate::sidecar::Sidecar;
+
+fn parse(bytes: &[u8]) -> Result<Reading, ReadError> {
+    read_bytes(Path::new("run"), bytes, None, None)
+}
+
+fn parse_with(bytes: &[u8], sidecar: &str) -> Result<Reading, ReadError> {
+    let sidecar = Sidecar::parse(sidecar, Path::new("run.trial.toml")).expect("the sidecar is right");
+    read_bytes(Path::new("run"), bytes, None, Some(&sidecar))
+}
+
+/// Time, heading and rudder of the rows of the plainest table.
+fn columns() -> [Vec<f64>; 3] {
+    [0, 1, 2].map(|place| rows().iter().map(|row| row[place]).collect())
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// Sees that two readings hold the same record.
+fn assert_same(one: &Reading, other: &Reading) {
+    let (one, other) = (&one.trial, &other.trial);
+    assert_eq!(bits(one.time()), bits(other.time()));
+    assert_eq!(bits(one.heading()), bits(other.heading()));
+    assert_eq!(bits(one.rudder()), bits(other.rudder()));
+}
+
+/// Sees that a file holds the plainest record and has the hash of its bytes.
+fn assert_plain(bytes: &[u8]) -> Reading {
+    let reading = parse(bytes).unwrap_or_else(|error| panic!("{error}"));
+    assert_same(&reading, &parse(simple().as_bytes()).expect("a plain table"));
+    assert_eq!(hash(&reading), in_hex(&Sha256::digest(bytes)));
+    reading
+}
+
+fn hash(reading: &Reading) -> &str {
+    let Origin::Measured { sha256, .. } = reading.trial.origin() else { panic!("it was read from a file") };
+    sha256
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    packed.write_all(bytes).expect("memory takes all");
+    packed.finish().expect("memory takes all")
+}
+
+/// Sees that a message has these parts.
+fn assert_told(result: Result<Reading, ReadError>, parts: &[&str]) {
+    let message = result.expect_err("the file is wrong").to_string();
+    for part in parts {
+        assert!(message.contains(part), "`{part}` is not in: {message}");
+    }
+}
+
+/// Cuts a file short and changes its bytes one by one: what is read then is a record or a message about `format`.
+fn assert_sound(file: &[u8], format: &str) {
+    for end in (16..file.len()).step_by(7) {
+        assert_told(parse(&file[..end]), &[format]);
+    }
+    let mut bytes = file.to_vec();
+    for place in 0..file.len() {
+        for change in [0xff, 1 << (place % 8)] {
+            bytes[place] ^= change;
+            let _ = parse(&bytes);
+            bytes[place] = file[place];
+        }
+    }
+}
+
+#[test]
+fn the_hash_is_that_of_the_bytes_on_the_disk() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [time, heading, rudder] = columns();
+    for text in [simple().into_bytes(), parquet::plain(&time, &heading, &rudder)] {
+        for bytes in [text.clone(), packed(&text)] {
+            assert_plain(&bytes);
+            let path = folder.path().join("run.gz");
+            std::fs::write(&path, &bytes).expect("written");
+            assert_eq!(hash(&read(&path).expect("a record")), in_hex(&Sha256::digest(&bytes)));
+        }
+    }
+}
+
+#[test]
+fn what_is_not_read_is_named_with_a_cure() {
+    assert_told(parse(b"MATLAB 7.3 MAT-file, Platform: GLNXA64"), &["HDF5", "-v7"]);
+    assert_told(parse(b"PARE and more"), &["encrypted"]);
+    #[cfg(not(feature = "spreadsheets"))]
+    assert_told(parse(b"PK\x03\x04 and more"), &["export it as CSV", "feature `spreadsheets`"]);
+}
+
+#[test]
+fn a_long_text_is_written_as_it_is_read() {
+    struct Endless(u64);
+    impl super::text::Lines for Endless {
+        fn write_line(&mut self, text: &mut String) -> Result<bool, crate::reader::Problem> {
+            self.0 += 1;
+            text.push_str("1\t2\t3\n");
+            Ok(true)
+        }
+    }
+    let mut written = super::text::Written::new(Endless(0));
+    let mut first = [0; 10];
+    written.read_exact(&mut first).expect("there is no end of it");
+    assert_eq!(&first, b"1\t2\t3\n1\t2\t");
+}

@@ -1,0 +1,161 @@
+//! Values written as the cells of a text, and the text given out as it is written.
+
+use std::fmt::Write as _;
+use std::io::{self, Read};
+
+use super::super::error::Problem;
+use crate::clock;
+
+/// Bytes that are written ahead.
+const AHEAD: usize = 1 << 16;
+
+/// Where the lines of a table come from.
+pub trait Lines {
+    /// Writes the next line, with its end; `false` where there is no more.
+    fn write_line(&mut self, text: &mut String) -> Result<bool, Problem>;
+}
+
+/// The text of lines, written as it is read.
+pub struct Written<L> {
+    lines: L,
+    text: String,
+    given: usize,
+    ended: bool,
+}
+
+impl<L: Lines> Written<L> {
+    pub fn new(lines: L) -> Self {
+        Self { lines, text: String::new(), given: 0, ended: false }
+    }
+}
+
+impl<L: Lines> Read for Written<L> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.given == self.text.len() && !self.ended {
+            self.text.clear();
+            self.given = 0;
+            while self.text.len() < AHEAD && !self.ended {
+                self.ended = !self.lines.write_line(&mut self.text).map_err(io::Error::other)?;
+            }
+        }
+        let count = buffer.len().min(self.text.len() - self.given);
+        buffer[..count].copy_from_slice(&self.text.as_bytes()[self.given..self.given + count]);
+        self.given += count;
+        Ok(count)
+    }
+}
+
+/// Puts what is written for one value at the end of a text.
+fn put(text: &mut String, written: std::fmt::Arguments) {
+    text.write_fmt(written).expect("a string takes all text");
+}
+
+/// A number with as few digits as tell it from every other; nothing for NaN.
+pub fn number(text: &mut String, value: f64) {
+    if !value.is_nan() {
+        put(text, format_args!("{value:?}"));
+    }
+}
+
+/// A number of single precision with as few digits as tell it from its neighbours.
+pub fn single(text: &mut String, value: f32) {
+    if !value.is_nan() {
+        put(text, format_args!("{value:?}"));
+    }
+}
+
+/// A whole number.
+pub fn whole(text: &mut String, value: impl Into<i128>) {
+    put(text, format_args!("{}", value.into()));
+}
+
+/// A whole number of units of the decimal place `decimals`.
+pub fn decimal(text: &mut String, value: i128, decimals: u32) {
+    let sign = if value < 0 { "-" } else { "" };
+    let digits = value.unsigned_abs();
+    match 10_u128.checked_pow(decimals) {
+        Some(one) if decimals > 0 => {
+            let (whole, part) = (digits / one, digits % one);
+            put(text, format_args!("{sign}{whole}.{part:0width$}", width = decimals as usize));
+        }
+        _ => put(text, format_args!("{sign}{digits}e-{decimals}")),
+    }
+}
+
+/// A day since 1970-01-01.
+pub fn day(text: &mut String, day: i64) {
+    // Damaged days may lie beyond all calendars; their years have too many digits either way.
+    let (year, month, of_month) = clock::date(day.clamp(-1_000_000_000, 1_000_000_000));
+    put(text, format_args!("{year:04}-{month:02}-{of_month:02}"));
+}
+
+/// Nanoseconds since midnight, as a time of day.
+pub fn time_of_day(text: &mut String, nanoseconds: i64) {
+    let (seconds, part) = (nanoseconds.div_euclid(1_000_000_000), nanoseconds.rem_euclid(1_000_000_000));
+    put(text, format_args!("{:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60));
+    if part > 0 {
+        put(text, format_args!(".{part:09}"));
+        text.truncate(text.trim_end_matches('0').len());
+    }
+}
+
+/// Date and time of an instant `part` nanoseconds after `seconds` since 1970-01-01.
+pub fn stamp(text: &mut String, seconds: i64, part: i64, utc: bool) {
+    day(text, seconds.div_euclid(86_400));
+    text.push('T');
+    time_of_day(text, seconds.rem_euclid(86_400) * 1_000_000_000 + part);
+    if utc {
+        text.push('Z');
+    }
+}
+
+/// A text as one cell: control characters become blanks, and a text with a quote or the sign of a comment in it
+/// stands in quotes.
+pub fn words(text: &mut String, words: &str) {
+    let quoted = words.contains(['"', '#']);
+    if quoted {
+        text.push('"');
+    }
+    for c in words.chars() {
+        match c {
+            '"' => text.push_str("\"\""),
+            c if c.is_control() => text.push(' '),
+            c => text.push(c),
+        }
+    }
+    if quoted {
+        text.push('"');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(write: impl Fn(&mut String)) -> String {
+        let mut text = String::new();
+        write(&mut text);
+        text
+    }
+
+    #[test]
+    fn values_are_written_as_a_table_has_them() {
+        for value in [0.1 + 0.2, 1e300, -5e-324, 16_777_217.0, f64::MAX] {
+            assert_eq!(written(|text| number(text, value)).parse::<f64>().ok(), Some(value));
+        }
+        assert_eq!(written(|text| single(text, 0.1)), "0.1");
+        assert_eq!(written(|text| number(text, f64::NAN)), "");
+        assert_eq!(written(|text| whole(text, u64::MAX)), "18446744073709551615");
+        assert_eq!(written(|text| decimal(text, -12_345, 2)), "-123.45");
+        assert_eq!(written(|text| decimal(text, -5, 3)), "-0.005");
+        assert_eq!(written(|text| decimal(text, 7, 60)), "7e-60");
+        assert_eq!(written(|text| day(text, 20_777)), "2026-11-20");
+        let at = 20_777 * 86_400 + 14 * 3600 + 3 * 60 + 5;
+        assert_eq!(written(|text| stamp(text, at, 200_000_000, false)), "2026-11-20T14:03:05.2");
+        assert_eq!(written(|text| stamp(text, at, 0, true)), "2026-11-20T14:03:05Z");
+        assert_eq!(written(|text| stamp(text, -1, 1, false)), "1969-12-31T23:59:59.000000001");
+        assert_eq!(written(|text| stamp(text, 0, 0, false)), "1970-01-01T00:00:00");
+        assert_eq!(written(|text| words(text, "a\tb\r\nc")), "a b  c");
+        assert_eq!(written(|text| words(text, "# \"x\"")), "\"# \"\"x\"\"\"");
+    }
+}
