@@ -1,6 +1,8 @@
 //! What is mended in the columns of a table before they are a record: rudder angles that no rudder has, channels that
-//! repeat an old value until the next one comes, and a heading that stood still while the ship turned. Each is located
-//! and told; nothing is mended where a sound record could look the same.
+//! repeat an old value until the next one comes, a heading that stood still while the ship turned, and single readings
+//! that are wrong. Each is located and told; nothing is mended where a sound record could look the same.
+
+mod readings;
 
 use crate::channel::Channel;
 use crate::record::Columns;
@@ -63,6 +65,8 @@ pub(crate) fn mend(columns: &mut Columns) -> Vec<String> {
         done.extend(drop_repeats(columns, channel));
     }
     done.extend(drop_frozen(columns));
+    done.extend(readings::drop_spikes(columns));
+    done.extend(readings::drop_clipped(columns));
     done
 }
 
@@ -265,7 +269,7 @@ mod tests {
     use super::*;
 
     /// A zig-zag by hand: the rudder goes to 10° and back at 2.5°/s, the heading swings; 10 Hz, 300 s.
-    fn columns() -> Columns {
+    pub(super) fn columns() -> Columns {
         let time: Vec<f64> = (0..3000).map(|row| 0.1 * f64::from(row)).collect();
         let rudder = |t: f64| (25.0 * (t / 9.7).sin()).clamp(-10.0, 10.0).to_radians();
         let heading = |t: f64| (15.0 * ((t - 20.0) / 9.7).sin()).to_radians();
@@ -276,7 +280,7 @@ mod tests {
         Columns { time, channels: channels.into(), unknown: Vec::new() }
     }
 
-    fn with(channel: Channel, change: impl Fn(usize, &[f64]) -> f64) -> Columns {
+    pub(super) fn with(channel: Channel, change: impl Fn(usize, &[f64]) -> f64) -> Columns {
         let mut columns = columns();
         let values = columns.channels[&channel].clone();
         let changed = (0..values.len()).map(|row| change(row, &values)).collect();

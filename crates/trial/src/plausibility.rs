@@ -10,6 +10,7 @@ mod regression;
 use ship::angle::to_deg;
 use thiserror::Error;
 
+use crate::channel::Channel;
 use crate::record::Trial;
 use regression::{Slope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading};
 
@@ -144,6 +145,9 @@ const MOVED_DEG: f64 = 4.0;
 /// more.
 const ANSWERED_DEG: f64 = 1.0;
 
+/// No rudder of a ship or a model moves as fast, deg/s.
+const FASTEST_RUDDER_DEG_S: f64 = 100.0;
+
 /// More reversals than any manoeuvre has: a dither, a pseudo-random sequence or an autopilot in waves.
 const REVERSALS_OF_A_DITHER: usize = 24;
 
@@ -170,6 +174,7 @@ pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     let response = if turns { turn_with_rudder(trial) } else { rudder_on_heading(trial) };
     yaw_rate(trial, response, &mut warnings)?;
     rudder_sign(trial, response, &mut warnings)?;
+    rudder_speed(trial, &mut warnings);
     gaps(trial, &mut warnings);
     Ok(warnings)
 }
@@ -322,6 +327,22 @@ fn rudder_sign(trial: &Trial, response: Option<Slope>, warnings: &mut Vec<String
         }
     }
     Ok(())
+}
+
+/// Does the rudder move as a steering gear does?
+fn rudder_speed(trial: &Trial, warnings: &mut Vec<String>) {
+    let (time, rudder) = (trial.time(), trial.rudder());
+    let steps = (1..trial.len()).map(|row| (rudder[row] - rudder[row - 1], time[row] - time[row - 1]));
+    let instant = steps.filter(|(way, step)| {
+        let way_deg = to_deg(way.abs());
+        way_deg > MOVED_DEG && way_deg > FASTEST_RUDDER_DEG_S * step
+    });
+    if instant.count() >= 2 && trial.channel(Channel::RudderOrder).is_none() {
+        warnings.push(String::from(
+            "the rudder moves faster than any steering gear: it looks like the order in place of the angle, and then the lag of \
+             the gear is in the response",
+        ));
+    }
 }
 
 /// Names gaps in time that are long against the sampling.

@@ -25,9 +25,9 @@ const SHOWN: usize = 1000;
 pub fn describe(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let (content, _) = input::open(path).map_err(fault)?;
-    let Content::Table(bytes) = content else { return Err(fault(Problem::NeedsNoSidecar)) };
-    let mut lines = Lines::new(bytes, Encoding::Utf8);
-    let found = head::find(&mut lines, None);
+    let Content::Table(table) = content else { return Err(fault(Problem::NeedsNoSidecar)) };
+    let mut lines = Lines::new(table.bytes, Encoding::Utf8);
+    let found = head::find(&mut lines, table.is_made.then_some(Separator::Tab), None);
     let Found { head, rows, .. } = match found {
         // A table of numbers alone is described by the places of its columns.
         Err(Problem::NoHeader { .. }) => return headless(path),
@@ -99,8 +99,8 @@ pub fn describe(path: &Path) -> Result<String, ReadError> {
 fn headless(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
     let (content, _) = input::open(path).map_err(fault)?;
-    let Content::Table(bytes) = content else { return Err(fault(Problem::NeedsNoSidecar)) };
-    let mut lines = Lines::new(bytes, Encoding::Utf8);
+    let Content::Table(table) = content else { return Err(fault(Problem::NeedsNoSidecar)) };
+    let mut lines = Lines::new(table.bytes, Encoding::Utf8);
     let mut texts: Vec<String> = Vec::new();
     while texts.len() < SHOWN {
         match lines.next_line().map_err(fault)? {
@@ -180,7 +180,7 @@ mod tests {
         let sidecar = Sidecar::parse(&text, Path::new("log.trial.toml")).expect(&text);
         assert_eq!(sidecar.columns.len(), 4, "{text}");
         assert!(text.contains("is = \"rudder_deg\"") && text.contains("GUESS"), "{text}");
-        assert!(text.contains("Column 2 goes from 350 to 350.39"), "{text}");
+        assert!(text.contains("Column 2 goes from 350 to 350.9"), "{text}");
         std::fs::write(&path, rows).expect("written");
         let text = describe(&path).expect("a table");
         let sidecar = Sidecar::parse(&text, Path::new("log.trial.toml")).expect(&text);

@@ -1,0 +1,175 @@
+//! Single readings that are wrong: spikes and jumps of a heading, a yaw rate at the end of its scale. A spike is left
+//! out; a jump is told and left, for nobody can say which side of it is right.
+
+use super::at;
+use crate::channel::Channel;
+use crate::record::Columns;
+
+/// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
+const LEAST: f64 = 0.035;
+
+/// Height of a spike, or of a jump, in usual deviations from a straight line between neighbours.
+const CLEAR: f64 = 12.0;
+
+/// A spike is as many times higher than its neighbours are apart.
+const ALONE: f64 = 4.0;
+
+/// Largest share of the readings that may be spikes: more are the noise of the sensor.
+const FEW: f64 = 0.02;
+
+/// Fewest rows at the end of the scale of a yaw rate.
+const CLIPPED: usize = 5;
+
+/// Rate of the heading over the largest reading of its rate that shows the end of a scale.
+const BEYOND: f64 = 1.15;
+
+/// The readings of a channel: row by row, those that are there.
+fn readings(values: &[f64]) -> impl Iterator<Item = usize> {
+    (0..values.len()).filter(|&row| values[row].is_finite())
+}
+
+/// Distance of every inner reading from the straight line between its neighbours, with its rows.
+fn deviations<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = ([usize; 3], f64)> + 'a {
+    let (mut one, mut two) = (None, None);
+    readings(values).filter_map(move |row| {
+        let rows = one.zip(two).map(|(one, two): (usize, usize)| [one, two, row]);
+        (one, two) = (two, Some(row));
+        let [before, at, after] = rows?;
+        let share = (time[at] - time[before]) / (time[after] - time[before]);
+        let line = values[before] + share * (values[after] - values[before]);
+        Some(([before, at, after], values[at] - line))
+    })
+}
+
+/// The usual size of a deviation, from a hundred thousand of them at most; `None` for a channel that is hardly read.
+fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
+    const ENOUGH: usize = 100_000;
+    let every = values.len() / ENOUGH + 1;
+    let mut sizes: Vec<f64> = deviations(time, values).step_by(every).map(|(_, deviation)| deviation.abs()).collect();
+    let middle = sizes.len() / 2;
+    (sizes.len() > 2 * CLIPPED).then(|| 1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Takes single headings far from both neighbours as missing, and tells of jumps.
+pub(super) fn drop_spikes(columns: &mut Columns) -> Vec<String> {
+    let time = &columns.time;
+    let Some(heading) = columns.channels.get_mut(&Channel::Heading) else { return Vec::new() };
+    let Some(usual) = usual(time, heading) else { return Vec::new() };
+    let least = LEAST.max(CLEAR * usual);
+    let mut spikes = Vec::new();
+    for ([before, row, after], deviation) in deviations(time, heading) {
+        let apart = (heading[after] - heading[before]).abs();
+        if deviation.abs() > least.max(ALONE * apart) {
+            spikes.push((row, deviation));
+        }
+    }
+    let mut told = Vec::new();
+    if !spikes.is_empty() && spikes.len() as f64 <= FEW * heading.len() as f64 {
+        let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
+        let times: Vec<f64> = spikes.iter().map(|&(row, _)| time[row]).collect();
+        spikes.iter().for_each(|&(row, _)| heading[row] = f64::NAN);
+        told.push(format!(
+            "{} {} far from both neighbours (by up to {:.1}°) taken as missing, {}",
+            spikes.len(),
+            if spikes.len() == 1 { "heading" } else { "headings" },
+            largest.to_degrees(),
+            at(&times)
+        ));
+    }
+    told.extend(jumps(time, heading, least));
+    told
+}
+
+/// Tells of steps between two headings that no ship makes: far more than the steps before and after.
+fn jumps(time: &[f64], heading: &[f64], least: f64) -> Option<String> {
+    let mut found = Vec::new();
+    let mut last: [Option<usize>; 3] = [None; 3];
+    for row in readings(heading) {
+        if let [Some(first), Some(second), Some(third)] = last {
+            let rate = |from: usize, to: usize| ((heading[to] - heading[from]) / (time[to] - time[from])).abs();
+            let step = (heading[third] - heading[second]).abs();
+            let around = rate(first, second).max(rate(third, row));
+            // Over a gap a ship may turn far.
+            if step > least && step > ALONE * around * (time[third] - time[second]) {
+                found.push((time[third], step));
+            }
+        }
+        last = [last[1], last[2], Some(row)];
+    }
+    if found.is_empty() || found.len() as f64 > FEW * heading.len() as f64 {
+        return None;
+    }
+    let largest = found.iter().map(|(_, step)| *step).fold(0.0, f64::max);
+    let times: Vec<f64> = found.iter().map(|(time, _)| *time).collect();
+    Some(format!(
+        "the heading jumps (by up to {:.1}°) as no ship turns, {}; it is left as it is, for nobody can say which side is right",
+        largest.to_degrees(),
+        at(&times)
+    ))
+}
+
+/// Takes a yaw rate as missing where it stays at the end of its scale while the heading turns faster.
+pub(super) fn drop_clipped(columns: &mut Columns) -> Option<String> {
+    let time = &columns.time;
+    let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
+    let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));
+    let at_end: Vec<usize> = readings(rate).filter(|&row| rate[row].abs() == end).collect();
+    if end == 0.0 || at_end.len() < CLIPPED {
+        return None;
+    }
+    // The heading over every run of rows at the end of the scale.
+    let (mut turned, mut expected, mut rows) = (0.0, 0.0, 0);
+    for run in at_end.chunk_by(|one, next| next - one == 1 && rate[*one] == rate[*next]) {
+        let (first, last) = (run[0], run[run.len() - 1]);
+        let change = (heading[last] - heading[first]).abs();
+        if run.len() >= CLIPPED && change.is_finite() {
+            turned += change;
+            expected += end * (time[last] - time[first]);
+            rows += run.len();
+        }
+    }
+    if rows == 0 || turned < BEYOND * expected {
+        return None;
+    }
+    let rate = columns.channels.get_mut(&Channel::YawRate)?;
+    at_end.iter().for_each(|&row| rate[row] = f64::NAN);
+    Some(format!(
+        "the yaw rate ends at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as missing",
+        end.to_degrees(),
+        at_end.len()
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mend;
+    use super::super::tests::{columns, with};
+    use super::*;
+
+    #[test]
+    fn a_spike_is_left_out_and_a_jump_is_told() {
+        let spike = |row: usize, values: &[f64]| values[row] + if row == 900 { 0.1 } else { 0.0 };
+        let mut spiked = with(Channel::Heading, spike);
+        let [told] = mend(&mut spiked).try_into().expect("one sentence");
+        assert!(told.starts_with("1 heading far from both neighbours (by up to 5.7°)") && told.ends_with("t = 90 s"), "{told}");
+        assert!(spiked.channels[&Channel::Heading][900].is_nan());
+        let jump = |row: usize, values: &[f64]| values[row] + if (900..950).contains(&row) { 0.1 } else { 0.0 };
+        let mut jumped = with(Channel::Heading, jump);
+        let [told] = mend(&mut jumped).try_into().expect("one sentence");
+        assert!(told.contains("jumps (by up to 5.8°)") && told.contains("t = 90, 95 s"), "{told}");
+    }
+
+    #[test]
+    fn a_rate_at_the_end_of_its_scale_is_missing() {
+        let mut clipped = columns();
+        let heading = clipped.channels[&Channel::Heading].clone();
+        let rate = |row: usize| (heading[(row + 1).min(2999)] - heading[row.saturating_sub(1)]) / 0.2;
+        let largest = 0.7 * (0..3000).map(rate).fold(0.0, f64::max);
+        clipped.channels.insert(Channel::YawRate, (0..3000).map(|row| rate(row).clamp(-largest, largest)).collect());
+        let [told] = mend(&mut clipped).try_into().expect("one sentence");
+        assert!(told.contains("end of its scale"), "{told}");
+        let mut sound = columns();
+        sound.channels.insert(Channel::YawRate, (0..3000).map(rate).collect());
+        assert_eq!(mend(&mut sound), [] as [String; 0]);
+    }
+}
