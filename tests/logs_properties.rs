@@ -222,6 +222,9 @@ fn notation() -> impl Strategy<Value = Notation> {
     (clock(), names, place(), look, order).prop_map(
         |((clock, time_unit), (time, heading, mut rudder), place, look, order)| {
             let (separator, [comma, quoted, more, mark], line_end) = look;
+            // A comma in a name between blanks: nobody can tell which of the two separates.
+            let place =
+                if separator == ' ' && place == Place::Name([", ", ""]) { Place::Name([" [", "]"]) } else { place };
             // Radians and degrees without a word would be told apart by their values: both alike is what loggers do.
             if place == Place::Open {
                 rudder.unit = heading.unit;

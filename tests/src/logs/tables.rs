@@ -103,7 +103,7 @@ fn of_programs() -> Vec<File> {
                 let [heading, rudder] = angles(tenth).map(|angle| with_comma(&angle));
                 format!("20.11.2026 {};{heading};{rudder}", time_of_day(tenth, false))
             }),
-            Read(&["columns understood by their names: Datum Zeit, Steuerkurs", "decimal comma"]),
+            Read(&["columns understood by their names: `Steuerkurs`, `Ruderlage`, `Datum Zeit`", "decimal comma"]),
         ),
         File::new(
             "iso.csv",

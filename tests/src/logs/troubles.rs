@@ -84,8 +84,8 @@ fn of_instruments() -> Vec<File> {
 
 fn of_clocks() -> Vec<File> {
     // Where the rudder rests: nobody knows what it did in a gap.
-    let rest = voyage().execute(1) / TENTHS + 6;
-    let other = voyage().execute(3) / TENTHS + 6;
+    let rest = voyage().execute(1) / TENTHS + 10;
+    let other = voyage().execute(3) / TENTHS + 10;
     let midnight = |tenth: usize| {
         let second = (86_400 - 200 + tenth / TENTHS) % 86_400;
         format!("{:02}:{:02}:{:02}", second / 3600, second / 60 % 60, second % 60)
