@@ -249,7 +249,7 @@ fn notation() -> impl Strategy<Value = Notation> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 250, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_table_in_any_notation_is_one_record(notation in notation()) {

@@ -68,10 +68,10 @@ pub const COMMAND: &str = "cargo run -p kempf-tests --bin logs";
 /// The page of the folder.
 pub fn page() -> String {
     let mut page = format!(
-        "# Logs\n\nOne 10/10 zig-zag of a ship with K = 0.06 1/s and T = 25 s (first order, rudder at 2.5 deg/s, 0.1 deg of \
-         noise on the compass), in the\nformats and with the troubles of real logs. Not measured: made by \
-         `tests/src/logs`, where it stands what has to come of each file.\n\n```sh\n{COMMAND}\n```\n\n| file | what it is \
-         |\n|---|---|\n"
+        "# Logs\n\nOne 10/10 zig-zag of a ship with K = 0.06 1/s and T = 25 s (first order, rudder at 2.5 deg/s, \
+         0.1 deg of noise on the compass), in the\nformats and with the troubles of real logs. Not measured: made by \
+         `tests/src/logs`, where it stands what has to come of each file.\n\n```sh\n{COMMAND}\n```\n\n\
+         | file | what it is |\n|---|---|\n"
     );
     for file in all().iter().filter(|file| file.kept) {
         page += &format!("| `{}` | {} |\n", file.name, file.what);

@@ -82,7 +82,7 @@ fn of_contract() -> Vec<File> {
             "preamble.csv",
             "lines about ship and trial before the header",
             format!(
-                "Trial report;;\nShip: MV Example, IMO 0000000\nDate: 20.11.2026\nManoeuvre: zig-zag 10/10, starboard\n\n{}",
+                "Trial report;;\nShip: MV Example\nDate: 20.11.2026\nManoeuvre: zig-zag 10/10, starboard\n\n{}",
                 clean()
             ),
             Read(&["4 lines before the header passed over"]),

@@ -21,7 +21,7 @@ pub const LENGTH: usize = 400 * TENTHS;
 /// Angles of rudder and heading at an execute, deg.
 const ANGLE: f64 = 10.0;
 
-/// Rate of the rudder, deg/s: it starts and stops at full seconds, so that straight lines between these are what it did.
+/// Rate of the rudder, deg/s: it starts and stops at full seconds, and straight lines between these are what it did.
 const RUDDER_RATE: f64 = 2.5;
 
 /// The first execute, s.
