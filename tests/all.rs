@@ -5,6 +5,8 @@ mod effects;
 mod golden;
 mod identifiers;
 mod invariance;
+mod logs;
+mod logs_properties;
 mod measured;
 mod ships;
 mod tracing;

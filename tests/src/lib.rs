@@ -5,11 +5,13 @@
 //! |---|---|
 //! | every number that is held against a published one | [`validation`] |
 //! | simulated records, and what can be done to a record | [`records`] |
+//! | logs in every format and with every trouble, of one known ship | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
 //! | measured records, which are not part of the project | [`measured`] |
 //! | ships that are on no list, traced | [`unlisted`] |
 
 pub mod fuzz;
+pub mod logs;
 pub mod measured;
 pub mod records;
 pub mod unlisted;

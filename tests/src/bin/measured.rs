@@ -12,7 +12,7 @@ use report::number::{fixed, significant};
 use report::{Column, Table};
 use serde_json::Value;
 use ship::angle::to_deg;
-use study::options::{Common, Format, Style, TraceRequest, Withheld};
+use study::options::{Common, Format, ReadingOptions, Style, TraceRequest, Withheld};
 use trace::candidates::{self, Sizes};
 use trace::fit::Problem;
 use trace::noise::Colour;
@@ -201,7 +201,16 @@ fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool
     let request = TraceRequest {
         trials: records.iter().map(|record| path(record)).collect(),
         validate: held_out.iter().map(|record| path(record)).collect(),
-        columns: Some(sidecars),
+        reading: ReadingOptions {
+            columns: Some(sidecars),
+            with_columns: Vec::new(),
+            trial: None,
+            from: None,
+            until: None,
+            length_m: None,
+            speed_m_s: None,
+            speed_kn: None,
+        },
         own_bias: false,
         without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
         with: Vec::new(),

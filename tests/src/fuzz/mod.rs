@@ -12,7 +12,7 @@ pub mod targets;
 
 use std::path::PathBuf;
 
-use targets::{cells, manifest, record, rows, scenario, sidecar};
+use targets::{cells, find, gzip, manifest, nmea, record, rows, scenario, sidecar, stamp};
 
 /// A format, and what is done with a file of it.
 #[derive(Clone, Copy)]
@@ -23,15 +23,19 @@ pub struct Target {
     pub run: fn(&[u8]) -> bool,
     /// What files of the format are made of.
     pub words: &'static [&'static str],
-    /// Its part of all cases, in twentieths.
+    /// Its part of all cases, of the sum of all shares.
     pub share: usize,
     /// Files to begin with that are made when the test runs.
     made: fn() -> Vec<Vec<u8>>,
 }
 
 /// Every format.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 10] = [
     Target { name: "record", run: record, words: mutate::RECORD, share: 6, made: Vec::new },
+    Target { name: "nmea", run: nmea, words: mutate::NMEA, share: 3, made: Vec::new },
+    Target { name: "gzip", run: gzip, words: mutate::RECORD, share: 2, made: seeds::packed },
+    Target { name: "stamp", run: stamp, words: mutate::STAMP, share: 2, made: Vec::new },
+    Target { name: "find", run: find, words: mutate::RECORD, share: 2, made: Vec::new },
     Target { name: "sidecar", run: sidecar, words: mutate::SIDECAR, share: 4, made: Vec::new },
     Target { name: "scenario", run: scenario, words: mutate::SCENARIO, share: 4, made: Vec::new },
     Target { name: "rows", run: rows, words: &[], share: 2, made: seeds::rows },

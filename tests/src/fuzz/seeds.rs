@@ -1,4 +1,4 @@
-//! A small study that is run once, whose files are what stored files begin from.
+//! Files to begin with that are made: packed records, and those of a small study that is run once.
 
 use std::sync::LazyLock;
 
@@ -54,4 +54,11 @@ pub(super) fn cells() -> Vec<Vec<u8>> {
 
 pub(super) fn manifest() -> Vec<Vec<u8>> {
     stored(files::MANIFEST)
+}
+
+/// A packed table and a packed log of sentences.
+pub(super) fn packed() -> Vec<Vec<u8>> {
+    let plain: [&[u8]; 2] =
+        [include_bytes!("../../fuzz/corpus/record/plain.csv"), include_bytes!("../../fuzz/corpus/nmea/receiver.nmea")];
+    plain.map(crate::logs::tables::packed).to_vec()
 }

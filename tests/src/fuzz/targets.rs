@@ -16,9 +16,10 @@ use scenario::failure::Failure;
 use study::screen;
 use study::views::tables;
 use tempfile::TempDir;
-use trial::Trial;
+use trial::clock::{Stamp, Stamps};
 use trial::reader::{self, Reading};
 use trial::sidecar::Sidecar;
+use trial::{Channel, Trial};
 
 use super::seeds;
 
@@ -52,6 +53,86 @@ pub fn record(data: &[u8]) -> bool {
         }
         Err(error) => is_one_message(&error.to_string()),
     }
+}
+
+fn read(name: &str, data: &[u8]) -> Result<Reading, reader::ReadError> {
+    reader::read_bytes(Path::new(name), data, None, None)
+}
+
+/// A log of sentences.
+pub fn nmea(data: &[u8]) -> bool {
+    match read("case.nmea", data) {
+        Ok(reading) => {
+            is_a_reading(&reading);
+            true
+        }
+        Err(error) => is_one_message(&error.to_string()),
+    }
+}
+
+/// A packed record; what is not packed is packed first, and has to be read as if it were not.
+pub fn gzip(data: &[u8]) -> bool {
+    if data.starts_with(&[0x1f, 0x8b]) {
+        return nmea(data);
+    }
+    match (read("case", data), read("case", &crate::logs::tables::packed(data))) {
+        (Ok(plain), Ok(packed)) => {
+            is_a_reading(&packed);
+            assert_eq!(plain.trial.time(), packed.trial.time(), "time of a packed record");
+            assert_eq!(plain.trial.rudder(), packed.trial.rudder(), "rudder of a packed record");
+            assert_eq!(plain.warnings, packed.warnings, "warnings of a packed record");
+            true
+        }
+        (Err(plain), Err(packed)) => {
+            assert_eq!(plain.to_string(), packed.to_string(), "the message about a packed record");
+            is_one_message(&packed.to_string())
+        }
+        (plain, _) => {
+            panic!("a record is {} as it is, and packed it is not", if plain.is_ok() { "read" } else { "refused" })
+        }
+    }
+}
+
+/// Stamps, one a line, on one clock.
+pub fn stamp(data: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(data);
+    let mut stamps = Stamps::default();
+    let mut read = false;
+    for line in text.lines() {
+        let Some(stamp) = Stamp::parse(line) else { continue };
+        assert!(stamp.has_time() || stamp.has_date(), "a stamp of nothing");
+        let Ok(seconds) = stamps.seconds(stamp) else { continue };
+        assert!(seconds.is_finite(), "a time that is not finite");
+        assert_eq!(stamps.seconds(stamp), Ok(seconds), "one stamp at two times");
+        let clock = stamps.clock().expect("a stamp was read");
+        assert_eq!(clock.at(seconds).len(), 8, "a time of day");
+        assert!(clock.date_at(seconds).is_none_or(|date| date.len() <= 32), "a date");
+        assert!(clock.time_of(&stamp).is_none_or(f64::is_finite), "a time that is not finite");
+        read = true;
+    }
+    read
+}
+
+/// The manoeuvres of a record.
+pub fn find(data: &[u8]) -> bool {
+    let Ok(Reading { trial, .. }) = read("case.csv", data) else { return false };
+    let found = trial::find::manoeuvres(&trial::find::Log {
+        time: trial.time(),
+        rudder: trial.rudder(),
+        heading: trial.heading(),
+        speed: trial.channel(Channel::Speed),
+        propeller: trial.channel(Channel::PropellerRate),
+    });
+    let (first, last) = (trial.time()[0], trial.time()[trial.len() - 1]);
+    for manoeuvre in &found {
+        assert!(
+            first <= manoeuvre.from && manoeuvre.from < manoeuvre.until && manoeuvre.until <= last,
+            "{manoeuvre:?}"
+        );
+        assert!((manoeuvre.from..=manoeuvre.until).contains(&manoeuvre.start), "{manoeuvre:?}");
+    }
+    assert!(found.is_sorted_by(|one, next| one.from < next.from), "manoeuvres out of order");
+    !found.is_empty()
 }
 
 /// A sidecar, and after the line `# table` the table it is for; without one a plain table.

@@ -89,7 +89,7 @@ pub(super) fn find<R: Read>(
         // Rows from the first line on. Some programs write the names into the comment above.
         let separator = declared.unwrap_or(separator);
         if let Some((of_comment, comment)) = ahead.comment.take() {
-            let of_names = declared.unwrap_or_else(|| recognise(&comment, known));
+            let of_names = declared.unwrap_or_else(|| recognise(&comment, |cells| known(cells).min(2)));
             if known_of(&comment, of_names) >= 2 {
                 let columns = split(&comment, of_names).into_iter().map(unquoted).collect();
                 let first = owned(&names, separator);
@@ -99,7 +99,8 @@ pub(super) fn find<R: Read>(
         }
         return Err(Problem::NoHeader { line, found: shortened(&names) });
     }
-    let separator_of = |line: &str| declared.unwrap_or_else(|| recognise(line, known));
+    // Two names are enough: of `Time UTC` between tabs, blanks would make two.
+    let separator_of = |line: &str| declared.unwrap_or_else(|| recognise(line, |cells| known(cells).min(2)));
     let mut separator = separator_of(&names);
     let mut passed = 0;
     let by_place = |sidecar: &Sidecar| sidecar.columns.iter().any(|column| matches!(column.which, Which::Place(_)));

@@ -1,0 +1,101 @@
+//! Logs in every format and with every trouble: the answer is that of the sound log, or there is none and a message
+//! that names the trouble and the cure. No wrong number without a warning.
+
+use std::fs;
+use std::path::Path;
+
+use identify::{Identifier, output_error};
+use kempf_tests::logs::{self, File, Outcome, voyage};
+use rayon::prelude::*;
+use trial::reader::read_bytes;
+use trial::{Log, Quantity, ReadError, Reading};
+
+/// Deviations, in standard deviations of the difference, within which two answers are one.
+const SAME: f64 = 2.0;
+
+/// K and T of output error.
+fn answer(reading: &Reading) -> [Quantity; 2] {
+    let method = output_error::Settings::default().build().expect("default settings are valid");
+    let trials = std::slice::from_ref(&reading.trial);
+    let estimate = method.identify(trials).unwrap_or_else(|error| panic!("{}: {error}", reading.trial.name()));
+    [estimate.K(), estimate.T()]
+}
+
+/// Reads a log from memory, one of two files from the folder.
+fn read(file: &File) -> Result<Reading, ReadError> {
+    match file.beside {
+        None => read_bytes(Path::new(file.name), file.bytes.as_slice(), None, None),
+        Some(beside) => {
+            let path = |name| logs::folder().join(name);
+            Log::open(&path(file.name), None, &[path(beside)])?.into_trial(None)
+        }
+    }
+}
+
+/// What is wrong with what came of a log, one line each.
+fn faults(file: &File, sound: &[Quantity; 2]) -> Vec<String> {
+    let mut faults = Vec::new();
+    match (read(file), file.outcome) {
+        (Ok(reading), Outcome::Read(words)) => {
+            let said = reading.warnings.join("\n");
+            faults.extend(
+                words.iter().filter(|word| !said.contains(**word)).map(|word| format!("no {word:?} in {said:?}")),
+            );
+            for (own, (sound, name)) in answer(&reading).iter().zip(sound.iter().zip(["K", "T"])) {
+                let error = |quantity: &Quantity| quantity.sd.expect("output error has a standard deviation");
+                let apart = (own.value - sound.value) / error(own).hypot(error(sound));
+                if apart.is_nan() || apart.abs() > SAME {
+                    faults.push(format!("{name} {} ± {}, expected {}", own.value, error(own), sound.value));
+                }
+            }
+        }
+        (Err(error), Outcome::Refused(words)) => {
+            let said = error.to_string();
+            faults.extend(
+                words.iter().filter(|word| !said.contains(**word)).map(|word| format!("no {word:?} in {said:?}")),
+            );
+        }
+        (Ok(reading), Outcome::Refused(_)) => faults.push(format!("it was read: {:?}", reading.warnings)),
+        (Err(error), Outcome::Read(_)) => faults.push(error.to_string()),
+    }
+    faults.into_iter().map(|fault| format!("{}: {fault}", file.name)).collect()
+}
+
+#[test]
+fn every_log_gives_the_answer_of_the_sound_one_or_says_why_not() {
+    let files = logs::all();
+    let sound = files.iter().find(|file| file.name == "clean.csv").expect("it is among them");
+    let reading = read(sound).expect("a sound log is read");
+    assert_eq!(reading.warnings, [""; 0]);
+    let answer = answer(&reading);
+    for (found, truth) in answer.iter().zip([voyage::K, voyage::T]) {
+        let [low, high] = found.ci95.expect("output error has an interval");
+        assert!(low < truth && truth < high && high - low < 0.1 * truth, "{found:?}, expected {truth}");
+    }
+    let faults: Vec<String> = files.par_iter().flat_map_iter(|file| faults(file, &answer)).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn the_kept_logs_are_those_that_are_made() {
+    let mut expected: Vec<(String, Vec<u8>)> = logs::all()
+        .into_iter()
+        .filter(|file| file.kept)
+        .map(|file| (file.name.to_owned(), file.bytes))
+        .chain([("README.md".to_owned(), logs::page().into_bytes())])
+        .collect();
+    expected.sort();
+    let entries = fs::read_dir(logs::folder()).expect("the folder of the logs").flatten();
+    let mut found: Vec<(String, Vec<u8>)> = entries
+        .map(|entry| {
+            (entry.file_name().to_string_lossy().into_owned(), fs::read(entry.path()).expect("it is readable"))
+        })
+        .collect();
+    found.sort();
+    let names = |list: &[(String, Vec<u8>)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&found), names(&expected), "write them again: {}", logs::COMMAND);
+    for ((name, found), (_, expected)) in found.iter().zip(&expected) {
+        assert!(found == expected, "{name} is not what is made; write it again: {}", logs::COMMAND);
+        assert!(found.len() < 24_000, "{name}: {} bytes", found.len());
+    }
+}
