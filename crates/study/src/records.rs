@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use find::{Kind, Manoeuvre};
 use ship::Particulars;
 use ship::angle::KNOT;
-use trial::find::{Kind, Manoeuvre};
 use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};
@@ -139,13 +139,27 @@ fn moment(log: &Log, path: &Path, asked: Option<&Moment>) -> Result<Option<f64>,
     }
 }
 
+/// The manoeuvres of a log, in order of time; none where it has no heading.
+pub fn manoeuvres(log: &Log) -> Vec<Manoeuvre> {
+    let (Some(rudder), Some(heading)) = (log.channel(Channel::Rudder), log.channel(Channel::Heading)) else {
+        return Vec::new();
+    };
+    find::manoeuvres(&find::Log {
+        time: log.time(),
+        rudder,
+        heading,
+        speed: log.channel(Channel::Speed),
+        propeller: log.channel(Channel::PropellerRate),
+    })
+}
+
 /// The manoeuvre that was asked for; else the zig-zag where the log holds one and much beside it.
 fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String>) -> Result<Log, Failure> {
     let file = path.display();
     if asked.is_none() && log.has_declared_part() {
         return Ok(log);
     }
-    let found = log.manoeuvres();
+    let found = manoeuvres(&log);
     let manoeuvre = match asked {
         Some(number) => number.checked_sub(1).and_then(|place| found.get(place)).ok_or_else(|| {
             Failure::input(format!(

@@ -9,7 +9,6 @@
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
-//! | finding the manoeuvres inside a long log | [`find`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
 //! | IMO criteria | [`imo`] |
 
@@ -18,7 +17,6 @@ pub mod channel;
 pub mod clock;
 mod encoding;
 pub mod file;
-pub mod find;
 mod hygiene;
 pub mod imo;
 pub mod names;

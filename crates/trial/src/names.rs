@@ -246,7 +246,7 @@ pub fn unit(text: &str) -> Option<Unit> {
     UNITS.iter().find(|(name, _)| *name == plain).map(|(_, unit)| *unit)
 }
 
-/// A heading in words: small letters, one blank between words, marks of all kinds as blanks, `RudderAngle` as two words.
+/// A name in words: small letters, one blank between words, marks of all kinds as blanks, `RudderAngle` as two words.
 fn words(name: &str) -> String {
     let mut words = String::new();
     let mut small_before = false;

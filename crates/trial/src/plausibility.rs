@@ -145,6 +145,9 @@ const MOVED_DEG: f64 = 4.0;
 /// more.
 const ANSWERED_DEG: f64 = 1.0;
 
+/// Mean rates of turn of ships and models in a manoeuvre, deg/s.
+pub(crate) const MEAN_RATE_DEG_S: [f64; 2] = [0.01, 15.0];
+
 /// No rudder of a ship or a model moves as fast, deg/s.
 const FASTEST_RUDDER_DEG_S: f64 = 100.0;
 
@@ -175,6 +178,7 @@ pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     yaw_rate(trial, response, &mut warnings)?;
     rudder_sign(trial, response, &mut warnings)?;
     rudder_speed(trial, &mut warnings);
+    rate_of_turn(trial, &mut warnings);
     gaps(trial, &mut warnings);
     Ok(warnings)
 }
@@ -345,22 +349,59 @@ fn rudder_speed(trial: &Trial, warnings: &mut Vec<String>) {
     }
 }
 
+/// Does the ship turn as fast as ships and models do?
+fn rate_of_turn(trial: &Trial, warnings: &mut Vec<String>) {
+    if range_deg(trial.rudder()) < MOVED_DEG || range_deg(trial.heading()) < ANSWERED_DEG {
+        return;
+    }
+    let rate_deg_s = to_deg(mean_rate(trial.time(), trial.heading()));
+    if !(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s) {
+        warnings.push(format!(
+            "the ship turns at {rate_deg_s:.2e}°/s on average, ships and models in a manoeuvre at {} to {}°/s: check the unit of the \
+             time (t_s, t_ms, t_min)",
+            MEAN_RATE_DEG_S[0], MEAN_RATE_DEG_S[1]
+        ));
+    }
+}
+
+/// Mean size of the rate of turn, rad/s, from changes of heading over a hundredth of the record each, in which noise
+/// counts little; NaN without two headings.
+pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
+    const PARTS: usize = 100;
+    let seen = heading.iter().filter(|psi| psi.is_finite()).count();
+    let every = (seen / PARTS).max(1);
+    let mut ends = (0..time.len()).filter(|&row| heading[row].is_finite()).step_by(every);
+    let Some(mut from) = ends.next() else { return f64::NAN };
+    let (mut turned, mut duration) = (0.0, 0.0);
+    for to in ends {
+        turned += (heading[to] - heading[from]).abs();
+        duration += time[to] - time[from];
+        from = to;
+    }
+    turned / duration
+}
+
 /// Names gaps in time that are long against the sampling.
 fn gaps(trial: &Trial, warnings: &mut Vec<String>) {
     let period = trial.sampling_period();
     let steps = trial.time().windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
     let mut longest = (0.0, 0.0);
-    let mut count = 0;
-    for (begin, step) in steps.filter(|(_, step)| *step > 10.0 * period) {
+    let (mut count, mut moved) = (0, 0);
+    for (row, (begin, step)) in steps.enumerate().filter(|(_, (_, step))| *step > 10.0 * period) {
         count += 1;
+        moved += usize::from(to_deg((trial.rudder()[row + 1] - trial.rudder()[row]).abs()) > MOVED_DEG);
         if step > longest.1 {
             longest = (begin, step);
         }
     }
     if count > 0 {
         let (begin, step) = longest;
+        let under_way = match moved {
+            0 => "",
+            _ => "; the rudder moved in one, nobody knows when, and K and T suffer",
+        };
         warnings.push(format!(
-            "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s",
+            "{count} {} longer than ten sampling periods ({period:.3} s); the longest, {step:.1} s, begins at {begin:.1} s{under_way}",
             if count == 1 { "gap" } else { "gaps" }
         ));
     }

@@ -1,13 +1,13 @@
 //! `study find`: the manoeuvres inside long logs.
 
+use find::{Kind, Manoeuvre};
 use report::number::{MISSING, fixed};
 use report::{Column, Table};
 use ship::angle::to_deg;
 use trial::Log;
-use trial::find::{Kind, Manoeuvre};
 
 use crate::options::{Common, FindRequest, Format};
-use crate::records::{expand, open};
+use crate::records::{expand, manoeuvres, open};
 use crate::screen;
 use scenario::failure::Failure;
 
@@ -22,7 +22,7 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
     let mut warnings = Vec::new();
     for file in &files {
         let log = open(file, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
-        let found = log.manoeuvres();
+        let found = manoeuvres(&log);
         let table = common.format.render(&table(&log, &found));
         if common.format != Format::Text {
             screen::say(table.trim_end())?;

@@ -15,7 +15,7 @@ const CLEAR: f64 = 12.0;
 const ALONE: f64 = 4.0;
 
 /// Largest share of the readings that may be spikes: more are the noise of the sensor.
-const FEW: f64 = 0.02;
+const FEW: f64 = 0.05;
 
 /// Fewest rows at the end of the scale of a yaw rate.
 const CLIPPED: usize = 5;
@@ -50,33 +50,37 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
     (sizes.len() > 2 * CLIPPED).then(|| 1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Takes single headings far from both neighbours as missing, and tells of jumps.
+/// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
 pub(super) fn drop_spikes(columns: &mut Columns) -> Vec<String> {
     let time = &columns.time;
-    let Some(heading) = columns.channels.get_mut(&Channel::Heading) else { return Vec::new() };
-    let Some(usual) = usual(time, heading) else { return Vec::new() };
-    let least = LEAST.max(CLEAR * usual);
-    let mut spikes = Vec::new();
-    for ([before, row, after], deviation) in deviations(time, heading) {
-        let apart = (heading[after] - heading[before]).abs();
-        if deviation.abs() > least.max(ALONE * apart) {
-            spikes.push((row, deviation));
+    let mut told = Vec::new();
+    for (channel, name) in [(Channel::Heading, "heading"), (Channel::Rudder, "rudder angle")] {
+        let Some(values) = columns.channels.get_mut(&channel) else { continue };
+        let Some(usual) = usual(time, values) else { continue };
+        let least = LEAST.max(CLEAR * usual);
+        let mut spikes = Vec::new();
+        for ([before, row, after], deviation) in deviations(time, values) {
+            let apart = (values[after] - values[before]).abs();
+            if deviation.abs() > least.max(ALONE * apart) {
+                spikes.push((row, deviation));
+            }
+        }
+        if !spikes.is_empty() && spikes.len() as f64 <= FEW * values.len() as f64 {
+            let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
+            let times: Vec<f64> = spikes.iter().map(|&(row, _)| time[row]).collect();
+            spikes.iter().for_each(|&(row, _)| values[row] = f64::NAN);
+            told.push(format!(
+                "{} {name}{} far from both neighbours (by up to {:.1}°) taken as missing, {}",
+                spikes.len(),
+                if spikes.len() == 1 { "" } else { "s" },
+                largest.to_degrees(),
+                at(&times)
+            ));
+        }
+        if channel == Channel::Heading {
+            told.extend(jumps(time, values, least));
         }
     }
-    let mut told = Vec::new();
-    if !spikes.is_empty() && spikes.len() as f64 <= FEW * heading.len() as f64 {
-        let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
-        let times: Vec<f64> = spikes.iter().map(|&(row, _)| time[row]).collect();
-        spikes.iter().for_each(|&(row, _)| heading[row] = f64::NAN);
-        told.push(format!(
-            "{} {} far from both neighbours (by up to {:.1}°) taken as missing, {}",
-            spikes.len(),
-            if spikes.len() == 1 { "heading" } else { "headings" },
-            largest.to_degrees(),
-            at(&times)
-        ));
-    }
-    told.extend(jumps(time, heading, least));
     told
 }
 
@@ -151,7 +155,10 @@ mod tests {
         let spike = |row: usize, values: &[f64]| values[row] + if row == 900 { 0.1 } else { 0.0 };
         let mut spiked = with(Channel::Heading, spike);
         let [told] = mend(&mut spiked).try_into().expect("one sentence");
-        assert!(told.starts_with("1 heading far from both neighbours (by up to 5.7°)") && told.ends_with("t = 90 s"), "{told}");
+        assert!(
+            told.starts_with("1 heading far from both neighbours (by up to 5.7°)") && told.ends_with("t = 90 s"),
+            "{told}"
+        );
         assert!(spiked.channels[&Channel::Heading][900].is_nan());
         let jump = |row: usize, values: &[f64]| values[row] + if (900..950).contains(&row) { 0.1 } else { 0.0 };
         let mut jumped = with(Channel::Heading, jump);

@@ -1,9 +1,10 @@
 //! Channels at their own instants become the columns of one record. A row is an instant at which heading, rudder or yaw
-//! rate was read; what was not read then is missing there. The rudder, which acts at every instant, runs straight between
-//! its readings, as the steering gear moves; so do the inputs of a model such as speed and wind. Nothing is made up over
-//! a gap.
+//! rate was read; what was not read then is missing there. The rudder, which acts at every instant, runs straight
+//! between its readings, as the steering gear moves; so do the inputs of a model such as speed and wind. Nothing is
+//! made up over a gap.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use super::error::Problem;
 use super::limits::spoken;
@@ -193,10 +194,9 @@ pub(super) fn once(series: Vec<Series>) -> (Vec<Series>, Vec<Channel>) {
     let mut doubled = Vec::new();
     for series in series {
         let channel = series.channel;
-        if kept.contains_key(&channel) {
-            doubled.push(channel);
-        } else {
-            kept.insert(channel, series);
+        match kept.entry(channel) {
+            Entry::Occupied(_) => doubled.push(channel),
+            Entry::Vacant(free) => drop(free.insert(series)),
         }
     }
     (kept.into_values().collect(), doubled)

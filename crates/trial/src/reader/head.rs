@@ -148,7 +148,7 @@ fn units_of(cells: &[&str], separator: Separator) -> Option<Vec<Option<Unit>>> {
     let units: Vec<Option<Unit>> = cells.iter().map(|text| names::unit(text)).collect();
     let is_value = |text: &&str| matches!(cell(text, separator), Cell::Number(_) | Cell::CommaNumber(_));
     let count = units.iter().flatten().count();
-    (count > 0 && 2 * count >= filled && !cells.iter().any(|text| is_value(text))).then_some(units)
+    (count > 0 && 2 * count >= filled && !cells.iter().any(is_value)).then_some(units)
 }
 
 /// The separator between the cells of a line that holds numbers alone; the one with the most cells.

@@ -1,7 +1,7 @@
 //! Instants of rows whose stamps are coarser than their rows: ten rows with one second each.
 
-/// Spreads rows that share a stamp evenly over the time to the next one; the typical number of rows with one stamp where
-/// there is more than one.
+/// Spreads rows that share a stamp evenly over the time to the next one; the typical number of rows with one stamp
+/// where there is more than one.
 ///
 /// `time` (s) does not fall. The width of a stamp is the usual step between two: where stamps are missing the gap stays
 /// one. The first and the last stamp may be incomplete: their rows take the end and the begin of their width.

@@ -13,7 +13,6 @@ use super::table;
 use crate::channel::Channel;
 use crate::clock::Clock;
 use crate::encoding::Encoding;
-use crate::find::{self, Manoeuvre};
 use crate::hygiene;
 use crate::plausibility;
 use crate::record::{Columns, Origin, Trial, TrialError};
@@ -159,20 +158,6 @@ impl Log {
     /// Whether a sidecar says which part is to be used.
     pub fn has_declared_part(&self) -> bool {
         self.sidecar.as_ref().is_some_and(|sidecar| sidecar.from.is_finite() || sidecar.until.is_finite())
-    }
-
-    /// The manoeuvres in the log, in order of time; none where it has no heading.
-    pub fn manoeuvres(&self) -> Vec<Manoeuvre> {
-        let (Some(rudder), Some(heading)) = (self.channel(Channel::Rudder), self.channel(Channel::Heading)) else {
-            return Vec::new();
-        };
-        find::manoeuvres(&find::Log {
-            time: self.time(),
-            rudder,
-            heading,
-            speed: self.channel(Channel::Speed),
-            propeller: self.channel(Channel::PropellerRate),
-        })
     }
 
     /// The part from one time to another, s, both included. Fails where it holds no row.

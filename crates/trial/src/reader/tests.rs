@@ -125,7 +125,7 @@ fn rows_with_missing_values_are_left_out_or_kept_and_counted() {
         writeln!(text, "{time},{heading},{rudder},calm sea,{load},").expect("a string takes all text");
         if row == 60 {
             writeln!(text, "{time},{heading},{rudder},calm sea,{load},").expect("a string takes all text");
-            text.push_str("60.5,0.0,10.0\n");
+            writeln!(text, "60.5,{heading},{rudder}").expect("a string takes all text");
         }
     }
     let Reading { trial, warnings } = parse(text).expect("missing values are no fault");

@@ -8,7 +8,7 @@ use super::kept::{Kept, Open};
 use super::limits::spoken;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::reversals;
+use crate::plausibility::{MEAN_RATE_DEG_S, mean_rate, reversals};
 use crate::words::shortened;
 
 /// Largest angle of a rudder in radians: 45°. In degrees a rudder of a manoeuvre goes further.
@@ -29,9 +29,6 @@ const SIX_CIRCLES: f64 = 38.0;
 
 /// Parts of a record over which changes of heading are summed, so that noise counts little.
 const PARTS: usize = 100;
-
-/// Mean rates of turn that ships and models have in a manoeuvre, rad/s: 0.01 to 8 °/s.
-const MEAN_RATE: [f64; 2] = [1.7e-4, 0.14];
 
 /// Slowest rudder, rad/s: 0.2 °/s.
 const SLOWEST_RUDDER: f64 = 3.5e-3;
@@ -253,9 +250,8 @@ fn time(kept: &mut Kept, name: &str, line: usize) -> Result<Option<String>, Prob
     let refusal = || Problem::OpenTime { line, column: name.clone() };
     let channels = &kept.columns.channels;
     if let Some(heading) = channels.get(&Channel::Heading) {
-        let (turned, duration) =
-            changes(times, heading).iter().fold((0.0, 0.0), |(psi, t), (dpsi, dt)| (psi + dpsi.abs(), t + dt));
-        if !(MEAN_RATE[0]..MEAN_RATE[1]).contains(&(turned / duration)) {
+        let rate_deg_s = mean_rate(times, heading).to_degrees();
+        if !(MEAN_RATE_DEG_S[0]..MEAN_RATE_DEG_S[1]).contains(&rate_deg_s) {
             return Err(refusal());
         }
     }

@@ -8,7 +8,7 @@ use crate::quantity::Quantity;
 
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Movement {
+pub struct Movement {
     /// Time at which the rudder starts to move, s.
     pub start: Quantity,
     /// Rudder angle before, rad: median of the rows just before the start.
@@ -41,7 +41,7 @@ impl Level {
 }
 
 /// The rudder channel with what is needed to time its movements.
-pub(crate) struct Rudder<'a> {
+pub struct Rudder<'a> {
     time: &'a [f64],
     angle: &'a [f64],
     holds: &'a [Hold],

@@ -152,7 +152,11 @@ impl Heading {
         let t = fit.stationary_point()?;
         let curvature = fit.curvature(t);
         let end = to.min(self.time[self.time.len() - 1]);
-        if side * curvature >= 0.0 || t <= from || t + self.half_width > end || self.has_a_gap(from, t + self.half_width) {
+        if side * curvature >= 0.0
+            || t <= from
+            || t + self.half_width > end
+            || self.has_a_gap(from, t + self.half_width)
+        {
             return None;
         }
         let time = Quantity::new(t, self.noise.map(|sd| sd * fit.slope_gain(t) / curvature.abs()));

@@ -8,7 +8,7 @@ use super::median::median;
 
 /// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
 /// before a first execute can use more than half the rudder of the trial.
-pub(crate) const LAID: f64 = 0.85;
+pub const LAID: f64 = 0.85;
 
 /// Smallest rudder angle of a zig-zag, degrees.
 const SMALLEST_RUDDER_DEG: f64 = 0.5;
@@ -19,7 +19,7 @@ const LEAST_HELD: f64 = 0.3;
 
 /// A stretch with the rudder laid to one side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Hold {
+pub struct Hold {
     /// +1 starboard, −1 port.
     pub side: f64,
     /// First row beyond [`LAID`] of the level.
@@ -97,7 +97,7 @@ fn level(rudder: &[f64], side: f64) -> f64 {
 ///
 /// `below` and `above` say by how much the measured angle may miss the conventional one, as a share of it; `slack_deg`
 /// adds what the noise of the measurement allows.
-pub(crate) fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
+pub fn conventional_deg(measured_deg: f64, below: f64, above: f64, slack_deg: f64) -> Option<f64> {
     const CONVENTIONAL_DEG: [f64; 10] = [1.0, 2.0, 3.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0];
     // Small angles are missed by an absolute error (a rudder offset, a late helm), hence half a degree at least.
     let near = |&nominal: &f64| {

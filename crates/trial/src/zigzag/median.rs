@@ -4,7 +4,7 @@
 /// median.
 ///
 /// `None` for an empty set. The values are reordered and must be finite.
-pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
+pub fn median(values: &mut [f64]) -> Option<f64> {
     if values.is_empty() {
         return None;
     }

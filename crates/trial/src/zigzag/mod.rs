@@ -8,12 +8,12 @@
 //! fits (`heading`), so that an overshoot is the extremum of a smooth curve and not the largest of many noisy samples.
 
 mod characteristics;
-pub(crate) mod executes;
+pub mod executes;
 mod findings;
 mod heading;
-pub(crate) mod holds;
+pub mod holds;
 mod local;
-pub(crate) mod median;
+pub mod median;
 pub mod points;
 #[cfg(test)]
 pub(crate) mod simulator;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::io::{self, Read};
 
-use super::super::error::Problem;
 use crate::clock;
+use crate::reader::error::Problem;
 
 /// Bytes that are written ahead.
 const AHEAD: usize = 1 << 16;

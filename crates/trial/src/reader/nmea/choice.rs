@@ -4,12 +4,12 @@
 
 use ship::angle::to_deg;
 
-use super::super::source::Series;
 use super::epochs::{counted, median, rounded};
-use super::log::{Log, Sensor};
+use super::log::{Log, Sensor, name};
 use super::position::plane;
 use super::sentence::{Kind, Slot, turned};
 use crate::channel::Channel;
+use crate::reader::source::Series;
 
 /// An instrument that may give a channel.
 #[derive(Debug, Clone, Copy)]
@@ -26,26 +26,6 @@ struct Candidate {
 const SPARSE: usize = 100;
 /// Rudders that differ by more than this (rms) are not one, degrees.
 const RUDDERS_APART_DEG: f64 = 2.0;
-
-/// The name of an instrument, for messages: `$HEHDT`, `$HEHDT of GYRO1`.
-pub(super) fn name(log: &Log, place: usize) -> String {
-    let sensor = &log.sensors[place];
-    let mut name = String::from("$");
-    name.extend(sensor.address.map(char::from));
-    match sensor.kind {
-        Kind::Rpm => name.push_str(&format!(" {}{}", char::from(sensor.part[0]), shown(sensor.part[1]))),
-        Kind::Mwv => name.push_str(&format!(" {}", shown(sensor.part[0]))),
-        _ => {}
-    }
-    if let Some(source) = usize::from(sensor.source).checked_sub(1).and_then(|source| log.leading.sources.get(source)) {
-        name.push_str(&format!(" of {}", crate::words::shortened(source)));
-    }
-    name
-}
-
-fn shown(byte: u8) -> char {
-    if byte.is_ascii_graphic() { char::from(byte) } else { '?' }
-}
 
 /// Makes the channels of a log.
 pub(super) struct Choice<'a> {

@@ -2,10 +2,10 @@
 //! sentences of one instrument in an epoch are spread evenly over it. Time is never stretched: an epoch longer than
 //! the others is filled at the usual pace, and the rest of it stays empty.
 
-use super::super::error::Problem;
-use super::log::{Log, Sensor};
+use super::log::{Log, Sensor, name};
 use super::sentence::{Kind, Slot};
 use crate::clock::{Clock, DAY, Stamp, Stamps};
+use crate::reader::error::Problem;
 
 /// An epoch longer than the usual one by this factor is a gap.
 const GAP: f64 = 1.5;
@@ -129,7 +129,7 @@ pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
     let usual = median(epochs.iter().map(|epoch| epoch.length));
     let (mut several, mut before) = (false, 0);
     let mut groups = Vec::new();
-    let name = super::choice::name(log, driver);
+    let name = name(log, driver);
     let driven = times(&log.sensors[driver]);
     for sensor in &mut log.sensors {
         groups.clear();
@@ -148,7 +148,8 @@ pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
         drop_rows(sensor);
     }
     let mut warnings = vec![format!(
-        "the time is that of {name} ({driven} times){}",
+        "the time is that of {name} ({driven} times, every {usual:.1} s): a sentence has the time before it, and heading and \
+         rudder may be apart by that much{}",
         if several { ", and sentences between two of them are spread evenly over the time between" } else { "" }
     )];
     if before > 0 {

@@ -1,12 +1,12 @@
 //! What was read from a log so far: one table for each instrument, as long as its sentences are many, and counts of
 //! all that was left out. Which instruments are used is not decided before the end of the log.
 
-use super::super::error::Problem;
-use super::super::limits::MAX_CELLS;
 use super::frame::{Fields, Frame, Line, frame};
 use super::sentence::{Kind, MOST_SLOTS, Row, Slot, read, transducers};
 use super::stamp::Leading;
 use crate::clock::{StampFault, Stamps};
+use crate::reader::error::Problem;
+use crate::reader::limits::MAX_CELLS;
 use crate::words::shortened;
 
 /// The sentences of one instrument.
@@ -235,4 +235,24 @@ impl Log {
         self.late = Some((number, at));
         Ok(false)
     }
+}
+
+/// The name of an instrument, for messages: `$HEHDT`, `$HEHDT of GYRO1`.
+pub(super) fn name(log: &Log, place: usize) -> String {
+    let sensor = &log.sensors[place];
+    let mut name = String::from("$");
+    name.extend(sensor.address.map(char::from));
+    match sensor.kind {
+        Kind::Rpm => name.push_str(&format!(" {}{}", char::from(sensor.part[0]), shown(sensor.part[1]))),
+        Kind::Mwv => name.push_str(&format!(" {}", shown(sensor.part[0]))),
+        _ => {}
+    }
+    if let Some(source) = usize::from(sensor.source).checked_sub(1).and_then(|source| log.leading.sources.get(source)) {
+        name.push_str(&format!(" of {}", crate::words::shortened(source)));
+    }
+    name
+}
+
+fn shown(byte: u8) -> char {
+    if byte.is_ascii_graphic() { char::from(byte) } else { '?' }
 }

@@ -82,8 +82,8 @@ fn ten_headings_a_second_under_a_clock_of_one() {
         assert_abs_diff_eq!(*time + 5.0, value, epsilon = 1e-6);
     }
     assert_eq!(series(&source, Channel::Speed).time, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-    let expected = "the time is that of $GPRMC (6 times), and sentences between two of them are spread evenly over the time \
-                    between";
+    let expected = "the time is that of $GPRMC (6 times, every 1.0 s): a sentence has the time before it, and heading and \
+                    rudder may be apart by that much, and sentences between two of them are spread evenly over the time between";
     assert!(told(&source, expected), "{:?}", source.warnings);
     assert!(told(&source, "1 sentence before the first time is left out"));
     let clock = source.clock.expect("RMC has one");

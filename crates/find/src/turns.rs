@@ -4,7 +4,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::rest::Stretch;
-use super::{Kind, Pattern, Record};
+use crate::kind::Kind;
+use crate::record::{Pattern, Record};
 
 /// Smallest rudder angle of a turn, rad.
 const SMALLEST_RUDDER: f64 = 3.0_f64.to_radians();
@@ -28,7 +29,7 @@ const FEWEST_TIMES: f64 = 2.0;
 const STEADY: f64 = 0.04;
 
 /// The turning circles and pull-outs among stretches that are in order of time.
-pub(super) fn turns(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
+pub(crate) fn turns(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
     let mut found = Vec::new();
     for (index, &hold) in stretches.iter().enumerate() {
         let rudder = hold.level - record.rest.neutral;

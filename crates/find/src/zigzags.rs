@@ -4,8 +4,9 @@
 use super::bounds::first_execute;
 use super::course::middle;
 use super::rest::Stretch;
-use super::{Kind, Pattern, Record};
-use crate::zigzag::median::median;
+use crate::kind::Kind;
+use crate::record::{Pattern, Record};
+use trial::zigzag::median::median;
 
 /// Largest ratio of the rudder angles to both sides.
 const SIDES: f64 = 1.6;
@@ -59,7 +60,7 @@ const TURN: f64 = 4.0;
 const FEWEST: usize = 3;
 
 /// The zig-zags among stretches that are in order of time.
-pub(super) fn zigzags(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
+pub(crate) fn zigzags(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
     let mut found: Vec<Pattern> = Vec::new();
     let mut start = 0;
     while start < stretches.len() {

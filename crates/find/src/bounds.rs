@@ -2,11 +2,13 @@
 //! the last row before the rudder leaves its last hold or the propeller stops.
 
 use super::course::middle;
-use super::quality::{Approach, Quality};
+use super::quality::{Approach, Quality, STEADY_SPEED};
 use super::rest::{Stretch, usual};
-use super::{Kind, Manoeuvre, Pattern, Record};
-use crate::zigzag::executes::Rudder;
-use crate::zigzag::holds::{Hold, LAID};
+use crate::kind::Kind;
+use crate::manoeuvre::Manoeuvre;
+use crate::record::{Pattern, Record};
+use trial::zigzag::executes::Rudder;
+use trial::zigzag::holds::{Hold, LAID};
 
 /// Rudder off its middle in a steady approach, and how far its middle may be off amidships, as shares of the rudder
 /// of the manoeuvre.
@@ -17,10 +19,6 @@ const AMIDSHIPS: f64 = 0.35;
 /// swing, which noise and waves make of nothing.
 const STEADY_RATE: f64 = 0.2;
 const STEADY_HEADING: f64 = 0.05;
-
-/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 %
-/// over all of it.
-pub(super) const STEADY_SPEED: f64 = 0.033;
 
 /// Shortest steady piece that is taken along, as a share of the longest; a log that begins with it may be shorter.
 const SHORTEST_APPROACH: f64 = 0.25;
@@ -43,7 +41,7 @@ const FEWEST_ON_RAMP: usize = 3;
 const ENOUGH_ROWS: usize = 8;
 
 /// The manoeuvres of patterns that are in order of time and apart.
-pub(super) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
+pub(crate) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
     let time = record.log.time;
     let mut free = 0;
     let mut list = Vec::new();
@@ -107,7 +105,7 @@ fn before_stop(record: &Record, pattern: &Pattern) -> usize {
 
 /// First row in which the rudder moves into the first of some holds, looked for from row `free` on and `scale` seconds
 /// before the hold or, where the rudder is slow, somewhat earlier.
-pub(super) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free: usize) -> usize {
+pub(crate) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(ENOUGH_HOLDS)];
     let hold = holds[0];

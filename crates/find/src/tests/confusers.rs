@@ -3,8 +3,9 @@
 use proptest::prelude::*;
 use ship::angle::{from_deg, to_deg};
 
+use super::ship::Gaussian;
 use super::ship::Sea;
-use crate::find::{Log, manoeuvres};
+use crate::{Log, manoeuvres};
 
 #[test]
 fn an_autopilot_keeps_a_straight_piece() {
@@ -47,7 +48,7 @@ fn harbour_manoeuvring_is_nothing() {
     for seed in 0..20 {
         for in_fives in [false, true] {
             let mut sea = Sea::new(0.5);
-            sea.chance = crate::zigzag::simulator::Gaussian::new(seed);
+            sea.chance = Gaussian::new(seed);
             for _ in 0..400 {
                 let (order, time) = (15.0 * sea.chance.draw(), 15.0 + 10.0 * sea.chance.draw().abs());
                 let order = if in_fives { 5.0 * (order / 5.0).round() } else { order };
@@ -112,7 +113,7 @@ proptest! {
         swing in -1.0..1.0f64,
         seed in any::<u64>(),
     ) {
-        let mut chance = crate::zigzag::simulator::Gaussian::new(seed);
+        let mut chance = Gaussian::new(seed);
         let (mut time, mut rudder, mut heading) = (Vec::new(), Vec::new(), Vec::new());
         let (mut t, mut psi) = (0.0, 0.0);
         for (level, rows, noise) in holds {

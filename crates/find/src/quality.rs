@@ -3,8 +3,7 @@
 
 use ship::angle::to_deg;
 
-use super::Record;
-use super::bounds::STEADY_SPEED;
+use crate::record::Record;
 
 /// Share of missing headings worth a remark.
 const MISSING: f64 = 0.01;
@@ -14,6 +13,10 @@ const GAP: f64 = 10.0;
 
 /// Difference between holds to one side worth a remark, degrees.
 const SPREAD_DEG: f64 = 1.5;
+
+/// Change of speed and revolutions, as a share, from the first third of an approach of full length to the last: 5 %
+/// over all of it.
+pub(crate) const STEADY_SPEED: f64 = 0.033;
 
 /// How a manoeuvre was approached.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +49,7 @@ pub struct Quality {
 
 impl Quality {
     /// What the rows of a part tell by themselves.
-    pub(super) fn of(record: &Record, first: usize, last: usize) -> Self {
+    pub(crate) fn of(record: &Record, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
         let mut longest = 0.0_f64;
         let (mut read, mut missing) = (time[0], 0);

@@ -40,7 +40,7 @@ const GAP: f64 = 30.0;
 
 /// A stretch of rows with the rudder at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     /// First row.
     pub first: usize,
     /// Last row.
@@ -68,7 +68,7 @@ impl Stretch {
 
 /// The rudder of a log and where it rests.
 #[derive(Debug)]
-pub(super) struct Rest {
+pub(crate) struct Rest {
     /// Rudder angle without spikes of one row, rad.
     pub angle: Vec<f64>,
     /// Standard deviation of the rudder noise, rad.
@@ -200,7 +200,7 @@ fn without_spikes(values: &[f64]) -> Vec<f64> {
 }
 
 /// Median of any number of values, 0 of none; in time proportional to their number.
-pub(super) fn usual(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn usual(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     let half = values.len() / 2;
     if values.is_empty() {

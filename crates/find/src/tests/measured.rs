@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ship::angle::from_deg;
 
-use crate::find::{Approach, Log, Manoeuvre, manoeuvres};
+use crate::{Approach, Log, Manoeuvre, manoeuvres};
 
 /// The columns of a measured record that a search looks at.
 struct Table {

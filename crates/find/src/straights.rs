@@ -4,7 +4,9 @@
 
 use super::quality::Quality;
 use super::rest::usual;
-use super::{Kind, Manoeuvre, Pattern, Record};
+use crate::kind::Kind;
+use crate::manoeuvre::Manoeuvre;
+use crate::record::{Pattern, Record};
 
 /// Range of headings on one course, rad: an autopilot keeps ±1 degree, in waves ±2.
 const COURSE: f64 = 5.0_f64.to_radians();
@@ -25,7 +27,7 @@ const FEWEST_ROWS: usize = 20;
 const AT_REST: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.
-pub(super) fn add(record: &Record, found: &[Pattern], list: &mut Vec<Manoeuvre>) {
+pub(crate) fn add(record: &Record, found: &[Pattern], list: &mut Vec<Manoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = usual(found.iter().map(|pattern| pattern.scale));

@@ -1,15 +1,15 @@
 //! The heading of a log where it was read: what it is near a time, and how it changes between two. Gaps are bridged
 //! only as far as the caller says.
 
-use super::Log;
-use crate::zigzag::median::median;
+use crate::log::Log;
+use trial::zigzag::median::median;
 
 /// Most rows that a middle value is taken of: more make it no better, and the search slower.
 const ENOUGH: usize = 64;
 
 /// The headings that were read.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(crate) struct Course {
     /// Times, s.
     pub time: Vec<f64>,
     /// Headings, rad.
@@ -61,12 +61,12 @@ impl Course {
 }
 
 /// Median of at most [`ENOUGH`] values, spread evenly over those given.
-pub(super) fn middle(values: &[f64]) -> Option<f64> {
+pub(crate) fn middle(values: &[f64]) -> Option<f64> {
     median(&mut thinned(values))
 }
 
 /// At most about [`ENOUGH`] values, spread evenly, all of them finite.
-pub(super) fn thinned(values: &[f64]) -> Vec<f64> {
+pub(crate) fn thinned(values: &[f64]) -> Vec<f64> {
     let step = values.len().div_ceil(ENOUGH).max(1);
     // Centred, so that a slope is thinned to its middle.
     let skip = values.len().saturating_sub(1) % step / 2;

@@ -2,8 +2,9 @@
 //! steadily. Reverse spirals, where the rate is ordered and the rudder looked for, are not recognised.
 
 use super::rest::Stretch;
-use super::{Kind, Pattern, Record};
-use crate::zigzag::median::median;
+use crate::kind::Kind;
+use crate::record::{Pattern, Record};
+use trial::zigzag::median::median;
 
 /// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.
 const FEWEST: usize = 5;
@@ -33,7 +34,7 @@ const STEADY: f64 = 0.04;
 const AGAINST: f64 = 0.15;
 
 /// The spirals of a log.
-pub(super) fn spirals(record: &Record) -> Vec<Pattern> {
+pub(crate) fn spirals(record: &Record) -> Vec<Pattern> {
     let all = &record.rest.stretches;
     let is_pause = |index: usize| {
         let shorter = |other: Option<&Stretch>| other.is_some_and(|x| all[index].duration() < PAUSE * x.duration());
