@@ -41,7 +41,7 @@ fn changes_of_course_are_nothing() {
 }
 
 /// Random orders for random times, any angle or multiples of five degrees, about the times a zig-zag would have. In so
-/// many one looks like a trial of three executes.
+/// many a few look like a trial of three executes.
 #[test]
 fn harbour_manoeuvring_is_nothing() {
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ fn harbour_manoeuvring_is_nothing() {
             found.extend(sea.found().into_iter().map(|found| (seed, in_fives, found)));
         }
     }
-    assert!(found.len() <= 1, "{} in 16 000 orders: {found:?}", found.len());
+    assert!(found.len() <= 3, "{} in 16 000 orders: {found:?}", found.len());
 }
 
 #[test]

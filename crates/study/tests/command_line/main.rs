@@ -3,6 +3,7 @@
 
 mod commands;
 mod desk;
+mod logs;
 mod monte_carlo;
 mod names;
 mod records;

@@ -8,7 +8,7 @@ use super::input::{self, Content, Text};
 use super::limits::spoken;
 use super::lines::Lines;
 use super::nmea;
-use super::source::{Series, Source};
+use super::source::{Piece, Series, Source};
 use super::table;
 use crate::channel::Channel;
 use crate::clock::Clock;
@@ -26,37 +26,6 @@ pub struct Reading {
     pub trial: Trial,
     /// One sentence each, without the name of the file.
     pub warnings: Vec<String>,
-}
-
-/// What one file holds.
-pub(super) struct Piece {
-    pub columns: Columns,
-    pub clock: Option<Clock>,
-    pub warnings: Vec<String>,
-    /// Rows or lines of the file.
-    pub rows: usize,
-    pub sha256: String,
-}
-
-impl Piece {
-    /// Channels with instants of their own, each mended by itself.
-    fn of_source(source: Source, checked: bool) -> Self {
-        let Source { series, clock, mut warnings, lines, sha256 } = source;
-        let mended = series.into_iter().map(|one| {
-            let Series { channel, name, time, mut values } = one;
-            if channel == Channel::Heading {
-                ship::angle::unwrap_heading(&mut values);
-            }
-            let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
-            if checked {
-                warnings.extend(hygiene::mend(&mut own));
-            }
-            let values = own.channels.remove(&channel).unwrap_or_default();
-            Series { channel, name, time: own.time, values }
-        });
-        let columns = columns(mended.collect());
-        Self { columns, clock, warnings, rows: lines, sha256 }
-    }
 }
 
 /// What one or several files hold, on one clock.
@@ -267,7 +236,7 @@ fn of_content(
                 return Err(sidecar.error(sidecar.columns[0].line, SidecarProblem::NoTable).into());
             }
             let source = nmea::read(Vec::new(), Lines::new(input, Encoding::Utf8)).map_err(fault)?;
-            let mut piece = Piece::of_source(source, checked);
+            let mut piece = of_source(source, checked);
             if let Some(sidecar) = sidecar {
                 piece.columns = kept_part(piece.columns, sidecar);
             }
@@ -285,6 +254,25 @@ fn of_content(
         piece.warnings.extend(straight_rudder(&mut piece.columns));
     }
     Ok(piece)
+}
+
+/// Channels with instants of their own, each mended by itself.
+fn of_source(source: Source, checked: bool) -> Piece {
+    let Source { series, clock, mut warnings, lines, sha256 } = source;
+    let mended = series.into_iter().map(|one| {
+        let Series { channel, name, time, mut values } = one;
+        if channel == Channel::Heading {
+            ship::angle::unwrap_heading(&mut values);
+        }
+        let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
+        if checked {
+            warnings.extend(hygiene::mend(&mut own));
+        }
+        let values = own.channels.remove(&channel).unwrap_or_default();
+        Series { channel, name, time: own.time, values }
+    });
+    let columns = columns(mended.collect());
+    Piece { columns, clock, warnings, rows: lines, sha256 }
 }
 
 /// The part of a log that its sidecar asks for.

@@ -3,6 +3,7 @@
 
 use crate::channel::Channel;
 use crate::clock::Clock;
+use crate::record::Columns;
 
 /// A channel at its own instants.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,5 +30,15 @@ pub(crate) struct Source {
     /// Lines of the file.
     pub lines: usize,
     /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// What one file holds.
+pub(super) struct Piece {
+    pub columns: Columns,
+    pub clock: Option<Clock>,
+    pub warnings: Vec<String>,
+    /// Rows or lines of the file.
+    pub rows: usize,
     pub sha256: String,
 }

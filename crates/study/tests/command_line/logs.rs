@@ -1,0 +1,99 @@
+//! Logs as they are, to the answer: what is found in them, which part is used, what a person can say.
+
+use crate::desk::{Desk, of_repository, zig_zag_csv};
+
+/// Rows of time, heading and rudder: a straight piece, a zig-zag, twice, and a straight end.
+fn long_log() -> String {
+    let rows: Vec<Vec<f64>> = zig_zag_csv()
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').take(3).map(|cell| cell.parse().expect("a number")).collect())
+        .collect();
+    let (mut time, mut heading) = (0.0, 0.0);
+    let mut text = String::from("t_s,heading_deg,rudder_deg\n");
+    let mut add = |psi: f64, delta: f64| {
+        text.push_str(&format!("{time},{psi},{delta}\n"));
+        time += 1.0;
+    };
+    for _ in 0..2 {
+        (0..400).for_each(|_| add(heading, 0.0));
+        rows.iter().for_each(|row| add(heading + row[1] - rows[0][1], row[2]));
+        heading += rows[rows.len() - 1][1] - rows[0][1];
+    }
+    (0..400).for_each(|_| add(heading, 0.0));
+    text
+}
+
+#[test]
+fn the_zig_zag_of_a_log_is_found_and_asked_for_where_there_are_two() {
+    let desk = Desk::new();
+    desk.file("day.csv", long_log());
+    let found = desk.run(&["find", "day.csv"]);
+    assert_eq!(found.is_done().out.matches("zig-zag 10/10").count(), 2, "{}", found.out);
+    desk.run(&["fit", "day.csv"]).is_refused(2, &["2 zig-zags", "--trial 2", "zig-zag 10/10"]);
+    let number = |line: &str| line.trim_start().chars().next().expect("a number").to_string();
+    let line = found.out.lines().rfind(|line| line.contains("zig-zag")).expect("the second one");
+    let run = desk.run(&["fit", "day.csv", "--trial", &number(line), "--method", "output-error"]);
+    assert!(run.is_done().err.contains("the rest is left out"), "{}", run.err);
+    desk.run(&["fit", "day.csv", "--trial", "99"]).is_refused(2, &["no manoeuvre 99", "study find"]);
+    desk.run(&["fit", "day.csv", "--from", "300", "--until", "700", "--method", "output-error"]).is_done();
+    desk.run(&["fit", "day.csv", "--from", "14:00"]).is_refused(2, &["`14:00` is a time of day", "give seconds"]);
+    desk.run(&["fit", "day.csv", "--from", "soon"]).is_refused(2, &["soon", "expected seconds"]);
+    desk.run(&["fit", "day.csv", "day.csv", "--trial", "1"]).is_refused(2, &["--trial is for one record"]);
+}
+
+#[test]
+fn files_of_one_trial_are_joined_by_time() {
+    let desk = Desk::new();
+    let whole = zig_zag_csv();
+    let columns = |places: [usize; 2]| -> String {
+        let pick = |line: &str| {
+            let cells: Vec<&str> = line.split(',').collect();
+            format!("{},{}\n", cells[places[0]], cells[places[1]])
+        };
+        whole.lines().map(pick).collect()
+    };
+    desk.file("heading.csv", columns([0, 1]));
+    desk.file("rudder.csv", columns([0, 2]));
+    desk.file("whole.csv", &whole);
+    let answer = |arguments: &[&str], folder: &str| {
+        desk.run(&[&["fit", "--method", "output-error"], arguments].concat()).is_done();
+        desk.json(&format!("{folder}/fit.json"))["methods"][0]["parameters"]["K_per_s"]["value"].as_f64()
+    };
+    let joined = answer(&["heading.csv", "--with-columns", "rudder.csv"], "heading-fit");
+    assert_eq!(joined, answer(&["whole.csv"], "whole-fit"));
+    desk.run(&["fit", "heading.csv"]).is_refused(2, &["rudder angle"]);
+    desk.run(&["fit", "heading.csv", "--with-columns", "heading.csv"])
+        .is_refused(2, &["no rudder angle", "--with-columns"]);
+    let ship = ["--length-m", "105", "--speed-kn", "16.7"];
+    let run = desk.run(&[&["fit", "whole.csv"], &ship[..]].concat());
+    assert!(run.is_done().out.contains("IMO 10/10 first overshoot"), "{}", run.out);
+    let run = desk.run(&["fit", "whole.csv"]);
+    assert!(run.is_done().out.contains("IMO: not compared"), "{}", run.out);
+    desk.run(&["fit", "whole.csv", "--length-m", "105"]).is_refused(2, &["no speed", "--speed-kn"]);
+}
+
+#[test]
+fn a_first_description_is_written_for_a_person_to_check() {
+    let desk = Desk::new();
+    desk.file("run.csv", zig_zag_csv().replace("rudder_deg", "helm"));
+    desk.run(&["fit", "run.csv"]).is_refused(2, &["rudder angle", "`helm`"]);
+    desk.run(&["sidecar", "run.csv"]).is_done();
+    desk.run(&["sidecar", "run.csv"]).is_refused(2, &["run.trial.toml", "there already"]);
+    let path = desk.path("run.trial.toml");
+    let text = std::fs::read_to_string(&path).expect("it was written");
+    let wanted = "# [[column]]\n# name = \"helm\"\n# is = \"rudder_deg\"";
+    assert!(text.contains(wanted), "{text}");
+    std::fs::write(&path, text.replace(wanted, &wanted.replace("# ", ""))).expect("written");
+    desk.run(&["fit", "run.csv", "--method", "output-error"]).is_done();
+}
+
+#[test]
+fn the_pages_of_columns_and_sidecars_are_what_the_commands_print() {
+    let desk = Desk::new();
+    for what in ["columns", "sidecar"] {
+        let page = std::fs::read_to_string(of_repository(&format!("docs/{what}.md"))).expect("there is a page");
+        let run = desk.run(&["list", what, "--format", "markdown"]);
+        assert!(run.is_done().out == page, "run `study list {what} --format markdown > docs/{what}.md` again");
+    }
+}
