@@ -5,7 +5,7 @@
 mod readings;
 
 use crate::channel::Channel;
-use crate::record::Columns;
+use crate::record::{Columns, Mark};
 
 /// Angle beyond which no rudder goes, rad.
 const NO_RUDDER: f64 = 1.6;
@@ -56,22 +56,22 @@ pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bo
         && last.is_none_or(|last| (value - last).abs() > NO_READING)
 }
 
-/// Mends the columns; a sentence for everything that was done.
-pub(crate) fn mend(columns: &mut Columns) -> Vec<String> {
+/// Mends the columns; a sentence for everything that was done. The single readings it was done to go to `marks`.
+pub(crate) fn mend(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<String> {
     let mut done = Vec::new();
-    done.extend(leave_out_no_rudder(columns));
+    done.extend(leave_out_no_rudder(columns, marks));
     done.extend(straighten_rudder(columns));
     for channel in [Channel::Heading, Channel::YawRate] {
         done.extend(drop_repeats(columns, channel));
     }
-    done.extend(drop_frozen(columns));
-    done.extend(readings::drop_spikes(columns));
-    done.extend(readings::drop_clipped(columns));
+    done.extend(drop_frozen(columns, marks));
+    done.extend(readings::drop_spikes(columns, marks));
+    done.extend(readings::drop_clipped(columns, marks));
     done
 }
 
 /// Leaves out rows whose rudder angle no rudder has, where they are few.
-fn leave_out_no_rudder(columns: &mut Columns) -> Option<String> {
+fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > NO_RUDDER).collect();
     let rest = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= NO_RUDDER).fold(0.0, f64::max);
@@ -79,6 +79,7 @@ fn leave_out_no_rudder(columns: &mut Columns) -> Option<String> {
         return None;
     }
     let times: Vec<f64> = wild.iter().map(|&row| columns.time[row]).collect();
+    marks.extend(wild.iter().map(|&row| Mark::at(Channel::Rudder, &columns.time, rudder, row)));
     let largest =
         wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
     let mut keep = vec![true; columns.time.len()];
@@ -224,7 +225,7 @@ fn rests(values: &[f64]) -> bool {
 
 /// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
 /// before and after by much more than the heading resolves.
-fn drop_frozen(columns: &mut Columns) -> Option<String> {
+fn drop_frozen(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     if !rests(heading) {
@@ -260,13 +261,20 @@ fn drop_frozen(columns: &mut Columns) -> Option<String> {
     let frozen: Vec<&[usize]> = rests.filter(is_frozen).map(|rest| &seen[rest.start..=rest.end]).collect();
     let told: Vec<String> =
         frozen.iter().map(|rows| format!("from {} s to {} s", time[rows[0]], time[rows[rows.len() - 1]])).collect();
-    frozen.iter().flat_map(|rows| &rows[1..]).for_each(|&row| heading[row] = f64::NAN);
+    for &row in frozen.iter().flat_map(|rows| &rows[1..]) {
+        marks.push(Mark::at(Channel::Heading, time, heading, row));
+        heading[row] = f64::NAN;
+    }
     (!told.is_empty()).then(|| format!("the heading is frozen {}; it is taken as missing there", told.join(", ")))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    pub(super) fn mend(columns: &mut Columns) -> Vec<String> {
+        super::mend(columns, &mut Vec::new())
+    }
 
     /// A zig-zag by hand: the rudder goes to 10° and back at 2.5°/s, the heading swings; 10 Hz, 300 s.
     pub(super) fn columns() -> Columns {

@@ -34,7 +34,7 @@ pub use channel::Channel;
 pub use file::FileError;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, Reading, read, read_with};
-pub use record::{Columns, Noise, Origin, Trial, TrialError};
+pub use record::{Columns, Mark, Noise, Origin, Trial, TrialError};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;
 pub use zigzag::{ZigZag, ZigZagError};

@@ -65,6 +65,23 @@ impl Columns {
     }
 }
 
+/// A reading that was taken as missing, or told as doubtful, before the record was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mark {
+    /// What was read.
+    pub channel: Channel,
+    /// When, s.
+    pub time: f64,
+    /// The reading, in SI units and radians; of a heading unwrapped.
+    pub value: f64,
+}
+
+impl Mark {
+    pub(crate) fn at(channel: Channel, time: &[f64], values: &[f64], row: usize) -> Self {
+        Self { channel, time: time[row], value: values[row] }
+    }
+}
+
 /// Why columns do not make a record.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TrialError {
@@ -134,6 +151,7 @@ pub struct Trial {
     heading_from_yaw_rate: bool,
     noise: Noise,
     particulars: Option<Particulars>,
+    marks: Vec<Mark>,
 }
 
 /// The rudder over time, of as many values as times.
@@ -183,6 +201,7 @@ impl Trial {
             heading_from_yaw_rate,
             noise: Noise::default(),
             particulars: None,
+            marks: Vec::new(),
         })
     }
 
@@ -194,6 +213,11 @@ impl Trial {
     /// The same record with the length and speed of its ship.
     pub fn with_particulars(self, particulars: Particulars) -> Self {
         Self { particulars: Some(particulars), ..self }
+    }
+
+    /// The same record with the readings that were taken as missing or told as doubtful.
+    pub fn with_marks(self, marks: Vec<Mark>) -> Self {
+        Self { marks, ..self }
     }
 
     /// The same record without some channels; heading and rudder cannot be left out.
@@ -296,6 +320,11 @@ impl Trial {
     /// Declared sensor noise.
     pub fn noise(&self) -> Noise {
         self.noise
+    }
+
+    /// Readings that were taken as missing or told as doubtful before the record was made.
+    pub fn marks(&self) -> &[Mark] {
+        &self.marks
     }
 
     /// Length and approach speed of the ship, where declared.

@@ -5,7 +5,7 @@ use identify::Estimate;
 use rayon::prelude::*;
 use report::figures::{self, Fit, RecordFit, Replay, Replays};
 use report::{Figure, Origin, Theme};
-use trial::{Trial, ZigZag, ZigZagError};
+use trial::{Channel, Trial, ZigZag, ZigZagError};
 
 use super::picture::{first_failure, write_figure};
 use campaign::answer::MethodEntry;
@@ -26,8 +26,8 @@ pub struct Drawn<'a> {
     pub validation: bool,
 }
 
-/// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `replays` and `fit` of the first record, and
-/// the same with `-NAME` of the others.
+/// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `raw` (where readings are left out or
+/// doubtful), `replays` and `fit` of the first record, and the same with `-NAME` of the others.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
@@ -42,6 +42,9 @@ pub fn draw(
                 figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, zigzag) };
             write_figure(&figures::zigzag_trial(&data, &theme), folder, &format!("trial{suffix}"))?;
         }
+        if !record.trial.marks().is_empty() {
+            write_figure(&raw(record, &theme), folder, &format!("raw{suffix}"))?;
+        }
         let replays = replays(record, answers);
         write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
         write_figure(&best_fit(record, &replays, &theme), folder, &format!("fit{suffix}"))
@@ -50,6 +53,24 @@ pub fn draw(
 
 fn title(record: &Drawn) -> Option<String> {
     Some(if record.validation { format!("{} (validation)", record.name) } else { record.name.to_owned() })
+}
+
+/// The record with marks at the readings that are left out or doubtful.
+fn raw(record: &Drawn, theme: &Theme) -> Figure {
+    let trial = record.trial;
+    let marked = |channel: Channel| {
+        let marks = trial.marks().iter().filter(|mark| mark.channel == channel);
+        let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
+        curve(&time, &values)
+    };
+    let data = figures::RawRecord {
+        title: title(record),
+        heading: curve(trial.time(), trial.heading()),
+        rudder: curve(trial.time(), trial.rudder()),
+        marked_headings: marked(Channel::Heading),
+        marked_rudder: marked(Channel::Rudder),
+    };
+    figures::raw_record(&data, theme)
 }
 
 fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Replays {

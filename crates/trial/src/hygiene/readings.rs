@@ -3,7 +3,7 @@
 
 use super::at;
 use crate::channel::Channel;
-use crate::record::Columns;
+use crate::record::{Columns, Mark};
 
 /// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
 const LEAST: f64 = 0.035;
@@ -51,7 +51,7 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
-pub(super) fn drop_spikes(columns: &mut Columns) -> Vec<String> {
+pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<String> {
     let time = &columns.time;
     let mut told = Vec::new();
     for (channel, name) in [(Channel::Heading, "heading"), (Channel::Rudder, "rudder angle")] {
@@ -68,7 +68,10 @@ pub(super) fn drop_spikes(columns: &mut Columns) -> Vec<String> {
         if !spikes.is_empty() && spikes.len() as f64 <= FEW * values.len() as f64 {
             let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
             let times: Vec<f64> = spikes.iter().map(|&(row, _)| time[row]).collect();
-            spikes.iter().for_each(|&(row, _)| values[row] = f64::NAN);
+            for &(row, _) in &spikes {
+                marks.push(Mark::at(channel, time, values, row));
+                values[row] = f64::NAN;
+            }
             told.push(format!(
                 "{} {name}{} far from both neighbours (by up to {:.1}°) taken as missing, {}",
                 spikes.len(),
@@ -78,14 +81,14 @@ pub(super) fn drop_spikes(columns: &mut Columns) -> Vec<String> {
             ));
         }
         if channel == Channel::Heading {
-            told.extend(jumps(time, values, least));
+            told.extend(jumps(time, values, least, marks));
         }
     }
     told
 }
 
 /// Tells of steps between two headings that no ship makes: far more than the steps before and after.
-fn jumps(time: &[f64], heading: &[f64], least: f64) -> Option<String> {
+fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<Mark>) -> Option<String> {
     let mut found = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];
     for row in readings(heading) {
@@ -95,7 +98,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64) -> Option<String> {
             let around = rate(first, second).max(rate(third, row));
             // Over a gap a ship may turn far.
             if step > least && step > ALONE * around * (time[third] - time[second]) {
-                found.push((time[third], step));
+                found.push((third, step));
             }
         }
         last = [last[1], last[2], Some(row)];
@@ -104,7 +107,8 @@ fn jumps(time: &[f64], heading: &[f64], least: f64) -> Option<String> {
         return None;
     }
     let largest = found.iter().map(|(_, step)| *step).fold(0.0, f64::max);
-    let times: Vec<f64> = found.iter().map(|(time, _)| *time).collect();
+    let times: Vec<f64> = found.iter().map(|&(row, _)| time[row]).collect();
+    marks.extend(found.iter().map(|&(row, _)| Mark::at(Channel::Heading, time, heading, row)));
     Some(format!(
         "the heading jumps (by up to {:.1}°) as no ship turns, {}; it is left as it is, for nobody can say which side is right",
         largest.to_degrees(),
@@ -113,7 +117,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64) -> Option<String> {
 }
 
 /// Takes a yaw rate as missing where it stays at the end of its scale while the heading turns faster.
-pub(super) fn drop_clipped(columns: &mut Columns) -> Option<String> {
+pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
     let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));
@@ -136,7 +140,10 @@ pub(super) fn drop_clipped(columns: &mut Columns) -> Option<String> {
         return None;
     }
     let rate = columns.channels.get_mut(&Channel::YawRate)?;
-    at_end.iter().for_each(|&row| rate[row] = f64::NAN);
+    for &row in &at_end {
+        marks.push(Mark::at(Channel::YawRate, &columns.time, rate, row));
+        rate[row] = f64::NAN;
+    }
     Some(format!(
         "the yaw rate ends at {:.2}°/s while the heading turns faster: {} rows at the end of its scale taken as missing",
         end.to_degrees(),
@@ -146,8 +153,7 @@ pub(super) fn drop_clipped(columns: &mut Columns) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mend;
-    use super::super::tests::{columns, with};
+    use super::super::tests::{columns, mend, with};
     use super::*;
 
     #[test]

@@ -15,7 +15,7 @@ use crate::clock::Clock;
 use crate::encoding::Encoding;
 use crate::hygiene;
 use crate::plausibility;
-use crate::record::{Columns, Origin, Trial, TrialError};
+use crate::record::{Columns, Mark, Origin, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarProblem};
 use ship::Particulars;
 
@@ -40,6 +40,7 @@ pub struct Log {
     part: Option<[f64; 2]>,
     /// What the reader had to decide or found remarkable, one sentence each.
     pub warnings: Vec<String>,
+    marks: Vec<Mark>,
 }
 
 impl Log {
@@ -64,8 +65,8 @@ impl Log {
     }
 
     fn of(path: &Path, piece: Piece, sidecar: Option<Sidecar>) -> Self {
-        let Piece { columns, clock, warnings, rows, sha256 } = piece;
-        Self { path: path.to_path_buf(), columns, clock, sha256, rows, sidecar, part: None, warnings }
+        let Piece { columns, clock, warnings, marks, rows, sha256 } = piece;
+        Self { path: path.to_path_buf(), columns, clock, sha256, rows, sidecar, part: None, warnings, marks }
     }
 
     fn fault(&self, problem: impl Into<Problem>) -> ReadError {
@@ -87,6 +88,7 @@ impl Log {
         };
         let of_file = |warning: String| format!("{}: {warning}", other.display());
         self.warnings.extend(piece.warnings.into_iter().map(of_file));
+        self.marks.extend(piece.marks.into_iter().map(|mark| Mark { time: mark.time + offset, ..mark }));
         let mut all = series(std::mem::take(&mut self.columns), 0.0);
         all.extend(series(piece.columns, offset));
         let (all, doubled) = once(all);
@@ -161,7 +163,9 @@ impl Log {
     ///
     /// Fails when it has too few rows, or contradicts itself ([`plausibility`]).
     pub fn into_trial(self, ship: Option<Particulars>) -> Result<Reading, ReadError> {
-        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, .. } = self;
+        let Self { path, columns, sha256, rows, sidecar, mut warnings, part, mut marks, .. } = self;
+        let (first, last) = (columns.time.first().copied(), columns.time.last().copied());
+        marks.retain(|mark| first <= Some(mark.time) && Some(mark.time) <= last);
         let fault = |problem| ReadError::table(&path, problem);
         let checked = sidecar.as_ref().is_none_or(|sidecar| sidecar.plausibility);
         let name = input::stem(&path);
@@ -183,6 +187,7 @@ impl Log {
             Some(particulars) => trial.with_noise(noise).with_particulars(particulars),
             None => trial.with_noise(noise),
         };
+        let trial = trial.with_marks(marks);
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
             Err(implausible) if !checked => warnings.push(implausible.to_string()),
@@ -259,6 +264,7 @@ fn of_content(
 /// Channels with instants of their own, each mended by itself.
 fn of_source(source: Source, checked: bool) -> Piece {
     let Source { series, clock, mut warnings, lines, sha256 } = source;
+    let mut marks = Vec::new();
     let mended = series.into_iter().map(|one| {
         let Series { channel, name, time, mut values } = one;
         if channel == Channel::Heading {
@@ -266,13 +272,13 @@ fn of_source(source: Source, checked: bool) -> Piece {
         }
         let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if checked {
-            warnings.extend(hygiene::mend(&mut own));
+            warnings.extend(hygiene::mend(&mut own, &mut marks));
         }
         let values = own.channels.remove(&channel).unwrap_or_default();
         Series { channel, name, time: own.time, values }
     });
     let columns = columns(mended.collect());
-    Piece { columns, clock, warnings, rows: lines, sha256 }
+    Piece { columns, clock, warnings, marks, rows: lines, sha256 }
 }
 
 /// The part of a log that its sidecar asks for.

@@ -3,7 +3,7 @@
 
 use crate::channel::Channel;
 use crate::clock::Clock;
-use crate::record::Columns;
+use crate::record::{Columns, Mark};
 
 /// A channel at its own instants.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,8 @@ pub(super) struct Piece {
     pub columns: Columns,
     pub clock: Option<Clock>,
     pub warnings: Vec<String>,
+    /// Readings taken as missing or told as doubtful.
+    pub marks: Vec<Mark>,
     /// Rows or lines of the file.
     pub rows: usize,
     pub sha256: String,

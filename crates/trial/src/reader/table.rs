@@ -67,8 +67,9 @@ pub(super) fn read(
     }
     warnings.extend(decided);
     warnings.extend(found);
+    let mut marks = Vec::new();
     if sidecar.is_none_or(|sidecar| sidecar.plausibility) {
-        warnings.extend(hygiene::mend(&mut kept.columns));
+        warnings.extend(hygiene::mend(&mut kept.columns, &mut marks));
     }
-    Ok(Piece { columns: kept.columns, clock: kept.clock, warnings, rows: kept.rows, sha256 })
+    Ok(Piece { columns: kept.columns, clock: kept.clock, warnings, marks, rows: kept.rows, sha256 })
 }
