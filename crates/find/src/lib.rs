@@ -50,7 +50,9 @@ pub fn manoeuvres(log: &Log) -> Vec<Manoeuvre> {
     found.extend(zigzags::zigzags(&record, &free));
     found.sort_by_key(|pattern| pattern.holds[0].first);
     let free = rest.merged.iter().copied().filter(|stretch| !overlaps(&found, stretch)).collect::<Vec<_>>();
-    found.extend(turns::turns(&record, &free));
+    // A pull-out begins where its turn ends, and something else may lie between.
+    let turns = turns::turns(&record, &free).into_iter().filter(|turn| !overlaps(&found, &turn.holds[0]));
+    found.extend(turns.collect::<Vec<_>>());
     found.sort_by_key(|pattern| pattern.holds[0].first);
     let mut list = bounds::bounded(&record, &found);
     straights::add(&record, &found, &mut list);

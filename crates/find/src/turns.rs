@@ -31,23 +31,24 @@ const STEADY: f64 = 0.04;
 /// The turning circles and pull-outs among stretches that are in order of time.
 pub(crate) fn turns(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
     let mut found = Vec::new();
-    for (index, &hold) in stretches.iter().enumerate() {
-        let rudder = hold.level - record.rest.neutral;
-        if hold.level.abs() < SMALLEST_RUDDER || rudder.abs() < SMALLEST_RUDDER || !is_whole(record, &hold) {
-            continue;
-        }
-        let Some(turned) = record.course.change(hold.from, hold.until) else { continue };
-        if turned * rudder.signum() < TURN {
-            continue;
-        }
+    for (index, hold) in stretches.iter().enumerate() {
+        let Some(turned) = turned(record, hold) else { continue };
         let rate = turned.abs() / hold.duration();
         if turned.abs() >= CIRCLE {
             let kind = Kind::TurningCircle { rudder: hold.level, turned };
-            found.push(Pattern { kind, holds: vec![hold], scale: TURN / rate, swing: TURN });
+            found.push(Pattern { kind, holds: vec![*hold], scale: TURN / rate, swing: TURN });
         }
-        found.extend(pull_out(record, &hold, &stretches[index + 1..]));
+        found.extend(pull_out(record, hold, &stretches[index + 1..]));
     }
     found
+}
+
+/// Change of heading in a turn, rad; `None` for a stretch that is none.
+fn turned(record: &Record, hold: &Stretch) -> Option<f64> {
+    let rudder = hold.level - record.rest.neutral;
+    let is_over = hold.level.abs() >= SMALLEST_RUDDER && rudder.abs() >= SMALLEST_RUDDER;
+    let turned = record.course.change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
+    (turned * rudder.signum() >= TURN).then_some(turned)
 }
 
 /// Whether the log has no gap in a turn in which the rudder may have been elsewhere.
@@ -62,7 +63,9 @@ fn pull_out(record: &Record, turn: &Stretch, next: &[Stretch]) -> Option<Pattern
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT / rate;
     let soon = |stretch: &&Stretch| stretch.from - turn.until <= time.max(0.25 * turn.duration());
-    let amidships = next.iter().take_while(soon).find(|stretch| stretch.duration() >= FEWEST_TIMES * time)?;
+    // Between two turns the rudder was not amidships.
+    let mut reach = next.iter().take_while(soon).take_while(|stretch| turned(record, stretch).is_none());
+    let amidships = reach.find(|stretch| stretch.duration() >= FEWEST_TIMES * time)?;
     let neutral = record.rest.neutral;
     let off = (amidships.level - neutral).abs();
     let is_amidships = off <= AMIDSHIPS * (turn.level - neutral).abs() && off < SMALLEST_RUDDER;

@@ -85,6 +85,26 @@ fn a_gap_of_the_log_ends_a_zig_zag() {
     assert!(found.iter().all(|found| found.until - found.from < 1000.0), "{found:?}");
 }
 
+/// The rudder goes from a long circle quickly round a short one, and only then amidships.
+#[test]
+fn between_two_turns_there_is_no_pull_out() {
+    let (mut time, mut rudder, mut heading) = (Vec::new(), Vec::new(), Vec::new());
+    let mut psi = 0.0;
+    for (rows, rudder_deg, turn_deg) in [(40, 0.0, 0.0), (100, 10.0, 2.0), (10, -25.0, -30.0), (60, 0.0, 0.0)] {
+        for _ in 0..rows {
+            time.push(time.len() as f64);
+            rudder.push(from_deg(rudder_deg));
+            psi += from_deg(turn_deg);
+            heading.push(psi);
+        }
+    }
+    let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller: None };
+    let list = manoeuvres(&log);
+    let names: Vec<String> = list.iter().map(|found| found.kind.name()).collect();
+    assert_eq!(names, ["turning circle 10 to starboard", "turning circle 25 to port", "pull-out", "straight"]);
+    assert!(list.windows(2).all(|pair| pair[0].until < pair[1].from), "{list:?}");
+}
+
 /// No log of constants, of few rows or with unsound channels has anything.
 #[test]
 fn logs_that_are_none() {
