@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use find::{Kind, Manoeuvre};
 use ship::Particulars;
 use ship::angle::KNOT;
+use trial::zigzag::median::upper_median;
 use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};
@@ -70,8 +71,9 @@ pub fn open(
     });
     // Folders and figures are named after the record.
     name::of_file(path)?;
-    let beside = Some(Sidecar::beside(path)).filter(|beside| beside.is_file());
-    let sidecar = own.or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf)).or(beside);
+    let sidecar = own
+        .or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf))
+        .or_else(|| Sidecar::found_beside(path));
     let mut log = Log::open(path, sidecar.as_deref(), others).map_err(Failure::input)?;
     let found = std::mem::take(&mut log.warnings);
     warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
@@ -230,13 +232,11 @@ fn ship(
     let file = path.display();
     let first = log.channel(Channel::Speed).map(|speed| &speed[..speed.len().div_ceil(10)]);
     let mut speeds: Vec<f64> = first.into_iter().flatten().copied().filter(|speed| *speed > 0.0).collect();
-    if speeds.is_empty() {
+    let Some(speed) = upper_median(&mut speeds) else {
         return Err(Failure::input(format!(
             "{file}: the record has no speed; give the approach speed beside --length-m, --speed-kn or --speed-m-s"
         )));
-    }
-    let middle = speeds.len() / 2;
-    let speed = *speeds.select_nth_unstable_by(middle, f64::total_cmp).1;
+    };
     warnings.push(format!(
         "{file}: the approach speed is taken from the record, {} kn in its first tenth",
         report::number::fixed(speed / KNOT, 2)

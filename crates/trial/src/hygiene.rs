@@ -6,6 +6,7 @@ mod readings;
 
 use crate::channel::Channel;
 use crate::record::{Columns, Mark};
+use crate::words::counted;
 
 /// Angle beyond which no rudder goes, rad.
 const NO_RUDDER: f64 = 1.6;
@@ -87,14 +88,10 @@ fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<S
     columns.retain(&keep);
     Some(format!(
         "{} with a rudder angle no rudder has ({:.0}°) left out, {}; between its neighbours the rudder runs straight",
-        rows(wild.len()),
+        counted(wild.len(), "row"),
         largest.to_degrees(),
         at(&times)
     ))
-}
-
-fn rows(count: usize) -> String {
-    format!("{count} {}", if count == 1 { "row" } else { "rows" })
 }
 
 /// 2nd, 3rd, 4th, …

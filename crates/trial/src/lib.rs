@@ -5,6 +5,7 @@
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`], [`names`] |
 //! | which files are opened, and how much of them is read | [`mod@file`] |
+//! | decoders that may panic | [`decoder`] |
 //! | stamps of date and time | [`clock`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
@@ -15,6 +16,7 @@
 mod cells;
 pub mod channel;
 pub mod clock;
+pub mod decoder;
 mod encoding;
 pub mod file;
 mod hygiene;

@@ -183,13 +183,18 @@ pub fn check(trial: &Trial) -> Result<Vec<String>, Implausible> {
     Ok(warnings)
 }
 
-/// Largest minus smallest finite value, deg.
-fn range_deg(values: &[f64]) -> f64 {
+/// Largest minus smallest finite value; 0 where there is none.
+pub(crate) fn range(values: &[f64]) -> f64 {
     let (low, high) = values
         .iter()
         .filter(|value| value.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
-    if low <= high { to_deg(high - low) } else { 0.0 }
+    if low <= high { high - low } else { 0.0 }
+}
+
+/// The same of an angle in radians, deg.
+fn range_deg(values: &[f64]) -> f64 {
+    to_deg(range(values))
 }
 
 /// How often the rudder goes from one side of its range to the other, by more than half of it.
@@ -364,21 +369,27 @@ fn rate_of_turn(trial: &Trial, warnings: &mut Vec<String>) {
     }
 }
 
-/// Mean size of the rate of turn, rad/s, from changes of heading over a hundredth of the record each, in which noise
-/// counts little; NaN without two headings.
+/// Mean size of the rate of turn, rad/s, from changes of heading over a hundredth of the record each; NaN without two
+/// headings.
 pub(crate) fn mean_rate(time: &[f64], heading: &[f64]) -> f64 {
-    const PARTS: usize = 100;
-    let seen = heading.iter().filter(|psi| psi.is_finite()).count();
-    let every = (seen / PARTS).max(1);
-    let mut ends = (0..time.len()).filter(|&row| heading[row].is_finite()).step_by(every);
-    let Some(mut from) = ends.next() else { return f64::NAN };
-    let (mut turned, mut duration) = (0.0, 0.0);
-    for to in ends {
-        turned += (heading[to] - heading[from]).abs();
-        duration += time[to] - time[from];
-        from = to;
-    }
+    let (turned, duration) = changes(time, heading)
+        .fold((0.0, 0.0), |(turned, duration), (turn, step)| (turned + turn.abs(), duration + step));
     turned / duration
+}
+
+/// Changes of a channel, and the time they took (s), over a hundredth of its readings each, in which noise counts
+/// little.
+pub(crate) fn changes<'a>(time: &'a [f64], values: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + 'a {
+    const PARTS: usize = 100;
+    let read = values.iter().filter(|value| value.is_finite()).count();
+    let every = (read / PARTS).max(1);
+    let mut ends = (0..time.len()).filter(|&row| values[row].is_finite()).step_by(every);
+    let mut from = ends.next().unwrap_or(0);
+    ends.map(move |to| {
+        let change = (values[to] - values[from], time[to] - time[from]);
+        from = to;
+        change
+    })
 }
 
 /// Names gaps in time that are long against the sampling.

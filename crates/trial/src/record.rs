@@ -8,6 +8,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
+use crate::zigzag::median::upper_median;
 
 /// Where a record comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -270,8 +271,7 @@ impl Trial {
         const ENOUGH: usize = 100_000;
         let pairs = self.time().windows(2).step_by(self.len() / ENOUGH + 1);
         let mut steps: Vec<f64> = pairs.map(|pair| pair[1] - pair[0]).collect();
-        let middle = steps.len() / 2;
-        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+        upper_median(&mut steps).expect("a record has rows")
     }
 
     /// Heading of every row, rad, unwrapped; NaN where it was not recorded.

@@ -208,6 +208,11 @@ impl Sidecar {
         table.with_extension("trial.toml")
     }
 
+    /// The sidecar of a table, where there is one beside it.
+    pub fn found_beside(table: &Path) -> Option<PathBuf> {
+        Some(Self::beside(table)).filter(|beside| beside.is_file())
+    }
+
     /// Reads and checks a sidecar.
     ///
     /// Fails when the file cannot be read or is larger than [`SIDECAR`], and as [`parse`](Self::parse) does.

@@ -19,3 +19,8 @@ pub(crate) fn shortened(text: &str) -> String {
     }
     short
 }
+
+/// `1 sentence`, `12 sentences`.
+pub(crate) fn counted(number: usize, of: &str) -> String {
+    format!("{number} {of}{}", if number == 1 { "" } else { "s" })
+}

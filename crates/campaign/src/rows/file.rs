@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
     fn new(file: Source, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
         let refuse =
             |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
-        decoding::guarded(|| {
+        trial::decoder::guarded(|| {
             let file = SerializedFileReader::new(file).map_err(|error| refuse(error.to_string()))?;
             let schema = file.metadata().file_metadata().schema_descr_ptr();
             let found: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
     /// The next rows, a few thousand at most; nothing when all have been read.
     pub(super) fn next_rows(&mut self) -> Result<Vec<Row>, Failure> {
         let path = self.path.clone();
-        decoding::guarded(|| self.decoded()).unwrap_or_else(|| {
+        trial::decoder::guarded(|| self.decoded()).unwrap_or_else(|| {
             Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
         })
     }

@@ -4,6 +4,7 @@
 use super::at;
 use crate::channel::Channel;
 use crate::record::{Columns, Mark};
+use crate::zigzag::median::upper_median;
 
 /// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
 const LEAST: f64 = 0.035;
@@ -46,8 +47,7 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
     const ENOUGH: usize = 100_000;
     let every = values.len() / ENOUGH + 1;
     let mut sizes: Vec<f64> = deviations(time, values).step_by(every).map(|(_, deviation)| deviation.abs()).collect();
-    let middle = sizes.len() / 2;
-    (sizes.len() > 2 * CLIPPED).then(|| 1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1)
+    upper_median(&mut sizes).filter(|_| sizes.len() > 2 * CLIPPED).map(|size| 1.4826 * size)
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.

@@ -11,6 +11,8 @@ use super::limits::spoken;
 use super::source::Series;
 use crate::channel::{Channel, Unit};
 use crate::record::Columns;
+use crate::words::counted;
+use crate::zigzag::median::upper_median;
 
 /// Longest way between two readings over which a channel runs straight, in its usual intervals.
 const LONGEST_WAY: f64 = 3.0;
@@ -76,8 +78,7 @@ fn shortest(turn: f64) -> f64 {
 /// Median time between instants, s.
 fn usual_interval(time: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+    upper_median(&mut steps)
 }
 
 /// The readings of the channels of a table; nothing of what it does not know.
@@ -138,7 +139,7 @@ pub(super) fn straight_rudder(columns: &mut Columns) -> Option<String> {
     let keep: Vec<bool> = rudder.iter().map(|delta| delta.is_finite()).collect();
     let left_out = keep.iter().filter(|keep| !**keep).count();
     columns.retain(&keep);
-    let rows = |count: usize| format!("{count} {}", if count == 1 { "row" } else { "rows" });
+    let rows = |count: usize| counted(count, "row");
     let mut told = Vec::new();
     if filled > 0 {
         told.push(format!("{} without rudder angle, which runs straight between its readings there", rows(filled)));
@@ -170,22 +171,27 @@ pub(super) fn on_plane([latitude, longitude]: [Vec<f64>; 2]) -> Option<[(Channel
 }
 
 /// Refuses channels whose readings have no time in common, and names what is missing altogether.
-pub(super) fn check(series: &[Series]) -> Result<(), Problem> {
-    let find = |wanted: &[Channel]| wanted.iter().find_map(|channel| series.iter().find(|s| s.channel == *channel));
-    let rudder = find(&[Channel::Rudder, Channel::RudderOrder]);
-    let heading = find(&[Channel::Heading, Channel::YawRate]);
-    let found: Vec<String> = series.iter().map(|series| spoken(series.channel).to_owned()).collect();
+pub(super) fn check(columns: &Columns) -> Result<(), Problem> {
+    let Columns { time, channels, .. } = columns;
+    let find = |wanted: [Channel; 2]| wanted.into_iter().find_map(|channel| channels.get(&channel));
+    let rudder = find([Channel::Rudder, Channel::RudderOrder]);
+    let heading = find([Channel::Heading, Channel::YawRate]);
     let (Some(rudder), Some(heading)) = (rudder, heading) else {
         let wanted = if rudder.is_none() { "rudder angle" } else { "heading and no yaw rate" };
+        let found = channels.keys().map(|&channel| spoken(channel).to_owned()).collect();
         return Err(Problem::NoChannel { wanted, found });
     };
-    let span = |series: &Series| (series.time.first().copied(), series.time.last().copied());
-    if let ((Some(a), Some(b)), (Some(c), Some(d))) = (span(rudder), span(heading))
-        && (a > d || c > b)
-    {
-        return Err(Problem::NoOverlap { rudder_s: [a, b], heading_s: [c, d] });
+    let span = |values: &[f64]| {
+        let first = values.iter().position(|value| value.is_finite())?;
+        let last = values.iter().rposition(|value| value.is_finite())?;
+        Some([time[first], time[last]])
+    };
+    match (span(rudder), span(heading)) {
+        (Some(rudder_s), Some(heading_s)) if rudder_s[0] > heading_s[1] || heading_s[0] > rudder_s[1] => {
+            Err(Problem::NoOverlap { rudder_s, heading_s })
+        }
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// One of each channel; the first file that has it gives it. The names of those that are not used.

@@ -1,5 +1,7 @@
 //! Instants of rows whose stamps are coarser than their rows: ten rows with one second each.
 
+use crate::zigzag::median::upper_median;
+
 /// Spreads rows that share a stamp evenly over the time to the next one; the typical number of rows with one stamp
 /// where there is more than one.
 ///
@@ -11,14 +13,10 @@ pub(super) fn spread(time: &mut [f64]) -> Option<usize> {
         return None;
     }
     begins.push(time.len());
-    let median = |mut values: Vec<f64>| {
-        let middle = values.len() / 2;
-        (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
-    };
     let steps = begins.windows(2).filter(|pair| pair[1] < time.len()).map(|pair| time[pair[1]] - time[pair[0]]);
-    let width = median(steps.collect())?;
+    let width = upper_median(&mut steps.collect::<Vec<f64>>())?;
     let inner = begins[1..begins.len() - 1].windows(2).map(|pair| (pair[1] - pair[0]) as f64);
-    let usual = median(inner.collect())? as usize;
+    let usual = upper_median(&mut inner.collect::<Vec<f64>>())? as usize;
     let last = begins.len() - 2;
     for (number, pair) in begins.windows(2).enumerate() {
         let rows = pair[1] - pair[0];

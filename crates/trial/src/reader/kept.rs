@@ -12,7 +12,7 @@ use super::rows::Rows;
 use crate::channel::Channel;
 use crate::clock::{Clock, Stamps};
 use crate::record::Columns;
-use crate::words::shortened;
+use crate::words::{counted, shortened};
 
 /// A channel whose unit its values have to show.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,7 +138,7 @@ impl Rows<'_> {
         let mut warnings = self.layout.told.clone();
         let mut count = |number: usize, text: &str| {
             if number > 0 {
-                warnings.push(format!("{number} {} {text}", if number == 1 { "row" } else { "rows" }));
+                warnings.push(format!("{} {text}", counted(number, "row")));
             }
         };
         count(counts.no_time, "without time left out");

@@ -75,8 +75,7 @@ impl Log {
 
     /// Adds the channels of another file.
     fn join(&mut self, other: &Path) -> Result<(), ReadError> {
-        let beside = Sidecar::beside(other);
-        let sidecar = beside.is_file().then(|| Sidecar::load(&beside)).transpose()?;
+        let sidecar = Sidecar::found_beside(other).map(|beside| Sidecar::load(&beside)).transpose()?;
         let piece = piece(other, sidecar.as_ref(), false)?;
         let offset = match (&self.clock, &piece.clock) {
             (Some(own), Some(its)) => offset(own, its),
@@ -103,9 +102,7 @@ impl Log {
 
     /// Checks that files which belong together make a record.
     fn settle_joined(&mut self) -> Result<(), ReadError> {
-        let series = series(std::mem::take(&mut self.columns), 0.0);
-        check(&series).map_err(|problem| self.fault(problem))?;
-        self.columns = columns(series);
+        check(&self.columns).map_err(|problem| self.fault(problem))?;
         self.warnings.extend(complete(&mut self.columns));
         self.warnings.extend(straight_rudder(&mut self.columns));
         Ok(())
@@ -152,11 +149,6 @@ impl Log {
             self.columns.channels.retain(|_, values| values.iter().any(|value| value.is_finite()));
         }
         Ok(self)
-    }
-
-    /// First and last time of the part that was cut out, s; `None` for the whole log.
-    pub fn cut(&self) -> Option<[f64; 2]> {
-        self.part
     }
 
     /// The record that the log holds; `ship` goes before what a sidecar declares.
@@ -246,7 +238,7 @@ fn of_content(
                 piece.columns = kept_part(piece.columns, sidecar);
             }
             if whole {
-                check(&series(piece.columns.clone(), 0.0)).map_err(fault)?;
+                check(&piece.columns).map_err(fault)?;
             }
             piece
         }
@@ -292,9 +284,7 @@ fn kept_part(mut columns: Columns, sidecar: &Sidecar) -> Columns {
 ///
 /// Fails as [`read_with`] does.
 pub fn read(path: &Path) -> Result<Reading, ReadError> {
-    let beside = Sidecar::beside(path);
-    let sidecar = if beside.is_file() { Some(beside) } else { None };
-    read_with(path, sidecar.as_deref())
+    read_with(path, Sidecar::found_beside(path).as_deref())
 }
 
 /// Reads the trial at `path` as the sidecar at `sidecar` describes it; `None` reads it by its header alone.

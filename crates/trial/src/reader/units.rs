@@ -8,8 +8,9 @@ use super::kept::{Kept, Open};
 use super::limits::spoken;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::{MEAN_RATE_DEG_S, mean_rate, reversals};
+use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
 use crate::words::shortened;
+use crate::zigzag::median::upper_median;
 
 /// Largest angle of a rudder in radians: 45°. In degrees a rudder of a manoeuvre goes further.
 const RUDDER_RAD: f64 = 0.8;
@@ -26,9 +27,6 @@ const TURN: [f64; 2] = [1.0, 500.0];
 
 /// Beyond this a heading is no continuous angle in radians: six circles.
 const SIX_CIRCLES: f64 = 38.0;
-
-/// Parts of a record over which changes of heading are summed, so that noise counts little.
-const PARTS: usize = 100;
 
 /// Slowest rudder, rad/s: 0.2 °/s.
 const SLOWEST_RUDDER: f64 = 3.5e-3;
@@ -140,12 +138,6 @@ fn rudder(open: &Open) -> Option<Unit> {
     }
 }
 
-fn range(values: &[f64]) -> f64 {
-    let finite = values.iter().filter(|value| value.is_finite());
-    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &value| (l.min(value), h.max(value)));
-    (high - low).max(0.0)
-}
-
 /// The unit of a heading that was read as degrees; removes the wrap at 2π where it is in radians.
 fn heading(channels: &mut Channels, open: &Open) -> Option<Unit> {
     let degree = Unit::Degree.to_si();
@@ -183,14 +175,6 @@ fn heading(channels: &mut Channels, open: &Open) -> Option<Unit> {
     }
 }
 
-/// Changes of a channel and of the integral of another over equal parts of a record.
-fn changes(time: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
-    let seen: Vec<usize> = (0..time.len()).filter(|&row| values[row].is_finite()).collect();
-    let step = (seen.len() / PARTS).max(1);
-    let ends: Vec<usize> = seen.into_iter().step_by(step).collect();
-    ends.windows(2).map(|pair| (values[pair[1]] - values[pair[0]], time[pair[1]] - time[pair[0]])).collect()
-}
-
 /// The unit of a yaw rate that was read as deg/s, from the heading.
 fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
     let (heading, rate) = (channels.get(&Channel::Heading)?, channels.get(&Channel::YawRate)?);
@@ -206,7 +190,7 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
             if heading[row].is_finite() { integral } else { f64::NAN }
         })
         .collect();
-    let pairs = changes(time, heading).into_iter().zip(changes(time, &integrals));
+    let pairs = changes(time, heading).zip(changes(time, &integrals));
     let (product, square) = pairs.fold((0.0, 0.0), |(xy, xx), ((psi, _), (sum, _))| (xy + psi * sum, xx + sum * sum));
     // A rate of the opposite sign is for the checks of a record to find.
     let ratio = (product / square).abs();
@@ -221,8 +205,8 @@ fn yaw_rate(time: &[f64], channels: &Channels) -> Option<Unit> {
 fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
     let (north, east) = (channels.get(&Channel::North)?, channels.get(&Channel::East)?);
     let values: Vec<f64> = channels.get(&Channel::Speed)?.iter().copied().filter(|speed| speed.is_finite()).collect();
-    let way: f64 = changes(time, north).iter().zip(changes(time, east)).map(|((n, _), (e, _))| n.hypot(e)).sum();
-    let duration: f64 = changes(time, north).iter().map(|(_, time)| time).sum();
+    let way: f64 = changes(time, north).zip(changes(time, east)).map(|((n, _), (e, _))| n.hypot(e)).sum();
+    let duration: f64 = changes(time, north).map(|(_, time)| time).sum();
     let ratio = way / duration / (values.iter().sum::<f64>() / values.len() as f64);
     Channel::Speed.units().iter().find(|unit| (0.75..1.33).contains(&(ratio / unit.to_si()))).copied()
 }
@@ -266,9 +250,7 @@ fn time(kept: &mut Kept, name: &str, line: usize) -> Result<Option<String>, Prob
     }
     // A second in minutes is 0.016667: no clock counts seconds in such steps.
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    if !steps.is_empty() {
-        let step = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    if let Some(step) = upper_median(&mut steps) {
         let is_round = |step: f64| (100.0 * step - (100.0 * step).round()).abs() < 0.02;
         if step < 1.0 && !is_round(step) && is_round(60.0 * step) {
             return Err(refusal());

@@ -1,37 +1,12 @@
-//! Guards about decoders that trust what a file states: their panics are caught, and the head of a page of a Parquet
-//! file is looked at before the decoder reserves what it states.
+//! The head of a page of a Parquet file is looked at before the decoder reserves what it states.
 
-use std::cell::Cell;
 use std::io;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Once;
 
 use bytes::Bytes;
 use parquet::errors::Result;
 use parquet::file::reader::{ChunkReader, Length};
 
-thread_local! {
-    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
-}
-
-static QUIET: Once = Once::new();
-
-/// Does work of a decoder; `None` where it panics, of which nothing is shown.
-pub fn guarded<T>(work: impl FnOnce() -> T) -> Option<T> {
-    QUIET.call_once(|| {
-        let hook = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |about| {
-            if !IS_GUARDED.get() {
-                hook(about);
-            }
-        }));
-    });
-    let before = IS_GUARDED.replace(true);
-    // What the work has changed is thrown away with the reader when it panics.
-    let done = catch_unwind(AssertUnwindSafe(work));
-    IS_GUARDED.set(before);
-    done.ok()
-}
+use crate::decoder::{number, whole};
 
 /// Largest size of a page before it is packed, bytes: some programs write a column of all rows as one page.
 const LARGEST_PAGE: u64 = 8 * crate::reader::MAX_ROWS as u64;
@@ -108,38 +83,9 @@ fn is_page(head: &[u8]) -> bool {
     read() == Some(true)
 }
 
-/// The next field of a Thrift struct, if it is a whole number, still zigzag.
-fn number(bytes: &mut &[u8]) -> Option<u64> {
-    const NEXT_FIELD_INTEGER: u8 = 0x15;
-    let (&field, mut rest) = bytes.split_first()?;
-    let mut zigzag = 0_u64;
-    for shift in (0..35).step_by(7) {
-        let (&byte, tail) = rest.split_first()?;
-        rest = tail;
-        zigzag |= u64::from(byte & 0x7f) << shift;
-        if byte < 0x80 {
-            *bytes = rest;
-            return (field == NEXT_FIELD_INTEGER).then_some(zigzag);
-        }
-    }
-    None
-}
-
-/// A zigzag number, if it is 0 or above.
-fn whole(zigzag: u64) -> Option<u64> {
-    zigzag.is_multiple_of(2).then_some(zigzag / 2)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_panic_of_the_decoder_is_no_panic_of_the_program() {
-        assert_eq!(guarded(|| 3), Some(3));
-        assert_eq!(guarded(|| -> u8 { panic!("a decoder gave up") }), None);
-        assert!(!IS_GUARDED.get());
-    }
 
     #[test]
     fn pages_of_any_size_are_not_believed() {

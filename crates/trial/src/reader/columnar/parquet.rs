@@ -11,8 +11,9 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use super::decoding::{Checked, guarded};
+use super::decoding::Checked;
 use super::text::{self, Lines, Written};
+use crate::decoder::guarded;
 use crate::reader::error::Problem;
 
 /// Rows decoded at a time.

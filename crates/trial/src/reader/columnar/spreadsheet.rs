@@ -9,8 +9,8 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use calamine::{DataRef, Reader, Xlsx, XlsxCellReader, XlsxError};
 
-use super::decoding::guarded;
 use super::text::{self, Lines, Written};
+use crate::decoder::guarded;
 use crate::names;
 use crate::reader::error::Problem;
 

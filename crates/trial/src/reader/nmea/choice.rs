@@ -4,12 +4,13 @@
 
 use ship::angle::to_deg;
 
-use super::epochs::{counted, median, rounded};
+use super::epochs::{median, rounded};
 use super::log::{Log, Sensor, name};
 use super::position::plane;
 use super::sentence::{Kind, Slot, turned};
 use crate::channel::Channel;
 use crate::reader::source::Series;
+use crate::words::counted;
 
 /// An instrument that may give a channel.
 #[derive(Debug, Clone, Copy)]

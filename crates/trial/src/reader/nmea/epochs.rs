@@ -6,6 +6,8 @@ use super::log::{Log, Sensor, name};
 use super::sentence::{Kind, Slot};
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
+use crate::words::counted;
+use crate::zigzag::median::upper_median;
 
 /// An epoch longer than the usual one by this factor is a gap.
 const GAP: f64 = 1.5;
@@ -264,16 +266,7 @@ pub(super) fn rounded(time: f64) -> f64 {
 /// The middle one of some lengths, s; infinite where there is none.
 pub(super) fn median(lengths: impl Iterator<Item = f64>) -> f64 {
     let mut lengths: Vec<f64> = lengths.collect();
-    let middle = lengths.len() / 2;
-    if lengths.is_empty() {
-        return f64::INFINITY;
-    }
-    *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-/// `1 sentence`, `12 sentences`.
-pub(super) fn counted(number: usize, of: &str) -> String {
-    format!("{number} {of}{}", if number == 1 { "" } else { "s" })
+    upper_median(&mut lengths).unwrap_or(f64::INFINITY)
 }
 
 pub(super) fn are(number: usize) -> &'static str {

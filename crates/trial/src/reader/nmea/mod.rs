@@ -17,7 +17,7 @@ mod tests;
 use std::io::Read;
 
 use self::choice::Choice;
-use self::epochs::{are, counted, from_sentences, from_stamps, rounded};
+use self::epochs::{are, from_sentences, from_stamps, rounded};
 use self::frame::{Line, frame};
 use self::log::{Counts, Log};
 use self::stamp::Leading;
@@ -25,6 +25,7 @@ use super::error::Problem;
 use super::lines::Lines;
 use super::source::{Series, Source};
 use crate::clock::{Clock, DAY};
+use crate::words::counted;
 
 /// Sentences that show whether a log has stamps.
 const LOOKED_AT: usize = 64;
