@@ -98,8 +98,13 @@ impl Rest {
         let neutral = if most.abs() <= LARGEST_NEUTRAL { most } else { 0.0 };
         let mut rest = Self { angle, noise, floor, step, neutral, stretches: Vec::new(), merged: Vec::new() };
         rest.stretches = rest.cut(time);
-        rest.merged = merged(&rest.stretches, floor);
+        rest.merged = rest.merged();
         rest
+    }
+
+    /// Whether the rudder of a stretch is that of a straight course.
+    pub fn is_amidships(&self, stretch: &Stretch) -> bool {
+        stretch.level.abs().min((stretch.level - self.neutral).abs()) < self.floor
     }
 
     /// Cuts the log where the rudder leaves the band about the mean of the rows since the last cut.
@@ -125,6 +130,27 @@ impl Rest {
             stretches.extend(self.stretch(time, first, last, band));
         }
         stretches
+    }
+
+    /// The stretches with neighbours of nearly the same level taken together, and what little is between them.
+    fn merged(&self) -> Vec<Stretch> {
+        let mut merged: Vec<Stretch> = Vec::new();
+        for &next in &self.stretches {
+            // What is short beside both is a pause or the end of a movement; beside hours on a straight course
+            // everything is short.
+            if let [.., before, between] = merged.as_slice()
+                && between.duration() < SHORT * before.duration().min(next.duration())
+                && !self.is_amidships(before)
+                && is_same(before, &next, self.floor)
+            {
+                merged.pop();
+            }
+            match merged.last_mut() {
+                Some(last) if is_same(last, &next, self.floor) => *last = last.joined(next),
+                _ => merged.push(next),
+            }
+        }
+        merged
     }
 
     /// The rows of a cut without the ends of the movements about them; `None` where the rudder moved all the time.
@@ -161,25 +187,6 @@ impl Rest {
         let reach = most.max(2.5 * self.noise).max(0.01 * level.abs()).max(RESOLUTION).min(band);
         Some(level - reach..=level + reach)
     }
-}
-
-/// Takes neighbours of nearly the same level together, with what little is between them.
-fn merged(stretches: &[Stretch], floor: f64) -> Vec<Stretch> {
-    let mut merged: Vec<Stretch> = Vec::new();
-    for &next in stretches {
-        // What is short beside both is a pause or the end of a movement.
-        if let [.., before, between] = merged.as_slice()
-            && between.duration() < SHORT * before.duration().min(next.duration())
-            && is_same(before, &next, floor)
-        {
-            merged.pop();
-        }
-        match merged.last_mut() {
-            Some(last) if is_same(last, &next, floor) => *last = last.joined(next),
-            _ => merged.push(next),
-        }
-    }
-    merged
 }
 
 fn is_same(a: &Stretch, b: &Stretch, floor: f64) -> bool {

@@ -203,6 +203,33 @@ fn all_kinds_are_told_apart() {
     assert_eq!(to_deg(rudder).round(), 35.0);
 }
 
+/// Hours with the rudder at rest, beside which every hold of a manoeuvre is short.
+#[test]
+fn a_rudder_that_rests_for_hours_hides_no_manoeuvre() {
+    for hours in [0.1, 0.5, 2.0, 12.0] {
+        for after in [0.1, hours] {
+            let mut sea = Sea::new(1.0);
+            sea.hold(0.0, 3600.0 * hours);
+            sea.zig_zag(10.0, 10.0, 6);
+            sea.hold(0.0, 3600.0 * after);
+            sea.hold(from_deg(35.0), 200.0);
+            sea.hold(0.0, 3600.0 * after);
+            sea.zig_zag(20.0, 20.0, 5);
+            sea.hold(0.0, 3600.0 * hours);
+            let expected = ["zig-zag 10/10", "turning circle 35 to starboard", "pull-out", "zig-zag 20/20"];
+            for noise_deg in [0.0, 0.1] {
+                // Readings of a tenth of a degree.
+                for rudder in &mut sea.rudder {
+                    *rudder = from_deg((10.0 * (to_deg(*rudder) + noise_deg * sea.chance.draw())).round() / 10.0);
+                }
+                let mut names = sea.names();
+                names.retain(|name| name != "straight");
+                assert_eq!(names, expected, "{hours} h before, {after} h between, {noise_deg} deg of noise");
+            }
+        }
+    }
+}
+
 /// Parts, without what changes its sign.
 fn parts(list: &[Manoeuvre]) -> Vec<(f64, f64, f64, usize)> {
     list.iter().map(|found| (found.from, found.until, found.start, found.executes)).collect()

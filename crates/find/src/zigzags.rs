@@ -64,6 +64,10 @@ pub(crate) fn zigzags(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
     let mut found: Vec<Pattern> = Vec::new();
     let mut start = 0;
     while start < stretches.len() {
+        if record.rest.is_amidships(&stretches[start]) {
+            start += 1;
+            continue;
+        }
         let chain = Chain::from(start, stretches, record.rest.neutral);
         found.extend(answered(record, &chain.holds));
         let ends =
@@ -88,7 +92,7 @@ impl Chain {
             let count = holds.len();
             let last = holds[count - 1];
             let gap = stretch.from - last.until;
-            let longer = last.duration().max(stretch.duration());
+            let (shorter, longer) = (last.duration().min(stretch.duration()), last.duration().max(stretch.duration()));
             let same_side = count.checked_sub(2).map(|other| holds[other].level);
             if is_opposed(last.level, stretch.level, neutral)
                 && gap <= QUICK * longer
@@ -97,7 +101,7 @@ impl Chain {
                 holds.push(stretch);
                 next = index;
             } else if is_level(last.level, stretch.level)
-                && gap <= 0.5 * longer
+                && gap <= 0.5 * shorter
                 && stretch.duration() >= PAUSE * last.duration()
             {
                 holds[count - 1] = last.joined(stretch);
@@ -182,10 +186,10 @@ fn side(holds: &[Stretch], index: usize) -> f64 {
     (holds[index].level - holds[other].level).signum()
 }
 
-/// Heading when the rudder leaves a hold.
+/// Heading when the rudder leaves a hold: between its last row and the next.
 fn heading_at_end(record: &Record, hold: &Stretch) -> Option<f64> {
     let scale = hold.duration();
-    record.course.near(hold.until, 0.02 * scale, 0.5 * scale)
+    record.course.near(hold.until + 0.5 * record.rest.step, 0.02 * scale, 0.5 * scale)
 }
 
 /// A zig-zag of holds whose swings agree, with the headings at their ends; `None` where it is none.

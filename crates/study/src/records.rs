@@ -176,7 +176,15 @@ fn chosen(log: Log, path: &Path, asked: Option<usize>, warnings: &mut Vec<String
             let zigzags: Vec<(usize, &Manoeuvre)> =
                 (1..).zip(&found).filter(|(_, one)| matches!(one.kind, Kind::ZigZag { .. })).collect();
             match zigzags.as_slice() {
-                [] => return Ok(log),
+                [] => {
+                    if found.iter().any(|one| one.kind == Kind::Straight) {
+                        warnings.push(format!(
+                            "{file}: no zig-zag is recognised, the whole record is used; `study find {file}` lists what \
+                             is, --from and --until choose a part"
+                        ));
+                    }
+                    return Ok(log);
+                }
                 [(_, only)] => *only,
                 several => return Err(ask(&log, path, several)),
             }

@@ -43,6 +43,22 @@ fn the_zig_zag_of_a_log_is_found_and_asked_for_where_there_are_two() {
 }
 
 #[test]
+fn a_log_without_a_zig_zag_is_said_to_have_none() {
+    let desk = Desk::new();
+    let mut text = String::from("t_s,heading_deg,rudder_deg\n");
+    let (mut psi, mut r) = (0.0, 0.0);
+    for time in 0..900 {
+        let delta = if (600..700).contains(&time) { 20.0 } else { 0.0 };
+        text.push_str(&format!("{time},{psi:.3},{delta}\n"));
+        r += (0.06 * delta - r) / 25.0;
+        psi += r;
+    }
+    desk.file("turn.csv", text);
+    let run = desk.run(&["fit", "turn.csv", "--method", "output-error"]);
+    assert!(run.is_done().err.contains("no zig-zag is recognised"), "{}", run.err);
+}
+
+#[test]
 fn files_of_one_trial_are_joined_by_time() {
     let desk = Desk::new();
     let whole = zig_zag_csv();
