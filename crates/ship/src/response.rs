@@ -391,5 +391,6 @@ impl<R: EffectReal> Dynamics<R> for Response<R> {
     }
 }
 
+mod steady;
 #[cfg(test)]
 mod tests;

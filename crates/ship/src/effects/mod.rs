@@ -67,3 +67,45 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(SwayCouplingMeasured),
     ]
 }
+
+/// The effect with this identifier, form and constants ([`Effect::constants`]); `None` where there is none, or one that
+/// has other constants.
+///
+/// Constants are positive: an approach speed (m/s), a rate of the propeller (1/s), an edge (s); a reference time (s) may
+/// be any.
+pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
+    let known = all().into_iter().find(|effect| effect.id() == id && effect.form() == form)?;
+    let holds = constants.iter().all(|constant| constant.is_finite()) && constants.len() == known.constants().len();
+    if !holds {
+        return None;
+    }
+    let positive = |constant: &f64| (*constant > 0.0).then_some(*constant);
+    Some(match (id, constants) {
+        (_, []) => known,
+        ("speed_loss", [constant]) if known.needs() == Some(crate::dynamics::Regressor::Speed) => {
+            Arc::new(SpeedLoss::Measured { approach_speed: positive(constant)? })
+        }
+        ("speed_loss", [constant]) => Arc::new(SpeedLoss::Propeller { approach_rate: positive(constant)? }),
+        ("moment_drift", [constant]) => Arc::new(MomentDrift { reference_time: *constant }),
+        ("transient_disturbance", [constant]) => {
+            Arc::new(TransientDisturbance::Lasting { edge: positive(constant)? })
+        }
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is written down of an effect is enough to have it again.
+    #[test]
+    fn every_effect_is_found_by_what_is_written_of_it() {
+        for effect in all() {
+            let constants: Vec<f64> = effect.constants().iter().map(|constant| constant + 1.5).collect();
+            let again = named(effect.id(), effect.form(), &constants).expect("all are known");
+            assert_eq!((again.id(), again.form(), again.constants()), (effect.id(), effect.form(), constants));
+        }
+        assert!(named("second_order", "", &[1.0]).is_none() && named("speed_loss", "measured speed", &[-1.0]).is_none());
+    }
+}

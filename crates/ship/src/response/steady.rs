@@ -1,0 +1,128 @@
+//! Turns that have lasted: the rudder that a yaw rate needs, on stable and unstable branches alike.
+
+use super::Response;
+use crate::dynamics::{Dynamics, Input};
+
+/// Largest rudder that is looked at, rad.
+const LARGEST_RUDDER: f64 = 1.0;
+
+/// Steps to either side in which the rudder nearest to amidships is looked for.
+const STEPS: usize = 50;
+
+impl Response {
+    /// Rudder angle (rad) at which the ship turns steadily at `yaw_rate` (rad/s) on heading 0, with the speed and the
+    /// memory of a turn that has lasted; `None` where no rudder within 1 rad does it. Of several rudders (beyond stall)
+    /// that nearest to amidships.
+    ///
+    /// Since the yaw rate is given and the rudder looked for, the branch that a spiral test jumps over is found, too
+    /// (reversed spiral, Bech 1968).
+    pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
+        let mut memory = Memory { state: vec![0.0; self.dimension()], rate: vec![0.0; self.dimension()] };
+        let mut excess = |rudder: f64| self.excess(yaw_rate, rudder, &mut memory);
+        let step = LARGEST_RUDDER / STEPS as f64;
+        let middle = excess(0.0);
+        let (mut below, mut above) = (middle, middle);
+        for number in 1..=STEPS {
+            let [near, far] = [number - 1, number].map(|number| number as f64 * step);
+            let (lower, upper) = (excess(-far), excess(far));
+            if upper * above <= 0.0 {
+                return Some(root([near, far], above, &mut excess));
+            }
+            if lower * below <= 0.0 {
+                return Some(root([-near, -far], below, &mut excess));
+            }
+            (below, above) = (lower, upper);
+        }
+        None
+    }
+
+    /// Yaw acceleration (rad/s²) of the first-order balance in a turn that has lasted.
+    ///
+    /// What effects remember settles linearly while yaw rate and rudder stand, so one Newton step per state is exact.
+    fn excess(&self, yaw_rate: f64, rudder: f64, memory: &mut Memory) -> f64 {
+        let Memory { state, rate } = memory;
+        let input = Input { rudder, ..Input::default() };
+        self.enter(0.0, yaw_rate, &input, state);
+        let slow = self.coupling.as_ref().map(|(_, place)| *place);
+        for place in (2..state.len()).filter(|place| Some(*place) != slow) {
+            let step = 1e-4;
+            self.rates(0.0, state, &input, rate);
+            let here = rate[place];
+            state[place] += step;
+            self.rates(0.0, state, &input, rate);
+            let slope = (rate[place] - here) / step;
+            state[place] -= step;
+            if slope < 0.0 {
+                state[place] -= here / slope;
+            }
+        }
+        let instant = self.instant(0.0, state, &input);
+        self.accelerations(state, &input, &instant).0
+    }
+}
+
+struct Memory {
+    state: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+/// Where a function changes its sign between two arguments, of which it has `first` at the first.
+fn root([mut one, mut other]: [f64; 2], first: f64, function: &mut impl FnMut(f64) -> f64) -> f64 {
+    for _ in 0..60 {
+        let middle = 0.5 * (one + other);
+        if function(middle) * first > 0.0 {
+            one = middle;
+        } else {
+            other = middle;
+        }
+    }
+    0.5 * (one + other)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::ResponseModel;
+    use crate::effects::{Effect, NonlinearDamping, SecondOrder, SpeedLoss, SteeringLag};
+
+    fn ship(inverse_time: f64, effect: impl Effect + 'static, own: &[f64]) -> Response {
+        let mut values = vec![inverse_time, 6e-3, 0.01];
+        values.extend_from_slice(own);
+        ResponseModel::new(vec![Arc::new(effect)]).with(values)
+    }
+
+    /// −a r − n r³ + b (δ + δ_r) = 0, by hand; a < 0 is a course-unstable ship with an unstable loop.
+    #[test]
+    fn the_steady_curve_holds_its_unstable_branch() {
+        for inverse_time in [0.06, -0.02] {
+            let ship = ship(inverse_time, NonlinearDamping::Cubic, &[300.0]);
+            for rate in [-0.02, -0.004, 0.0, 0.001, 0.01] {
+                let by_hand = (inverse_time * rate + 300.0 * rate * rate * rate) / 6e-3 - 0.01;
+                let found = ship.steady_rudder(rate).expect("within a radian");
+                assert!((found - by_hand).abs() < 1e-9, "{inverse_time} {rate}: {found} {by_hand}");
+            }
+        }
+        assert_eq!(ship(0.06, NonlinearDamping::Cubic, &[300.0]).steady_rudder(1.0), None);
+    }
+
+    /// Lag and sway coupling change the way to a steady turn, not the turn.
+    #[test]
+    fn memory_does_not_change_the_steady_curve() {
+        for ship in [ship(0.06, SteeringLag::FirstOrder, &[4.0]), ship(0.06, SecondOrder, &[5.0, 12.0])] {
+            let found = ship.steady_rudder(0.01).expect("within a radian");
+            assert!((found - (0.06 * 0.01 / 6e-3 - 0.01)).abs() < 1e-9, "{found}");
+        }
+    }
+
+    /// q = 1 − c T_u r², and b q^m (δ + δ_r) = a q r.
+    #[test]
+    fn the_speed_is_that_of_a_long_turn() {
+        let ship = ship(0.06, SpeedLoss::Modelled, &[20.0, 100.0, 2.0]);
+        let (rate, speed) = (0.01, 1.0 - 20.0 * 100.0 * 1e-4);
+        let by_hand = 0.06 * speed * rate / (6e-3 * speed * speed) - 0.01;
+        let found = ship.steady_rudder(rate).expect("within a radian");
+        assert!((found - by_hand).abs() < 1e-9, "{found} {by_hand}");
+    }
+}
