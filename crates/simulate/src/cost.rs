@@ -86,6 +86,10 @@ impl Simulation {
             Manoeuvre::PullOut(PullOut { hold, duration, .. }) => {
                 [Part::time("manoeuvre.pull-out.hold-s", *hold), Part::time("manoeuvre.pull-out.duration-s", *duration)]
             }
+            Manoeuvre::Williamson(turn) => [
+                Part::time("longest_wait", 2.0 * (self.longest_wait + self.helmsman.reaction_time)),
+                Part::time("manoeuvre.williamson.duration-s", turn.duration),
+            ],
             Manoeuvre::Replay(signal) => [Part::time("manoeuvre.replay.file", length(signal)), nothing],
         };
         [Part::time("approach.lead-in-s", self.approach.lead_in), first, second]
@@ -101,6 +105,7 @@ impl Simulation {
                 let reached = match &self.manoeuvre {
                     Manoeuvre::ZigZag(_) => self.waits("recording.after-execute", number),
                     Manoeuvre::PullOut(pull_out) => Part::time("manoeuvre.pull-out.hold-s", pull_out.hold),
+                    Manoeuvre::Williamson(_) => self.waits("recording.after-execute", number),
                     Manoeuvre::TurningCircle(_) | Manoeuvre::Replay(_) => nothing,
                 };
                 [lead_in, reached, Part::time("recording.offset-s", offset)]

@@ -2,7 +2,7 @@
 //! of one manoeuvre in one run. It decides; it neither moves the rudder ([`crate::gear`]) nor the ship.
 
 use crate::error::{self, Checked};
-use crate::manoeuvre::{Manoeuvre, TurnEnd, ZigZag, ZigZagEnd, length};
+use crate::manoeuvre::{Manoeuvre, TurnEnd, Williamson, ZigZag, ZigZagEnd, length};
 
 /// What the helmsman looks at.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -98,6 +98,7 @@ impl<'a> Helm<'a> {
                 TurnEnd::HeadingChange(_) => f64::INFINITY,
             },
             Manoeuvre::PullOut(pull_out) => pull_out.hold + pull_out.duration,
+            Manoeuvre::Williamson(_) => f64::INFINITY,
             Manoeuvre::Replay(signal) => length(signal),
         };
         Self {
@@ -135,6 +136,13 @@ impl<'a> Helm<'a> {
             },
             (Manoeuvre::PullOut(pull_out), 1) => Cue::At(self.first_execute + pull_out.hold),
             (Manoeuvre::PullOut(_), _) => Cue::Nothing,
+            (Manoeuvre::Williamson(turn), 1) => {
+                Cue::Deviation { side: turn.side.sign(), angle: Williamson::FIRST_TURN }
+            }
+            (Manoeuvre::Williamson(turn), 2) => {
+                Cue::Deviation { side: -turn.side.sign(), angle: Williamson::SECOND_TURN }
+            }
+            (Manoeuvre::Williamson(_), _) => Cue::Nothing,
         }
     }
 
@@ -160,9 +168,17 @@ impl<'a> Helm<'a> {
             Manoeuvre::ZigZag(zig_zag) => self.zig_zag_side(zig_zag) * zig_zag.rudder,
             Manoeuvre::TurningCircle(turn) => turn.side.sign() * turn.rudder,
             Manoeuvre::PullOut(pull_out) if self.made == 0 => pull_out.side.sign() * pull_out.rudder,
-            Manoeuvre::PullOut(_) | Manoeuvre::Replay(_) => 0.0,
+            Manoeuvre::Williamson(turn) if self.made < 2 => {
+                if self.made == 0 { turn.side.sign() * turn.rudder } else { -turn.side.sign() * turn.rudder }
+            }
+            Manoeuvre::PullOut(_) | Manoeuvre::Williamson(_) | Manoeuvre::Replay(_) => 0.0,
         };
         self.made += 1;
+        if let Manoeuvre::Williamson(turn) = self.manoeuvre
+            && self.made == 3
+        {
+            self.end = t + turn.duration;
+        }
         if let Manoeuvre::ZigZag(zig_zag) = self.manoeuvre
             && zig_zag.end == ZigZagEnd::Executes(self.made)
         {

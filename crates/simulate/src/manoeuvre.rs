@@ -3,6 +3,8 @@
 //!
 //! Source of the manoeuvres and their words: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials.
 
+use std::f64::consts::PI;
+
 use serde::{Deserialize, Serialize};
 use ship::Polyline;
 
@@ -89,6 +91,28 @@ pub struct PullOut {
     pub duration: f64,
 }
 
+/// A Williamson turn, which brings a ship back to her own track on the opposite course: hard over until the heading has
+/// changed by 60°, hard over to the other side until it is 20° short of the opposite course, then amidships.
+///
+/// Source: IAMSAR Manual, volume III (man overboard).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Williamson {
+    /// Rudder angle, rad, positive whatever the side.
+    pub rudder: f64,
+    /// Side of the first turn.
+    pub side: Side,
+    /// Time from the order amidships to the end, s.
+    pub duration: f64,
+}
+
+impl Williamson {
+    /// Change of heading at which the rudder is put over to the other side, rad.
+    pub const FIRST_TURN: f64 = PI / 3.0;
+
+    /// Change of heading to the other side at which the rudder is put amidships, rad.
+    pub const SECOND_TURN: f64 = PI - PI / 9.0;
+}
+
 /// What the ship is asked to do.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Manoeuvre {
@@ -98,6 +122,8 @@ pub enum Manoeuvre {
     TurningCircle(TurningCircle),
     /// Pull-out.
     PullOut(PullOut),
+    /// Williamson turn.
+    Williamson(Williamson),
     /// A recorded rudder, followed as it is: no helmsman, no steering gear. Its first point is put at the first
     /// execute.
     Replay(Polyline),
@@ -120,7 +146,8 @@ impl Manoeuvre {
         match self {
             Self::ZigZag(ZigZag { rudder, .. })
             | Self::TurningCircle(TurningCircle { rudder, .. })
-            | Self::PullOut(PullOut { rudder, .. }) => *rudder,
+            | Self::PullOut(PullOut { rudder, .. })
+            | Self::Williamson(Williamson { rudder, .. }) => *rudder,
             Self::Replay(signal) => signal.values().iter().fold(0.0, |largest, delta| largest.max(delta.abs())),
         }
     }
@@ -131,6 +158,7 @@ impl Manoeuvre {
             Self::ZigZag(_) => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],
             Self::TurningCircle(_) => ["manoeuvre.turning-circle.rudder-deg", "manoeuvre.turning-circle.duration-s"],
             Self::PullOut(_) => ["manoeuvre.pull-out.rudder-deg", "manoeuvre.pull-out.duration-s"],
+            Self::Williamson(_) => ["manoeuvre.williamson.rudder-deg", "manoeuvre.williamson.duration-s"],
             Self::Replay(_) => ["manoeuvre.replay.file"; 2],
         }
     }
@@ -162,6 +190,10 @@ impl Manoeuvre {
                 error::positive("manoeuvre.pull-out.rudder-deg", pull_out.rudder)?;
                 error::positive_time("manoeuvre.pull-out.hold-s", pull_out.hold)?;
                 error::positive_time("manoeuvre.pull-out.duration-s", pull_out.duration)
+            }
+            Self::Williamson(turn) => {
+                error::positive("manoeuvre.williamson.rudder-deg", turn.rudder)?;
+                error::positive_time("manoeuvre.williamson.duration-s", turn.duration)
             }
             Self::Replay(signal) => error::positive_time("manoeuvre.replay.file", length(signal)),
         }

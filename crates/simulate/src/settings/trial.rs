@@ -54,6 +54,7 @@ fn start_is_reached(simulation: &Simulation) -> Result<(), SettingError> {
         Manoeuvre::ZigZag(ZigZag { end: ZigZagEnd::Executes(executes), .. }) => *executes,
         Manoeuvre::ZigZag(_) => usize::MAX,
         Manoeuvre::PullOut(_) => 2,
+        Manoeuvre::Williamson(_) => 3,
         Manoeuvre::TurningCircle(_) | Manoeuvre::Replay(_) => 1,
     };
     if number <= made {

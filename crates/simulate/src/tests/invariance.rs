@@ -9,7 +9,7 @@ use ship::{Dynamics, FirstOrder, Input, Motion, Polyline};
 use super::{KEY, training_ship, zig_zag};
 use crate::disturbance::{GaussMarkov, Squall, Wind};
 use crate::helm::Watches;
-use crate::manoeuvre::{Manoeuvre, PullOut, Side, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
+use crate::manoeuvre::{Manoeuvre, PullOut, Side, TurnEnd, TurningCircle, Williamson, ZigZag, ZigZagEnd};
 use crate::recording::Start;
 use crate::sensor::{Clock, DropOut, HeadingSensor, Loses, Spikes, YawRateSensor};
 use crate::vessel::Solver;
@@ -101,6 +101,8 @@ fn variety() -> Vec<Simulation> {
     turn.recording.duration = None;
     list.push(turn.clone());
     turn.manoeuvre = Manoeuvre::PullOut(PullOut { rudder, side: Side::Starboard, hold: 80.5, duration: 60.0 });
+    list.push(turn.clone());
+    turn.manoeuvre = Manoeuvre::Williamson(Williamson { rudder, side: Side::Starboard, duration: 60.0 });
     list.push(turn.clone());
     let recorded = Polyline::new(vec![100.0, 103.0, 120.0, 125.5, 180.0], vec![0.0, 0.2, 0.2, -0.3, 0.1]);
     turn.manoeuvre = Manoeuvre::Replay(recorded.expect("increasing times"));
