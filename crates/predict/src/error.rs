@@ -1,0 +1,62 @@
+//! Why a prediction is refused.
+
+use thiserror::Error;
+
+/// Why a prediction is refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PredictError {
+    /// An effect of the model is not known.
+    #[error("the effect `{id}` ({form}) is not known; fit or trace the record again with this program")]
+    Effect {
+        /// Identifier.
+        id: String,
+        /// Form.
+        form: String,
+    },
+    /// Numbers do not pair up.
+    #[error("{what}: expected {expected}, found {found}; fit or trace the record again with this program")]
+    Count {
+        /// What is counted.
+        what: &'static str,
+        /// How many there should be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A parameter is no number.
+    #[error("{key} = {value}: expected a finite number")]
+    Value {
+        /// The parameter.
+        key: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// A covariance is none.
+    #[error("the covariance of the parameters is not positive definite; fit or trace the record again")]
+    Covariance,
+    /// There is no model.
+    #[error("there is no model to predict from")]
+    Empty,
+    /// A ship of unknown length or speed cannot be scaled.
+    #[error("length and speed of the identified ship are not known, so it cannot be scaled; give them to fit or trace")]
+    NoParticulars,
+    /// A manoeuvre that is not known.
+    #[error(
+        "`{found}` is no manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
+         pull-out:RUDDER, spiral:RUDDER or williamson, angles in degrees, negative for port"
+    )]
+    Manoeuvre {
+        /// What was given.
+        found: String,
+    },
+    /// Hardly any drawn ship comes to the end of a manoeuvre.
+    #[error("{kind}: only {made} of {draws} drawn ships come to the end of it; the model does not hold there")]
+    Lost {
+        /// The manoeuvre.
+        kind: String,
+        /// Ships that do.
+        made: usize,
+        /// Ships drawn.
+        draws: usize,
+    },
+}

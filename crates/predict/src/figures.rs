@@ -1,0 +1,174 @@
+//! Figures of merit of a manoeuvre; the unit is in the name. `None` where the ship did not come that far.
+
+use ship::Particulars;
+use ship::angle::to_deg;
+
+use crate::kind::{EXECUTES, INITIAL_TURN, Kind};
+use crate::passage::Passage;
+
+/// A figure of merit with its value.
+pub type Figure = (&'static str, Option<f64>);
+
+const OVERSHOOTS: [&str; EXECUTES - 2] =
+    ["first_overshoot_deg", "second_overshoot_deg", "third_overshoot_deg", "fourth_overshoot_deg"];
+
+const EXECUTE_TIMES: [&str; EXECUTES - 1] =
+    ["second_execute_s", "third_execute_s", "fourth_execute_s", "fifth_execute_s", "sixth_execute_s"];
+
+/// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
+///
+/// The way of the initial turning is V times its time, as in MSC/Circ.1053 where no speed is recorded.
+pub fn of(kind: &Kind, passage: &Passage, particulars: Option<Particulars>) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    match *kind {
+        Kind::ZigZag { heading, first, .. } => {
+            let turning = passage.reached(heading, first.sign());
+            figures.push(("initial_turning_time_s", turning));
+            if let Some(Particulars { length, speed }) = particulars {
+                figures.push(("initial_turning_lengths", turning.map(|time| speed * time / length)));
+            }
+            zig_zag(passage, &mut figures);
+        }
+        Kind::InitialTurning { side, .. } => {
+            let turning = passage.reached(INITIAL_TURN - 1e-9, side.sign()).or(Some(end(passage)));
+            figures.push(("initial_turning_time_s", turning));
+            if let Some(Particulars { length, speed }) = particulars {
+                figures.push(("initial_turning_lengths", turning.map(|time| speed * time / length)));
+            }
+        }
+        Kind::TurningCircle { side, .. } => turn(passage, side.sign(), &mut figures),
+        Kind::PullOut { side, .. } => {
+            let middle = passage.heading.len() / 2;
+            figures.push(("rate_before_deg_s", mean_rate(passage, middle, side.sign())));
+            figures.push(("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side.sign())));
+        }
+        Kind::Williamson { side, .. } => {
+            let last = passage.heading.last().copied();
+            // She comes back from the other side: the opposite course is 180° to it.
+            figures.push(("second_execute_s", passage.executes.get(1).map(|execute| execute.time)));
+            figures.push(("third_execute_s", passage.executes.get(2).map(|execute| execute.time)));
+            let error = |heading: f64| to_deg(-side.sign() * heading - std::f64::consts::PI);
+            figures.push(("course_error_deg", last.map(error)));
+        }
+        Kind::Spiral { .. } => {}
+    }
+    figures
+}
+
+fn end(passage: &Passage) -> f64 {
+    passage.time(passage.heading.len().saturating_sub(1))
+}
+
+/// Overshoots, executes and period of a zig-zag.
+///
+/// An overshoot is counted from the heading at its execute. The period is the mean time between executes to the same
+/// side from the third on, when the transient of the start is over.
+fn zig_zag(passage: &Passage, figures: &mut Vec<Figure>) {
+    let executes = &passage.executes;
+    for (number, name) in OVERSHOOTS.into_iter().enumerate() {
+        let overshoot = || {
+            let (before, now, next) = (executes.get(number)?, executes.get(number + 1)?, executes.get(number + 2)?);
+            let side = before.order.signum();
+            Some(to_deg(passage.peak(side, now.time, next.time)? - side * now.heading))
+        };
+        figures.push((name, overshoot()));
+    }
+    for (number, name) in EXECUTE_TIMES.into_iter().enumerate() {
+        figures.push((name, executes.get(number + 1).map(|execute| execute.time)));
+    }
+    let cycles: Vec<f64> =
+        executes.iter().skip(2).zip(executes.iter().skip(4)).map(|(one, next)| next.time - one.time).collect();
+    let period = (!cycles.is_empty()).then(|| cycles.iter().sum::<f64>() / cycles.len() as f64);
+    figures.push(("period_s", period));
+}
+
+/// Times and steady rate of a turn to one side (±1).
+pub(crate) fn turn(passage: &Passage, side: f64, figures: &mut Vec<Figure>) {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    figures.push(("time_to_90_s", passage.reached(FRAC_PI_2, side)));
+    figures.push(("time_to_180_s", passage.reached(PI, side)));
+    // The last half turn.
+    let last = passage.heading.last().map_or(0.0, |heading| side * heading);
+    let steady = || {
+        let from = passage.reached(last - PI, side).filter(|_| last > 1.5 * PI)?;
+        Some(to_deg(PI / (passage.reached(last, side)? - from)))
+    };
+    figures.push(("steady_rate_deg_s", steady()));
+}
+
+/// Mean yaw rate to a side (±1) over the last tenth of the rows before `until`, deg/s.
+fn mean_rate(passage: &Passage, until: usize, side: f64) -> Option<f64> {
+    let rows = &passage.yaw_rate[until - until / 10..until];
+    (!rows.is_empty()).then(|| to_deg(side * rows.iter().sum::<f64>() / rows.len() as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ship::FirstOrder;
+    use ship::angle::from_deg;
+    use simulate::{Disturbances, Side, SteeringGear, StreamKey};
+
+    use crate::mixture::Drawn;
+
+    fn yukun(kind: &Kind) -> Passage {
+        let ship = Drawn {
+            response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
+            gear: SteeringGear::with_rate(from_deg(2.5)),
+            disturbances: Disturbances::default(),
+            yaw_rate: 0.0,
+            key: StreamKey::default(),
+        };
+        Passage::sail(&ship, &kind.manoeuvre(12.8).expect("steered"), 12.8).expect("a manoeuvre")
+    }
+
+    fn value(figures: &[Figure], name: &str) -> f64 {
+        figures.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value).unwrap_or(f64::NAN)
+    }
+
+    /// YUKUN with a rudder of 2.5 deg/s: overshoots of 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), computed apart with a
+    /// step of 0.01 s that lets executes be late.
+    #[test]
+    fn overshoots_are_those_of_the_reference() {
+        let kind: Kind = "zig-zag:10/10".parse().expect("known");
+        let ten = of(&kind, &yukun(&kind), None);
+        assert!((value(&ten, "first_overshoot_deg") - 6.35).abs() < 0.025, "{ten:?}");
+        assert!((value(&ten, "second_overshoot_deg") - 8.07).abs() < 0.025, "{ten:?}");
+        let kind: Kind = "zig-zag:20/20".parse().expect("known");
+        let twenty = of(&kind, &yukun(&kind), None);
+        assert!((value(&twenty, "first_overshoot_deg") - 18.8).abs() < 0.06, "{twenty:?}");
+    }
+
+    /// A steady turn of K δ, and a rate that dies out.
+    #[test]
+    fn turns_settle_where_the_ship_does() {
+        let kind: Kind = "turning-circle:-10".parse().expect("known");
+        let turn = of(&kind, &yukun(&kind), None);
+        assert!((value(&turn, "steady_rate_deg_s") - 1.0).abs() < 1e-3, "{turn:?}");
+        // r = K δ (1 − e^(−t/T)) from a ramp of four seconds: T + 2 s late.
+        assert!((value(&turn, "time_to_180_s") - (180.0 + 16.3 + 2.0)).abs() < 0.1, "{turn:?}");
+        let kind: Kind = "pull-out:10".parse().expect("known");
+        let pull_out = of(&kind, &yukun(&kind), None);
+        assert!((value(&pull_out, "rate_before_deg_s") - 1.0).abs() < 1e-3, "{pull_out:?}");
+        assert!(value(&pull_out, "residual_rate_deg_s").abs() < 1e-3, "{pull_out:?}");
+    }
+
+    /// A mirrored manoeuvre has the same figures.
+    #[test]
+    fn sides_are_mirrored() {
+        for [one, other] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {
+            let [one, other]: [Kind; 2] = [one, other].map(|text| text.parse().expect("known"));
+            let (a, b) = (of(&one, &yukun(&one), None), of(&other, &yukun(&other), None));
+            for ((name, a), (_, b)) in a.iter().zip(&b) {
+                let (a, b) = (a.expect(name), b.expect(name));
+                assert!((a - b).abs() < 1e-9, "{name} {a} {b}");
+            }
+        }
+        let side = Side::Starboard;
+        let kind = Kind::InitialTurning { rudder: from_deg(10.0), side };
+        let turning = of(&kind, &yukun(&kind), Some(Particulars { length: 75.0, speed: 6.0 }));
+        let time = value(&turning, "initial_turning_time_s");
+        assert!(time > 20.0 && time < 30.0, "{time}");
+        assert!((value(&turning, "initial_turning_lengths") - time * 6.0 / 75.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,52 @@
+//! Quantiles of drawn values.
+
+/// Median with the intervals that hold half and nine tenths of the draws.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// Half of the draws are below.
+    pub median: f64,
+    /// Quantiles of 25 and 75 %.
+    pub ci50: [f64; 2],
+    /// Quantiles of 5 and 95 %.
+    pub ci90: [f64; 2],
+}
+
+/// Quantile of sorted values, linear between them (Hyndman and Fan 1996, type 7).
+pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let (low, part) = (place.floor() as usize, place.fract());
+    let high = (low + 1).min(sorted.len() - 1);
+    sorted[low] + part * (sorted[high] - sorted[low])
+}
+
+impl Interval {
+    /// The interval of some draws, which are put in order; `None` without one.
+    pub fn of(values: &mut [f64]) -> Option<Self> {
+        if values.is_empty() {
+            return None;
+        }
+        values.sort_by(f64::total_cmp);
+        let ends = |tail: f64| [quantile(values, tail), quantile(values, 1.0 - tail)];
+        Some(Self { median: quantile(values, 0.5), ci50: ends(0.25), ci90: ends(0.05) })
+    }
+
+    /// Whether a value lies within nine tenths of the draws.
+    pub fn holds90(&self, value: f64) -> bool {
+        (self.ci90[0]..=self.ci90[1]).contains(&value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_numbers() {
+        let interval = Interval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
+        assert_eq!((interval.median, interval.ci50), (2.0, [1.0, 3.0]));
+        assert!((interval.ci90[0] - 0.2).abs() < 1e-12 && (interval.ci90[1] - 3.8).abs() < 1e-12);
+        assert!(interval.holds90(0.3) && !interval.holds90(0.1));
+        assert_eq!(Interval::of(&mut []), None);
+        assert_eq!(Interval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
+    }
+}

@@ -1,0 +1,320 @@
+//! What is known of a ship: the structures that records cannot tell apart with their parameters and covariances, the
+//! noise, the steering gear, and the range in which the ship was seen. This is what `fit.json` and `trace.json` hold.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use ship::effects::{self, Effect, Parameter};
+use ship::{Response, ResponseModel};
+
+use crate::error::PredictError;
+
+/// An effect as it is written down.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WrittenEffect {
+    /// Identifier.
+    pub id: String,
+    /// Form.
+    pub form: String,
+    /// Constants that are not fitted: an approach speed, m/s, or a rate of the propeller, 1/s.
+    #[serde(default)]
+    pub constants: Vec<f64>,
+}
+
+/// One structure with its parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Member {
+    /// Probability among the structures of its file.
+    pub weight: f64,
+    /// Effects in the order in which the rudder passes through them.
+    pub effects: Vec<WrittenEffect>,
+    /// 1/T (1/s), K/T (1/s²), δ_r (rad) and the parameters of the effects, in the units these declare.
+    pub parameters: Vec<f64>,
+    /// Places among the parameters of those that were fitted.
+    pub fitted: Vec<usize>,
+    /// Covariance of the fitted ones, by rows; empty where the records do not tell them apart.
+    pub covariance: Vec<Vec<f64>>,
+    /// Degrees of freedom of the covariance; none for a normal law.
+    pub degrees_of_freedom: Option<f64>,
+}
+
+/// Kind of a random yaw moment.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Moment {
+    /// None.
+    #[default]
+    None,
+    /// White.
+    White,
+    /// Gusts of one correlation time (Ornstein–Uhlenbeck).
+    OrnsteinUhlenbeck,
+    /// Random walk.
+    Walk,
+}
+
+/// Noise of the records the ship is known from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct KnownNoise {
+    /// Standard deviation of a reading of the heading, rad.
+    pub heading_sd_rad: f64,
+    /// Kind of the yaw moment.
+    pub moment: Moment,
+    /// Size of the moment as rudder angle, rad: the standard deviation of gusts, of the mean of a white moment over one
+    /// second, of what a walk adds in one second.
+    #[serde(default)]
+    pub moment_sd_rudder_rad: f64,
+    /// Correlation time of gusts, s.
+    #[serde(default)]
+    pub moment_correlation_s: Option<f64>,
+}
+
+/// The steering gear as records show it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct KnownGear {
+    /// Rate of the rudder, rad/s.
+    pub rate_rad_s: f64,
+    /// Standard deviation of the rate, rad/s.
+    pub sd_rad_s: f64,
+}
+
+/// The range in which the ship was seen; outside, a prediction is extrapolation.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Seen {
+    /// Largest rudder angle, rad.
+    pub rudder_rad: f64,
+    /// Largest yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
+}
+
+/// What is known of a ship.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KnownShip {
+    /// The structures, the most probable first.
+    pub members: Vec<Member>,
+    /// Noise of the records.
+    pub noise: KnownNoise,
+    /// Steering gear; none where the records do not show it: the rudder then jumps.
+    pub gear: Option<KnownGear>,
+    /// Root mean square of the yaw rate with which the records begin, rad/s.
+    pub approach_yaw_rate_rad_s: f64,
+    /// Where the ship was seen.
+    pub seen: Seen,
+    /// Length between perpendiculars, m.
+    pub length_m: Option<f64>,
+    /// Approach speed, m/s.
+    pub speed_m_s: Option<f64>,
+}
+
+/// Structure and values of a member as the equations take them.
+#[derive(Debug, Clone)]
+pub(crate) struct Equations {
+    pub model: ResponseModel,
+    pub values: Vec<f64>,
+}
+
+impl Equations {
+    /// The ship of some values.
+    pub fn with(&self, values: Vec<f64>) -> Response {
+        self.model.clone().with(values)
+    }
+
+    /// Description of every parameter.
+    pub fn parameters(&self) -> Vec<&'static Parameter> {
+        self.model.parameters().collect()
+    }
+}
+
+impl Member {
+    /// The equations; fails for an effect that is not known and for numbers that do not fit it.
+    pub(crate) fn equations(&self) -> Result<Equations, PredictError> {
+        let effect = |written: &WrittenEffect| -> Result<Arc<dyn Effect>, PredictError> {
+            effects::named(&written.id, &written.form, &written.constants)
+                .ok_or_else(|| PredictError::Effect { id: written.id.clone(), form: written.form.clone() })
+        };
+        let model = ResponseModel::new(self.effects.iter().map(effect).collect::<Result<_, _>>()?);
+        let (expected, found) = (model.parameter_count(), self.parameters.len());
+        if expected != found {
+            return Err(PredictError::Count { what: "parameters", expected, found });
+        }
+        for (parameter, value) in model.parameters().zip(&self.parameters) {
+            if !value.is_finite() {
+                return Err(PredictError::Value { key: parameter.key, value: *value });
+            }
+        }
+        let count = self.fitted.len();
+        let rows = if self.covariance.is_empty() { count } else { self.covariance.len() };
+        if rows != count {
+            return Err(PredictError::Count { what: "rows of the covariance", expected: count, found: rows });
+        }
+        if let Some(row) = self.covariance.iter().find(|row| row.len() != count) {
+            return Err(PredictError::Count {
+                what: "columns of the covariance",
+                expected: count,
+                found: row.len(),
+            });
+        }
+        if let Some(place) = self.fitted.iter().find(|place| **place >= expected) {
+            return Err(PredictError::Count { what: "the parameters `fitted` counts", expected, found: place + 1 });
+        }
+        Ok(Equations { model, values: self.parameters.clone() })
+    }
+}
+
+/// Exponents of second and metre in a unit such as "rad s²/m²".
+fn dimension(unit: &str) -> [i32; 2] {
+    let mut exponents = [0; 2];
+    let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
+    for (part, sign) in [(above, 1), (below, -1)] {
+        for symbol in part.split(' ') {
+            let (base, power) = symbol.strip_suffix('²').map_or((symbol, 1), |base| (base, 2));
+            match base {
+                "s" => exponents[0] += sign * power,
+                "m" => exponents[1] += sign * power,
+                _ => {}
+            }
+        }
+    }
+    exponents
+}
+
+impl KnownShip {
+    /// The same ship at another length and approach speed: every time grows by (L₂/U₂)/(L₁/U₁), every length by L₂/L₁,
+    /// and what has no dimension stays (K′, T′ and all others). With U ~ √L this is the scaling of Froude (1868).
+    ///
+    /// Noise scales as the ship does: the weather of a model basin is that of a sea as many times larger. Fails where
+    /// length or speed of the known ship are not known.
+    pub fn scaled_to(&self, length: f64, speed: Option<f64>) -> Result<Self, PredictError> {
+        let (Some(own_length), Some(own_speed)) = (self.length_m, self.speed_m_s) else {
+            return Err(PredictError::NoParticulars);
+        };
+        let metre = length / own_length;
+        let speed = speed.unwrap_or(own_speed * metre.sqrt());
+        let second = metre * own_speed / speed;
+        let factor = |[seconds, metres]: [i32; 2]| second.powi(seconds) * metre.powi(metres);
+        let mut scaled = self.clone();
+        for member in &mut scaled.members {
+            let equations = member.equations()?;
+            let factors: Vec<f64> =
+                equations.parameters().iter().map(|parameter| factor(dimension(parameter.unit))).collect();
+            for (value, factor) in member.parameters.iter_mut().zip(&factors) {
+                *value *= factor;
+            }
+            for (row, place) in member.covariance.iter_mut().zip(&member.fitted) {
+                for (entry, other) in row.iter_mut().zip(&member.fitted) {
+                    *entry *= factors[*place] * factors[*other];
+                }
+            }
+            for (effect, written) in equations.model.effects().iter().zip(&mut member.effects) {
+                let by = match effect.needs() {
+                    Some(ship::Regressor::Speed) => metre / second,
+                    Some(ship::Regressor::Propeller) => 1.0 / second,
+                    _ => 1.0,
+                };
+                written.constants.iter_mut().for_each(|constant| *constant *= by);
+            }
+        }
+        scaled.noise.moment_sd_rudder_rad *= match self.noise.moment {
+            Moment::White => second.sqrt(),
+            Moment::Walk => second.sqrt().recip(),
+            Moment::None | Moment::OrnsteinUhlenbeck => 1.0,
+        };
+        scaled.noise.moment_correlation_s = self.noise.moment_correlation_s.map(|time| time * second);
+        if let Some(gear) = &mut scaled.gear {
+            *gear = KnownGear { rate_rad_s: gear.rate_rad_s / second, sd_rad_s: gear.sd_rad_s / second };
+        }
+        scaled.approach_yaw_rate_rad_s /= second;
+        scaled.seen.yaw_rate_rad_s /= second;
+        scaled.length_m = Some(length);
+        scaled.speed_m_s = Some(speed);
+        Ok(scaled)
+    }
+
+    /// The same ship in a calm: without a random moment, and without what steady wind does.
+    pub fn in_calm(&self) -> Result<Self, PredictError> {
+        let mut calm = self.clone();
+        calm.noise.moment = Moment::None;
+        for member in &mut calm.members {
+            let equations = member.equations()?;
+            let mut first = ship::response::BASE_PARAMETERS;
+            for effect in equations.model.effects() {
+                if effect.sees_heading() {
+                    for (k, parameter) in effect.parameters().iter().enumerate() {
+                        member.parameters[first + k] = parameter.neutral;
+                    }
+                    let kept: Vec<usize> = (0..member.fitted.len())
+                        .filter(|&row| !(first..first + effect.parameters().len()).contains(&member.fitted[row]))
+                        .collect();
+                    member.covariance = kept
+                        .iter()
+                        .filter_map(|&row| member.covariance.get(row))
+                        .map(|row| kept.iter().map(|&column| row[column]).collect())
+                        .collect();
+                    member.fitted = kept.iter().map(|&row| member.fitted[row]).collect();
+                }
+                first += effect.parameters().len();
+            }
+        }
+        Ok(calm)
+    }
+
+    /// A time of the ship, s: (K/T)^(−1/2) of its most probable structure, about L/U.
+    pub fn timescale(&self) -> Option<f64> {
+        let gain = *self.members.first()?.parameters.get(1)?;
+        (gain > 0.0).then(|| gain.sqrt().recip())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up;
+
+    #[test]
+    fn units_are_read() {
+        assert_eq!(dimension("rad s²/m²"), [2, -2]);
+        assert_eq!(dimension("1/s²"), [-2, 0]);
+        assert_eq!(dimension("s/rad²"), [1, 0]);
+        assert_eq!(dimension("rad s/m"), [1, -1]);
+        assert_eq!(dimension("1"), [0, 0]);
+    }
+
+    /// There and back is where one was, and K′ = K L/U does not change on the way.
+    #[test]
+    fn another_scale_keeps_what_has_no_dimension() {
+        let known = made_up::known();
+        let ship = known.scaled_to(25.0 * known.length_m.expect("made up"), None).expect("particulars");
+        let prime = |known: &KnownShip| {
+            let [a, b] = [known.members[0].parameters[0], known.members[0].parameters[1]];
+            b / a * known.length_m.expect("known") / known.speed_m_s.expect("known")
+        };
+        assert!((prime(&ship) - prime(&known)).abs() < 1e-12);
+        let back = ship.scaled_to(known.length_m.expect("made up"), known.speed_m_s).expect("particulars");
+        for (one, other) in back.members[0].parameters.iter().zip(&known.members[0].parameters) {
+            assert!((one - other).abs() <= 1e-12 * other.abs());
+        }
+        let unknown = KnownShip { length_m: None, ..known };
+        assert!(unknown.scaled_to(100.0, None).is_err());
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let known = made_up::known();
+        let text = serde_json::to_string(&known).expect("plain data");
+        assert_eq!(serde_json::from_str::<KnownShip>(&text).expect("the same"), known);
+    }
+
+    #[test]
+    fn numbers_that_do_not_fit_are_refused() {
+        let refused = |change: fn(&mut Member)| {
+            let mut member = made_up::known().members.remove(0);
+            change(&mut member);
+            member.equations().expect_err("refused").to_string()
+        };
+        assert!(refused(|member| member.effects[0].id = "magic".into()).contains("magic"));
+        assert!(refused(|member| member.parameters.push(1.0)).contains("parameters"));
+        assert!(refused(|member| member.parameters[0] = f64::NAN).contains("inverse_T"));
+        assert!(refused(|member| member.covariance.truncate(1)).contains("rows"));
+        assert!(refused(|member| member.fitted[0] = 9).contains("fitted"));
+    }
+}

@@ -1,0 +1,40 @@
+//! What an identified ship will do in a trial that was not made.
+//!
+//! A fit leaves a model with a covariance and a noise. Ships are drawn from it, each is steered through the manoeuvre,
+//! and what they do is told as medians with intervals of 50 and 90 %. An interval holds the errors of the parameters, the
+//! structures that the records cannot tell apart, the random moment of one trial, the rate of the rudder and the yaw rate
+//! of the approach; the share of each is told beside it.
+//!
+//! | to learn about | read |
+//! |---|---|
+//! | what is known of a ship, as files hold it | [`known`] |
+//! | ships drawn from it | [`mixture`] |
+//! | the manoeuvres | [`kind`] |
+//! | figures of merit | [`figures`] |
+//! | a manoeuvre predicted | [`prediction`] |
+//! | a recorded rudder replayed, held against the record | [`replay`] |
+//! | steady turns and the unstable loop | [`steady`] |
+//! | the criteria of IMO | [`imo`] |
+//!
+//! Time is in seconds from the first execute; everything else is in SI units and radians unless a name says otherwise.
+
+pub mod error;
+pub mod figures;
+pub mod imo;
+pub mod interval;
+pub mod kind;
+pub mod known;
+#[cfg(test)]
+mod made_up;
+pub mod mixture;
+pub mod passage;
+pub mod prediction;
+pub mod replay;
+pub mod steady;
+
+pub use error::PredictError;
+pub use interval::Interval;
+pub use kind::Kind;
+pub use known::KnownShip;
+pub use mixture::{Mixture, Source};
+pub use prediction::Prediction;

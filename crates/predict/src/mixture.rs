@@ -1,0 +1,317 @@
+//! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
+//! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
+
+use nalgebra::{DMatrix, DVector};
+use rand::RngExt;
+use rand_distr::{ChiSquared, Distribution, StandardNormal};
+use ship::Response;
+use simulate::disturbance::GaussMarkov;
+use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
+
+use crate::error::PredictError;
+use crate::known::{Equations, KnownNoise, KnownShip, Moment};
+
+/// Where an interval comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// Errors of the parameters.
+    Parameters,
+    /// Structures that the records cannot tell apart.
+    Structure,
+    /// The random yaw moment.
+    ProcessNoise,
+    /// The rate of the rudder.
+    SteeringGear,
+    /// The yaw rate at the first execute.
+    InitialState,
+}
+
+impl Source {
+    /// All sources.
+    pub const ALL: [Self; 5] =
+        [Self::Parameters, Self::Structure, Self::ProcessNoise, Self::SteeringGear, Self::InitialState];
+
+    /// The word used in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Parameters => "parameters",
+            Self::Structure => "structure",
+            Self::ProcessNoise => "process-noise",
+            Self::SteeringGear => "steering-gear",
+            Self::InitialState => "initial-state",
+        }
+    }
+}
+
+/// Draws outside the range of a parameter that are made again before its end is taken.
+const MOST_TRIES: usize = 100;
+
+/// Correlation time of what stands for a white moment, in times of the ship.
+const WHITE: f64 = 0.05;
+
+/// One structure with the square root of its covariance.
+#[derive(Debug, Clone)]
+struct Part {
+    /// Probability among all.
+    weight: f64,
+    equations: Equations,
+    fitted: Vec<usize>,
+    root: DMatrix<f64>,
+    degrees_of_freedom: Option<f64>,
+    /// The file it is from.
+    file: usize,
+}
+
+/// Everything that is known of a ship from one or several files, ready to be drawn from.
+#[derive(Debug, Clone)]
+pub struct Mixture {
+    parts: Vec<Part>,
+    files: Vec<KnownShip>,
+    timescale: f64,
+}
+
+/// A ship for one trial.
+#[derive(Debug, Clone)]
+pub struct Drawn {
+    /// The ship.
+    pub response: Response,
+    /// Its steering gear.
+    pub gear: SteeringGear,
+    /// What acts on it.
+    pub disturbances: Disturbances,
+    /// Yaw rate at the first execute, rad/s.
+    pub yaw_rate: f64,
+    /// Where its random moment comes from.
+    pub key: StreamKey,
+}
+
+/// The square root of a covariance: U √Λ of its eigenvalues, which may be zero but for rounding.
+fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
+    let count = covariance.len();
+    if count == 0 {
+        return Ok(DMatrix::zeros(0, 0));
+    }
+    let matrix = DMatrix::from_fn(count, count, |i, j| covariance[i][j]);
+    // Parameters have units of their own: what counts are correlations.
+    let sd: Vec<f64> = (0..count).map(|k| matrix[(k, k)].max(0.0).sqrt()).collect();
+    let scale = |k: usize| if sd[k] > 0.0 { sd[k] } else { 1.0 };
+    let correlation =
+        DMatrix::from_fn(count, count, |i, j| 0.5 * (matrix[(i, j)] + matrix[(j, i)]) / (scale(i) * scale(j)));
+    if correlation.iter().any(|entry| !entry.is_finite()) {
+        return Err(PredictError::Covariance);
+    }
+    let eigen = correlation.symmetric_eigen();
+    let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
+    if eigen.eigenvalues.iter().any(|value| *value < -1e-6 * largest.max(1.0)) {
+        return Err(PredictError::Covariance);
+    }
+    let roots = eigen.eigenvalues.map(|value| value.max(0.0).sqrt());
+    Ok(DMatrix::from_fn(count, count, |i, j| scale(i) * eigen.eigenvectors[(i, j)] * roots[j]))
+}
+
+impl Mixture {
+    /// Takes what several files say of one ship, each with its weight; fails for what no file of this program holds.
+    pub fn new(files: Vec<(KnownShip, f64)>) -> Result<Self, PredictError> {
+        let total: f64 = files.iter().map(|(_, weight)| weight).sum();
+        let mut parts = Vec::new();
+        for (file, (known, of_file)) in files.iter().enumerate() {
+            let sum: f64 = known.members.iter().map(|member| member.weight).sum();
+            for member in &known.members {
+                let weight = of_file / total * member.weight / sum;
+                if !(weight.is_finite() && weight >= 0.0) {
+                    return Err(PredictError::Value { key: "weight", value: member.weight });
+                }
+                parts.push(Part {
+                    weight,
+                    equations: member.equations()?,
+                    fitted: member.fitted.clone(),
+                    root: root_of(&member.covariance)?,
+                    degrees_of_freedom: member.degrees_of_freedom,
+                    file,
+                });
+            }
+        }
+        let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
+        Ok(Self { parts, files: files.into_iter().map(|(known, _)| known).collect(), timescale })
+    }
+
+    /// A time of the ship, s: about L/U.
+    pub fn timescale(&self) -> f64 {
+        self.timescale
+    }
+
+    /// What the first file says of the ship.
+    pub fn first(&self) -> &KnownShip {
+        &self.files[0]
+    }
+
+    /// The files.
+    pub fn files(&self) -> &[KnownShip] {
+        &self.files
+    }
+
+    /// The most probable ship, without chance.
+    pub fn most_probable(&self) -> Drawn {
+        self.draw(0, &[])
+    }
+
+    /// Ship number `number`; only the given sources of doubt are at work, all else is as in the most probable ship.
+    pub fn draw(&self, number: u64, sources: &[Source]) -> Drawn {
+        let has = |source: Source| sources.contains(&source);
+        let key = StreamKey { seed: 0, cell: 0, replicate: number };
+        let part = if has(Source::Structure) { self.chosen(number) } else { self.likeliest() };
+        let known = &self.files[part.file];
+        let mut rng = key.rng(Purpose::Specification);
+        let values = match has(Source::Parameters) {
+            true => part.drawn(&mut rng),
+            false => part.equations.values.clone(),
+        };
+        let mut other = key.indexed(Purpose::Specification, 1);
+        let [of_gear, of_rate]: [f64; 2] = std::array::from_fn(|_| other.sample(StandardNormal));
+        let gear = known.gear.map_or_else(SteeringGear::default, |gear| {
+            let doubt = if has(Source::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
+            SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
+        });
+        let noise = if has(Source::ProcessNoise) { known.noise } else { KnownNoise::default() };
+        Drawn {
+            response: part.equations.with(values),
+            gear,
+            disturbances: self.disturbances(&noise),
+            yaw_rate: if has(Source::InitialState) { of_rate * known.approach_yaw_rate_rad_s } else { 0.0 },
+            key,
+        }
+    }
+
+    fn disturbances(&self, noise: &KnownNoise) -> Disturbances {
+        let sd = noise.moment_sd_rudder_rad;
+        let mut disturbances = Disturbances::default();
+        match noise.moment {
+            Moment::None => {}
+            Moment::White => {
+                let correlation_time = WHITE * self.timescale;
+                disturbances.gusts = Some(GaussMarkov { sd: sd / (2.0 * correlation_time).sqrt(), correlation_time });
+            }
+            Moment::OrnsteinUhlenbeck => {
+                let correlation_time = noise.moment_correlation_s.unwrap_or(self.timescale);
+                disturbances.gusts = Some(GaussMarkov { sd, correlation_time });
+            }
+            Moment::Walk => disturbances.random_walk = sd,
+        }
+        disturbances
+    }
+
+    fn likeliest(&self) -> &Part {
+        let most = |one: &&Part, other: &&Part| one.weight.total_cmp(&other.weight);
+        self.parts.iter().rev().max_by(most).expect("there is a structure")
+    }
+
+    /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio).
+    fn chosen(&self, number: u64) -> &Part {
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let mut left = (0.5 + number as f64 * GOLDEN).fract();
+        for part in &self.parts {
+            if left < part.weight {
+                return part;
+            }
+            left -= part.weight;
+        }
+        self.likeliest()
+    }
+}
+
+impl Part {
+    /// Parameters by their covariance, inside the ranges of the effects: normal, or Student's t.
+    fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
+        let described = self.equations.parameters();
+        let mut values = self.equations.values.clone();
+        if self.root.is_empty() {
+            return values;
+        }
+        for attempt in 0..=MOST_TRIES {
+            let normal = DVector::from_fn(self.fitted.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
+            let wide = match self.degrees_of_freedom.and_then(|freedom| Some((freedom, ChiSquared::new(freedom).ok()?))) {
+                Some((freedom, law)) => (freedom / law.sample(rng)).sqrt(),
+                None => 1.0,
+            };
+            let step = &self.root * normal * wide;
+            for (&place, step) in self.fitted.iter().zip(step.iter()) {
+                let value = self.equations.values[place] + step;
+                values[place] = if attempt == MOST_TRIES {
+                    value.clamp(described[place].lowest, described[place].highest)
+                } else {
+                    value
+                };
+            }
+            if values.iter().zip(&described).all(|(value, parameter)| parameter.holds(*value)) {
+                break;
+            }
+        }
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up;
+
+    fn mixture() -> Mixture {
+        Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
+    }
+
+    /// Mean and covariance of the draws are those that are known.
+    #[test]
+    fn draws_have_the_law_that_is_known() {
+        let mixture = mixture();
+        let known = &mixture.first().members[0];
+        let count = 4000;
+        let draws: Vec<Vec<f64>> = (0..count)
+            .map(|k| mixture.draw(k, &[Source::Parameters]).response.parameters().to_vec())
+            .collect();
+        let mean = |place: usize| draws.iter().map(|draw| draw[place]).sum::<f64>() / count as f64;
+        for (row, &one) in known.fitted.iter().enumerate() {
+            for (column, &other) in known.fitted.iter().enumerate() {
+                let product = |draw: &Vec<f64>| (draw[one] - mean(one)) * (draw[other] - mean(other));
+                let found = draws.iter().map(product).sum::<f64>() / count as f64;
+                let scale = (known.covariance[row][row] * known.covariance[column][column]).sqrt();
+                assert!((found - known.covariance[row][column]).abs() < 0.08 * scale, "{one} {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn structures_are_drawn_by_their_probability() {
+        let mut known = made_up::known();
+        let mut simple = known.members[0].clone();
+        simple.effects.clear();
+        simple.parameters.truncate(3);
+        simple.fitted.truncate(3);
+        simple.covariance.truncate(3);
+        simple.covariance.iter_mut().for_each(|row| row.truncate(3));
+        (simple.weight, known.members[0].weight) = (0.2, 0.6);
+        known.members.push(simple);
+        let mixture = Mixture::new(vec![(known, 2.0)]).expect("made up");
+        let is_simple = |k| mixture.draw(k, &[Source::Structure]).response.parameters().len() == 3;
+        let simple = (0..1000).filter(|&k| is_simple(k)).count();
+        assert!((240..=260).contains(&simple), "{simple}");
+        assert!((0..100).all(|k| mixture.draw(k, &[]).response.parameters().len() == 4));
+    }
+
+    #[test]
+    fn one_number_is_one_ship() {
+        let mixture = mixture();
+        let [one, again, other] = [7, 7, 8].map(|k| mixture.draw(k, &Source::ALL));
+        assert_eq!(one.response.parameters(), again.response.parameters());
+        assert_ne!(one.response.parameters(), other.response.parameters());
+        assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);
+    }
+
+    #[test]
+    fn what_is_no_covariance_is_refused() {
+        let mut known = made_up::known();
+        known.members[0].covariance[0][1] = 10.0;
+        known.members[0].covariance[1][0] = 10.0;
+        assert_eq!(Mixture::new(vec![(known, 1.0)]).err(), Some(PredictError::Covariance));
+        assert!(Mixture::new(Vec::new()).is_err());
+    }
+}

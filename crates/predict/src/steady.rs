@@ -1,0 +1,143 @@
+//! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship that
+//! is not stable on a straight course.
+
+use ship::Response;
+use ship::angle::to_deg;
+
+use crate::figures::Figure;
+
+/// Points to either side of a straight course.
+const POINTS: usize = 24;
+
+/// Doublings in which a rate is looked for that needs more than the largest rudder, and halvings to come near to it.
+const DOUBLINGS: usize = 12;
+
+/// Rudder (rad) over yaw rate (rad/s) of steady turns, in the order of the yaw rate.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SteadyCurve {
+    /// Yaw rates, rad/s.
+    pub yaw_rate: Vec<f64>,
+    /// The rudder each needs, rad.
+    pub rudder: Vec<f64>,
+}
+
+/// The part of a steady curve over which the ship is unstable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loop {
+    /// Difference of the rudders at its ends, rad.
+    pub width: f64,
+    /// Difference of the yaw rates of the outer branches at the rudder in the middle of it, rad/s.
+    pub height: f64,
+}
+
+impl SteadyCurve {
+    /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates that
+    /// no rudder makes are left out.
+    pub fn of(ship: &Response, largest: f64, timescale: f64) -> Self {
+        let mut curve = Self::default();
+        let end = |side: f64| {
+            let is_within = |rate: f64| ship.steady_rudder(side * rate).is_some_and(|rudder| side * rudder < largest);
+            let (mut within, mut beyond) = (0.0, 0.02 / timescale);
+            for _ in 0..DOUBLINGS {
+                if !is_within(beyond) {
+                    break;
+                }
+                (within, beyond) = (beyond, 2.0 * beyond);
+            }
+            for _ in 0..DOUBLINGS {
+                let middle = 0.5 * (within + beyond);
+                if is_within(middle) { within = middle } else { beyond = middle }
+            }
+            beyond
+        };
+        let [port, starboard] = [end(-1.0), end(1.0)];
+        for point in -(POINTS as i32)..=POINTS as i32 {
+            let share = f64::from(point) / POINTS as f64;
+            let rate = share * if share < 0.0 { port } else { starboard };
+            if let Some(rudder) = ship.steady_rudder(rate) {
+                curve.yaw_rate.push(rate);
+                curve.rudder.push(rudder);
+            }
+        }
+        curve
+    }
+
+    /// Yaw rate at a rudder (rad) on the outer branch of its side, rad/s.
+    pub fn outer(&self, rudder: f64) -> Option<f64> {
+        let pairs = |k: usize| (self.rudder[k] - rudder, self.rudder[k + 1] - rudder);
+        let crosses = |k: &usize| {
+            let (one, next) = pairs(*k);
+            one <= 0.0 && next >= 0.0 && one < next
+        };
+        let last = self.rudder.len().checked_sub(1)?;
+        let at = if rudder < 0.0 { (0..last).find(crosses) } else { (0..last).rev().find(crosses) }?;
+        let (one, next) = pairs(at);
+        Some(self.yaw_rate[at] - one * (self.yaw_rate[at + 1] - self.yaw_rate[at]) / (next - one))
+    }
+
+    /// The loop, where there is one.
+    pub fn instability(&self) -> Option<Loop> {
+        let falls = |k: &usize| self.rudder[*k + 1] < self.rudder[*k];
+        let last = self.rudder.len().checked_sub(1)?;
+        let (from, until) = ((0..last).find(falls)?, (0..last).rev().find(falls)? + 1);
+        let (high, low) = (self.rudder[from], self.rudder[until]);
+        let middle = 0.5 * (high + low);
+        let crossings: Vec<f64> = (0..last)
+            .filter(|&k| self.rudder[k] <= middle && self.rudder[k + 1] > middle)
+            .map(|k| {
+                let share = (middle - self.rudder[k]) / (self.rudder[k + 1] - self.rudder[k]);
+                self.yaw_rate[k] + share * (self.yaw_rate[k + 1] - self.yaw_rate[k])
+            })
+            .collect();
+        let (first, last) = (crossings.first()?, crossings.last()?);
+        Some(Loop { width: high - low, height: last - first })
+    }
+
+    /// Figures of a spiral up to this rudder, rad.
+    pub(crate) fn figures(&self, rudder: f64) -> Vec<Figure> {
+        let instability = self.instability();
+        let of_loop = |value: fn(Loop) -> f64| Some(to_deg(instability.map_or(0.0, value)));
+        vec![
+            ("rate_starboard_deg_s", self.outer(rudder).map(to_deg)),
+            ("rate_port_deg_s", self.outer(-rudder).map(to_deg)),
+            ("loop_width_deg", of_loop(|found| found.width)),
+            ("loop_height_deg_s", of_loop(|found| found.height)),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use ship::ResponseModel;
+    use ship::effects::NonlinearDamping;
+
+    fn cubic(inverse_time: f64) -> Response {
+        let model = ResponseModel::new(vec![Arc::new(NonlinearDamping::Cubic)]);
+        model.with(vec![inverse_time, 6e-3, 0.0, 300.0])
+    }
+
+    /// a r + n r³ = b δ with a < 0: the loop ends at r = √(−a/3n), δ = ∓(2/3)(−a/b) r, and the outer branches cross
+    /// amidships at r = ±√(−a/n).
+    #[test]
+    fn the_loop_of_an_unstable_ship_is_that_of_its_cubic() {
+        let curve = SteadyCurve::of(&cubic(-0.02), 0.3, 12.0);
+        let found = curve.instability().expect("unstable");
+        let rate = (0.02f64 / 900.0).sqrt();
+        let width = 2.0 * (2.0 / 3.0) * 0.02 / 6e-3 * rate;
+        assert!((found.width / width - 1.0).abs() < 0.02, "{} {width}", found.width);
+        assert!((found.height / (2.0 * (0.02f64 / 300.0).sqrt()) - 1.0).abs() < 0.02, "{}", found.height);
+    }
+
+    #[test]
+    fn a_stable_ship_has_no_loop() {
+        let curve = SteadyCurve::of(&cubic(0.06), 0.3, 12.0);
+        assert_eq!(curve.instability(), None);
+        let rate = curve.outer(0.2).expect("within");
+        assert!((0.06 * rate + 300.0 * rate.powi(3) - 6e-3 * 0.2).abs() < 2e-5, "{rate}");
+        assert!((curve.outer(-0.2).expect("within") + rate).abs() < 1e-12);
+        assert_eq!(curve.outer(0.9), None);
+    }
+}
