@@ -11,6 +11,7 @@
 //! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
 //! | what is said about it | [`summary`], [`statistics`] |
 //! | records and answers for figures and other programs | [`curves`], [`answer`] |
+//! | what is known of a ship, for a prediction | [`known`] |
 
 pub mod answer;
 mod bound;
@@ -23,6 +24,7 @@ pub mod engine;
 mod extremes;
 pub mod files;
 pub mod folder;
+pub mod known;
 pub mod manifest;
 pub mod merge;
 pub mod observer;

@@ -6,6 +6,7 @@ mod fitted;
 mod left_out;
 mod missing;
 mod parameters;
+mod plausible;
 mod prospects;
 mod replays;
 mod reporter;
@@ -41,6 +42,7 @@ use parameters::{indices, parameter_covariance, parameters, randomness, runner_u
 use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
 
+pub use plausible::Plausible;
 pub use prospects::Prospect;
 pub use result::{
     Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, RunnerUp, Traced, Verdict,
@@ -187,7 +189,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let left_out = if folds { leave_one_out(trials, &method, &problem, &told.sides) } else { Vec::new() };
 
     let fitted = told.fitted();
-    let covariance = parameter_covariance(&problem, fitted, told.is_coloured(whiteness[1].lag1));
+    let coloured = told.is_coloured(whiteness[1].lag1);
+    let covariance = parameter_covariance(&problem, fitted, coloured);
     let parameters = parameters(&problem, fitted, covariance.as_ref(), &names);
     let (indices, rudder_bias) = indices(fitted, covariance.as_ref());
     let report = Reporter {
@@ -202,6 +205,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let mut effects = report.effects(&parameters);
     let mut candidates = report.candidates(&effects);
     let weights = report.weigh(&mut effects, &mut candidates);
+    let rivals = plausible::rivals(&search, &weights);
     let nameless = if told.random { report.nameless(&sizes) } else { None };
     let unexplained = match report.is_unexplained(&told, nameless.as_ref()) {
         true => report.signature(trials, &told.after),
@@ -242,6 +246,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         candidate_terms,
         model,
         told: after_side,
+        rivals,
+        coloured,
         problem,
     })
 }

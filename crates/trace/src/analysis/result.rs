@@ -9,10 +9,11 @@ use trial::Quantity;
 use super::side::Side;
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
-use crate::fit::Problem;
+use crate::fit::{Fit, Problem};
 use crate::noise::Wander;
 use crate::replay_errors::Errors;
 use crate::search::{Evidence, Model, Thresholds, Tried, Weights};
+use crate::structure::Structure;
 
 /// What the analysis says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -275,6 +276,10 @@ pub struct Analysis {
     pub(super) model: Model,
     /// The final model as it is told.
     pub(super) told: Side,
+    /// Structures that cannot be told apart with their weights and fits.
+    pub(super) rivals: Vec<(f64, Structure, Fit)>,
+    /// Whether the noise has a colour that the fit does not know.
+    pub(super) coloured: bool,
 }
 
 impl Analysis {

@@ -53,7 +53,7 @@ impl Ledger {
     }
 
     /// Everything that was noted.
-    pub(super) fn known(&self) -> MutexGuard<'_, BTreeMap<Names, Noted>> {
+    pub fn known(&self) -> MutexGuard<'_, BTreeMap<Names, Noted>> {
         self.0.lock().expect("no search panics while it holds the lock")
     }
 }

@@ -1,0 +1,205 @@
+//! What an estimate or an analysis knows of a ship, as a prediction takes it.
+
+use identify::estimate::{Estimate, Uncertainty};
+use identify::replay::replay;
+use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
+use predict::KnownShip;
+use ship::Response;
+use ship::angle::{from_deg, to_deg};
+use trace::Analysis;
+use trace::analysis::Plausible;
+use trace::noise::Wander;
+use trial::{Trial, ZigZag};
+
+/// What a method knows of the ship of some records; `None` for a method without a covariance.
+///
+/// The random moment is that of `maximum-likelihood`, which alone looks for one; of any other method the heading noise
+/// is what its replay leaves.
+pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
+    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
+    let response = &estimate.response;
+    let replays: Vec<_> = trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
+    let told = |name: &str| estimate.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
+    let (mut square, mut rows) = (0.0, 0usize);
+    for (_, residual) in replays.iter().flat_map(|replay| replay.observed()) {
+        square += residual * residual;
+        rows += 1;
+    }
+    let left = (square / rows.max(1) as f64).sqrt();
+    let kinds = [
+        (Moment::White, "white_moment_rudder_deg_root_s"),
+        (Moment::Walk, "moment_walk_rudder_deg_per_root_s"),
+        (Moment::OrnsteinUhlenbeck, "gusts_sd_rudder_deg"),
+    ];
+    let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(told(name)?))));
+    let (moment, moment_sd_rudder_rad) = moment.unwrap_or_default();
+    let initial: f64 = replays.iter().map(|replay| replay.initial()[1].powi(2)).sum();
+    Some(KnownShip {
+        members: vec![Member {
+            weight: 1.0,
+            effects: Vec::new(),
+            parameters: vec![response.inverse_T, response.K_over_T, response.rudder_bias],
+            fitted: vec![0, 1, 2],
+            covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
+            degrees_of_freedom: covariance.degrees_of_freedom,
+        }],
+        noise: KnownNoise {
+            heading_sd_rad: told("heading_sd_deg").map_or(left, from_deg),
+            moment,
+            moment_sd_rudder_rad,
+            moment_correlation_s: told("gusts_correlation_s"),
+        },
+        gear: gear(trials),
+        approach_yaw_rate_rad_s: (initial / replays.len() as f64).sqrt(),
+        seen: seen(trials, replays.iter().map(|replay| replay.yaw_rate.as_slice())),
+        length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
+        speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
+    })
+}
+
+/// What an analysis knows of the ship of its fitted records.
+pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
+    let noise = &analysis.randomness;
+    let moment = match noise.wander {
+        Some(Wander::White) => Moment::White,
+        Some(Wander::Walk) => Moment::Walk,
+        Some(Wander::OrnsteinUhlenbeck(_)) => Moment::OrnsteinUhlenbeck,
+        None | Some(Wander::Compass(_)) => Moment::None,
+    };
+    KnownShip {
+        members: analysis.plausible().iter().map(member).collect(),
+        noise: KnownNoise {
+            heading_sd_rad: noise.white,
+            moment,
+            moment_sd_rudder_rad: noise.rudder,
+            moment_correlation_s: noise.correlation,
+        },
+        gear: gear(trials),
+        approach_yaw_rate_rad_s: analysis.initial_yaw_rate(),
+        seen: seen(trials, analysis.identification.iter().map(|judged| judged.after.replay.yaw_rate.as_slice())),
+        length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
+        speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
+    }
+}
+
+fn member(plausible: &Plausible) -> Member {
+    let Plausible { weight, response, fitted, covariance } = plausible;
+    let rows = |all: &nalgebra::DMatrix<f64>| -> Vec<Vec<f64>> {
+        all.row_iter().map(|row| row.iter().copied().collect()).collect()
+    };
+    let sound = covariance.as_ref().filter(|all| all.iter().all(|entry| entry.is_finite()));
+    Member {
+        weight: *weight,
+        effects: written(response),
+        parameters: response.parameters().to_vec(),
+        fitted: if sound.is_some() { fitted.clone() } else { Vec::new() },
+        covariance: sound.map(rows).unwrap_or_default(),
+        degrees_of_freedom: None,
+    }
+}
+
+fn written(response: &Response) -> Vec<WrittenEffect> {
+    let write = |effect: &std::sync::Arc<dyn ship::effects::Effect>| WrittenEffect {
+        id: effect.id().to_owned(),
+        form: effect.form().to_owned(),
+        constants: effect.constants(),
+    };
+    response.model().effects().iter().map(write).collect()
+}
+
+fn seen<'a>(trials: &[Trial], rates: impl Iterator<Item = &'a [f64]>) -> Seen {
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
+    Seen {
+        rudder_rad: largest(&mut trials.iter().flat_map(|trial| trial.rudder().iter().copied())),
+        yaw_rate_rad_s: largest(&mut rates.flat_map(|rates| rates.iter().copied())),
+    }
+}
+
+/// Rates a steering gear can have, rad/s; outside, a recorded rudder is an order or says nothing about its gear.
+const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
+
+/// Part of a sampling interval by which an end of a movement between two rows is not known (a uniform law).
+const BETWEEN_ROWS: f64 = 0.29;
+
+/// The steering gear, from the reversals of zig-zags; `None` where no record resolves them.
+///
+/// Both ends of every reversal lie somewhere between two rows, which is the error of its duration.
+fn gear(trials: &[Trial]) -> Option<KnownGear> {
+    let (mut rates, mut variances) = (Vec::new(), Vec::new());
+    for trial in trials {
+        let Ok(zigzag) = ZigZag::of(trial) else { continue };
+        let Some(rate) = zigzag.rudder_rate.filter(|rate| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate)))
+        else {
+            continue;
+        };
+        let reversals = zigzag.executes.len().max(1) as f64;
+        let throw = zigzag.executes.iter().map(|execute| (execute.rudder_after - execute.rudder_before).abs());
+        let duration = throw.fold(0.0, f64::max) / rate;
+        let doubt = BETWEEN_ROWS * std::f64::consts::SQRT_2 * trial.sampling_period() / duration;
+        rates.push(rate);
+        variances.push((rate * doubt).powi(2) / reversals);
+    }
+    let count = rates.len() as f64;
+    let mean = rates.iter().sum::<f64>() / count;
+    let spread = rates.iter().map(|rate| (rate - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let read = variances.iter().sum::<f64>() / count;
+    (count > 0.0).then(|| KnownGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use identify::{Identifier, maximum_likelihood, output_error};
+    use predict::{Kind, Mixture};
+    use ship::FirstOrder;
+    use simulate::manoeuvre::ZigZagEnd;
+    use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+
+    fn record(walk_deg: f64) -> Trial {
+        let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
+        let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Executes(6));
+        let mut simulation = Simulation::new(ship, zig_zag);
+        simulation.gear = SteeringGear::with_rate(from_deg(2.32));
+        simulation.sensors.heading.noise = from_deg(0.1);
+        simulation.disturbances.random_walk = from_deg(walk_deg);
+        simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a trial").trial
+    }
+
+    /// From a record to the overshoot of a trial that was not made: 19.71 deg for YUKUN (20/20, 2.32 deg/s).
+    #[test]
+    fn a_ten_ten_tells_the_twenty_twenty() {
+        let trials = [record(0.0)];
+        let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
+        let known = of_estimate(&estimate, &trials).expect("a covariance");
+        let gear = known.gear.expect("a zig-zag");
+        assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
+        assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
+        let kind: Kind = "zig-zag:20/20".parse().expect("known");
+        let prediction = Mixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
+        let first = prediction.figures.iter().find(|figure| figure.name == "first_overshoot_deg").expect("a zig-zag");
+        assert!((first.interval.median - 19.71).abs() < 0.5, "{:?}", first.interval);
+        assert!(first.interval.ci90[1] - first.interval.ci90[0] < 1.5, "{:?}", first.interval);
+        assert!(prediction.extrapolated, "20 deg of rudder after 10");
+    }
+
+    #[test]
+    fn the_moment_of_the_likelihood_is_handed_on() {
+        let trials = [record(0.1)];
+        let method = maximum_likelihood::Settings::default().build().expect("defaults");
+        let known = of_estimate(&method.identify(&trials).expect("a fit"), &trials).expect("a covariance");
+        assert_ne!(known.noise.moment, Moment::None);
+        assert!(known.noise.moment_sd_rudder_rad > 0.0);
+    }
+
+    #[test]
+    fn an_analysis_knows_its_effects() {
+        let trials = [record(0.0)];
+        let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
+        let known = of_analysis(&analysis, &trials);
+        assert!((known.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
+        let first = &known.members[0];
+        assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
+        assert!((first.parameters[1] / first.parameters[0] - 0.1).abs() < 0.003);
+        Mixture::new(vec![(known, 1.0)]).expect("what is known can be drawn from");
+    }
+}
