@@ -121,9 +121,17 @@ const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 /// Part of a sampling interval by which an end of a movement between two rows is not known (a uniform law).
 const BETWEEN_ROWS: f64 = 0.29;
 
+/// Steps of a movement whose neighbours are at least this share of them are made at the full rate.
+const FULL: f64 = 0.7;
+
+/// Fewest such steps that say what the rate is.
+const FEWEST_STEPS: usize = 4;
+
 /// The steering gear, from the reversals of zig-zags; `None` where no record resolves them.
 ///
-/// Both ends of every reversal lie somewhere between two rows, which is the error of its duration.
+/// The rate is the mean of the steps inside movements, its error what these steps differ by. Where movements are about as
+/// long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
+/// duration.
 fn gear(trials: &[Trial]) -> Option<KnownGear> {
     let (mut rates, mut variances) = (Vec::new(), Vec::new());
     for trial in trials {
@@ -132,6 +140,15 @@ fn gear(trials: &[Trial]) -> Option<KnownGear> {
         else {
             continue;
         };
+        let inside = inside_movements(trial, rate);
+        if inside.len() >= FEWEST_STEPS {
+            let count = inside.len() as f64;
+            let mean = inside.iter().sum::<f64>() / count;
+            let square: f64 = inside.iter().map(|rate| (rate - mean).powi(2)).sum();
+            rates.push(mean);
+            variances.push(square / (count - 1.0) / count);
+            continue;
+        }
         let reversals = zigzag.executes.len().max(1) as f64;
         let throw = zigzag.executes.iter().map(|execute| (execute.rudder_after - execute.rudder_before).abs());
         let duration = throw.fold(0.0, f64::max) / rate;
@@ -144,6 +161,18 @@ fn gear(trials: &[Trial]) -> Option<KnownGear> {
     let spread = rates.iter().map(|rate| (rate - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let read = variances.iter().sum::<f64>() / count;
     (count > 0.0).then(|| KnownGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
+}
+
+/// Rates (rad/s) of the steps of a rudder that lie inside movements of about `rate` rad/s.
+fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
+    let (time, rudder) = (trial.time(), trial.rudder());
+    let steps: Vec<f64> =
+        (1..trial.len()).map(|row| (rudder[row] - rudder[row - 1]) / (time[row] - time[row - 1])).collect();
+    let is_inside = |three: &&[f64]| {
+        let side = three[1].signum();
+        three.iter().all(|step| side * step >= FULL * three[1].abs()) && three[1].abs() > FULL * rate
+    };
+    steps.windows(3).filter(is_inside).map(|three| three[1].abs()).collect()
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::commands::{check, find, fit, list, merge, overview, report, run, sidecar, simulate, trace};
-use crate::options::{Common, FindRequest, FitRequest, Listed, RunRequest, SimulateRequest, Style, TraceRequest};
+use crate::commands::{check, find, fit, list, merge, overview, predict, report, run, sidecar, simulate, trace};
+use crate::options::{Common, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, Style, TraceRequest};
 use crate::{screen, threads};
 use clap::{CommandFactory, Parser, Subcommand};
 use scenario::failure::{Blame, Failure};
@@ -40,6 +40,13 @@ enum Command {
     Trace {
         #[command(flatten)]
         request: TraceRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Predict manoeuvres that were not made from fit.json or trace.json, with intervals: predict.json, report, plots
+    Predict {
+        #[command(flatten)]
+        request: PredictRequest,
         #[command(flatten)]
         common: Common,
     },
@@ -162,6 +169,10 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         (Some(Command::Trace { request, common }), _) => {
             threads::start(&common)?;
             trace::run(&request, &common)
+        }
+        (Some(Command::Predict { request, common }), _) => {
+            threads::start(&common)?;
+            predict::run(&request, &common)
         }
         (Some(Command::Sidecar { log, common }), _) => sidecar::run(&log, &common),
         (Some(Command::Find { request, common }), _) => find::run(&request, &common),

@@ -7,6 +7,7 @@ use ::trace::search::Rule;
 use ::trace::{EffectId, Wanted};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
+use predict::Kind;
 use report::theme::{DPI, WIDTH_MM};
 use report::{Table, Theme};
 use scenario::failure::Failure;
@@ -290,6 +291,39 @@ pub enum Withheld {
     Propeller,
     /// Sway velocity
     Sway,
+}
+
+/// Numbers of draws that make sense.
+const DRAWS: std::ops::RangeInclusive<i64> = 50..=100_000;
+
+/// What `study predict` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct PredictRequest {
+    /// What is known of one ship: fit.json or trace.json; several are a mixture, all alike
+    #[arg(required = true, value_name = "MODEL.json")]
+    pub models: Vec<PathBuf>,
+    /// Manoeuvre to predict: zig-zag:10/10, initial-turning:10, turning-circle:35, pull-out:20, spiral:15, williamson;
+    /// a negative rudder begins to port [default: those of the IMO criteria, unless a record is replayed]
+    #[arg(long = "manoeuvre", value_name = "KIND", allow_hyphen_values = true)]
+    pub manoeuvres: Vec<Kind>,
+    /// Record whose rudder is replayed, and which is held against its prediction; nothing is fitted to it
+    #[arg(long = "replay", value_name = "RECORD")]
+    pub replays: Vec<PathBuf>,
+    /// Method whose answer in fit.json is used [default: maximum-likelihood, or the next that has a covariance]
+    #[arg(long, value_name = "ID")]
+    pub method: Option<String>,
+    /// Without the random moment and the steady wind of the records
+    #[arg(long)]
+    pub calm: bool,
+    /// Ships that are drawn
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(DRAWS))]
+    pub draws: u32,
+    /// How the records are read, and the scale that is predicted for: another length scales the ship by Froude
+    #[command(flatten)]
+    pub reading: ReadingOptions,
+    /// How figures are drawn
+    #[command(flatten)]
+    pub style: Style,
 }
 
 /// What can be listed.

@@ -18,6 +18,7 @@ use crate::views::method_table;
 use crate::{progress, screen};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::folder::ResultFolder;
+use campaign::known;
 use scenario::failure::{Failure, OnPath};
 
 /// What other programs read.
@@ -57,6 +58,12 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         zigzag: entries_of_trials[0].zigzag.clone(),
         trials: entries_of_trials,
         methods: entries,
+        ships: answers
+            .iter()
+            .filter_map(|(entry, estimate)| {
+                Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &trials)?))
+            })
+            .collect(),
     };
     let path = folder.path().join(FIT);
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;

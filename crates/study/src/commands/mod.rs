@@ -8,6 +8,7 @@ pub mod list;
 pub mod merge;
 pub mod overview;
 mod planned;
+pub mod predict;
 pub mod report;
 pub mod run;
 pub mod sidecar;

@@ -1,6 +1,9 @@
 //! `fit.json`: records and answers for other programs.
 
+use std::collections::BTreeMap;
+
 use campaign::answer::MethodEntry;
+use predict::KnownShip;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
@@ -63,6 +66,9 @@ pub struct FitFile {
     pub methods: Vec<MethodEntry>,
     /// Those of the first record, which stand in its entry too.
     pub zigzag: Option<ZigZagEntry>,
+    /// What every method with a covariance knows of the ship, for `study predict`; SI units and radians.
+    #[serde(default)]
+    pub ships: BTreeMap<String, KnownShip>,
 }
 
 /// The entry of a record.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use ::trace::analysis::{Fitted, Judged, OnRecord};
 use ::trace::noise::Wander;
 use ::trace::replay_errors::HORIZONS;
+use predict::KnownShip;
 use serde::Serialize;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial};
@@ -64,6 +65,8 @@ pub struct TraceFile {
     pub refused: Vec<String>,
     /// Readings of the compass that belong to no ship, of records that have any.
     pub outliers: Vec<OutliersEntry>,
+    /// What is known of the ship, for `study predict`; SI units and radians.
+    pub ship: KnownShip,
 }
 
 /// Readings of one record that were left out.
@@ -337,6 +340,7 @@ impl TraceFile {
                 .filter(|(_, times)| !times.is_empty())
                 .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
                 .collect(),
+            ship: campaign::known::of_analysis(analysis, report.trials),
         }
     }
 }

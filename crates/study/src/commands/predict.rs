@@ -1,0 +1,188 @@
+//! `study predict`: what an identified ship will do. The prediction is that of the crate [`predict`]; here models are
+//! read, and its words, tables, figures and files are made.
+
+use std::path::{Path, PathBuf};
+
+use predict::{Kind, KnownShip, Mixture, PredictError, Prediction, imo};
+use serde_json::Value;
+use ship::Particulars;
+use ship::angle::KNOT;
+
+use crate::options::{Common, Format, PredictRequest, ReadingOptions};
+use crate::records::{file_of, read_others};
+use crate::views::predict_file::{self, PredictFile};
+use crate::views::predict_report::Predicted;
+use crate::views::{predict_page, predict_tables};
+use crate::{progress, screen};
+use campaign::folder::ResultFolder;
+use scenario::failure::{Failure, OnPath};
+use scenario::name;
+
+/// What other programs read.
+const PREDICT: &str = "predict.json";
+
+/// Methods of fit.json in the order in which they are asked; those that are not named come last.
+const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
+
+/// Difference of two lengths, as a share, below which they are of one ship.
+const SAME_LENGTH: f64 = 1e-3;
+
+/// A file with what is known of the ship.
+struct Model {
+    file: String,
+    known: KnownShip,
+}
+
+/// Predicts, prints what was found, writes `predict.json`, `report.md`, tables and figures.
+///
+/// Fails when a model or a record cannot be read, and when hardly any drawn ship comes to the end of a manoeuvre.
+pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
+    let theme = request.style.theme()?;
+    let mut warnings = Vec::new();
+    let models: Vec<Model> =
+        request.models.iter().map(|path| read(path, request, &mut warnings)).collect::<Result<_, _>>()?;
+    let records = read_others(&request.replays, &request.reading, &mut warnings)?;
+    let first = models[0].file.clone();
+    let refused = |error: PredictError| Failure::input(format!("{first}: {error}"));
+    let scaled = |particulars: Option<Particulars>| -> Result<Mixture, PredictError> {
+        let of = |model: &Model| -> Result<(KnownShip, f64), PredictError> {
+            Ok((at_scale(&model.known, particulars)?, 1.0))
+        };
+        Mixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
+    };
+    let mixture = scaled(asked_scale(&request.reading)).map_err(refused)?;
+    let kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty()) {
+        ([], true) => Kind::of_imo(),
+        (asked, _) => asked.to_vec(),
+    };
+    let draws = request.draws as usize;
+    let busy = progress::busy("predicting", common.quiet);
+    let manoeuvres: Result<Vec<Prediction>, PredictError> =
+        kinds.iter().map(|kind| mixture.predict(kind, draws, true)).collect();
+    let manoeuvres = manoeuvres.map_err(refused)?;
+    let mut replays = Vec::with_capacity(records.len());
+    for record in records {
+        let own = scaled(record.particulars().or_else(|| asked_scale(&request.reading))).map_err(refused)?;
+        let file = file_of(&record).0.to_owned();
+        match own.replay(&record, draws) {
+            Ok(Some(replayed)) => replays.push((record, replayed)),
+            Ok(None) => {
+                let what = "too few headings at its beginning to say how the ship began";
+                return Err(Failure::input(format!("{file}: {what}; choose a part with --from in `study find`")));
+            }
+            Err(error) => return Err(Failure::input(format!("{file}: {error}"))),
+        }
+    }
+    busy.finish_and_clear();
+    let particulars = mixture.particulars();
+    let weight = 1.0 / models.len() as f64;
+    let predicted = Predicted {
+        criteria: particulars.map(|particulars| imo::criteria(&manoeuvres, particulars)).unwrap_or_default(),
+        models: models.iter().map(|model| (model.file.clone(), weight)).collect(),
+        draws,
+        calm: request.calm,
+        manoeuvres,
+        replays,
+        particulars,
+        seen: mixture.first().seen,
+    };
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
+    let path = folder.path().join(PREDICT);
+    let json = serde_json::to_string_pretty(&PredictFile::of(&predicted)).on("describe", &path)?;
+    folder.keep(PREDICT, json + "\n")?;
+    let drawn = predict_page::draw(&predicted, &theme, &folder)?;
+    for (stem, table) in predict_file::curves(&predicted) {
+        folder.write(&format!("{stem}.csv"), table)?;
+    }
+    folder.write("report.md", predict_page::page(&predicted, &drawn))?;
+    if !common.quiet {
+        let table = common.format.render(&predict_tables::figures(&predicted));
+        let notes = format!("results: {}", path.display());
+        if common.format == Format::Text {
+            screen::say(&format!("{}\n{table}{}\n{notes}", predict_page::words(&predicted), predict_page::rest(&predicted)))?;
+        } else {
+            // Another program reads the table: nothing else may stand beside it.
+            screen::say(table.trim_end())?;
+            screen::warn(&notes);
+        }
+    }
+    for warning in warnings {
+        screen::warn(&format!("warning: {warning}"));
+    }
+    Ok(())
+}
+
+/// Length and speed that were asked for.
+fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
+    let length = options.length_m?;
+    let speed = options.speed_m_s.or(options.speed_kn.map(|speed| speed * KNOT));
+    Some(Particulars { length, speed: speed.unwrap_or(f64::NAN) })
+}
+
+/// A ship at the scale that was asked for; one whose scale is not known takes it as its own.
+fn at_scale(known: &KnownShip, asked: Option<Particulars>) -> Result<KnownShip, PredictError> {
+    let Some(Particulars { length, speed }) = asked else { return Ok(known.clone()) };
+    let speed = Some(speed).filter(|speed| speed.is_finite());
+    match (known.length_m, speed) {
+        (None, Some(_)) => Ok(KnownShip { length_m: Some(length), speed_m_s: speed, ..known.clone() }),
+        // The speed of a trial is read off its beginning and never quite that of another.
+        (Some(own), _) if (own / length - 1.0).abs() < SAME_LENGTH => Ok(known.clone()),
+        _ => known.scaled_to(length, speed),
+    }
+}
+
+/// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.
+fn default_folder(model: &Path) -> PathBuf {
+    let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let own = model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+    let own = own.filter(|name| !name.is_empty()).unwrap_or_else(|| String::from("model"));
+    PathBuf::from(format!("{own}-predict"))
+}
+
+fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Model, Failure> {
+    let file = path.display().to_string();
+    name::of_file(path)?;
+    let text = std::fs::read_to_string(path).on("read", path)?;
+    let value: Value = serde_json::from_str(&text).map_err(|error| {
+        Failure::input(format!("{file}: this is no JSON ({error}); expected the fit.json or trace.json of this program"))
+    })?;
+    let old = |what: &str| {
+        Failure::input(format!("{file}: {what}; it was written by an older program, make it again with `study {what}`"))
+    };
+    let known = match value["schema"].as_str() {
+        Some(schema) if schema.starts_with("fit/") => {
+            let ships = value.get("ships").and_then(Value::as_object).ok_or_else(|| old("fit"))?;
+            let id = method(&file, ships, request.method.as_deref())?;
+            if request.method.is_none() {
+                warnings.push(format!("{file}: the answer of {id} is used; --method names another"));
+            }
+            ships[&id].clone()
+        }
+        Some(schema) if schema.starts_with("trace/") => value.get("ship").cloned().ok_or_else(|| old("trace"))?,
+        found => {
+            let found = found.map_or_else(|| String::from("no `schema`"), |schema| format!("schema = \"{schema}\""));
+            return Err(Failure::input(format!("{file}: {found}; expected the fit.json or trace.json of this program")));
+        }
+    };
+    let known: KnownShip = serde_json::from_value(known)
+        .map_err(|error| Failure::input(format!("{file}: what is known of the ship cannot be read: {error}")))?;
+    let known = if request.calm { known.in_calm() } else { Ok(known) };
+    Ok(Model { known: known.map_err(|error| Failure::input(format!("{file}: {error}")))?, file })
+}
+
+/// The method whose answer is used.
+fn method(file: &str, ships: &serde_json::Map<String, Value>, asked: Option<&str>) -> Result<String, Failure> {
+    let known: Vec<&str> = ships.keys().map(String::as_str).collect();
+    if known.is_empty() {
+        let what = "no method has a covariance for this record, so there are no intervals to predict";
+        return Err(Failure::input(format!("{file}: {what}; use a longer record or several")));
+    }
+    match asked {
+        Some(asked) if known.contains(&asked) => Ok(asked.to_owned()),
+        Some(asked) => Err(Failure::input(format!(
+            "{file}: --method {asked}: this file has no such answer with a covariance; use one of {}",
+            known.join(", ")
+        ))),
+        None => Ok(METHODS.into_iter().find(|id| known.contains(id)).unwrap_or(known[0]).to_owned()),
+    }
+}

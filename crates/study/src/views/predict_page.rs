@@ -1,0 +1,90 @@
+//! The page of a prediction: words, tables and figures.
+
+use report::Theme;
+use report::markdown::text;
+use report::number::fixed;
+use ship::angle::to_deg;
+
+use super::predict_report::Predicted;
+use super::predict_tables;
+use campaign::folder::ResultFolder;
+use scenario::failure::Failure;
+
+/// Draws everything into `folder` and returns stems and captions.
+pub fn draw(_predicted: &Predicted, _theme: &Theme, _folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
+    Ok(Vec::new())
+}
+
+/// What was predicted from what.
+pub fn words(predicted: &Predicted) -> String {
+    let files: Vec<&str> = predicted.models.iter().map(|(file, _)| file.as_str()).collect();
+    let weather = match predicted.calm {
+        true => "in a calm",
+        false => "in the weather of the records",
+    };
+    let mut words = format!("{}: {} ships drawn, {weather}\n", files.join(", "), predicted.draws);
+    if predicted.manoeuvres.iter().any(|prediction| prediction.extrapolated) {
+        words += &format!(
+            "extrapolated: beyond the rudder of {}° and the yaw rate of {}°/s of the records\n",
+            fixed(to_deg(predicted.seen.rudder_rad), 1),
+            fixed(to_deg(predicted.seen.yaw_rate_rad_s), 2)
+        );
+    }
+    for prediction in predicted.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
+        words += &format!("{}: {} drawn ships do not come to its end\n", prediction.kind, prediction.lost);
+    }
+    words
+}
+
+/// What follows the table on the screen.
+pub fn rest(predicted: &Predicted) -> String {
+    let mut rest = String::new();
+    for (trial, replayed) in &predicted.replays {
+        rest += &format!(
+            "\n{}: {} % of the headings are inside the 90 % band, rms {}°\n",
+            trial.name(),
+            fixed(100.0 * replayed.band_coverage_90, 0),
+            fixed(to_deg(replayed.rms), 2)
+        );
+    }
+    if !predicted.criteria.is_empty() {
+        rest += &format!("\nIMO MSC.137(76)\n{}", predict_tables::criteria(predicted).to_text());
+    } else if predicted.particulars.is_none() && !predicted.manoeuvres.is_empty() {
+        rest += "\nIMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
+    }
+    rest
+}
+
+/// The page.
+pub fn page(predicted: &Predicted, drawn: &[(String, String)]) -> String {
+    let mut page = String::from("# Prediction\n\n");
+    for line in words(predicted).lines() {
+        page += &format!("{}\n\n", text(line));
+    }
+    page += "Every row is a figure of merit of ships that are drawn from the model: a structure by its probability, \
+             parameters by their covariance, a random moment, a rate of the rudder and a first yaw rate as the records \
+             have them. Intervals hold 50 and 90 % of them. \"Mostly from\" names the source that makes most of the \
+             interval, each source drawn alone.\n\n";
+    page += &predict_tables::figures(predicted).to_markdown();
+    if !predicted.criteria.is_empty() {
+        page += "\n## IMO MSC.137(76)\n\nThe share of the drawn ships that keep within the limit. The criteria are for \
+                 full load, even keel, deep water and calm.\n\n";
+        page += &predict_tables::criteria(predicted).to_markdown();
+    }
+    if !predicted.replays.is_empty() {
+        page += "\n## Records\n\nNothing is fitted to these records. The band is that of the recorded rudder; figures of a \
+                 zig-zag are those of a helm that reverses the rudder at the headings of the record.\n\n";
+        for (trial, replayed) in &predicted.replays {
+            page += &format!(
+                "- {}: {} % of the headings are inside the 90 % band, rms {}°\n",
+                text(trial.name()),
+                fixed(100.0 * replayed.band_coverage_90, 0),
+                fixed(to_deg(replayed.rms), 2)
+            );
+        }
+    }
+    for (stem, caption) in drawn {
+        page += &format!("\n![{0}]({stem}.png)\n\n{0}\n", text(caption));
+    }
+    page
+}

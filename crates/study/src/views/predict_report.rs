@@ -1,0 +1,26 @@
+//! What the page, the tables and the files of a prediction are made from.
+
+use predict::replay::Replayed;
+use predict::{Prediction, imo};
+use ship::Particulars;
+use trial::Trial;
+
+/// A prediction with everything it was made from.
+pub struct Predicted {
+    /// Files of the models with their weights.
+    pub models: Vec<(String, f64)>,
+    /// Draws of every manoeuvre.
+    pub draws: usize,
+    /// Whether the weather of the records was left out.
+    pub calm: bool,
+    /// The manoeuvres.
+    pub manoeuvres: Vec<Prediction>,
+    /// Records with their replays.
+    pub replays: Vec<(Trial, Replayed)>,
+    /// Criteria of IMO, where length and speed are known.
+    pub criteria: Vec<imo::Criterion>,
+    /// Length and speed.
+    pub particulars: Option<Particulars>,
+    /// Where the ship was seen.
+    pub seen: predict::known::Seen,
+}
