@@ -38,9 +38,10 @@ const OPEN: f64 = 1e-11;
 /// the residuals. The covariance is that of a sandwich whose middle is the long-run covariance of the scores, because
 /// residuals of such simple equations are coloured.
 ///
-/// The approach speed of a record is the median speed before the rudder has moved by 1° (of positions, the way made),
-/// where five rows show it; else the declared one; else the first readings. Where a current is free the declared speed
-/// comes first, and without one it is the fitted surge of the first row. That of the result is the median over records.
+/// The approach speed of a record is free as well, near what is known of it: the mean speed (of positions, the way
+/// made) before the rudder has moved by 1°, with its standard deviation, where five rows show it; else the declared one,
+/// else that of the first readings, to 1 %. Where a current is free the declared speed comes first, and without one the
+/// approach is steady: it has the speed of the first row. The result has the median over records.
 ///
 /// Fails when the length is not positive, no record has a speed or positions, none turns by 5°, an approach speed
 /// cannot be told, the search does not converge or leaves a coefficient open. Records without any output are left out.
@@ -57,7 +58,7 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     if found < TURNS {
         return Err(MotionError::NotExcited { found, needed: TURNS });
     }
-    let speed = records.iter().map(|record| record.approach_speed.unwrap_or(record.start[0]));
+    let speed = records.iter().map(|record| record.approach.speed);
     let speed = median(speed).expect("there are records");
     let scale = |output: Output| if output == Output::Position { length } else { speed };
     let mut problem = Problem::new(records, length, Output::ALL.map(|output| FIRST_SHARE * scale(output)));
@@ -80,10 +81,10 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     Ok(Planar { coefficients: problem.coefficients(&at), length, approach_speed, covariance, records })
 }
 
-/// Unknowns of one record after the coefficients: surge, sway, and of positions north, east, current.
+/// Unknowns of one record after the coefficients: surge, sway, approach speed, and of positions north, east, current.
 fn unknowns(record: &Record) -> usize {
     let position = record.outputs.iter().any(|(output, _)| *output == Output::Position);
-    2 + 2 * usize::from(position) + 2 * usize::from(record.current)
+    3 + 2 * usize::from(position) + 2 * usize::from(record.current)
 }
 
 /// All records with the weights of their outputs.
@@ -115,10 +116,11 @@ impl<'a> Problem<'a> {
         let mut at = DVector::zeros(self.unknowns);
         at.as_mut_slice()[..COEFFICIENTS].copy_from_slice(&TYPICAL.to_array());
         for (record, &place) in self.records.iter().zip(&self.places) {
-            (at[place], at[place + 1]) = (record.start[0], record.start[1]);
+            let own = [record.start[0], record.start[1], record.approach.speed];
+            at.as_mut_slice()[place..place + 3].copy_from_slice(&own);
             let positions = record.outputs.iter().filter(|(output, _)| *output == Output::Position);
             for (axis, column) in positions.flat_map(|(_, columns)| columns).enumerate() {
-                at[place + 2 + axis] = column.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
+                at[place + 3 + axis] = column.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
             }
         }
         at
@@ -128,13 +130,17 @@ impl<'a> Problem<'a> {
         Coefficients::from_array(std::array::from_fn(|i| at[i]))
     }
 
-    /// Residuals of one record, model minus reading over the deviation of the output, column by column.
+    /// Residuals of one record over their deviations, column by column: what is known of the approach speed (in the
+    /// first row), then model minus reading.
     fn residuals(&self, index: usize, coefficients: &Coefficients, own: &[f64]) -> Vec<Column> {
         let record = &self.records[index];
         let drive = Drive { time: record.time, yaw_rate: &record.yaw_rate, rudder: record.rudder };
-        let speed = record.approach_speed.unwrap_or(own[0]).max(f64::MIN_POSITIVE);
+        let speed = own[2];
         let found = velocities(coefficients, [self.length, speed], drive, [own[0], own[1]]);
-        let mut columns = Vec::new();
+        let mut approach = vec![0.0; record.time.len()];
+        let expected = if record.approach.is_start { own[0] } else { record.approach.speed };
+        approach[0] = (speed - expected) / record.approach.deviation;
+        let mut columns = vec![approach];
         for (output, readings) in &record.outputs {
             let weight = 1.0 / self.deviations[*output as usize];
             let compare = |readings: &[f64], model: &dyn Fn(usize) -> f64| -> Column {
@@ -148,12 +154,12 @@ impl<'a> Problem<'a> {
                 Output::Sway => columns.push(compare(readings[0], &|row| found[row][1])),
                 Output::Speed => columns.push(compare(readings[0], &|row| found[row][0].hypot(found[row][1]))),
                 Output::Position => {
-                    let current = if record.current { [own[4], own[5]] } else { [0.0; 2] };
+                    let current = if record.current { [own[5], own[6]] } else { [0.0; 2] };
                     let (surge, sway): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
                     let path = crate::circle::track(record.time, &record.heading, &surge, &sway);
                     for axis in 0..2 {
                         let place = |row: usize| {
-                            own[2 + axis] + path[row][axis] + current[axis] * (record.time[row] - record.time[0])
+                            own[3 + axis] + path[row][axis] + current[axis] * (record.time[row] - record.time[0])
                         };
                         columns.push(compare(readings[axis], &place));
                     }
@@ -170,14 +176,14 @@ impl<'a> Problem<'a> {
     /// Residuals of one record and their derivatives by the coefficients and its own unknowns: central differences.
     fn derivatives(&self, index: usize, at: &DVector<f64>) -> (Vec<Column>, Vec<Vec<Column>>) {
         let (here, own) = (self.coefficients(at).to_array(), self.own(index, at));
-        let speed = self.records[index].start[0];
+        let speed = self.records[index].approach.speed;
         let by = |unknown: usize| {
             let side = |sign: f64| {
                 let (mut coefficients, mut own) = (here, own.to_vec());
                 let step = match unknown.checked_sub(COEFFICIENTS) {
                     None => 1e-6 * TYPICAL.to_array()[unknown].max(here[unknown].abs()),
-                    Some(0 | 1) => 1e-6 * speed,
-                    Some(2 | 3) => 1e-4 * self.length,
+                    Some(0..=2) => 1e-6 * speed,
+                    Some(3 | 4) => 1e-4 * self.length,
                     Some(_) => 1e-4 * speed,
                 };
                 match unknown.checked_sub(COEFFICIENTS) {
@@ -212,7 +218,7 @@ impl<'a> Problem<'a> {
         let one = |(index, record): (usize, &Record)| {
             let own = self.own(index, at);
             let columns = self.residuals(index, &coefficients, own);
-            let mut columns = columns.iter();
+            let mut columns = columns[1..].iter();
             let residuals = record.outputs.iter().map(|(output, readings)| {
                 let square: f64 = columns.by_ref().take(readings.len()).flatten().map(|x| x * x).sum();
                 let count = readings.iter().flat_map(|column| column.iter()).filter(|x| x.is_finite()).count();
@@ -221,10 +227,10 @@ impl<'a> Problem<'a> {
             });
             RecordFit {
                 name: record.name.to_owned(),
-                approach_speed: record.approach_speed.unwrap_or(own[0]),
+                approach_speed: own[2],
                 start: [own[0], own[1]],
                 residuals: residuals.collect(),
-                current: record.current.then(|| [own[4], own[5]]),
+                current: record.current.then(|| [own[5], own[6]]),
             }
         };
         self.records.iter().enumerate().map(one).collect()
@@ -314,6 +320,12 @@ impl Squares for Problem<'_> {
     }
 
     fn bounds(&self, unknown: usize) -> [f64; 2] {
-        BOUNDS.get(unknown).copied().unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
+        if let Some(bounds) = BOUNDS.get(unknown) {
+            return *bounds;
+        }
+        match self.places.iter().position(|place| place + 2 == unknown) {
+            Some(record) => [0.5, 2.0].map(|share| share * self.records[record].approach.speed),
+            None => [f64::NEG_INFINITY, f64::INFINITY],
+        }
     }
 }

@@ -41,11 +41,30 @@ const FEWEST_ROWS: usize = 2;
 /// Rudder angle from its first value at which the approach ends, rad (1°).
 const MOVED: f64 = 0.017;
 
+/// Heading from its first value at which it ends as well, rad (3°).
+const STRAIGHT: f64 = 0.05;
+
 /// Rows of an approach that show a speed.
 const APPROACH_ROWS: usize = 5;
 
+/// Standard deviation of a declared approach speed, and of that from the first readings, as a share of it.
+const DECLARED: f64 = 0.01;
+
+/// An approach is never steadier than this share of its speed.
+const SUREST: f64 = 1e-3;
+
 /// Range of the heading from which a record of positions tells a current, rad: one circle.
 const CIRCLE: f64 = std::f64::consts::TAU;
+
+/// The approach speed and how surely it is known, m/s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Approach {
+    /// From which the fit begins.
+    pub speed: f64,
+    pub deviation: f64,
+    /// Whether what is known is that it equals the surge of the first row, and not the speed above.
+    pub is_start: bool,
+}
 
 /// A record ready to be fitted.
 #[derive(Debug, Clone)]
@@ -59,8 +78,8 @@ pub(crate) struct Record<'a> {
     pub yaw_rate: Vec<f64>,
     /// Columns of the outputs; one column each, two of a position.
     pub outputs: Vec<(Output, Vec<&'a [f64]>)>,
-    /// m/s; `None` when it is the surge of the first row, which the fit finds.
-    pub approach_speed: Option<f64>,
+    /// What is known of the approach speed before the fit.
+    pub approach: Approach,
     /// Surge and sway, m/s, from which the fit begins.
     pub start: [f64; 2],
     /// Whether the record tells a current.
@@ -127,20 +146,37 @@ fn slope(time: &[f64], heading: &[f64], half: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Speed over the rows of the approach from positions, m/s.
-fn way_made(time: &[f64], north: &[f64], east: &[f64]) -> Option<f64> {
-    let there = |row: &usize| north[*row].is_finite() && east[*row].is_finite();
-    let (first, last) = ((0..time.len()).find(there)?, (0..time.len()).rev().find(there)?);
-    (last > first).then(|| (north[last] - north[first]).hypot(east[last] - east[first]) / (time[last] - time[first]))
+/// Mean and its standard deviation.
+fn mean(values: &[f64]) -> Option<[f64; 2]> {
+    let there: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let count = there.len() as f64;
+    let mean = there.iter().sum::<f64>() / count;
+    let square: f64 = there.iter().map(|value| (value - mean).powi(2)).sum();
+    (there.len() >= 2).then(|| [mean, (square / (count - 1.0) / count).sqrt()])
+}
+
+/// Speed and its standard deviation from the straight lines through positions, m/s.
+fn way_made(time: &[f64], north: &[f64], east: &[f64]) -> Option<[f64; 2]> {
+    let line = |values: &[f64]| {
+        let there: Vec<(f64, f64)> =
+            time.iter().copied().zip(values.iter().copied()).filter(|p| p.1.is_finite()).collect();
+        let count = there.len() as f64;
+        let [t, x] = [there.iter().map(|p| p.0).sum::<f64>() / count, there.iter().map(|p| p.1).sum::<f64>() / count];
+        let sum = |of: &dyn Fn(&(f64, f64)) -> f64| there.iter().map(of).sum::<f64>();
+        let (tt, tx) = (sum(&|p| (p.0 - t).powi(2)), sum(&|p| (p.0 - t) * (p.1 - x)));
+        let slope = tx / tt;
+        let left = sum(&|p| (p.1 - x - slope * (p.0 - t)).powi(2)) / (count - 2.0);
+        (there.len() >= 3).then(|| [slope, (left / tt).sqrt()])
+    };
+    let ([north, a], [east, b]) = (line(north)?, line(east)?);
+    Some([north.hypot(east), a.max(b)])
 }
 
 impl<'a> Record<'a> {
     /// `None` for a record without speed and position.
     ///
     /// Outputs are surge and sway where the record has them, the speed where it has no surge, positions where it lacks
-    /// surge or sway. The approach speed is the median speed before the rudder has moved by 1°, when that are at
-    /// least five rows; of a record of positions, the way made in these rows; otherwise the declared speed, and without
-    /// one the first readings. A record of positions that tells a current takes the declared speed first.
+    /// surge or sway. [`fit()`](crate::fit()) says where the approach speed is from.
     pub(crate) fn of(trial: &'a Trial, length: f64) -> Result<Option<Self>, MotionError> {
         let has = |channel| trial.channel(channel).filter(|values| values.iter().any(|value| value.is_finite()));
         let (surge, sway, speed) = (has(Channel::Surge), has(Channel::Sway), has(Channel::Speed));
@@ -155,28 +191,32 @@ impl<'a> Record<'a> {
         }
         let (time, rudder) = (trial.time(), trial.rudder());
         let current = position.is_some() && range(trial.heading()) > CIRCLE;
-        let still = rudder.iter().take_while(|angle| (*angle - rudder[0]).abs() < MOVED).count();
+        let heading = filled(time, trial.heading());
+        let is_straight =
+            |row: &usize| (rudder[*row] - rudder[0]).abs() < MOVED && (heading[*row] - heading[0]).abs() < STRAIGHT;
+        let still = (0..time.len()).take_while(is_straight).count();
         let of_rows = |rows: usize| match (surge.or(speed), position) {
-            (Some(values), _) => median(values[..rows].iter().copied()),
+            (Some(values), _) => mean(&values[..rows]),
             (None, Some((north, east))) => way_made(&time[..rows], &north[..rows], &east[..rows]),
             (None, None) => None,
         };
-        let declared = trial.particulars().map(|particulars| particulars.speed);
-        let shown = if still >= APPROACH_ROWS { of_rows(still) } else { None };
-        let first = of_rows(APPROACH_ROWS.min(time.len()));
-        let by_position = surge.is_none() && speed.is_none();
-        let known = if by_position && current { declared } else { shown.or(declared).or(first) };
-        let sound = |speed: &f64| speed.is_finite() && *speed > 0.0;
-        let guess = known.or(shown).or(first).filter(sound);
-        let guess = guess.ok_or_else(|| MotionError::NoApproachSpeed { record: trial.name().to_owned() })?;
-        let heading = filled(time, trial.heading());
+        let sound = |[speed, deviation]: &[f64; 2]| speed.is_finite() && *speed > 0.0 && deviation.is_finite();
+        let declared = trial.particulars().map(|own| [own.speed, DECLARED * own.speed]).filter(sound);
+        let shown = Some(still).filter(|still| *still >= APPROACH_ROWS).and_then(of_rows).filter(sound);
+        let first = of_rows(APPROACH_ROWS.min(time.len())).filter(sound).map(|[speed, _]| [speed, DECLARED * speed]);
+        let over_ground = surge.is_none() && speed.is_none() && current;
+        let known = if over_ground { declared } else { shown.or(declared).or(first) };
+        let [guess, deviation] = known
+            .or(shown.or(first).map(|[speed, _]| [speed, 0.0]))
+            .ok_or_else(|| MotionError::NoApproachSpeed { record: trial.name().to_owned() })?;
+        let deviation = deviation.max(SUREST * guess);
+        let approach = Approach { speed: guess, deviation, is_start: known.is_none() };
         let yaw_rate = match has(Channel::YawRate) {
             Some(rate) => filled(time, rate),
             None => slope(time, &heading, WINDOW * length / guess),
         };
         let beginning = |values: Option<&[f64]>| values.and_then(|v| median(v.iter().copied().take(APPROACH_ROWS)));
         let start = [beginning(surge.or(speed)).unwrap_or(guess), beginning(sway).unwrap_or(0.0)];
-        let approach_speed = known.filter(sound);
-        Ok(Some(Self { name: trial.name(), time, rudder, heading, yaw_rate, outputs, approach_speed, start, current }))
+        Ok(Some(Self { name: trial.name(), time, rudder, heading, yaw_rate, outputs, approach, start, current }))
     }
 }

@@ -24,8 +24,11 @@ pub(crate) trait Squares {
 /// Iterations after which a search is given up.
 pub(crate) const MOST_ITERATIONS: usize = 100;
 
-/// Relative decrease of the sum of squares that ends a search.
-const ENOUGH: f64 = 1e-9;
+/// Relative decrease of the sum of squares that is too little to go on for.
+const ENOUGH: f64 = 1e-7;
+
+/// Steps in a row of so little use that end a search.
+const IN_A_ROW: usize = 2;
 
 /// Decrease that a search without a better step may still have promised; the equations have kinks.
 const STALLED: f64 = 1e-4;
@@ -47,7 +50,7 @@ pub(crate) fn part(matrix: &DMatrix<f64>, of: &[usize]) -> DMatrix<f64> {
 /// The place of the least sum of squares near a point, or the iterations after which the search was given up.
 pub(crate) fn minimise(problem: &impl Squares, from: DVector<f64>) -> Result<DVector<f64>, usize> {
     let mut at = from;
-    let mut damping = 1e-3;
+    let (mut damping, mut slow) = (1e-3, 0);
     for iteration in 0..MOST_ITERATIONS {
         let Local { normal, gradient, square } = problem.local(&at);
         if !square.is_finite() {
@@ -73,23 +76,21 @@ pub(crate) fn minimise(problem: &impl Squares, from: DVector<f64>) -> Result<DVe
                 let [least, most] = problem.bounds(i);
                 next[i] = (at[i] + step).clamp(least, most);
             }
-            let promised = -(2.0 * slope.dot(&step) + (&own * &step).dot(&step));
             let found = problem.square(&next);
             if found <= square {
                 at = next;
-                let small = square - found <= ENOUGH * square && promised <= 100.0 * ENOUGH * square;
-                if small && damping <= 1.0 {
+                slow = if square - found <= ENOUGH * square { slow + 1 } else { 0 };
+                if slow == IN_A_ROW {
                     return Ok(at);
                 }
                 damping = (damping * 0.2).max(1e-9);
                 break;
             }
-            if promised <= ENOUGH * square {
-                return Ok(at);
-            }
             damping *= 4.0;
             if damping > 1e12 {
-                return if promised <= STALLED * square { Ok(at) } else { Err(iteration) };
+                // No better point however short the step: at the bottom, or at a kink near it.
+                let whole = (0..free.len()).filter(|&i| own[(i, i)] > 0.0).map(|i| slope[i].powi(2) / own[(i, i)]);
+                return if whole.fold(0.0, f64::max) <= STALLED * square { Ok(at) } else { Err(iteration) };
             }
         }
     }
