@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Positions (north, east; m) from heading (rad), surge and sway (m/s) at increasing times (s), beginning at the origin.
+/// Positions (north, east; m) from heading (rad), surge and sway (m/s) at increasing times (s), beginning at the
+/// origin.
 ///
 /// x' = u cos ψ − v sin ψ, y' = u sin ψ + v cos ψ, by the trapezoidal rule. As many rows as the shortest column has.
 pub fn track(time: &[f64], heading: &[f64], surge: &[f64], sway: &[f64]) -> Vec<[f64; 2]> {

@@ -7,7 +7,7 @@ use crate::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, SYMBOLS, TYPICAL};
 use crate::covariance::newey_west;
 use crate::error::MotionError;
 use crate::model::{Drive, velocities};
-use crate::planar::{Planar, RecordFit, Residual};
+use crate::planar::{Planar, RecordFit, Residual, pooled};
 use crate::record::{Output, Record, median, range};
 use crate::search::{Local, Squares, free, minimise, part};
 
@@ -39,12 +39,13 @@ const OPEN: f64 = 1e-11;
 /// residuals of such simple equations are coloured.
 ///
 /// The approach speed of a record is free as well, near what is known of it: the mean speed (of positions, the way
-/// made) before the rudder has moved by 1°, with its standard deviation, where five rows show it; else the declared one,
-/// else that of the first readings, to 1 %. Where a current is free the declared speed comes first, and without one the
-/// approach is steady: it has the speed of the first row. The result has the median over records.
+/// made) before the rudder has moved by 1°, with its standard deviation, where five rows show it; else the declared
+/// one, else that of the first readings, to 1 %. Where a current is free the declared speed comes first, and without
+/// one the approach is steady: it has the speed of the first row. The result has the median over records.
 ///
 /// Fails when the length is not positive, no record has a speed or positions, none turns by 5°, an approach speed
-/// cannot be told, the search does not converge or leaves a coefficient open. Records without any output are left out.
+/// cannot be told, rows are further apart than two ship lengths, the search does not converge or leaves a coefficient
+/// open. Records without any output are left out.
 pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     if !(length.is_finite() && length > 0.0) {
         return Err(MotionError::NotPositive { quantity: "length", value: length });
@@ -67,12 +68,8 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
         at = minimise(&problem, at).map_err(|iterations| MotionError::NoConvergence { iterations })?;
         if round < REWEIGHTED {
             let residuals = problem.summary(&at);
-            problem.deviations = Output::ALL.map(|output| {
-                let own = residuals.iter().flat_map(|record| &record.residuals).filter(|own| own.output == output);
-                let (square, count) =
-                    own.fold((0.0, 0), |(s, n), own| (s + own.rms * own.rms * own.readings as f64, n + own.readings));
-                (square / count.max(1) as f64).sqrt().max(LEAST_SHARE * scale(output))
-            });
+            problem.deviations =
+                Output::ALL.map(|output| pooled(&residuals, output).unwrap_or(0.0).max(LEAST_SHARE * scale(output)));
         }
     }
     let covariance = problem.covariance(&at)?;

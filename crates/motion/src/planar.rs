@@ -110,8 +110,8 @@ impl Planar {
         [a * unit, b * unit]
     }
 
-    /// Surge and sway (m/s) at all times (s, increasing) of a record of yaw rate (rad/s) and rudder (rad), both straight
-    /// between the rows, from surge and sway `start` in the first row.
+    /// Surge and sway (m/s) at all times (s, increasing) of a record of yaw rate (rad/s) and rudder (rad), both
+    /// straight between the rows, from surge and sway `start` in the first row.
     ///
     /// As many rows as the shortest of the three columns has. Values that are not finite spread to all later rows.
     pub fn drive(&self, time: &[f64], yaw_rate: &[f64], rudder: &[f64], start: [f64; 2]) -> Vec<[f64; 2]> {
@@ -122,10 +122,15 @@ impl Planar {
 
     /// Residual rms of one kind of output over all records that have it, in the [`unit`](Output::unit) of the output.
     pub fn rms(&self, output: Output) -> Option<f64> {
-        let own = self.records.iter().flat_map(|record| &record.residuals).filter(|own| own.output == output);
-        let (square, readings) = own.fold((0.0, 0), |(square, readings), own| {
-            (square + own.rms * own.rms * own.readings as f64, readings + own.readings)
-        });
-        (readings > 0).then(|| (square / readings as f64).sqrt())
+        pooled(&self.records, output)
     }
+}
+
+/// Root mean square of one kind of residual over records.
+pub(crate) fn pooled(records: &[RecordFit], output: Output) -> Option<f64> {
+    let own = records.iter().flat_map(|record| &record.residuals).filter(|own| own.output == output);
+    let (square, readings) = own.fold((0.0, 0), |(square, readings), own| {
+        (square + own.rms * own.rms * own.readings as f64, readings + own.readings)
+    });
+    (readings > 0).then(|| (square / readings as f64).sqrt())
 }

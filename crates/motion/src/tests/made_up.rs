@@ -267,6 +267,28 @@ fn a_response_sees_the_speed_of_its_ship() {
 }
 
 #[test]
+fn states_steps_and_memory_of_the_response_are_passed_on() {
+    use ship::effects::{RudderDeadband, SteeringLag};
+    // Dead time, play of the rudder, and nothing that asks for speed: the response alone turns in the same way.
+    let model = ResponseModel::new(vec![Arc::new(SteeringLag::DeadTime), Arc::new(RudderDeadband::Backlash)]);
+    let response = model.with(vec![0.1, 0.015, 0.01, 1.3, 0.05]);
+    let ship = PlanarShip { response: response.clone(), planar: planar() };
+    assert_eq!((ship.dimension(), ship.dead_time()), (response.dimension() + 2, 1.3));
+    assert!(ship.largest_step() <= response.largest_step());
+    let (rudder, times) = (rudder(1.0, 20.0, 16.0, 6, 99.0), [0.0, 30.0, 60.0, 99.0]);
+    let headings = |dynamics: &dyn Dynamics| {
+        let mut state = vec![0.0; dynamics.dimension()];
+        dynamics.approach(0.0, 0.0, &mut state);
+        let mut headings = Vec::new();
+        ship::replay::replay(dynamics, &Recorded::rudder(&rudder), &times, 0.05, &mut state, |_, motion| {
+            headings.push(motion.heading);
+        });
+        headings
+    };
+    assert_eq!(headings(&ship), headings(&response));
+}
+
+#[test]
 fn records_that_tell_nothing_are_refused() {
     let trials = zig_zags(1.0);
     let bare = |trial: &Trial| trial.clone().without(&[&VELOCITIES[..], &POSITIONS[..]].concat());
@@ -283,19 +305,59 @@ fn records_that_tell_nothing_are_refused() {
     assert_eq!(fit(&mixed, LENGTH).expect("a fit").records.len(), 2);
 }
 
-#[test]
-fn a_record_at_rest_has_no_approach_speed() {
-    let trial = &zig_zags(1.0)[0];
+/// A record with one value in a whole channel.
+fn replaced(trial: &Trial, channel: Channel, value: f64) -> Trial {
     let mut channels: std::collections::BTreeMap<_, _> =
         trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
     channels.insert(Channel::Rudder, trial.rudder().to_vec());
-    channels.insert(Channel::Surge, vec![0.0; trial.len()]);
+    channels.insert(channel, vec![value; trial.len()]);
     let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-    let trial = Trial::new("rest", trial.origin().clone(), columns).expect("a record");
-    assert_eq!(fit(std::slice::from_ref(&trial), LENGTH), Err(MotionError::NoApproachSpeed { record: "rest".into() }));
-    // What is declared is not overruled by less than five rows, and a record at rest is nothing but that.
-    let declared = trial.with_particulars(Particulars { length: LENGTH, speed: SPEED });
-    assert!(fit(&[declared], LENGTH).is_err());
+    Trial::new("replaced", trial.origin().clone(), columns).expect("a record")
+}
+
+#[test]
+fn a_rudder_that_never_moves_leaves_its_coefficients_open() {
+    let trial = replaced(&zig_zags(1.0)[1], Channel::Rudder, 0.0);
+    let found = fit(&[trial], LENGTH);
+    assert!(matches!(found, Err(MotionError::Undetermined { symbol: "X_dd" | "X_dv" | "Y_d" })), "{found:?}");
+}
+
+#[test]
+fn readings_beyond_all_sense_are_an_error() {
+    for (channel, value) in [(Channel::Surge, 1e300), (Channel::Sway, -1e200), (Channel::YawRate, 1e300)] {
+        let trial = replaced(&zig_zags(1.0)[1], channel, value);
+        assert!(fit(&[trial], LENGTH).is_err(), "{channel:?}");
+    }
+    // The rows are several lengths of a toy apart.
+    let tiny = fit(&zig_zags(1.0), 0.02);
+    assert!(matches!(tiny, Err(MotionError::TooCoarse { .. })), "{tiny:?}");
+}
+
+#[test]
+fn a_declared_speed_stands_where_no_approach_is_recorded() {
+    let declared = Particulars { length: LENGTH, speed: SPEED };
+    let late = |trial: &Trial| {
+        let cut = |values: &[f64]| values[15..].to_vec();
+        let mut channels: std::collections::BTreeMap<_, _> =
+            trial.channels().map(|(channel, values)| (channel, cut(values))).collect();
+        channels.insert(Channel::Rudder, cut(trial.rudder()));
+        let columns = Columns { time: cut(trial.time()), channels, unknown: Vec::new() };
+        Trial::new("late", trial.origin().clone(), columns).expect("a record").with_particulars(declared)
+    };
+    let trials = zig_zags(1.0);
+    let found = fit(&trials.iter().map(late).collect::<Vec<_>>(), LENGTH).expect("a fit");
+    assert_relative_eq!(found.approach_speed, declared.speed, max_relative = 0.01);
+    assert_found(&found, 0.2);
+}
+
+#[test]
+fn a_record_at_rest_has_no_approach_speed() {
+    let trial = &zig_zags(1.0)[0];
+    let trial = replaced(trial, Channel::Surge, 0.0);
+    assert_eq!(
+        fit(std::slice::from_ref(&trial), LENGTH),
+        Err(MotionError::NoApproachSpeed { record: "replaced".into() })
+    );
 }
 
 #[test]

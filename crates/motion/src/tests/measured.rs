@@ -81,31 +81,69 @@ fn zig_zags_of_hsva_tell_those_left_out() {
     assert!(held.iter().all(|[surge, sway]| *surge < 0.0075 && *sway < 0.0055), "{held:?}");
 }
 
-/// The figures of MARIN's circle from positions: all rows up to the end of the turn.
-#[test]
-fn the_circle_of_another_model_of_that_ship_is_foretold() {
-    let (Some(trials), Some(circle)) = (zig_zags(), measured("kvlcc2_marin/turning_35.csv")) else { return };
+/// Figures of MARIN's circle from its positions, from its velocities, and as the equations tell them of its yaw rate
+/// and rudder.
+fn circle(planar: &Planar) -> Option<[TurningCircle; 3]> {
+    let circle = measured("kvlcc2_marin/turning_35.csv")?;
+    // Up to the end of the turn.
     let rows = circle.time().partition_point(|time| *time < 1513.0);
     let read = |channel| &circle.channel(channel).expect("the channel")[..rows];
     let (time, heading, rudder) = (&circle.time()[..rows], &circle.heading()[..rows], &circle.rudder()[..rows]);
-    let (surge, sway, rate) = (read(Channel::Surge), read(Channel::Sway), read(Channel::YawRate));
+    let (surge, sway, yaw_rate) = (read(Channel::Surge), read(Channel::Sway), read(Channel::YawRate));
     // As `find` bounds it: the rudder leaves 1.2° at 4.1 s.
-    let execute = 4.1;
+    let figures = |track: &[[f64; 2]], surge: &[f64], sway: &[f64]| {
+        turning_circle(&Turn { time, heading, track, surge, sway, yaw_rate }, 4.1)
+    };
     let positions: Vec<[f64; 2]> =
         read(Channel::North).iter().zip(read(Channel::East)).map(|(x, y)| [*x, *y]).collect();
-    let measured = turning_circle(&Turn { time, heading, track: &positions, surge, sway, yaw_rate: rate }, execute);
-    let integrated = track(time, heading, surge, sway);
-    let by_velocity = turning_circle(&Turn { time, heading, track: &integrated, surge, sway, yaw_rate: rate }, execute);
     // 15.5 knots, at the Froude number of the model.
-    let planar = fit(&trials, LENGTH).and_then(|planar| planar.scaled_to(320.0, 7.974)).expect("a fit");
-    let found = planar.drive(time, rate, rudder, [surge[0], sway[0]]);
-    let (u, v): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
-    let path = track(time, heading, &u, &v);
-    let told = turning_circle(&Turn { time, heading, track: &path, surge: &u, sway: &v, yaw_rate: rate }, execute);
-    println!("measured {measured:.3?}\nfrom measured velocities {by_velocity:.3?}\nforetold {told:.3?}");
-    let error = |figure: fn(&TurningCircle) -> Option<f64>| {
-        figure(&told).expect("a figure") / figure(&measured).expect("a figure") - 1.0
+    let ship = planar.scaled_to(320.0, 7.974).expect("a ship");
+    let told = ship.drive(time, yaw_rate, rudder, [surge[0], sway[0]]);
+    let (u, v): (Vec<f64>, Vec<f64>) = told.iter().map(|[u, v]| (u, v)).unzip();
+    Some([
+        figures(&positions, surge, sway),
+        figures(&track(time, heading, surge, sway), surge, sway),
+        figures(&track(time, heading, &u, &v), &u, &v),
+    ])
+}
+
+/// Errors of advance, transfer and tactical diameter against the measured positions.
+fn errors(measured: &TurningCircle, told: &TurningCircle) -> [f64; 3] {
+    let of = |figure: fn(&TurningCircle) -> Option<f64>| {
+        figure(told).expect("a figure") / figure(measured).expect("a figure") - 1.0
     };
-    let errors = [error(|c| c.advance), error(|c| c.transfer), error(|c| c.tactical_diameter)];
-    println!("errors of advance, transfer and tactical diameter: {errors:.4?}");
+    [of(|c| c.advance), of(|c| c.transfer), of(|c| c.tactical_diameter)]
+}
+
+/// Aim: advance within 2 %, tactical diameter within 4 %. Found: −2.0, +1.0 and −1.1 %. Positions and velocities of the
+/// record itself differ by −1.2, −1.7 and −3.6 %.
+#[test]
+fn the_circle_of_another_model_of_that_ship_is_foretold() {
+    let Some(trials) = zig_zags() else { return };
+    let Some([measured, own, told]) = circle(&fit(&trials, LENGTH).expect("a fit")) else { return };
+    println!("measured {measured:.3?}\nfrom measured velocities {own:.3?}\nforetold {told:.3?}");
+    println!("errors {:.4?}, of measured velocities {:.4?}", errors(&measured, &told), errors(&measured, &own));
+    let [advance, transfer, tactical_diameter] = errors(&measured, &told);
+    assert!(advance.abs() < 0.025 && transfer.abs() < 0.03 && tactical_diameter.abs() < 0.04);
+    let [drift, expected] = [told, measured].map(|circle| circle.drift_angle.expect("a steady turn"));
+    assert!((drift - expected).abs() < 0.06, "{drift} {expected}");
+    let [speed, expected] = [told, measured].map(|circle| circle.speed_ratio.expect("a steady turn"));
+    assert!((speed - expected).abs() < 0.05, "{speed} {expected}");
+}
+
+/// The same zig-zags when only the positions were read. Found: −2.5, +3.3 and +0.2 %. The sway is told less well than
+/// by velocities: its damping Y_v is three times as large, and what is turning and what is rudder force differ with it.
+#[test]
+fn positions_of_the_zig_zags_tell_the_circle_as_well() {
+    let Some(trials) = zig_zags() else { return };
+    let trials: Vec<Trial> =
+        trials.into_iter().map(|trial| trial.without(&[Channel::Surge, Channel::Sway, Channel::Speed])).collect();
+    let planar = fit(&trials, LENGTH).expect("a fit");
+    let rms = planar.rms(Output::Position).expect("positions");
+    println!("{:?} ± {:?}\npositions {rms:.4} m", planar.coefficients, planar.deviations());
+    assert!(rms < 0.05, "{rms}");
+    let Some([measured, _, told]) = circle(&planar) else { return };
+    println!("errors {:.4?}", errors(&measured, &told));
+    let [advance, _, tactical_diameter] = errors(&measured, &told);
+    assert!(advance.abs() < 0.04 && tactical_diameter.abs() < 0.04);
 }
