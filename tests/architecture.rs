@@ -11,6 +11,7 @@ const FLOORS: [&str; 14] = [
     "ship",
     "trial",
     "find",
+    "motion",
     "likelihood",
     "simulate",
     "predict",

@@ -8,6 +8,7 @@
 //! | describe a ship, its effects, a hull | [`ship`] |
 //! | read a measured record, find its overshoots | [`trial`] |
 //! | find manoeuvres in a long log | [`find`] |
+//! | fit speed and drift, draw the track of a turn | [`motion`] |
 //! | make a record | [`simulate`] |
 //! | find K, T and δ_r with their intervals | [`identify`] |
 //! | find what a first-order model lacks | [`trace`](mod@trace) |
@@ -34,7 +35,7 @@
 //! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
-pub use {campaign, find, identify, likelihood, scenario, ship, simulate, trace, trial};
+pub use {campaign, find, identify, likelihood, motion, scenario, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {

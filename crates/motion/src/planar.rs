@@ -1,0 +1,136 @@
+//! Coefficients together with the ship they are used on and how well they are known.
+
+use serde::{Deserialize, Serialize};
+
+use crate::coefficients::{COEFFICIENTS, Coefficients};
+use crate::error::MotionError;
+use crate::model::{Drive, velocities};
+use crate::record::Output;
+
+/// Speed and drift of one ship: coefficients, length, approach speed, and what the fit tells about them.
+///
+/// Made by [`fit()`](crate::fit()) or from known coefficients; immutable.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Planar {
+    /// The coefficients of the equations, dimensionless.
+    pub coefficients: Coefficients,
+    /// Length of the ship L, m.
+    pub length: f64,
+    /// Speed of the straight approach U₀, m/s.
+    pub approach_speed: f64,
+    /// Covariance of the coefficients in the order of [`SYMBOLS`](crate::SYMBOLS); zero for one that is known or that
+    /// lies at the end of what its sign allows.
+    pub covariance: [[f64; COEFFICIENTS]; COEFFICIENTS],
+    /// The records of the fit, in their order; none where the coefficients were given.
+    pub records: Vec<RecordFit>,
+}
+
+/// What a fit tells about one record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordFit {
+    /// Name of the record.
+    pub name: String,
+    /// Approach speed U₀ of this record, m/s.
+    pub approach_speed: f64,
+    /// Surge and sway in the first row, m/s.
+    pub start: [f64; 2],
+    /// Current towards north and east, m/s, where the record told one.
+    pub current: Option<[f64; 2]>,
+    /// Residuals, one entry for each kind of output of the record.
+    pub residuals: Vec<Residual>,
+}
+
+/// Residuals of one kind of output.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Residual {
+    /// What was fitted.
+    pub output: Output,
+    /// Readings; of a position, those of north and east together.
+    pub readings: usize,
+    /// Root of their mean square, in the [`unit`](Output::unit) of the output.
+    pub rms: f64,
+}
+
+impl Planar {
+    /// A ship of length `length` (m) and approach speed `approach_speed` (m/s) with known coefficients.
+    ///
+    /// Fails with [`MotionError::NotPositive`].
+    pub fn new(coefficients: Coefficients, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
+        let covariance = [[0.0; COEFFICIENTS]; COEFFICIENTS];
+        let coefficients = Coefficients::from_array(coefficients.to_array());
+        Self { coefficients, length, approach_speed, covariance, records: Vec::new() }.scaled_to(length, approach_speed)
+    }
+
+    /// The same coefficients on a ship of another length (m) and approach speed (m/s).
+    ///
+    /// At the same Froude number, U₀² ~ L, this is the ship of the model: its time runs slower by the root of the ratio
+    /// of lengths. At another, the residuary resistance is not that of the records, and the loss of speed is less sure.
+    /// Fails with [`MotionError::NotPositive`].
+    pub fn scaled_to(&self, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
+        for (quantity, value) in [("length", length), ("approach speed", approach_speed)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(MotionError::NotPositive { quantity, value });
+            }
+        }
+        Ok(Self { length, approach_speed, ..self.clone() })
+    }
+
+    /// The coefficients in the order of [`SYMBOLS`](crate::SYMBOLS).
+    pub fn coefficients(&self) -> Vec<f64> {
+        self.coefficients.to_array().to_vec()
+    }
+
+    /// The same ship with other coefficients, in the order of [`SYMBOLS`](crate::SYMBOLS): a draw from the covariance.
+    ///
+    /// A value of a sign that the equations do not allow is put to the nearest that they do. Fails with
+    /// [`MotionError::Coefficients`] when the number is wrong or one is not finite.
+    pub fn with_coefficients(&self, values: &[f64]) -> Result<Self, MotionError> {
+        let found = values.iter().filter(|value| value.is_finite()).count();
+        match <[f64; COEFFICIENTS]>::try_from(values) {
+            Ok(values) if found == COEFFICIENTS => {
+                Ok(Self { coefficients: Coefficients::from_array(values), ..self.clone() })
+            }
+            _ => Err(MotionError::Coefficients { needed: COEFFICIENTS, found }),
+        }
+    }
+
+    /// Standard deviations of the coefficients.
+    pub fn deviations(&self) -> [f64; COEFFICIENTS] {
+        std::array::from_fn(|i| self.covariance[i][i].max(0.0).sqrt())
+    }
+
+    /// (u', v') in m/s² at surge u and sway v (m/s), yaw rate r (rad/s) and rudder (rad).
+    pub fn rates(&self, u: f64, v: f64, r: f64, rudder: f64) -> [f64; 2] {
+        let speed = self.approach_speed;
+        let unit = speed * speed / self.length;
+        let [a, b] = self.coefficients.rates(u / speed, v / speed, r * self.length / speed, rudder);
+        [a * unit, b * unit]
+    }
+
+    /// Surge and sway (m/s) at all times (s, increasing) of a record of yaw rate (rad/s) and rudder (rad), both
+    /// straight between the rows, from surge and sway `start` in the first row.
+    ///
+    /// As many rows as the shortest of the three columns has. Values that are not finite spread to all later rows.
+    pub fn drive(&self, time: &[f64], yaw_rate: &[f64], rudder: &[f64], start: [f64; 2]) -> Vec<[f64; 2]> {
+        let rows = time.len().min(yaw_rate.len()).min(rudder.len());
+        let drive = Drive { time: &time[..rows], yaw_rate: &yaw_rate[..rows], rudder: &rudder[..rows] };
+        velocities(&self.coefficients, [self.length, self.approach_speed], drive, start)
+    }
+
+    /// Residual rms of one kind of output over all records that have it, in the [`unit`](Output::unit) of the output.
+    pub fn rms(&self, output: Output) -> Option<f64> {
+        pooled(&self.records, output)
+    }
+}
+
+/// Root mean square of one kind of residual over records.
+pub(crate) fn pooled(records: &[RecordFit], output: Output) -> Option<f64> {
+    let own = records.iter().flat_map(|record| &record.residuals).filter(|own| own.output == output);
+    let (square, readings) = own.fold((0.0, 0), |(square, readings), own| {
+        (square + own.rms * own.rms * own.readings as f64, readings + own.readings)
+    });
+    (readings > 0).then(|| (square / readings as f64).sqrt())
+}

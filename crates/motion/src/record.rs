@@ -1,0 +1,229 @@
+//! One record as the fit sees it: what turned the ship, what is to be explained, and how fast the ship approached.
+
+use serde::{Deserialize, Serialize};
+use trial::{Channel, Trial};
+
+use crate::error::MotionError;
+
+/// A kind of output that the equations are fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Output {
+    /// Surge velocity.
+    Surge,
+    /// Sway velocity.
+    Sway,
+    /// Speed √(u² + v²).
+    Speed,
+    /// Position north and east.
+    Position,
+}
+
+impl Output {
+    /// All kinds.
+    pub const ALL: [Output; 4] = [Output::Surge, Output::Sway, Output::Speed, Output::Position];
+
+    /// Unit of its residuals.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Output::Surge | Output::Sway | Output::Speed => "m/s",
+            Output::Position => "m",
+        }
+    }
+}
+
+/// Half width of the window in which the slope of the heading is taken for the yaw rate, in units of L/U₀.
+const WINDOW: f64 = 0.25;
+
+/// Rows on each side of that window at least.
+const FEWEST_ROWS: usize = 2;
+
+/// Longest time between rows in units of L/U₀: a zig-zag of a quick ship has its execute in less.
+const LONGEST_PERIOD: f64 = 2.0;
+
+/// Rudder angle from its first value at which the approach ends, rad (1°).
+const MOVED: f64 = 0.017;
+
+/// Heading from its first value at which it ends as well, rad (3°).
+const STRAIGHT: f64 = 0.05;
+
+/// Rows of an approach that show a speed.
+const APPROACH_ROWS: usize = 5;
+
+/// Standard deviation of a declared approach speed, and of that from the first readings, as a share of it.
+const DECLARED: f64 = 0.01;
+
+/// An approach is never steadier than this share of its speed.
+const SUREST: f64 = 1e-3;
+
+/// Range of the heading from which a record of positions tells a current, rad: one circle.
+const CIRCLE: f64 = std::f64::consts::TAU;
+
+/// The approach speed and how surely it is known, m/s.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Approach {
+    /// From which the fit begins.
+    pub speed: f64,
+    pub deviation: f64,
+    /// Whether what is known is that it equals the surge of the first row, and not the speed above.
+    pub is_start: bool,
+}
+
+/// A record ready to be fitted.
+#[derive(Debug, Clone)]
+pub(crate) struct Record<'a> {
+    pub name: &'a str,
+    pub time: &'a [f64],
+    pub rudder: &'a [f64],
+    /// rad, without gaps.
+    pub heading: Vec<f64>,
+    /// rad/s, without gaps.
+    pub yaw_rate: Vec<f64>,
+    /// Columns of the outputs; one column each, two of a position.
+    pub outputs: Vec<(Output, Vec<&'a [f64]>)>,
+    /// What is known of the approach speed before the fit.
+    pub approach: Approach,
+    /// Surge and sway, m/s, from which the fit begins.
+    pub start: [f64; 2],
+    /// Whether the record tells a current.
+    pub current: bool,
+}
+
+/// Range of the readings that are there.
+pub(crate) fn range(values: &[f64]) -> f64 {
+    let ends = values
+        .iter()
+        .filter(|value| value.is_finite())
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |ends, value| [ends[0].min(*value), ends[1].max(*value)]);
+    (ends[1] - ends[0]).max(0.0)
+}
+
+/// The median of what is finite.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// Readings that are missing lie on the straight line between their neighbours, or are the nearest one.
+fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
+    let there: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
+    let mut next = 0;
+    let at = |row: usize, next: usize| match (next.checked_sub(1).map(|before| there[before]), there.get(next)) {
+        (Some(before), Some(&after)) => {
+            let share = (time[row] - time[before]) / (time[after] - time[before]);
+            values[before] + share * (values[after] - values[before])
+        }
+        (Some(one), None) | (None, Some(&one)) => values[one],
+        (None, None) => f64::NAN,
+    };
+    (0..values.len())
+        .map(|row| {
+            while there.get(next).is_some_and(|&there| there < row) {
+                next += 1;
+            }
+            if values[row].is_finite() { values[row] } else { at(row, next) }
+        })
+        .collect()
+}
+
+/// Slope of the heading in every row: a parabola by least squares over the rows within `half` seconds, at least two on
+/// each side. At the ends of a record the window is one-sided and the slope is that of the parabola there.
+fn slope(time: &[f64], heading: &[f64], half: f64) -> Vec<f64> {
+    let rows = time.len();
+    (0..rows)
+        .map(|row| {
+            let first = time.partition_point(|t| *t < time[row] - half).min(row.saturating_sub(FEWEST_ROWS));
+            let last = time.partition_point(|t| *t <= time[row] + half).max(row + FEWEST_ROWS + 1).min(rows);
+            let mut normal = nalgebra::Matrix3::zeros();
+            let mut right = nalgebra::Vector3::zeros();
+            let scale = (time[last - 1] - time[first]).max(f64::MIN_POSITIVE);
+            for other in first..last {
+                let x = (time[other] - time[row]) / scale;
+                let column = nalgebra::Vector3::new(1.0, x, x * x);
+                normal += column * column.transpose();
+                right += column * (heading[other] - heading[row]);
+            }
+            normal.lu().solve(&right).map_or(0.0, |solution| solution[1] / scale)
+        })
+        .collect()
+}
+
+/// Mean and its standard deviation.
+fn mean(values: &[f64]) -> Option<[f64; 2]> {
+    let there: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    let count = there.len() as f64;
+    let mean = there.iter().sum::<f64>() / count;
+    let square: f64 = there.iter().map(|value| (value - mean).powi(2)).sum();
+    (there.len() >= 2).then(|| [mean, (square / (count - 1.0) / count).sqrt()])
+}
+
+/// Speed and its standard deviation from the straight lines through positions, m/s.
+fn way_made(time: &[f64], north: &[f64], east: &[f64]) -> Option<[f64; 2]> {
+    let line = |values: &[f64]| {
+        let there: Vec<(f64, f64)> =
+            time.iter().copied().zip(values.iter().copied()).filter(|p| p.1.is_finite()).collect();
+        let count = there.len() as f64;
+        let [t, x] = [there.iter().map(|p| p.0).sum::<f64>() / count, there.iter().map(|p| p.1).sum::<f64>() / count];
+        let sum = |of: &dyn Fn(&(f64, f64)) -> f64| there.iter().map(of).sum::<f64>();
+        let (tt, tx) = (sum(&|p| (p.0 - t).powi(2)), sum(&|p| (p.0 - t) * (p.1 - x)));
+        let slope = tx / tt;
+        let left = sum(&|p| (p.1 - x - slope * (p.0 - t)).powi(2)) / (count - 2.0);
+        (there.len() >= 3).then(|| [slope, (left / tt).sqrt()])
+    };
+    let ([north, a], [east, b]) = (line(north)?, line(east)?);
+    Some([north.hypot(east), a.max(b)])
+}
+
+impl<'a> Record<'a> {
+    /// `None` for a record without speed and position.
+    ///
+    /// Outputs are surge and sway where the record has them, the speed where it has no surge, positions where it lacks
+    /// surge or sway. [`fit()`](crate::fit()) says where the approach speed is from.
+    pub(crate) fn of(trial: &'a Trial, length: f64) -> Result<Option<Self>, MotionError> {
+        let has = |channel| trial.channel(channel).filter(|values| values.iter().any(|value| value.is_finite()));
+        let (surge, sway, speed) = (has(Channel::Surge), has(Channel::Sway), has(Channel::Speed));
+        let position = has(Channel::North).zip(has(Channel::East)).filter(|_| surge.is_none() || sway.is_none());
+        let mut outputs: Vec<(Output, Vec<&[f64]>)> = Vec::new();
+        outputs.extend(surge.map(|values| (Output::Surge, vec![values])));
+        outputs.extend(sway.map(|values| (Output::Sway, vec![values])));
+        outputs.extend(speed.filter(|_| surge.is_none()).map(|values| (Output::Speed, vec![values])));
+        outputs.extend(position.map(|(north, east)| (Output::Position, vec![north, east])));
+        if surge.is_none() && speed.is_none() && position.is_none() {
+            return Ok(None);
+        }
+        let (time, rudder) = (trial.time(), trial.rudder());
+        let current = position.is_some() && range(trial.heading()) > CIRCLE;
+        let heading = filled(time, trial.heading());
+        let is_straight =
+            |row: &usize| (rudder[*row] - rudder[0]).abs() < MOVED && (heading[*row] - heading[0]).abs() < STRAIGHT;
+        let still = (0..time.len()).take_while(is_straight).count();
+        let of_rows = |rows: usize| match (surge.or(speed), position) {
+            (Some(values), _) => mean(&values[..rows]),
+            (None, Some((north, east))) => way_made(&time[..rows], &north[..rows], &east[..rows]),
+            (None, None) => None,
+        };
+        let sound = |[speed, deviation]: &[f64; 2]| speed.is_finite() && *speed > 0.0 && deviation.is_finite();
+        let declared = trial.particulars().map(|own| [own.speed, DECLARED * own.speed]).filter(sound);
+        let shown = Some(still).filter(|still| *still >= APPROACH_ROWS).and_then(of_rows).filter(sound);
+        let first = of_rows(APPROACH_ROWS.min(time.len())).filter(sound).map(|[speed, _]| [speed, DECLARED * speed]);
+        let over_ground = surge.is_none() && speed.is_none() && current;
+        let known = if over_ground { declared } else { shown.or(declared).or(first) };
+        let [guess, deviation] = known
+            .or(shown.or(first).map(|[speed, _]| [speed, 0.0]))
+            .ok_or_else(|| MotionError::NoApproachSpeed { record: trial.name().to_owned() })?;
+        let (period, longest) = (trial.sampling_period(), LONGEST_PERIOD * length / guess);
+        if period > longest {
+            return Err(MotionError::TooCoarse { record: trial.name().to_owned(), period, longest });
+        }
+        let deviation = deviation.max(SUREST * guess);
+        let approach = Approach { speed: guess, deviation, is_start: known.is_none() };
+        let yaw_rate = match has(Channel::YawRate) {
+            Some(rate) => filled(time, rate),
+            None => slope(time, &heading, WINDOW * length / guess),
+        };
+        let beginning = |values: Option<&[f64]>| values.and_then(|v| median(v.iter().copied().take(APPROACH_ROWS)));
+        let start = [beginning(surge.or(speed)).unwrap_or(guess), beginning(sway).unwrap_or(0.0)];
+        Ok(Some(Self { name: trial.name(), time, rudder, heading, yaw_rate, outputs, approach, start, current }))
+    }
+}

@@ -1,0 +1,3 @@
+mod figures;
+mod made_up;
+mod measured;
