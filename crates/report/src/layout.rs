@@ -356,6 +356,14 @@ fn fitting_ticks(axis: &Axis, width: f64, theme: &Theme) -> Ticks {
         .unwrap_or_else(|| axis.ticks(1))
 }
 
+/// Distance of these ticks, in units of the axis.
+pub(crate) fn fitting_step(axis: &Axis, width: f64, theme: &Theme) -> Option<f64> {
+    match &fitting_ticks(axis, width, theme).major[..] {
+        [(first, _), (second, _), ..] => Some(axis.worth(second - first)),
+        _ => None,
+    }
+}
+
 /// Whether labels under an axis of this width stand clear of each other.
 fn fits(ticks: &Ticks, width: f64, theme: &Theme) -> bool {
     let gap = 1.0 * theme.tick_font;

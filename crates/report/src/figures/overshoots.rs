@@ -78,7 +78,7 @@ pub fn overshoots(data: &Overshoots, theme: &Theme) -> Figure {
     sheet.finish()
 }
 
-/// Covers zero, medians, inner intervals, measured values and limits, and the outer intervals as far as these leave room.
+/// Covers zero, medians, inner intervals, measured values and limits, and the outer intervals as far as there is room.
 fn axis(data: &Overshoots) -> Axis {
     let marks = data.rows.iter().flat_map(|row| [Some(row.median), row.measured, row.limit]).flatten();
     let inner = data.rows.iter().flat_map(|row| row.ci50);
@@ -108,9 +108,9 @@ fn stroke90(theme: &Theme) -> Stroke {
     Stroke::solid(HEADING, theme.line)
 }
 
-/// Pale, so that the marks on it can be seen.
+/// Pale, so that the marks on it can be seen, and higher than the dot, so that a narrow one is seen too.
 fn stroke50(theme: &Theme) -> Stroke {
-    Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 1.7 * theme.marker) }
+    Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 2.9 * theme.marker) }
 }
 
 fn entries(data: &Overshoots, theme: &Theme) -> Vec<Entry> {
@@ -154,15 +154,15 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (y, pitch): (f64, f64),
         let half = 0.42 * pitch;
         scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
     }
-    let mut mark = |value: f64, y: f64, look: &Look| {
+    let mut mark = |value: f64, y: f64, size: f64, look: &Look| {
         if let Some(place) = panel.across(value).map(|x| (x, y)).filter(|place| rect.contains(*place)) {
-            scene.marker(Layer::Data, place, 1.15 * theme.marker, look);
+            scene.marker(Layer::Data, place, size * theme.marker, look);
         }
     };
-    mark(row.median, y, &median_look(row.extrapolated));
+    mark(row.median, y, 0.95, &median_look(row.extrapolated));
     if let Some(measured) = row.measured {
         // Under the bar, so that it does not hide a median nearby.
-        mark(measured, y + 0.3 * pitch, &MEASURED);
+        mark(measured, y + 0.34 * pitch, 1.1, &MEASURED);
     }
     if !row.median.is_finite() && row.measured.is_none() && row.limit.is_none() {
         let text = Text::new("no prediction", theme.small_font).anchor(Anchor::Middle).colour(RECORD);

@@ -3,9 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shared::angle_side;
 use super::shared::{
-    PAD, area_entry, heading_title, record, record_entry, rudder_title, shaded, time_side, widened, zero_line,
+    PAD, angle_side, area_entry, heading_title, record, record_entry, rudder_title, shaded, time_side, widened,
+    zero_line,
 };
 use crate::axis::{self, Axis};
 use crate::curve::Curve;
@@ -57,7 +57,7 @@ pub fn prediction_bands(data: &PredictionBands, theme: &Theme) -> Figure {
     shaded(upper, &mut sheet.scene, data.band90.each_ref(), HEADING, OUTER);
     shaded(upper, &mut sheet.scene, data.band50.each_ref(), HEADING, INNER);
     if let Some(recorded) = &data.recorded {
-        record(upper, &mut sheet.scene, theme, recorded, 1.5 * theme.dot);
+        record(upper, &mut sheet.scene, theme, recorded, 1.3 * theme.dot);
     }
     upper.line(&mut sheet.scene, data.heading.pairs(), heading_stroke(theme));
     zero_line(lower, &mut sheet.scene, theme);

@@ -76,7 +76,7 @@ pub(super) fn area_entry(label: &str, colour: Colour, opacity: f64, theme: &Them
 
 /// One of the ships that were drawn at random, pale because there are many.
 pub(super) fn drawn_stroke(theme: &Theme) -> Stroke {
-    Stroke { opacity: 0.3, ..Stroke::solid(HEADING, 0.9 * theme.thin) }
+    Stroke { opacity: 0.35, ..Stroke::solid(HEADING, theme.thin) }
 }
 
 /// The range `lo..=hi`, widened for the `rest` by no more than `room` on either side; and whether some of the rest

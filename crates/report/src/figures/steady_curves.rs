@@ -11,7 +11,7 @@ use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::markup::symbol;
-use crate::palette::{HEADING, RECORD, SHORT_DASH};
+use crate::palette::{HEADING, PAPER, RECORD, SHORT_DASH};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
@@ -55,6 +55,10 @@ pub fn steady_curves(data: &SteadyCurves, theme: &Theme) -> Figure {
     for ship in &data.drawn {
         panel.line(&mut sheet.scene, ship.pairs(), drawn_stroke(theme));
     }
+    // A white edge keeps the curve apart from the drawn ones, and its dashes from each other.
+    let edge = Stroke::solid(PAPER, own(theme).width + 2.0 * theme.thin);
+    panel.line(&mut sheet.scene, data.most_probable.pairs(), edge);
+    panel.line(&mut sheet.scene, data.unstable.pairs(), edge);
     panel.line(&mut sheet.scene, stable(data), own(theme));
     panel.line(&mut sheet.scene, data.unstable.pairs(), own(theme).dashed(SHORT_DASH));
     let mut remarks = Vec::new();
@@ -119,7 +123,7 @@ fn field(panel: &Panel, scene: &mut Scene, theme: &Theme, [rudder, rate]: [Optio
     let (l, r) = (across(rudder.map(|largest| -largest), x), across(rudder, right));
     let (t, b) = (up(rate, y), up(rate.map(|largest| -largest), bottom));
     scene.fill(Layer::Grid, [(l, t), (r, t), (r, b), (l, b)], RECORD, FIELD);
-    let edge = Stroke::solid(RECORD, theme.thin);
+    let edge = Stroke { opacity: 0.6, ..Stroke::solid(RECORD, theme.thin) };
     if rudder.is_some() {
         scene.line(Layer::Grid, [(l, t), (l, b)], edge);
         scene.line(Layer::Grid, [(r, t), (r, b)], edge);

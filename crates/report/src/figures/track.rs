@@ -6,7 +6,7 @@ use super::shared::{drawn_stroke, record, record_entry, widened};
 use crate::axis::{self, Axis};
 use crate::curve::Curve;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side};
+use crate::layout::{Grid, Sheet, Side, fitting_step};
 use crate::legend::{Entry, Sample};
 use crate::palette::HEADING;
 use crate::panel::Panel;
@@ -55,7 +55,7 @@ fn draw(data: &Track, theme: &Theme) -> (Sheet, Vec<Panel>) {
             panel.line(&mut sheet.scene, ship.pairs(), drawn_stroke(theme));
         }
         if let Some(recorded) = &data.recorded {
-            record(panel, &mut sheet.scene, theme, recorded, 1.5 * theme.dot);
+            record(panel, &mut sheet.scene, theme, recorded, 1.3 * theme.dot);
         }
         panel.line(&mut sheet.scene, data.most_probable.pairs(), own(theme));
         for [east, north, heading] in &data.headings {
@@ -138,8 +138,14 @@ fn fitted(sheet: &Sheet, unit: &str, [east, north]: [(f64, f64); 2]) -> (Grid, f
         let width = if whole * high > most * wide { (most * wide / high).max(0.5 * whole) } else { whole };
         // What a point on the page is worth, the same on both axes.
         let scale = (wide / width).max(high / height);
-        let row = (Side::new(around(north, scale * height), format!("north{of_unit}")), height);
-        (Grid::stack(Side::new(around(east, scale * width), format!("east{of_unit}")), vec![row]), width)
+        let (across, up) = (around(east, scale * width), around(north, scale * height));
+        // The grid is of squares.
+        let (across, up) = match fitting_step(&across, width, theme) {
+            Some(step) => (across.stepped(step), up.stepped(step)),
+            None => (across, up),
+        };
+        let row = (Side::new(up, format!("north{of_unit}")), height);
+        (Grid::stack(Side::new(across, format!("east{of_unit}")), vec![row]), width)
     };
     // Longer labels of the vertical axis take from the width, which changes the axis and may change the labels.
     let mut left = 0.0;
