@@ -32,6 +32,8 @@ pub(crate) struct Axis {
     lo: f64,
     hi: f64,
     scale: Scale,
+    /// Distance of the ticks, where it is not for the axis to choose.
+    step: Option<f64>,
 }
 
 /// The marks of an axis, as fractions of its length.
@@ -59,7 +61,7 @@ impl Axis {
             let half = if lo == 0.0 { 1.0 } else { 0.05 * lo.abs() };
             (lo - half, hi + half)
         };
-        Self { lo, hi, scale: Scale::Linear(steps) }
+        Self { lo, hi, scale: Scale::Linear(steps), step: None }
     }
 
     /// Covers the finite `values` with a margin of `pad` of their range on either side.
@@ -77,17 +79,27 @@ impl Axis {
         let (lo, hi) = positive.unwrap_or((0.1, 10.0));
         let pad = ((hi / lo).log10() * 0.06).max(0.05);
         let widen = 10f64.powf(pad);
-        Self { lo: lo / widen, hi: hi * widen, scale: Scale::Log { zero } }
+        Self { lo: lo / widen, hi: hi * widen, scale: Scale::Log { zero }, step: None }
     }
 
     /// A list of names, one unit each, the first at the top (of a vertical axis).
     pub(crate) fn names(names: Vec<String>) -> Self {
-        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Names(names) }
+        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Names(names), step: None }
     }
 
     /// A list of short names along a horizontal axis, one unit each, the first at the left.
     pub(crate) fn columns(names: Vec<String>) -> Self {
-        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Columns(names) }
+        Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Columns(names), step: None }
+    }
+
+    /// The same axis with ticks at the multiples of `step`, as long as there are two.
+    pub(crate) fn stepped(self, step: f64) -> Self {
+        Self { step: Some(step), ..self }
+    }
+
+    /// How much one step of `fraction` of the axis is worth on a linear scale.
+    pub(crate) fn worth(&self, fraction: f64) -> f64 {
+        fraction * (self.hi - self.lo)
     }
 
     /// Whether it is a list of names from left to right.
@@ -138,8 +150,10 @@ impl Axis {
         let count = count.max(1);
         // One interval more can still give no more ticks than allowed, because the ends of the axis are not round. And
         // a single label says nothing about the scale, so the step shrinks until there are two.
-        let (step, values) = std::iter::once(divide(count + 1))
-            .filter(|(_, values)| values.len() <= count + 1)
+        let given = self.step.map(|step| (step, ticks::multiples(self.lo, self.hi, step)));
+        let (step, values) = given
+            .into_iter()
+            .chain(std::iter::once(divide(count + 1)).filter(|(_, values)| values.len() <= count + 1))
             .chain((count..).map(divide))
             .find(|(_, values)| values.len() > 1)
             .expect("a small enough step has two multiples in any range");
@@ -225,7 +239,7 @@ mod tests {
 
     #[test]
     fn logarithmic_places_and_labels() {
-        let axis = Axis { lo: 1e-6, hi: 1.0, scale: Scale::Log { zero: false } };
+        let axis = Axis { lo: 1e-6, hi: 1.0, scale: Scale::Log { zero: false }, step: None };
         assert!((axis.fraction(1e-3).unwrap() - 0.5).abs() < 1e-12);
         assert_eq!(axis.fraction(0.0), None);
         assert_eq!(axis.fraction(-1.0), None);
@@ -240,6 +254,13 @@ mod tests {
         let (zero, tenth) = (axis.fraction(0.0).unwrap(), axis.fraction(0.1).unwrap());
         assert!(zero < axis.break_at().unwrap() && axis.break_at().unwrap() < tenth);
         assert_eq!(labels(&axis, 4)[0], "0");
+    }
+
+    #[test]
+    fn a_given_step_is_kept_where_it_gives_two_ticks() {
+        let axis = Axis::linear(0.0, 10.0, Steps::Decimal);
+        assert_eq!(labels(&axis.clone().stepped(4.0), 9), ["0", "4", "8"]);
+        assert_eq!(labels(&axis.clone().stepped(50.0), 2), labels(&axis, 2));
     }
 
     #[test]

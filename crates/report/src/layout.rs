@@ -158,6 +158,11 @@ impl Sheet {
         2.6 * theme.tick_font
     }
 
+    /// Margin right of the panels, points.
+    pub(crate) fn right_margin(theme: &Theme) -> f64 {
+        1.6 * theme.tick_font
+    }
+
     /// How far down the page the sheet is filled, points.
     pub(crate) fn height(&self) -> f64 {
         self.y
@@ -185,7 +190,7 @@ impl Sheet {
         let theme = self.theme;
         let count = grid.columns.len().max(1);
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
-        let right = 1.6 * theme.tick_font;
+        let right = Self::right_margin(&theme);
         let gap = Self::gap(&theme);
         let width = ((theme.width - left - right - gap * (count - 1) as f64) / count as f64).max(theme.tick_font);
         let total = grid.panel_count();
@@ -349,6 +354,14 @@ fn fitting_ticks(axis: &Axis, width: f64, theme: &Theme) -> Ticks {
         .map(|count| axis.ticks(count))
         .find(|ticks| fits(ticks, width, theme))
         .unwrap_or_else(|| axis.ticks(1))
+}
+
+/// Distance of these ticks, in units of the axis.
+pub(crate) fn fitting_step(axis: &Axis, width: f64, theme: &Theme) -> Option<f64> {
+    match &fitting_ticks(axis, width, theme).major[..] {
+        [(first, _), (second, _), ..] => Some(axis.worth(second - first)),
+        _ => None,
+    }
 }
 
 /// Whether labels under an axis of this width stand clear of each other.

@@ -14,6 +14,10 @@ pub(crate) enum Sample {
     Dots(Colour),
     Marker(Look),
     LineAndMarker(Stroke, Look),
+    /// A short line from bottom to top.
+    Upright(Stroke),
+    /// A ship seen from above.
+    Hull(Colour),
 }
 
 /// A sample and its name.
@@ -36,8 +40,8 @@ impl Entry {
     fn sample_width(&self, theme: &Theme) -> f64 {
         match self.sample {
             Sample::Nothing => 0.0,
-            Sample::Dots(_) | Sample::Marker(_) => 1.6 * theme.small_font,
-            Sample::Line(_) | Sample::LineAndMarker(..) => 2.9 * theme.small_font,
+            Sample::Dots(_) | Sample::Marker(_) | Sample::Upright(_) => 1.6 * theme.small_font,
+            Sample::Line(_) | Sample::LineAndMarker(..) | Sample::Hull(_) => 2.9 * theme.small_font,
         }
     }
 
@@ -62,6 +66,11 @@ impl Entry {
                 scene.line(Layer::Note, [(x, middle), (end, middle)], stroke);
                 scene.marker(Layer::Note, centre, theme.marker, &look);
             }
+            Sample::Upright(stroke) => {
+                let half = 0.5 * theme.small_font;
+                scene.line(Layer::Note, [(centre.0, middle - half), (centre.0, middle + half)], stroke);
+            }
+            Sample::Hull(colour) => scene.hull(Layer::Note, centre, (1.0, 0.0), 1.6 * theme.small_font, colour),
         }
         scene.text(Layer::Note, (x + width, y), text);
     }

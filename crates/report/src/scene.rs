@@ -111,6 +111,10 @@ const STAR: [(f64, f64); 10] = [
     (-0.32, -0.44),
 ];
 
+/// Corners of a ship seen from above: forward and to starboard, in half lengths.
+const HULL: [(f64, f64); 7] =
+    [(1.0, 0.0), (0.72, 0.19), (0.4, 0.3), (-1.0, 0.3), (-1.0, -0.3), (0.4, -0.3), (0.72, -0.19)];
+
 impl Scene {
     /// The shapes from the bottom layer to the top, each layer in the order of drawing.
     pub(crate) fn shapes(&self) -> Vec<&Shape> {
@@ -152,6 +156,20 @@ impl Scene {
         let (left, right) = (x - margin, x + w + margin);
         self.fill(layer, [(left, y), (right, y), (right, y + h), (left, y + h)], PAPER, 0.85);
         self.text(layer, place, text);
+    }
+
+    /// A ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`.
+    pub(crate) fn hull(&mut self, layer: Layer, (x, y): Place, (dx, dy): Place, length: f64, colour: Colour) {
+        let outline = |half: f64, beam: f64| -> Vec<Place> {
+            let corner = |(forward, side): &(f64, f64)| {
+                let (forward, side) = (half * forward, beam * half * side);
+                (x + forward * dx - side * dy, y + forward * dy + side * dx)
+            };
+            HULL.iter().map(corner).collect()
+        };
+        // A white edge keeps it apart from the lines under it.
+        self.fill(layer, outline(0.58 * length, 1.25), PAPER, 1.0);
+        self.fill(layer, outline(0.5 * length, 1.0), colour, 1.0);
     }
 
     /// A marker of `radius` points, with a white edge that keeps it apart from lines and neighbours.

@@ -10,13 +10,17 @@ mod evidence;
 mod heat_map;
 mod intervals;
 mod missing_moment;
+mod overshoots;
 mod power;
+mod prediction_bands;
 mod raw_record;
 mod record_fit;
 mod replays;
 mod residual_panels;
 mod scatter;
 mod shared;
+mod steady_curves;
+mod track;
 mod violins;
 mod zigzag_trial;
 
@@ -29,16 +33,22 @@ pub use evidence::{Evidence, EvidenceBar, Fate, evidence};
 pub use heat_map::{HeatMap, HeatPanel, heat_map};
 pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
 pub use missing_moment::{Banded, MissingMoment, MomentPanel, missing_moment};
+pub use overshoots::{OvershootRow, Overshoots, overshoots};
 pub use power::{Power, PowerSeries, power};
+pub use prediction_bands::{PredictionBands, prediction_bands};
 pub use raw_record::{RawRecord, raw_record};
 pub use record_fit::{Fit, FitBand, RecordFit, record_fit};
 pub use replays::{Replay, Replays, replays};
 pub use residual_panels::{ResidualPanel, ResidualPanels, residual_panels};
 pub use scatter::{Ellipse, KtPanel, KtScatter, scatter};
 pub use shared::Reference95;
+pub use steady_curves::{SteadyCurves, steady_curves};
+pub use track::{Track, track};
 pub use violins::{Violin, ViolinPanel, Violins, violins};
 pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial, zigzag_trial};
 
+#[cfg(test)]
+mod prediction_tests;
 #[cfg(test)]
 mod study_tests;
 #[cfg(test)]

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::Axis;
+use crate::axis::{self, Axis};
 use crate::clip::Rect;
 use crate::colour::Colour;
 use crate::curve::Curve;
 use crate::layout::Side;
 use crate::legend::{Entry, Sample};
 use crate::markup::symbol;
-use crate::palette::{INK, Origin, RECORD};
+use crate::palette::{HEADING, INK, Origin, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
@@ -53,14 +53,38 @@ pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &
 pub(super) const OPACITY: f64 = 0.2;
 
 /// The area between two curves, as far as it lies in the frame.
-pub(super) fn area(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Colour) {
-    let Rect { y, .. } = panel.rect;
-    let inside = |(across, up): (f64, f64)| (across, up.clamp(y, panel.rect.bottom()));
+pub(super) fn area(panel: &Panel, scene: &mut Scene, edges: [&Curve; 2], colour: Colour) {
+    shaded(panel, scene, edges, colour, OPACITY);
+}
+
+/// The same, as dense as is wanted.
+pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Colour, opacity: f64) {
+    let Rect { x, y, .. } = panel.rect;
+    let inside = |(across, up): (f64, f64)| (across.clamp(x, panel.rect.right()), up.clamp(y, panel.rect.bottom()));
     let edge = |curve: &Curve| -> Vec<(f64, f64)> {
         curve.finite().filter_map(|pair| panel.place(pair)).map(inside).collect()
     };
     let outline = edge(lower).into_iter().chain(edge(upper).into_iter().rev());
-    scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, OPACITY);
+    scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, opacity);
+}
+
+/// How an area looks in a legend.
+pub(super) fn area_entry(label: &str, colour: Colour, opacity: f64, theme: &Theme) -> Entry {
+    let stroke = Stroke { opacity, ..Stroke::solid(colour, 0.8 * theme.small_font) };
+    Entry::new(Sample::Line(stroke), label)
+}
+
+/// One of the ships that were drawn at random, pale because there are many.
+pub(super) fn drawn_stroke(theme: &Theme) -> Stroke {
+    Stroke { opacity: 0.35, ..Stroke::solid(HEADING, theme.thin) }
+}
+
+/// The range `lo..=hi`, widened for the `rest` by no more than `room` on either side; and whether some of the rest
+/// lies beyond.
+pub(super) fn widened((lo, hi): (f64, f64), rest: impl Iterator<Item = f64>, room: f64) -> ((f64, f64), bool) {
+    let (least, most) = axis::range(rest).unwrap_or((lo, hi));
+    let ends = (least.clamp(lo - room, lo), most.clamp(hi, hi + room));
+    (ends, least < ends.0 || most > ends.1)
 }
 
 /// How [`record`] looks in a legend.

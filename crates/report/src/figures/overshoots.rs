@@ -1,0 +1,216 @@
+//! Predicted quantities of manoeuvres as intervals, one row each, against what was measured and what is allowed.
+
+use serde::{Deserialize, Serialize};
+
+use super::shared::widened;
+use crate::axis::{self, Axis};
+use crate::canvas::Anchor;
+use crate::dimension::Dimensions;
+use crate::figure::Figure;
+use crate::layout::{Grid, Sheet, Side, wrap};
+use crate::legend::{Entry, Sample};
+use crate::palette::{BEFORE, HEADING, INK, Look, Marker, RECORD, SOLID};
+use crate::panel::Panel;
+use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::theme::Theme;
+use crate::ticks::Steps;
+
+/// One predicted quantity; all numbers in the unit of the figure.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct OvershootRow {
+    /// Name of the quantity, such as "20/20 first overshoot".
+    pub label: String,
+    /// Median of the drawn ships.
+    pub median: f64,
+    /// The interval that holds half of them.
+    pub ci50: [f64; 2],
+    /// The interval that holds nine tenths of them.
+    pub ci90: [f64; 2],
+    /// What was measured.
+    pub measured: Option<f64>,
+    /// The largest value that the IMO standard allows.
+    pub limit: Option<f64>,
+    /// Whether the manoeuvre goes beyond what the records hold.
+    pub extrapolated: bool,
+}
+
+/// What [`overshoots`] draws.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Overshoots {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// Unit of every number, such as "°" or "L".
+    pub unit: String,
+    /// The rows from top to bottom.
+    pub rows: Vec<OvershootRow>,
+}
+
+/// An outer interval may leave the range of everything else by this share of it before it is cut.
+const ROOM: f64 = 1.0;
+/// Largest share of the page for the names of the rows.
+const NAMES: f64 = 0.42;
+
+/// Draws the intervals below each other.
+pub fn overshoots(data: &Overshoots, theme: &Theme) -> Figure {
+    let mut sheet = Sheet::new(theme, data.title.as_deref());
+    sheet.legend(&entries(data, theme));
+    let names: Vec<Vec<String>> =
+        data.rows.iter().map(|row| wrap(&row.label, theme.tick_font, false, NAMES * theme.width)).collect();
+    let lines = names.iter().map(Vec::len).max().unwrap_or(1).max(1);
+    let pitch = (0.95 + 1.15 * lines as f64) * theme.tick_font;
+    let widest = names.iter().flatten().map(|name| Text::new(name.as_str(), theme.tick_font).width());
+    let rows = Axis::names(vec![String::new(); data.rows.len()]);
+    let row = (Side::new(rows, ""), (data.rows.len().max(1) as f64 + 0.2) * pitch);
+    let unit = if data.unit.is_empty() { String::new() } else { format!(" [{}]", data.unit) };
+    let mut grid = Grid::stack(Side::new(axis(data), format!("predicted value{unit}")), vec![row]);
+    grid.left = Some(sheet.left_margin(&grid) + widest.fold(0.0, f64::max));
+    let panels = sheet.grid(grid);
+    let [panel] = &panels[..] else { return sheet.finish() };
+    let mut beyond = false;
+    for (index, (row, name)) in data.rows.iter().zip(&names).enumerate() {
+        let Some(y) = panel.up(index as f64) else { continue };
+        label(panel, &mut sheet.scene, theme, y, name, row.extrapolated);
+        beyond |= draw(panel, &mut sheet.scene, theme, (y, pitch), row);
+    }
+    if beyond {
+        sheet.note("Arrows: beyond the axis.");
+    }
+    sheet.finish()
+}
+
+/// Covers zero, medians, inner intervals, measured values and limits, and the outer intervals as far as there is room.
+fn axis(data: &Overshoots) -> Axis {
+    let marks = data.rows.iter().flat_map(|row| [Some(row.median), row.measured, row.limit]).flatten();
+    let inner = data.rows.iter().flat_map(|row| row.ci50);
+    let outer = data.rows.iter().flat_map(|row| row.ci90).filter(|end| end.is_finite());
+    let (lo, hi) = axis::range(marks.chain(inner).chain([0.0])).unwrap_or((0.0, 0.0));
+    let room = if hi > lo { ROOM * (hi - lo) } else { f64::INFINITY };
+    let ((lo, hi), _) = widened((lo, hi), outer, room);
+    if lo == hi {
+        return Axis::linear(0.0, 1.0, Steps::Decimal);
+    }
+    // The axis ends at zero where everything lies on one side of it.
+    let pad = 0.05 * (hi - lo);
+    Axis::linear(if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi }, Steps::Decimal)
+}
+
+fn median_look(extrapolated: bool) -> Look {
+    Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated }
+}
+
+const MEASURED: Look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
+
+fn limit_stroke(theme: &Theme) -> Stroke {
+    Stroke::solid(INK, 1.6 * theme.line)
+}
+
+fn stroke90(theme: &Theme) -> Stroke {
+    Stroke::solid(HEADING, theme.line)
+}
+
+/// Pale, so that the marks on it can be seen, and higher than the dot, so that a narrow one is seen too.
+fn stroke50(theme: &Theme) -> Stroke {
+    Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 2.9 * theme.marker) }
+}
+
+fn entries(data: &Overshoots, theme: &Theme) -> Vec<Entry> {
+    let any = |wanted: fn(&OvershootRow) -> bool| data.rows.iter().any(wanted);
+    let mut entries = vec![
+        Entry::new(Sample::Marker(median_look(false)), "median"),
+        Entry::new(Sample::Line(stroke50(theme)), "50 % of the drawn ships"),
+        Entry::new(Sample::Line(stroke90(theme)), "90 %"),
+    ];
+    if any(|row| row.measured.is_some()) {
+        entries.push(Entry::new(Sample::Marker(MEASURED), "measured"));
+    }
+    if any(|row| row.limit.is_some()) {
+        entries.push(Entry::new(Sample::Upright(limit_stroke(theme)), "IMO limit"));
+    }
+    if any(|row| row.extrapolated) {
+        entries.push(Entry::new(Sample::Marker(median_look(true)), "extrapolated (name in grey)"));
+    }
+    entries
+}
+
+/// The name of a row left of the frame.
+fn label(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, lines: &[String], extrapolated: bool) {
+    let colour = if extrapolated { RECORD } else { INK };
+    let right = panel.rect.x - 0.62 * theme.tick_font;
+    let leading = 1.15 * theme.tick_font;
+    for (index, line) in lines.iter().enumerate() {
+        let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End).colour(colour);
+        let down = (index as f64 - (lines.len() - 1) as f64 / 2.0) * leading;
+        scene.text(Layer::Frame, (right, y + down + text.centring()), text);
+    }
+}
+
+/// Draws one row about its place and pitch; tells whether something lies beyond the axis.
+fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (y, pitch): (f64, f64), row: &OvershootRow) -> bool {
+    let mut beyond = bar(panel, scene, theme, y, row.ci90, stroke90(theme));
+    beyond |= bar(panel, scene, theme, y, row.ci50, stroke50(theme));
+    let rect = panel.rect;
+    if let Some((x, _)) = row.limit.and_then(|limit| panel.across(limit)).map(|x| (x, y)).filter(|p| rect.contains(*p))
+    {
+        let half = 0.42 * pitch;
+        scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
+    }
+    let mut mark = |value: f64, y: f64, size: f64, look: &Look| {
+        if let Some(place) = panel.across(value).map(|x| (x, y)).filter(|place| rect.contains(*place)) {
+            scene.marker(Layer::Data, place, size * theme.marker, look);
+        }
+    };
+    mark(row.median, y, 0.95, &median_look(row.extrapolated));
+    if let Some(measured) = row.measured {
+        // Under the bar, so that it does not hide a median nearby.
+        mark(measured, y + 0.34 * pitch, 1.1, &MEASURED);
+    }
+    if !row.median.is_finite() && row.measured.is_none() && row.limit.is_none() {
+        let text = Text::new("no prediction", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
+        let place = (rect.x + rect.w / 2.0, y + text.centring());
+        scene.text_on_ground(Layer::Note, place, text);
+    }
+    beyond
+}
+
+/// An interval, with an arrow head at an end that lies beyond the axis; tells whether one does.
+fn bar(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, [a, b]: [f64; 2], stroke: Stroke) -> bool {
+    // An end without bound lies beyond every axis.
+    let place = |value: f64| panel.across(value.clamp(-f64::MAX, f64::MAX)).filter(|place| !place.is_nan());
+    let (Some(a), Some(b)) = (place(a), place(b)) else { return false };
+    let (x, right) = (panel.rect.x, panel.rect.right());
+    let (lo, hi) = (a.min(b), a.max(b));
+    let (from, to) = (lo.clamp(x, right), hi.clamp(x, right));
+    if from < to {
+        scene.line(Layer::Data, [(from, y), (to, y)], stroke);
+    }
+    let slack = 1e-6;
+    let ends = [(lo < x - slack, x, -1.0), (hi > right + slack, right, 1.0)];
+    for (_, edge, direction) in ends.into_iter().filter(|end| end.0) {
+        Dimensions::head(scene, (edge, y), (direction, 0.0), 0.6 * theme.small_font, stroke.colour);
+    }
+    ends.iter().any(|end| end.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(median: f64, half: f64) -> OvershootRow {
+        OvershootRow {
+            median,
+            ci50: [median - 0.4 * half, median + 0.4 * half],
+            ci90: [median - half, median + half],
+            ..OvershootRow::default()
+        }
+    }
+
+    #[test]
+    fn the_axis_begins_at_zero_where_nothing_is_negative() {
+        let of = |rows: Vec<OvershootRow>| axis(&Overshoots { rows, ..Overshoots::default() });
+        assert_eq!(of(vec![row(10.0, 2.0), row(20.0, 3.0)]).fraction(0.0), Some(0.0));
+        assert!(of(vec![row(10.0, 12.0)]).fraction(-2.0).is_some_and(|f| f > 0.0));
+        // An interval that runs far off is cut.
+        let wide = of(vec![row(10.0, 5.0), OvershootRow { ci90: [8.0, 1e6], ..row(20.0, 3.0) }]);
+        assert!(wide.fraction(20.0).is_some_and(|f| f > 0.4));
+    }
+}
