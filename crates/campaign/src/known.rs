@@ -2,8 +2,8 @@
 
 use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::replay;
-use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
 use predict::KnownShip;
+use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
 use ship::Response;
 use ship::angle::{from_deg, to_deg};
 use trace::Analysis;

@@ -90,10 +90,8 @@ mod tests {
     #[test]
     fn probabilities_are_shares_of_the_draws() {
         let mixture = Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
-        let predictions: Vec<Prediction> = Kind::of_imo()
-            .iter()
-            .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
-            .collect();
+        let predictions: Vec<Prediction> =
+            Kind::of_imo().iter().map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre")).collect();
         let found = criteria(&predictions, mixture.particulars().expect("made up"));
         let names: Vec<&str> = found.iter().map(|criterion| criterion.name).collect();
         assert_eq!(

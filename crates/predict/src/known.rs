@@ -148,11 +148,7 @@ impl Member {
             return Err(PredictError::Count { what: "rows of the covariance", expected: count, found: rows });
         }
         if let Some(row) = self.covariance.iter().find(|row| row.len() != count) {
-            return Err(PredictError::Count {
-                what: "columns of the covariance",
-                expected: count,
-                found: row.len(),
-            });
+            return Err(PredictError::Count { what: "columns of the covariance", expected: count, found: row.len() });
         }
         if let Some(place) = self.fitted.iter().find(|place| **place >= expected) {
             return Err(PredictError::Count { what: "the parameters `fitted` counts", expected, found: place + 1 });

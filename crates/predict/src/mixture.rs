@@ -229,7 +229,8 @@ impl Part {
         }
         for attempt in 0..=MOST_TRIES {
             let normal = DVector::from_fn(self.fitted.len(), |_, _| rng.sample::<f64, _>(StandardNormal));
-            let wide = match self.degrees_of_freedom.and_then(|freedom| Some((freedom, ChiSquared::new(freedom).ok()?))) {
+            let wide = match self.degrees_of_freedom.and_then(|freedom| Some((freedom, ChiSquared::new(freedom).ok()?)))
+            {
                 Some((freedom, law)) => (freedom / law.sample(rng)).sqrt(),
                 None => 1.0,
             };
@@ -265,9 +266,8 @@ mod tests {
         let mixture = mixture();
         let known = &mixture.first().members[0];
         let count = 4000;
-        let draws: Vec<Vec<f64>> = (0..count)
-            .map(|k| mixture.draw(k, &[Source::Parameters]).response.parameters().to_vec())
-            .collect();
+        let draws: Vec<Vec<f64>> =
+            (0..count).map(|k| mixture.draw(k, &[Source::Parameters]).response.parameters().to_vec()).collect();
         let mean = |place: usize| draws.iter().map(|draw| draw[place]).sum::<f64>() / count as f64;
         for (row, &one) in known.fitted.iter().enumerate() {
             for (column, &other) in known.fitted.iter().enumerate() {

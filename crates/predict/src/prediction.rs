@@ -86,9 +86,7 @@ impl Mixture {
         if let Kind::Spiral { rudder } = *kind {
             return Ok(self.spiral(rudder, draws, shares));
         }
-        let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else {
-            unreachable!("all but a spiral are steered")
-        };
+        let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else { unreachable!("all but a spiral are steered") };
         let sail = |number: usize, sources: &[Source]| {
             let passage = Passage::sail(&self.draw(number as u64, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
@@ -182,7 +180,8 @@ fn predicted(draws: &[Option<&[Figure]>], alone: &[(Source, Vec<Option<Vec<Figur
         .iter()
         .enumerate()
         .filter_map(|(place, &(name, _))| {
-            let of_draws: Vec<Option<f64>> = draws.iter().map(|draw| draw.and_then(|figures| figures[place].1)).collect();
+            let of_draws: Vec<Option<f64>> =
+                draws.iter().map(|draw| draw.and_then(|figures| figures[place].1)).collect();
             let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
             let defined = values.len() as f64 / draws.len() as f64;
             let interval = Interval::of(&mut values)?;

@@ -85,8 +85,7 @@ impl Mixture {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::Replay(trial.rudder_signal().clone());
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
-        let at_rest =
-            Passage::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(|_| lost(0))?;
+        let at_rest = Passage::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(|_| lost(0))?;
         let Some([first, rate]) = beginning(trial, &at_rest, self.timescale()) else { return Ok(None) };
         let sail = |number: usize, sources: &[Source]| {
             let mut ship = self.draw(number as u64, sources);
@@ -132,8 +131,7 @@ impl Mixture {
         }
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
-        let square: f64 =
-            measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
+        let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
         let figures = match Measured::of(trial) {
             Ok(zigzag) if zigzag.executes.len() > 1 => self.zig_zag(&zigzag, draws)?,
             _ => turns(trial, &made, self.timescale()),
@@ -157,9 +155,8 @@ impl Mixture {
         let heading = mean(executes[1..].iter().map(|execute| (execute.heading.value - base).abs()).collect());
         // Orders are whole numbers where readings are near to them.
         let [rudder, heading] = match measured.pair {
-            Some(pair) => [(rudder, pair.rudder), (heading, pair.heading)].map(|(read, nominal)| {
-                if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }
-            }),
+            Some(pair) => [(rudder, pair.rudder), (heading, pair.heading)]
+                .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
             None => [rudder, heading],
         };
         let first = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
@@ -170,7 +167,11 @@ impl Mixture {
         let approach = self.first().approach_yaw_rate_rad_s;
         let rate = executes[0].yaw_rate.map_or(0.0, |rate| {
             let doubt = rate.sd.unwrap_or(0.0);
-            if approach + doubt > 0.0 { rate.value * approach.powi(2) / (approach.powi(2) + doubt.powi(2)) } else { 0.0 }
+            if approach + doubt > 0.0 {
+                rate.value * approach.powi(2) / (approach.powi(2) + doubt.powi(2))
+            } else {
+                0.0
+            }
         });
         let drawn: Vec<Vec<Figure>> = (0..draws)
             .into_par_iter()

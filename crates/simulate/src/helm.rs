@@ -169,7 +169,11 @@ impl<'a> Helm<'a> {
             Manoeuvre::TurningCircle(turn) => turn.side.sign() * turn.rudder,
             Manoeuvre::PullOut(pull_out) if self.made == 0 => pull_out.side.sign() * pull_out.rudder,
             Manoeuvre::Williamson(turn) if self.made < 2 => {
-                if self.made == 0 { turn.side.sign() * turn.rudder } else { -turn.side.sign() * turn.rudder }
+                if self.made == 0 {
+                    turn.side.sign() * turn.rudder
+                } else {
+                    -turn.side.sign() * turn.rudder
+                }
             }
             Manoeuvre::PullOut(_) | Manoeuvre::Williamson(_) | Manoeuvre::Replay(_) => 0.0,
         };

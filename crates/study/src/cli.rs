@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::commands::{check, find, fit, list, merge, overview, predict, report, run, sidecar, simulate, trace};
-use crate::options::{Common, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, Style, TraceRequest};
+use crate::options::{
+    Common, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, Style, TraceRequest,
+};
 use crate::{screen, threads};
 use clap::{CommandFactory, Parser, Subcommand};
 use scenario::failure::{Blame, Failure};

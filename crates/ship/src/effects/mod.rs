@@ -87,9 +87,7 @@ pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>>
         }
         ("speed_loss", [constant]) => Arc::new(SpeedLoss::Propeller { approach_rate: positive(constant)? }),
         ("moment_drift", [constant]) => Arc::new(MomentDrift { reference_time: *constant }),
-        ("transient_disturbance", [constant]) => {
-            Arc::new(TransientDisturbance::Lasting { edge: positive(constant)? })
-        }
+        ("transient_disturbance", [constant]) => Arc::new(TransientDisturbance::Lasting { edge: positive(constant)? }),
         _ => return None,
     })
 }
@@ -106,6 +104,8 @@ mod tests {
             let again = named(effect.id(), effect.form(), &constants).expect("all are known");
             assert_eq!((again.id(), again.form(), again.constants()), (effect.id(), effect.form(), constants));
         }
-        assert!(named("second_order", "", &[1.0]).is_none() && named("speed_loss", "measured speed", &[-1.0]).is_none());
+        assert!(
+            named("second_order", "", &[1.0]).is_none() && named("speed_loss", "measured speed", &[-1.0]).is_none()
+        );
     }
 }

@@ -99,7 +99,11 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         let table = common.format.render(&predict_tables::figures(&predicted));
         let notes = format!("results: {}", path.display());
         if common.format == Format::Text {
-            screen::say(&format!("{}\n{table}{}\n{notes}", predict_page::words(&predicted), predict_page::rest(&predicted)))?;
+            screen::say(&format!(
+                "{}\n{table}{}\n{notes}",
+                predict_page::words(&predicted),
+                predict_page::rest(&predicted)
+            ))?;
         } else {
             // Another program reads the table: nothing else may stand beside it.
             screen::say(table.trim_end())?;
@@ -134,7 +138,8 @@ fn at_scale(known: &KnownShip, asked: Option<Particulars>) -> Result<KnownShip, 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.
 fn default_folder(model: &Path) -> PathBuf {
     let named = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
-    let own = model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
+    let own =
+        model.parent().and_then(named).or_else(|| model.file_stem().map(|stem| stem.to_string_lossy().into_owned()));
     let own = own.filter(|name| !name.is_empty()).unwrap_or_else(|| String::from("model"));
     PathBuf::from(format!("{own}-predict"))
 }
@@ -144,7 +149,9 @@ fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Re
     name::of_file(path)?;
     let text = std::fs::read_to_string(path).on("read", path)?;
     let value: Value = serde_json::from_str(&text).map_err(|error| {
-        Failure::input(format!("{file}: this is no JSON ({error}); expected the fit.json or trace.json of this program"))
+        Failure::input(format!(
+            "{file}: this is no JSON ({error}); expected the fit.json or trace.json of this program"
+        ))
     })?;
     let old = |what: &str| {
         Failure::input(format!("{file}: {what}; it was written by an older program, make it again with `study {what}`"))
@@ -161,7 +168,9 @@ fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Re
         Some(schema) if schema.starts_with("trace/") => value.get("ship").cloned().ok_or_else(|| old("trace"))?,
         found => {
             let found = found.map_or_else(|| String::from("no `schema`"), |schema| format!("schema = \"{schema}\""));
-            return Err(Failure::input(format!("{file}: {found}; expected the fit.json or trace.json of this program")));
+            return Err(Failure::input(format!(
+                "{file}: {found}; expected the fit.json or trace.json of this program"
+            )));
         }
     };
     let known: KnownShip = serde_json::from_value(known)

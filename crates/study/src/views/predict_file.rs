@@ -130,14 +130,8 @@ fn manoeuvre(prediction: &Prediction) -> ManoeuvreEntry {
     let figure = |figure: &predict::prediction::Predicted| {
         let Interval { median, ci50, ci90 } = figure.interval;
         let shares = figure.shares.iter().map(|(source, share)| (source.as_str(), *share)).collect();
-        let entry = FigureEntry {
-            median,
-            ci50,
-            ci90,
-            extrapolated: prediction.extrapolated,
-            defined: figure.defined,
-            shares,
-        };
+        let entry =
+            FigureEntry { median, ci50, ci90, extrapolated: prediction.extrapolated, defined: figure.defined, shares };
         (figure.name, entry)
     };
     ManoeuvreEntry {

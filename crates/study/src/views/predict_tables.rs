@@ -7,11 +7,17 @@ use report::{Column, Table};
 
 use super::predict_report::Predicted;
 
-
 /// Name and unit of a figure whose unit is the end of its name.
 pub fn words(name: &str) -> (String, &'static str) {
-    let units =
-        [("_deg_s", "deg/s"), ("_deg", "deg"), ("_lengths", "L"), ("_m_s", "m/s"), ("_share", "1"), ("_m", "m"), ("_s", "s")];
+    let units = [
+        ("_deg_s", "deg/s"),
+        ("_deg", "deg"),
+        ("_lengths", "L"),
+        ("_m_s", "m/s"),
+        ("_share", "1"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
     let found = units.into_iter().find_map(|(end, unit)| Some((name.strip_suffix(end)?, unit)));
     let (stem, unit) = found.unwrap_or((name, ""));
     (stem.replace('_', " "), unit)
