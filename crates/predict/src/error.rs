@@ -40,6 +40,9 @@ pub enum PredictError {
     /// A ship of unknown length or speed cannot be scaled.
     #[error("length and speed of the identified ship are not known, so it cannot be scaled; give them to fit or trace")]
     NoParticulars,
+    /// Speed and drift of the ship make no sense.
+    #[error("speed and drift: {0}")]
+    Motion(#[from] motion::MotionError),
     /// A manoeuvre that is not known.
     #[error(
         "`{found}` is no manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \

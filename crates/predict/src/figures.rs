@@ -17,26 +17,25 @@ const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
 ///
-/// The way of the initial turning is V times its time, as in MSC/Circ.1053 where no speed is recorded.
+/// The way of the initial turning is V times its time where nothing is known of the speed.
 pub fn of(kind: &Kind, passage: &Passage, particulars: Option<Particulars>) -> Vec<Figure> {
     let mut figures = Vec::new();
     match *kind {
         Kind::ZigZag { heading, first, .. } => {
             let turning = passage.reached(heading, first.sign());
             figures.push(("initial_turning_time_s", turning));
-            if let Some(Particulars { length, speed }) = particulars {
-                figures.push(("initial_turning_lengths", turning.map(|time| speed * time / length)));
-            }
+            figures.extend(lengths(passage, turning, particulars));
             zig_zag(passage, &mut figures);
         }
         Kind::InitialTurning { side, .. } => {
             let turning = passage.reached(INITIAL_TURN - 1e-9, side.sign()).or(Some(end(passage)));
             figures.push(("initial_turning_time_s", turning));
-            if let Some(Particulars { length, speed }) = particulars {
-                figures.push(("initial_turning_lengths", turning.map(|time| speed * time / length)));
-            }
+            figures.extend(lengths(passage, turning, particulars));
         }
-        Kind::TurningCircle { side, .. } => turn(passage, side.sign(), &mut figures),
+        Kind::TurningCircle { side, .. } => {
+            turn(passage, side.sign(), &mut figures);
+            circle(passage, 0.0, &mut figures);
+        }
         Kind::PullOut { side, .. } => {
             let middle = passage.heading.len() / 2;
             figures.push(("rate_before_deg_s", mean_rate(passage, middle, side.sign())));
@@ -53,6 +52,28 @@ pub fn of(kind: &Kind, passage: &Passage, particulars: Option<Particulars>) -> V
         Kind::Spiral { .. } => {}
     }
     figures
+}
+
+/// The way of the initial turning in ship lengths.
+fn lengths(passage: &Passage, turning: Option<f64>, particulars: Option<Particulars>) -> Option<Figure> {
+    let Particulars { length, speed } = particulars?;
+    let way = turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length);
+    Some(("initial_turning_lengths", way))
+}
+
+/// Figures of the track of a turn that was begun at `execute` s, where there is one.
+pub(crate) fn circle(passage: &Passage, execute: f64, figures: &mut Vec<Figure>) {
+    let (Some(circle), Some(way)) = (passage.circle(execute), &passage.way) else { return };
+    figures.extend([
+        ("advance_m", circle.advance),
+        ("advance_lengths", circle.advance.map(|advance| advance / way.length)),
+        ("transfer_m", circle.transfer),
+        ("tactical_diameter_m", circle.tactical_diameter),
+        ("tactical_diameter_lengths", circle.tactical_diameter.map(|diameter| diameter / way.length)),
+        ("speed_loss_share", circle.speed_ratio.map(|ratio| 1.0 - ratio)),
+        ("drift_angle_deg", circle.drift_angle.map(|angle| to_deg(angle.abs()))),
+        ("pivot_ahead_lengths", circle.pivot_ahead.map(|ahead| ahead / way.length)),
+    ]);
 }
 
 fn end(passage: &Passage) -> f64 {
@@ -114,6 +135,7 @@ mod tests {
     fn yukun(kind: &Kind) -> Passage {
         let ship = Drawn {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
+            planar: None,
             gear: SteeringGear::with_rate(from_deg(2.5)),
             disturbances: Disturbances::default(),
             yaw_rate: 0.0,

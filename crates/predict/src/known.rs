@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use motion::Planar;
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Response, ResponseModel};
@@ -104,6 +105,9 @@ pub struct KnownShip {
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
     pub speed_m_s: Option<f64>,
+    /// Speed and drift; none where the records have neither speed nor position.
+    #[serde(default)]
+    pub motion: Option<Planar>,
 }
 
 /// Structure and values of a member as the equations take them.
@@ -221,6 +225,7 @@ impl KnownShip {
         }
         scaled.approach_yaw_rate_rad_s /= second;
         scaled.seen.yaw_rate_rad_s /= second;
+        scaled.motion = self.motion.as_ref().map(|planar| planar.scaled_to(length, speed)).transpose()?;
         scaled.length_m = Some(length);
         scaled.speed_m_s = Some(speed);
         Ok(scaled)

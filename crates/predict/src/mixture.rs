@@ -1,6 +1,7 @@
 //! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
 //! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
 
+use motion::Planar;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -67,14 +68,18 @@ struct Part {
 pub struct Mixture {
     parts: Vec<Part>,
     files: Vec<KnownShip>,
+    /// Square roots of the covariances of speed and drift, of every file.
+    motions: Vec<DMatrix<f64>>,
     timescale: f64,
 }
 
 /// A ship for one trial.
 #[derive(Debug, Clone)]
 pub struct Drawn {
-    /// The ship.
+    /// How the ship turns.
     pub response: Response,
+    /// How it loses speed and drifts, where that is known.
+    pub planar: Option<Planar>,
     /// Its steering gear.
     pub gear: SteeringGear,
     /// What acts on it.
@@ -131,8 +136,13 @@ impl Mixture {
                 });
             }
         }
+        let motion = |(known, _): &(KnownShip, f64)| match &known.motion {
+            Some(planar) => root_of(&planar.covariance.map(|row| row.to_vec())),
+            None => Ok(DMatrix::zeros(0, 0)),
+        };
+        let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
-        Ok(Self { parts, files: files.into_iter().map(|(known, _)| known).collect(), timescale })
+        Ok(Self { parts, motions, files: files.into_iter().map(|(known, _)| known).collect(), timescale })
     }
 
     /// A time of the ship, s: about L/U.
@@ -172,14 +182,29 @@ impl Mixture {
             let doubt = if has(Source::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
             SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
         });
+        let planar = known.motion.as_ref().map(|planar| match has(Source::Parameters) {
+            true => self.drawn_motion(part.file, planar, &key),
+            false => planar.clone(),
+        });
         let noise = if has(Source::ProcessNoise) { known.noise } else { KnownNoise::default() };
         Drawn {
             response: part.equations.with(values),
+            planar,
             gear,
             disturbances: self.disturbances(&noise),
             yaw_rate: if has(Source::InitialState) { of_rate * known.approach_yaw_rate_rad_s } else { 0.0 },
             key,
         }
+    }
+
+    /// Speed and drift by the covariance of their coefficients.
+    fn drawn_motion(&self, file: usize, planar: &Planar, key: &StreamKey) -> Planar {
+        let mut rng = key.indexed(Purpose::Specification, 2);
+        let root = &self.motions[file];
+        let step = root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal));
+        let values: Vec<f64> =
+            planar.coefficients().iter().zip(step.iter()).map(|(value, step)| value + step).collect();
+        planar.with_coefficients(&values).unwrap_or_else(|_| planar.clone())
     }
 
     fn disturbances(&self, noise: &KnownNoise) -> Disturbances {

@@ -1,6 +1,11 @@
 //! One drawn ship through one manoeuvre.
 
+use std::sync::Arc;
+
+use motion::{Planar, PlanarShip, Turn, TurningCircle};
+use ship::Regressor;
 use simulate::helm::Execute;
+use simulate::simulation::Truth;
 use simulate::vessel::Solver;
 use simulate::{Manoeuvre, SimulateError, Simulation, SteeringGear, Vessel};
 
@@ -31,14 +36,66 @@ pub struct Passage {
     pub rudder: Vec<f64>,
     /// Orders of the helm.
     pub executes: Vec<Execute>,
+    /// The way over ground; none where nothing is known of speed and drift.
+    pub way: Option<Way>,
+}
+
+/// Speed, drift and track of a passage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Way {
+    /// Length of the ship, m.
+    pub length: f64,
+    /// Surge velocity, m/s.
+    pub surge: Vec<f64>,
+    /// Sway velocity to starboard, m/s.
+    pub sway: Vec<f64>,
+    /// North and east, m, 0 at the first execute; north is the course of the approach.
+    pub track: Vec<[f64; 2]>,
+}
+
+/// What is steered: with speed and drift where effects of the response ask for them.
+fn vessel(ship: &Drawn) -> Vessel {
+    let needs = [Regressor::Speed, Regressor::Sway].iter().any(|channel| ship.response.needs(*channel));
+    match &ship.planar {
+        Some(planar) if needs => {
+            Vessel::hull(Arc::new(PlanarShip { response: ship.response.clone(), planar: planar.clone() }))
+        }
+        _ => Vessel::response(ship.response.clone()),
+    }
+}
+
+/// Speed, drift and track of a ship that turned and steered like this, from a surge and a sway velocity on.
+fn way(planar: &Planar, truth: &Truth, start: [f64; 2]) -> Way {
+    let velocities = planar.drive(&truth.time, &truth.yaw_rate, &truth.rudder, start);
+    let (surge, sway): (Vec<f64>, Vec<f64>) = velocities.into_iter().map(|[u, v]| (u, v)).unzip();
+    let track = motion::track(&truth.time, &truth.heading, &surge, &sway);
+    Way { length: planar.length, surge, sway, track }
 }
 
 impl Passage {
+    /// Figures of a turning circle that was begun at `execute` s; `None` where nothing is known of speed and drift.
+    pub fn circle(&self, execute: f64) -> Option<TurningCircle> {
+        let Way { surge, sway, track, .. } = self.way.as_ref()?;
+        let time: Vec<f64> = (0..self.heading.len()).map(|row| self.time(row)).collect();
+        let turn = Turn { time: &time, heading: &self.heading, track, surge, sway, yaw_rate: &self.yaw_rate };
+        Some(motion::turning_circle(&turn, execute))
+    }
+
+    /// Way through the water until `time` s, m; `None` where nothing is known of the speed.
+    pub fn distance(&self, time: f64) -> Option<f64> {
+        let Way { surge, sway, .. } = self.way.as_ref()?;
+        let speed = |row: usize| surge[row].hypot(sway[row]);
+        let last = surge.len().checked_sub(1)?;
+        let rows = ((time / self.period) as usize).min(last);
+        let whole: f64 = (0..rows).map(|row| 0.5 * self.period * (speed(row) + speed(row + 1))).sum();
+        Some(whole + (time - self.time(rows)) * speed(rows))
+    }
+
     /// Steers a ship through a manoeuvre; `timescale` is a time of the ship, s.
     ///
     /// Fails where the ship does not reach a heading that the helm waits for, or turns for ever.
     pub fn sail(ship: &Drawn, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
-        let mut simulation = Simulation::new(Vessel::response(ship.response.clone()), manoeuvre.clone());
+        let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
         simulation.gear = match manoeuvre {
             Manoeuvre::Replay(_) => SteeringGear::default(),
             _ => ship.gear,
@@ -52,14 +109,25 @@ impl Passage {
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
         let truth = simulation.run(&ship.key)?.truth;
-        let truth = std::sync::Arc::unwrap_or_clone(truth);
+        let truth = Arc::unwrap_or_clone(truth);
         Ok(Self {
+            way: ship.planar.as_ref().map(|planar| way(planar, &truth, [planar.approach_speed, 0.0])),
             period: simulation.recording.period,
             heading: truth.heading,
             yaw_rate: truth.yaw_rate,
             rudder: truth.rudder,
             executes: truth.executes,
         })
+    }
+
+    /// The same on another course: every heading is larger by `angle` (rad).
+    pub fn turn_about(&mut self, angle: f64) {
+        self.heading.iter_mut().for_each(|heading| *heading += angle);
+        let (sin, cos) = angle.sin_cos();
+        for place in self.way.iter_mut().flat_map(|way| &mut way.track) {
+            let [north, east] = *place;
+            *place = [north * cos - east * sin, north * sin + east * cos];
+        }
     }
 
     /// Time of a row, s.

@@ -57,6 +57,8 @@ pub struct Prediction {
     pub heading: Bands,
     /// The most probable ship without chance, but for a spiral.
     pub most_probable: Option<Passage>,
+    /// Tracks of some of the draws, north and east, m; empty where nothing is known of speed and drift.
+    pub tracks: Vec<Vec<[f64; 2]>>,
     /// Steady curves of the most probable ship and of some others, for a spiral.
     pub curves: Vec<SteadyCurve>,
     /// Whether rudder or yaw rate are beyond what the records have seen.
@@ -70,7 +72,11 @@ struct Draw {
     figures: Vec<Figure>,
     heading: Vec<f64>,
     largest_rate: f64,
+    track: Option<Vec<[f64; 2]>>,
 }
+
+/// Draws whose tracks are kept.
+const TRACKS: usize = 40;
 
 impl Mixture {
     /// Length and speed, where the first file has them.
@@ -96,7 +102,8 @@ impl Mixture {
             .map(|number| {
                 let (figures, passage) = sail(number, &Source::ALL)?;
                 let largest_rate = passage.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
-                Some(Draw { figures, heading: passage.heading, largest_rate })
+                let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
+                Some(Draw { figures, heading: passage.heading, largest_rate, track })
             })
             .collect();
         let made: Vec<&Draw> = all.iter().flatten().collect();
@@ -124,6 +131,7 @@ impl Mixture {
             extrapolated: self.is_unseen(kind.rudder(), quantile(&rates, 0.5)),
             lost: draws - made.len(),
             most_probable,
+            tracks: all.iter().flatten().filter_map(|draw| draw.track.clone()).collect(),
             curves: Vec::new(),
         })
     }
@@ -155,6 +163,7 @@ impl Mixture {
             figures: predicted(&values, &alone),
             heading: Bands::default(),
             most_probable: None,
+            tracks: Vec::new(),
             curves,
             extrapolated: self.is_unseen(rudder, largest),
             lost: 0,

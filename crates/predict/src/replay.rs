@@ -6,14 +6,14 @@ use rayon::prelude::*;
 use ship::Polyline;
 use simulate::manoeuvre::{ZigZag, ZigZagEnd};
 use simulate::{Manoeuvre, Purpose, Side};
-use trial::{Trial, ZigZag as Measured};
+use trial::{Channel, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::figures::{self, Figure};
 use crate::interval::{Interval, quantile};
 use crate::kind::{EXECUTES, Kind};
 use crate::mixture::{Mixture, Source};
-use crate::passage::Passage;
+use crate::passage::{Passage, Way};
 use crate::prediction::Bands;
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
@@ -95,7 +95,7 @@ impl Mixture {
             ship.yaw_rate = rate.0 + doubt * rate.1 * of_rate;
             let mut passage = Passage::sail(&ship, &manoeuvre, self.timescale()).ok()?;
             let offset = first.0 + doubt * first.1 * of_heading;
-            passage.heading.iter_mut().for_each(|heading| *heading += offset);
+            passage.turn_about(offset);
             Some((passage, rng))
         };
         let rows: Vec<usize> = trial.observed_rows().collect();
@@ -231,31 +231,54 @@ fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64) -> Vec<Com
     let Some((sample, _)) = made.first() else { return Vec::new() };
     let execute = execute - trial.time()[0];
     let rows: Vec<usize> = trial.observed_rows().collect();
-    let times: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - trial.time()[0]).collect();
-    let headings: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
-    let Ok(signal) = Polyline::new(times, headings) else { return Vec::new() };
-    let count = sample.heading.len();
-    let on_rows: Vec<f64> = (0..count).map(|row| signal.at(sample.time(row))).collect();
-    let from_execute = |heading: &[f64]| -> Vec<Figure> {
-        let first = (execute / sample.period).round() as usize;
-        let start = at(sample, heading, execute);
-        let passage = Passage {
-            period: sample.period,
-            heading: heading.iter().skip(first).map(|heading| heading - start).collect(),
+    let on_rows = |rows: &[usize], values: &[f64]| -> Option<Vec<f64>> {
+        let rows: Vec<usize> = rows.iter().copied().filter(|&row| values[row].is_finite()).collect();
+        let times: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - trial.time()[0]).collect();
+        let signal = Polyline::new(times, rows.iter().map(|&row| values[row]).collect()).ok()?;
+        Some((0..sample.heading.len()).map(|row| signal.at(sample.time(row))).collect())
+    };
+    let Some(heading) = on_rows(&rows, trial.heading()) else { return Vec::new() };
+    let all: Vec<usize> = (0..trial.len()).collect();
+    let channel = |channel: Channel| on_rows(&all, trial.channel(channel)?);
+    let way = || {
+        let length = sample.way.as_ref()?.length;
+        let [north, east] = [channel(Channel::North)?, channel(Channel::East)?];
+        let rest = |channel: Option<Vec<f64>>| channel.unwrap_or_else(|| vec![f64::NAN; heading.len()]);
+        let [surge, sway] = [Channel::Surge, Channel::Sway].map(|own| rest(channel(own)));
+        Some(Way { length, surge, sway, track: north.into_iter().zip(east).map(|(n, e)| [n, e]).collect() })
+    };
+    let slope = |row: usize| (heading[row + 1] - heading[row]) / sample.period;
+    let count = heading.len();
+    let record = Passage {
+        period: sample.period,
+        yaw_rate: (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect(),
+        rudder: sample.rudder.clone(),
+        executes: Vec::new(),
+        way: way(),
+        heading,
+    };
+    let figures = |passage: &Passage| -> Vec<Figure> {
+        let first = (execute / passage.period).round() as usize;
+        let start = at(passage, &passage.heading, execute);
+        let after = Passage {
+            heading: passage.heading.iter().skip(first).map(|heading| heading - start).collect(),
             yaw_rate: Vec::new(),
             rudder: Vec::new(),
             executes: Vec::new(),
+            way: None,
+            ..*passage
         };
         let mut figures = Vec::new();
-        figures::turn(&passage, side, &mut figures);
+        figures::turn(&after, side, &mut figures);
+        figures::circle(passage, execute, &mut figures);
         figures
     };
-    let measured = from_execute(&on_rows);
+    let measured = figures(&record);
     let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
     if !is_turn {
         return Vec::new();
     }
-    let drawn: Vec<Vec<Figure>> = made.iter().map(|(passage, _)| from_execute(&passage.heading)).collect();
+    let drawn: Vec<Vec<Figure>> = made.iter().map(|(passage, _)| figures(passage)).collect();
     compared(&drawn, |name| measured.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value))
 }
 

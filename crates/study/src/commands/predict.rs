@@ -12,7 +12,7 @@ use crate::options::{Common, Format, PredictRequest, ReadingOptions};
 use crate::records::{file_of, read_others};
 use crate::views::predict_file::{self, PredictFile};
 use crate::views::predict_report::Predicted;
-use crate::views::{predict_page, predict_tables};
+use crate::views::{predict_figures, predict_page, predict_tables};
 use crate::{progress, screen};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
@@ -62,7 +62,9 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let manoeuvres = manoeuvres.map_err(refused)?;
     let mut replays = Vec::with_capacity(records.len());
     for record in records {
-        let own = scaled(record.particulars().or_else(|| asked_scale(&request.reading))).map_err(refused)?;
+        // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
+        let scale = asked_scale(&request.reading).or_else(|| record.particulars());
+        let own = scaled(scale).map_err(refused)?;
         let file = file_of(&record).0.to_owned();
         match own.replay(&record, draws) {
             Ok(Some(replayed)) => replays.push((record, replayed)),
@@ -90,7 +92,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let path = folder.path().join(PREDICT);
     let json = serde_json::to_string_pretty(&PredictFile::of(&predicted)).on("describe", &path)?;
     folder.keep(PREDICT, json + "\n")?;
-    let drawn = predict_page::draw(&predicted, &theme, &folder)?;
+    let drawn = predict_figures::draw(&predicted, &theme, &folder)?;
     for (stem, table) in predict_file::curves(&predicted) {
         folder.write(&format!("{stem}.csv"), table)?;
     }

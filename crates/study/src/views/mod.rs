@@ -7,6 +7,7 @@ pub mod fit_file;
 pub mod method_table;
 pub mod missing_moment;
 pub mod picture;
+pub mod predict_figures;
 pub mod predict_file;
 pub mod predict_page;
 pub mod predict_report;

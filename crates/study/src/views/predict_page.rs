@@ -1,19 +1,11 @@
 //! The page of a prediction: words, tables and figures.
 
-use report::Theme;
 use report::markdown::text;
 use report::number::fixed;
 use ship::angle::to_deg;
 
 use super::predict_report::Predicted;
 use super::predict_tables;
-use campaign::folder::ResultFolder;
-use scenario::failure::Failure;
-
-/// Draws everything into `folder` and returns stems and captions.
-pub fn draw(_predicted: &Predicted, _theme: &Theme, _folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
-    Ok(Vec::new())
-}
 
 /// What was predicted from what.
 pub fn words(predicted: &Predicted) -> String {

@@ -1,0 +1,194 @@
+//! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
+//! limits of IMO.
+
+use predict::imo::Criterion;
+use predict::prediction::Bands;
+use predict::steady::SteadyCurve;
+use predict::{Kind, Prediction};
+use rayon::prelude::*;
+use report::figures::{self, OvershootRow, Overshoots, PredictionBands, SteadyCurves, Track};
+use report::{Curve, Figure, Theme};
+use ship::angle::to_deg;
+use trial::imo::Unit;
+
+use super::picture::{first_failure, write_figure};
+use super::predict_file::stems;
+use super::predict_report::Predicted;
+use super::predict_tables::words;
+use campaign::folder::ResultFolder;
+use scenario::failure::Failure;
+
+/// Drawn ships whose steady curves are shown.
+const CURVES: usize = 40;
+
+/// Headings drawn along a track.
+const HEADINGS: usize = 12;
+
+/// Stem, caption and what is drawn.
+type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
+
+/// Draws everything into `folder` and returns stems and captions.
+pub fn draw(predicted: &Predicted, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
+    let mut drawings: Vec<Drawing> = Vec::new();
+    let stems = stems(predicted);
+    for (prediction, stem) in predicted.manoeuvres.iter().zip(&stems) {
+        let kind = prediction.kind.to_string();
+        if let Kind::Spiral { .. } = prediction.kind {
+            let caption =
+                format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
+            let draw = move || figures::steady_curves(&steady(prediction, predicted), theme);
+            drawings.push((stem.clone(), caption, Box::new(draw)));
+            continue;
+        }
+        let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", predicted.draws);
+        drawings.push((stem.clone(), caption, Box::new(move || bands_of(prediction, theme))));
+        if prediction.most_probable.as_ref().is_some_and(|passage| passage.way.is_some()) {
+            let caption =
+                format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.tracks.len());
+            drawings.push((format!("{stem}-track"), caption, Box::new(move || track(prediction, theme))));
+        }
+    }
+    for ((trial, replayed), stem) in predicted.replays.iter().zip(&stems[predicted.manoeuvres.len()..]) {
+        let caption = format!("{}: the record and its rudder replayed, nothing fitted to it.", trial.name());
+        let draw = move || {
+            let degrees: Vec<f64> = replayed.measured.iter().copied().map(to_deg).collect();
+            let rudder: Vec<f64> = trial.rudder().iter().copied().map(to_deg).collect();
+            let time: Vec<f64> = trial.time().iter().map(|time| time - trial.time()[0]).collect();
+            let recorded = Some(Curve::new(replayed.heading.time.as_slice(), degrees));
+            let data = PredictionBands {
+                title: Some(format!("{}, predicted", trial.name())),
+                recorded,
+                rudder: Curve::new(time, rudder),
+                ..bands(&replayed.heading)
+            };
+            figures::prediction_bands(&data, theme)
+        };
+        drawings.push((stem.clone(), caption, Box::new(draw)));
+    }
+    for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
+        let criteria: Vec<&Criterion> = predicted.criteria.iter().filter(|criterion| criterion.unit == unit).collect();
+        if !criteria.is_empty() {
+            let caption = String::from("Criteria of IMO MSC.137(76): what is predicted and what is allowed.");
+            let draw = move || figures::overshoots(&limits(&criteria, unit), theme);
+            drawings.push((stem.to_owned(), caption, Box::new(draw)));
+        }
+    }
+    let measured: Vec<OvershootRow> = measured(predicted);
+    if !measured.is_empty() {
+        let caption = String::from("Overshoots of the records and what was predicted of them.");
+        let data = Overshoots {
+            title: Some(String::from("Overshoots, measured and predicted")),
+            unit: String::from("°"),
+            rows: measured,
+        };
+        drawings.push((String::from("overshoots"), caption, Box::new(move || figures::overshoots(&data, theme))));
+    }
+    first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
+    Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
+}
+
+fn bands(of: &Bands) -> PredictionBands {
+    let curve = |values: &mut dyn Iterator<Item = f64>| Curve::new(of.time.as_slice(), values.collect::<Vec<f64>>());
+    let quantile = |place: usize| curve(&mut of.quantiles.iter().map(|row| to_deg(row[place])));
+    PredictionBands {
+        title: None,
+        heading: curve(&mut of.most_probable.iter().copied().map(to_deg)),
+        band50: [quantile(1), quantile(3)],
+        band90: [quantile(0), quantile(4)],
+        recorded: None,
+        rudder: Curve::default(),
+    }
+}
+
+fn bands_of(prediction: &Prediction, theme: &Theme) -> Figure {
+    let rudder = prediction.most_probable.as_ref().map_or_else(Curve::default, |passage| {
+        let time: Vec<f64> = (0..passage.rudder.len()).map(|row| passage.time(row)).collect();
+        Curve::new(time, passage.rudder.iter().copied().map(to_deg).collect::<Vec<f64>>())
+    });
+    let title = Some(prediction.kind.to_string());
+    figures::prediction_bands(&PredictionBands { title, rudder, ..bands(&prediction.heading) }, theme)
+}
+
+fn track(prediction: &Prediction, theme: &Theme) -> Figure {
+    let curve = |track: &[[f64; 2]]| {
+        let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
+        Curve::new(east, north)
+    };
+    let passage = prediction.most_probable.as_ref();
+    let own = passage.and_then(|passage| Some(passage.way.as_ref()?.track.as_slice())).unwrap_or_default();
+    let step = (own.len() / HEADINGS).max(1);
+    let headings = passage.map_or_else(Vec::new, |passage| {
+        let place = |row: usize| [own[row][1], own[row][0], to_deg(passage.heading[row])];
+        (0..own.len()).step_by(step).map(place).collect()
+    });
+    let data = Track {
+        title: Some(prediction.kind.to_string()),
+        unit: String::from("m"),
+        most_probable: curve(own),
+        drawn: prediction.tracks.iter().map(|track| curve(track)).collect(),
+        recorded: None,
+        headings,
+    };
+    figures::track(&data, theme)
+}
+
+fn steady(prediction: &Prediction, predicted: &Predicted) -> SteadyCurves {
+    let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
+        let rows = 0..of.rudder.len();
+        let (x, y): (Vec<f64>, Vec<f64>) = rows
+            .map(|row| match keep(row) {
+                true => (to_deg(of.rudder[row]), to_deg(of.yaw_rate[row])),
+                false => (f64::NAN, f64::NAN),
+            })
+            .unzip();
+        Curve::new(x, y)
+    };
+    let Some((first, rest)) = prediction.curves.split_first() else { return SteadyCurves::default() };
+    // Where the rudder goes back while the yaw rate grows.
+    let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
+    let is_unstable = |row: usize| falls(row) || (row > 0 && falls(row - 1));
+    SteadyCurves {
+        title: Some(String::from("Steady turns")),
+        most_probable: curve(first, &|_| true),
+        unstable: if first.instability().is_some() { curve(first, &is_unstable) } else { Curve::default() },
+        drawn: rest.iter().take(CURVES).map(|ship| curve(ship, &|_| true)).collect(),
+        seen_rudder_deg: Some(to_deg(predicted.seen.rudder_rad)),
+        seen_rate_deg_s: Some(to_deg(predicted.seen.yaw_rate_rad_s)),
+    }
+}
+
+fn limits(criteria: &[&Criterion], unit: Unit) -> Overshoots {
+    let row = |criterion: &&Criterion| OvershootRow {
+        label: criterion.name.to_owned(),
+        median: criterion.interval.median,
+        ci50: criterion.interval.ci50,
+        ci90: criterion.interval.ci90,
+        measured: None,
+        limit: Some(criterion.limit),
+        extrapolated: criterion.extrapolated,
+    };
+    Overshoots {
+        title: Some(String::from("IMO MSC.137(76)")),
+        unit: if unit == Unit::Degrees { String::from("°") } else { unit.symbol().to_owned() },
+        rows: criteria.iter().map(row).collect(),
+    }
+}
+
+/// Overshoots of replayed records.
+fn measured(predicted: &Predicted) -> Vec<OvershootRow> {
+    let mut rows = Vec::new();
+    for (trial, replayed) in &predicted.replays {
+        for figure in replayed.figures.iter().filter(|figure| figure.name.ends_with("overshoot_deg")) {
+            rows.push(OvershootRow {
+                label: format!("{} {}", trial.name(), words(figure.name).0),
+                median: figure.interval.median,
+                ci50: figure.interval.ci50,
+                ci90: figure.interval.ci90,
+                measured: Some(figure.measured),
+                limit: None,
+                extrapolated: false,
+            });
+        }
+    }
+    rows
+}
