@@ -127,6 +127,7 @@ fn design(scenario: &Scenario) -> Design {
         axes: scenario.axes.iter().map(|axis| axis.name.clone()).collect(),
         methods: scenario.method_names(),
         draws: scenario.draws.clone(),
+        predicts: scenario.predictions.is_some(),
         cells: scenario.cells.iter().map(bare).collect(),
         words: scenario.words.clone(),
     }

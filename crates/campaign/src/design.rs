@@ -16,6 +16,9 @@ pub struct Design {
     pub methods: Vec<MethodName>,
     /// Keys that are drawn anew in every trial.
     pub draws: Vec<String>,
+    /// Whether manoeuvres are predicted from every answer.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub predicts: bool,
     /// The cells, in their order.
     pub cells: Vec<CellFacts>,
     /// What is said about the study. It may change when the rows do not, so it is kept in the manifest alone.

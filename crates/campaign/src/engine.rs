@@ -11,18 +11,19 @@ use ::trace::{Analysis, TraceError};
 use identify::replay::replay;
 use identify::{Estimate, Identifier, StopReason, output_error};
 use nalgebra::Matrix2;
+use predict::KnownShip;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use simulate::recording::RudderColumn;
 use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simulated, Simulation, StreamKey};
 use trial::{Quantity, Trial};
 
-use crate::bound;
 use crate::design::CellFacts;
 use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
+use crate::{bound, foretell, known};
 use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
 
 /// Rows of one trial, and what they took.
@@ -190,6 +191,13 @@ impl<'a> Bench<'a> {
             bound: yardstick.bound.map(|(bound, _)| bound),
             ..empty(task, drawn)
         };
+        let predictions = self.scenario.predictions.as_ref();
+        let deeds = predictions.map(|asked| foretell::deeds(asked, &specimen.specification.simulation, &key));
+        let predicted = |known: &dyn Fn() -> Option<KnownShip>| {
+            let (asked, deeds) = predictions.zip(deeds.as_ref())?;
+            Some(known().map(|known| foretell::foretold(asked, known, deeds)).unwrap_or_default())
+        };
+        let trials = std::slice::from_ref(&simulated.trial);
         let mut rows = Vec::with_capacity(cell.methods.len());
         let mut methods = Vec::with_capacity(cell.methods.len());
         for (index, method) in cell.methods.iter().enumerate() {
@@ -202,17 +210,23 @@ impl<'a> Bench<'a> {
                     methods.push(start.elapsed());
                     match answer {
                         Err(error) => Row { failure: Some(error.kind().into()), ..blank },
-                        Ok(estimate) => answered(blank, &simulated.trial, validation, &estimate),
+                        Ok(estimate) => Row {
+                            predicted: predicted(&|| known::of_estimate(&estimate, trials)),
+                            ..answered(blank, &simulated.trial, validation, &estimate)
+                        },
                     }
                 }
                 Procedure::Trace(settings) => {
-                    let answer = ::trace::trace(std::slice::from_ref(&simulated.trial), &[], settings);
+                    let answer = ::trace::trace(trials, &[], settings);
                     methods.push(start.elapsed());
                     match answer {
                         Err(error) => Row { failure: Some(reason(&error).into()), ..blank },
                         Ok(analysis) => {
                             let missing = &specimen.specification.missing;
-                            traced(blank, validation, &analysis, missing, yardstick.expected)
+                            Row {
+                                predicted: predicted(&|| Some(known::of_analysis(&analysis, trials))),
+                                ..traced(blank, validation, &analysis, missing, yardstick.expected)
+                            }
                         }
                     }
                 }

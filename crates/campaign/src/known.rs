@@ -54,7 +54,7 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
         seen: seen(trials, replays.iter().map(|replay| replay.yaw_rate.as_slice())),
         length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
-        motion: motion(trials),
+        motion: None,
     })
 }
 
@@ -80,12 +80,12 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
         seen: seen(trials, analysis.identification.iter().map(|judged| judged.after.replay.yaw_rate.as_slice())),
         length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
-        motion: motion(trials),
+        motion: None,
     }
 }
 
 /// Speed and drift, where the length is known and the records have speed or position that tell them.
-fn motion(trials: &[Trial]) -> Option<motion::Planar> {
+pub fn motion(trials: &[Trial]) -> Option<motion::Planar> {
     let length = trials.iter().find_map(|trial| Some(trial.particulars()?.length))?;
     let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
     let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());

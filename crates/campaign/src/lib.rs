@@ -24,6 +24,7 @@ pub mod engine;
 mod extremes;
 pub mod files;
 pub mod folder;
+mod foretell;
 pub mod known;
 pub mod manifest;
 pub mod merge;

@@ -101,7 +101,7 @@ impl Kind {
     }
 
     /// What the helm does, for a ship with this time, s; `None` for a spiral, which is a curve of steady turns.
-    pub(crate) fn manoeuvre(&self, timescale: f64) -> Option<Manoeuvre> {
+    pub fn manoeuvre(&self, timescale: f64) -> Option<Manoeuvre> {
         Some(match *self {
             Self::ZigZag { rudder, heading, first } => {
                 Manoeuvre::ZigZag(ZigZag { rudder, heading, first, end: ZigZagEnd::Executes(EXECUTES) })

@@ -7,7 +7,7 @@ use ship::Regressor;
 use simulate::helm::Execute;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
-use simulate::{Manoeuvre, SimulateError, Simulation, SteeringGear, Vessel};
+use simulate::{Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
 
 use crate::mixture::Drawn;
 
@@ -51,6 +51,11 @@ pub struct Way {
     pub sway: Vec<f64>,
     /// North and east, m, 0 at the first execute; north is the course of the approach.
     pub track: Vec<[f64; 2]>,
+}
+
+/// Time between rows, s.
+fn period(timescale: f64) -> f64 {
+    (timescale / ROWS).clamp(2e-3, 900.0)
 }
 
 /// What is steered: with speed and drift where effects of the response ask for them.
@@ -102,22 +107,32 @@ impl Passage {
         };
         simulation.approach.yaw_rate = ship.yaw_rate;
         simulation.disturbances = ship.disturbances;
-        simulation.recording.period = (timescale / ROWS).clamp(2e-3, 900.0);
-        simulation.longest_wait = LONGEST_WAIT * timescale;
         if !ship.response.model().effects().is_empty() {
-            let step = (ship.response.shortest_time() / STEPS).min(simulation.recording.period);
+            let step = (ship.response.shortest_time() / STEPS).min(period(timescale));
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
-        let truth = simulation.run(&ship.key)?.truth;
-        let truth = Arc::unwrap_or_clone(truth);
-        Ok(Self {
-            way: ship.planar.as_ref().map(|planar| way(planar, &truth, [planar.approach_speed, 0.0])),
+        let (mut passage, truth) = Self::of(simulation, &ship.key, timescale)?;
+        passage.way = ship.planar.as_ref().map(|planar| way(planar, &truth, [planar.approach_speed, 0.0]));
+        Ok(passage)
+    }
+
+    /// What any simulated ship does, with the truth behind it; how often and how long it is recorded follows from
+    /// `timescale`, a time of the ship, s.
+    ///
+    /// Fails as the simulation does.
+    pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<(Self, Truth), SimulateError> {
+        simulation.recording = Recording { period: period(timescale), ..Recording::default() };
+        simulation.longest_wait = LONGEST_WAIT * timescale;
+        let truth = Arc::unwrap_or_clone(simulation.run(key)?.truth);
+        let passage = Self {
+            way: None,
             period: simulation.recording.period,
-            heading: truth.heading,
-            yaw_rate: truth.yaw_rate,
-            rudder: truth.rudder,
-            executes: truth.executes,
-        })
+            heading: truth.heading.clone(),
+            yaw_rate: truth.yaw_rate.clone(),
+            rudder: truth.rudder.clone(),
+            executes: truth.executes.clone(),
+        };
+        Ok((passage, truth))
     }
 
     /// The same on another course: every heading is larger by `angle` (rad).

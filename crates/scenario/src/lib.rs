@@ -6,7 +6,7 @@
 //! |---|---|
 //! | what a file says, and how it is read | `wire`, `reader`, `gaps`, [`part`], [`words`] |
 //! | what is wrong with it, and where | `fault`, [`problem`], `locate`, [`failure`] |
-//! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`] |
+//! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
 //! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
@@ -24,6 +24,7 @@ mod locate;
 pub mod method;
 pub mod name;
 pub mod part;
+pub mod predictions;
 pub mod problem;
 mod reader;
 mod resolve;
@@ -39,6 +40,7 @@ pub use cell::{Cell, Refusal, Specimen};
 pub use effect::keys as effect_keys;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
+pub use predictions::Predictions;
 pub use scenario::{Published, Scenario};
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};

@@ -18,7 +18,7 @@ impl Part {
     pub fn of(key: &str) -> Self {
         match key {
             "question" | "analysis" | "finding" | "published" | "output" => Self::Prose,
-            "seed" | "replicates" | "stop" | "sweep" => Self::Study,
+            "seed" | "replicates" | "stop" | "sweep" | "predict" => Self::Study,
             "identifier" | "draw" => Self::Cell,
             _ => Self::Trial,
         }

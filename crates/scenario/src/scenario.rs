@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::identity::{self, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::Part;
+use crate::predictions::Predictions;
 use crate::problem::{KeyPath, Problem, of_text};
 use crate::stop::StopRule;
 use crate::sweep::{self, Axis};
@@ -53,6 +54,8 @@ pub struct Scenario {
     pub draws: Vec<String>,
     /// When a cell has had enough trials.
     pub stop: Option<StopRule>,
+    /// What every answer has to predict.
+    pub predictions: Option<Predictions>,
     /// SHA-256 of all that decides the rows, the seed of the command line apart, and of the files it reads.
     pub design_sha256: String,
     /// The file as it was read.
@@ -113,6 +116,7 @@ impl Scenario {
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
         resolve::specification(&wire, &folder).map_err(&fail)?;
         let methods = methods(&wire.identifier).map_err(&fail)?;
+        let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose().map_err(&fail)?;
         let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose().map_err(&fail)?;
         let axes: Vec<Axis> = wire
             .sweep
@@ -150,6 +154,7 @@ impl Scenario {
                 detail: wire.output.detail,
             },
             stop,
+            predictions,
             design_sha256: identity::sha256_of(&identity::design_of(&document), &folder)?,
             sha256: hex(&Sha256::digest(text.as_bytes())),
             text,

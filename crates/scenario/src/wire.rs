@@ -13,6 +13,7 @@ use simulate::settings::{
 
 use crate::draw::DrawWire;
 use crate::method::IdentifierWire;
+use crate::predictions::PredictWire;
 use crate::stop::StopWire;
 use crate::sweep::AxisWire;
 
@@ -47,6 +48,7 @@ pub struct ScenarioWire {
     #[serde(default)]
     pub disturbance: DisturbanceSettings,
     pub validation: Option<ValidationWire>,
+    pub predict: Option<PredictWire>,
     pub identifier: Vec<IdentifierWire>,
     #[serde(default)]
     pub draw: Vec<DrawWire>,

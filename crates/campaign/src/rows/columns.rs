@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use ::trace::analysis::Verdict;
 use identify::StopReason;
 
-use super::row::{Bound, NamedEffect, Row, TraceAnswer};
+use super::row::{Bound, Foretold, NamedEffect, Row, TraceAnswer};
 
 /// A column that every file of rows has.
 pub struct Column {
@@ -246,6 +246,31 @@ fn set_probabilities(row: &mut Row, text: &str) -> Result<(), String> {
     Ok(())
 }
 
+/// Between the numbers of a prediction.
+const BETWEEN_ENDS: &str = "|";
+
+fn predicted(row: &Row) -> Option<Cow<'_, str>> {
+    let one = |figure: &Foretold| {
+        let [low, high] = figure.ci90;
+        let numbers = [figure.truth, figure.median, low, high].map(|number| number.to_string());
+        format!("{}{BETWEEN_NUMBERS}{}", figure.name, numbers.join(BETWEEN_ENDS))
+    };
+    let all: Vec<String> = row.predicted.as_ref()?.iter().map(one).collect();
+    Some(all.join(BETWEEN_EFFECTS).into())
+}
+
+fn set_predicted(row: &mut Row, text: &str) -> Result<(), String> {
+    let one = |part: &str| {
+        let (name, numbers) = part.split_once(BETWEEN_NUMBERS)?;
+        let numbers: Vec<f64> = numbers.split(BETWEEN_ENDS).map(str::parse).collect::<Result<_, _>>().ok()?;
+        let &[truth, median, low, high] = numbers.as_slice() else { return None };
+        Some(Foretold { name: name.into(), truth, median, ci90: [low, high] })
+    };
+    let all: Option<Box<[Foretold]>> = parts(text, BETWEEN_EFFECTS).map(one).collect();
+    row.predicted = Some(all.ok_or_else(|| format!("{text:?} are no predictions"))?);
+    Ok(())
+}
+
 fn set_verdict(row: &mut Row, word: &str) -> Result<(), String> {
     let known = Verdict::ALL.into_iter().find(|verdict| verdict.as_str() == word);
     answer(row).verdict = known.ok_or_else(|| format!("no trace ends with {word:?}"))?;
@@ -262,6 +287,14 @@ pub const OWN_COLUMNS: [Column; 2] = [
     ),
     number("own_T_s", "T of that base", |row| row.own_t_s, |row, value| row.own_t_s = Some(value)),
 ];
+
+/// Columns that follow in a study that predicts manoeuvres.
+pub const PREDICT_COLUMNS: [Column; 1] = [Column {
+    name: "predicted",
+    meaning: "figures of manoeuvres predicted from the answer, joined by +: name=truth|median|lower 90 %|upper 90 %; empty \
+              where the answer has no covariance",
+    access: Access::Text(predicted, set_predicted),
+}];
 
 /// Columns that follow in a study with a trace.
 pub const TRACE_COLUMNS: [Column; 8] = [

@@ -8,7 +8,7 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 use scenario::TRACE;
 
-use super::columns::{Access, COLUMNS, Column, OWN_COLUMNS, TRACE_COLUMNS};
+use super::columns::{Access, COLUMNS, Column, OWN_COLUMNS, PREDICT_COLUMNS, TRACE_COLUMNS};
 use super::row::Row;
 use crate::design::Design;
 
@@ -29,6 +29,8 @@ pub struct Layout {
     owns: bool,
     /// Whether one of the methods is a trace.
     traces: bool,
+    /// Whether manoeuvres are predicted.
+    predicts: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -65,13 +67,15 @@ impl Layout {
             draws: design.draws.clone(),
             owns: design.cells.iter().any(|cell| cell.has_own_indices),
             traces: design.methods.iter().any(|method| method.id == TRACE),
+            predicts: design.predicts,
         }
     }
 
     fn fixed(&self) -> impl Iterator<Item = &'static Column> + use<> {
         let own: &'static [Column] = if self.owns { &OWN_COLUMNS } else { &[] };
         let traces: &'static [Column] = if self.traces { &TRACE_COLUMNS } else { &[] };
-        COLUMNS.iter().chain(own).chain(traces)
+        let predicts: &'static [Column] = if self.predicts { &PREDICT_COLUMNS } else { &[] };
+        COLUMNS.iter().chain(own).chain(traces).chain(predicts)
     }
 
     /// Names of all columns, in order.

@@ -13,8 +13,8 @@ mod sequence;
 #[cfg(test)]
 mod tests;
 
-pub use columns::{COLUMNS, Column, OWN_COLUMNS, TRACE_COLUMNS};
+pub use columns::{COLUMNS, Column, OWN_COLUMNS, PREDICT_COLUMNS, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
 pub use layout::Layout;
-pub use row::{Bound, NamedEffect, Row, TraceAnswer};
+pub use row::{Bound, Foretold, NamedEffect, Row, TraceAnswer};
 pub use sequence::Sequence;

@@ -31,6 +31,26 @@ impl NamedEffect {
     }
 }
 
+/// A figure of a manoeuvre that was predicted from an answer, beside what the same ship does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Foretold {
+    /// Manoeuvre and figure, with the unit: `zig-zag 20/20 first_overshoot_deg`.
+    pub name: Box<str>,
+    /// What the ship does.
+    pub truth: f64,
+    /// Median of the prediction.
+    pub median: f64,
+    /// Its 90 % interval.
+    pub ci90: [f64; 2],
+}
+
+impl Foretold {
+    /// Whether the interval holds the truth.
+    pub fn holds(&self) -> bool {
+        (self.ci90[0]..=self.ci90[1]).contains(&self.truth)
+    }
+}
+
 /// What a trace said of one trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceAnswer {
@@ -94,6 +114,9 @@ pub struct Row {
     pub stop: Option<&'static str>,
     /// What a trace said.
     pub traced: Option<Box<TraceAnswer>>,
+    /// Figures of manoeuvres that were predicted from the answer, empty where it has no covariance; `None` where nothing
+    /// is predicted.
+    pub predicted: Option<Box<[Foretold]>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,
 }

@@ -21,6 +21,7 @@ fn design() -> Design {
     Design {
         axes: vec!["noise [°]".into(), "trial".into()],
         methods: vec![method("output-error"), method("srivc")],
+        predicts: false,
         draws: vec!["ship.first-order.K-per-s".into()],
         cells: vec![cell(0.1, "10/10"), cell(0.5, "10/10")],
         words: Words::default(),

@@ -5,11 +5,13 @@
 //! does not grow with the number of replicates.
 
 mod detail;
+mod predictions;
 mod record;
 mod tally;
 mod tracing;
 
 pub use detail::{CellDetail, Cloud, MethodDetail, Violin};
+pub use predictions::PredictionSummary;
 pub use record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Record, Summary};
 pub use tally::{Tally, summarise};
 pub use tracing::{CLEAR, PROMISED, Promised, TraceSummary, effect_ids};

@@ -3,6 +3,7 @@
 use crate::statistics::Statistic;
 
 use super::detail::{CellDetail, MethodDetail};
+use super::predictions::PredictionSummary;
 use super::tracing::TraceSummary;
 
 /// Errors of one index over trials, relative to the truth. All but shares are in per cent.
@@ -125,6 +126,8 @@ pub struct Summary {
     pub details: Vec<CellDetail>,
     /// What traces said, in the cells that have them.
     pub tracing: Vec<TraceSummary>,
+    /// Whether intervals of predictions hold, in studies that predict manoeuvres.
+    pub predictions: Vec<PredictionSummary>,
 }
 
 impl Summary {

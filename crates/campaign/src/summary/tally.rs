@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::detail::{CellDetail, MOST_PAIRS, MethodDetail};
+use super::predictions::PredictionTally;
 use super::record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Record, Summary};
 use super::tracing::TraceTally;
 use crate::design::Design;
@@ -31,6 +32,7 @@ pub struct Tally {
     compared: Vec<PairSummary>,
     details: Vec<CellDetail>,
     tracing: TraceTally,
+    predictions: PredictionTally,
 }
 
 /// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough
@@ -65,6 +67,7 @@ impl Tally {
             compared: Vec::new(),
             details: Vec::new(),
             tracing: TraceTally::new(design),
+            predictions: PredictionTally::default(),
         }
     }
 
@@ -81,6 +84,7 @@ impl Tally {
         }
         let errors = [row.k_error(), row.t_error(), row.k_over_t_error()].map(|error| error.map(|error| 100.0 * error));
         self.tracing.add(row);
+        self.predictions.add(row);
         self.trial.errors[row.method] = [errors[0], errors[1]];
         let detailed = self.detailed.contains(&cell);
         self.present[row.method].add(row, row.replicate, &errors, detailed);
@@ -149,6 +153,7 @@ impl Tally {
             reference: self.reference,
             details: self.details,
             tracing: self.tracing.finish(),
+            predictions: self.predictions.finish(),
         }
     }
 }

@@ -17,6 +17,7 @@ fn design(methods: &[&str], cells: usize) -> Design {
     Design {
         axes: vec!["case".into()],
         methods: methods.iter().map(|&label| MethodName { label: label.into(), id: label.into() }).collect(),
+        predicts: false,
         draws: Vec::new(),
         cells: (0..cells).map(cell).collect(),
         words: Words { detail: vec!["0".into()], ..Words::default() },

@@ -1,10 +1,12 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
+use predict::KnownShip;
 use rayon::prelude::*;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
@@ -58,12 +60,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         zigzag: entries_of_trials[0].zigzag.clone(),
         trials: entries_of_trials,
         methods: entries,
-        ships: answers
-            .iter()
-            .filter_map(|(entry, estimate)| {
-                Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &trials)?))
-            })
-            .collect(),
+        ships: with_motion(&answers, &trials),
     };
     let path = folder.path().join(FIT);
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
@@ -106,6 +103,16 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         screen::warn(&format!("warning: {warning}"));
     }
     Ok(())
+}
+
+/// What every method with a covariance knows of the ship; speed and drift are the same for all.
+fn with_motion(answers: &[(MethodEntry, Option<Estimate>)], trials: &[Trial]) -> BTreeMap<String, KnownShip> {
+    let motion = known::motion(trials);
+    let one = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
+        let known = known::of_estimate(estimate.as_ref()?, trials)?;
+        Some((entry.method.clone(), KnownShip { motion: motion.clone(), ..known }))
+    };
+    answers.iter().filter_map(one).collect()
 }
 
 fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier>>, Failure> {

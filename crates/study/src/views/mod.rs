@@ -1,6 +1,7 @@
 //! What people and programs see: tables, figures, pages and JSON. Views read what was computed and compute nothing.
 
 pub mod charts;
+pub mod coverage_table;
 pub mod drawings;
 pub mod fit_figures;
 pub mod fit_file;

@@ -12,7 +12,7 @@ use scenario::failure::{Failure, OnPath};
 
 use super::drawings::{self, write_all};
 use super::study_page::{on_screen, page};
-use super::{tables, tracing_table};
+use super::{coverage_table, tables, tracing_table};
 use crate::options::{Common, Format};
 use crate::screen;
 
@@ -35,6 +35,9 @@ pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &C
             tracing_table::table(lines, &summary, design, true)
         })?;
         folder.write("reliability.csv", tracing_table::reliability(&drawings::first_trace(&summary)).to_csv())?;
+    }
+    if !summary.predictions.is_empty() {
+        write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;
     }
     let brief = is_readable(design).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {

@@ -7,7 +7,7 @@ use campaign::summary::Summary;
 use report::{Table, number};
 
 use super::drawings::Drawing;
-use super::{tables, tracing_table};
+use super::{coverage_table, tables, tracing_table};
 
 /// Cells whose lines go on the screen; more are in the files.
 const SHOWN_CELLS: usize = 12;
@@ -28,6 +28,12 @@ pub fn on_screen(stored: &Stored, summary: &Summary) -> String {
     }
     if !summary.tracing.is_empty() {
         text += &format!("\nwhat traces named\n{}", tracing_table::kinds(&summary.tracing, design).to_text());
+    }
+    if !summary.predictions.is_empty() {
+        text += &format!(
+            "\nwhat 90 % intervals of predictions hold\n{}",
+            coverage_table::pooled(&summary.predictions, design).to_text()
+        );
     }
     let failures = tables::failures(summary, design);
     failures.iter().take(SHOWN_CELLS).for_each(|failure| text += &format!("\n{failure}"));
@@ -70,6 +76,18 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings:
         ));
         drawings.iter().filter(|drawing| drawing.of_traces).for_each(|drawing| line(&figure(drawing)));
         line(&tracing_table::table(&summary.tracing, summary, design, false).to_markdown());
+    }
+    if !summary.predictions.is_empty() {
+        line(&format!(
+            "## What intervals of predictions hold\n\n{}",
+            coverage_table::pooled(&summary.predictions, design).to_markdown()
+        ));
+        line(
+            "Manoeuvres are predicted from every answer, and the same ship makes them in weather of the same kind. *inside \
+             90 %*: the mean over the figures of the share of trials whose 90 % interval holds what the ship does, beside \
+             the lowest and the highest of these shares. Figures that ship or prediction do not have are left out. \
+             `predictions.csv` has every figure with its interval (Wilson, 95 %), bias, rms error and width.\n",
+        );
     }
     line("## Over all trials\n");
     drawings

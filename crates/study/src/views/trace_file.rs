@@ -340,7 +340,10 @@ impl TraceFile {
                 .filter(|(_, times)| !times.is_empty())
                 .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
                 .collect(),
-            ship: campaign::known::of_analysis(analysis, report.trials),
+            ship: KnownShip {
+                motion: campaign::known::motion(report.trials),
+                ..campaign::known::of_analysis(analysis, report.trials)
+            },
         }
     }
 }

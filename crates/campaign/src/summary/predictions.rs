@@ -1,0 +1,111 @@
+//! Whether the intervals of predictions hold, figure by figure.
+
+use crate::rows::Row;
+use crate::statistics::{Statistic, share};
+
+/// One figure of a manoeuvre in one cell, predicted from the answers of one method.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PredictionSummary {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Index of the method.
+    pub method: usize,
+    /// Manoeuvre and figure, with the unit.
+    pub name: Box<str>,
+    /// Trials with the figure.
+    pub trials: u64,
+    /// Trials whose 90 % interval holds what the ship does.
+    pub inside: u64,
+    /// Sums of the median less what the ship does, of its square, of the width of the interval, and of what the ship
+    /// does.
+    sums: [f64; 4],
+}
+
+impl PredictionSummary {
+    /// Share of the trials whose interval holds what the ship does.
+    pub fn coverage(&self) -> Option<Statistic> {
+        share(self.inside, self.trials)
+    }
+
+    fn mean(&self, place: usize) -> f64 {
+        self.sums[place] / self.trials as f64
+    }
+
+    /// Mean of the median less what the ship does.
+    pub fn bias(&self) -> f64 {
+        self.mean(0)
+    }
+
+    /// Root mean square of that.
+    pub fn rms(&self) -> f64 {
+        self.mean(1).sqrt()
+    }
+
+    /// Mean width of the 90 % interval.
+    pub fn width(&self) -> f64 {
+        self.mean(2)
+    }
+
+    /// Mean of what the ships do.
+    pub fn truth(&self) -> f64 {
+        self.mean(3)
+    }
+}
+
+/// Counts over the rows.
+#[derive(Debug, Default)]
+pub struct PredictionTally(Vec<PredictionSummary>);
+
+impl PredictionTally {
+    /// Takes note of a row, in the order of rows.
+    pub fn add(&mut self, row: &Row) {
+        let Some(predicted) = &row.predicted else { return };
+        let (cell, method) = (row.cell as usize, row.method);
+        let of_cell = self.0.iter().rposition(|line| line.cell != cell).map_or(0, |before| before + 1);
+        for figure in predicted {
+            let is_own = |line: &PredictionSummary| line.method == method && line.name == figure.name;
+            let at = match self.0[of_cell..].iter().position(is_own) {
+                Some(own) => of_cell + own,
+                None => {
+                    let name = figure.name.clone();
+                    self.0.push(PredictionSummary { cell, method, name, ..PredictionSummary::default() });
+                    self.0.len() - 1
+                }
+            };
+            let line = &mut self.0[at];
+            line.trials += 1;
+            line.inside += u64::from(figure.holds());
+            let error = figure.median - figure.truth;
+            let added = [error, error * error, figure.ci90[1] - figure.ci90[0], figure.truth];
+            line.sums.iter_mut().zip(added).for_each(|(sum, value)| *sum += value);
+        }
+    }
+
+    /// All cells, methods and figures.
+    pub fn finish(self) -> Vec<PredictionSummary> {
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rows::Foretold;
+
+    #[test]
+    fn intervals_are_counted_where_they_hold() {
+        let row = |truth: f64| {
+            let figure = Foretold { name: "zig-zag 10/10 period_s".into(), truth, median: 100.0, ci90: [98.0, 103.0] };
+            Row { predicted: Some([figure].into()), ..Row::default() }
+        };
+        let mut tally = PredictionTally::default();
+        [99.0, 103.0, 97.0, 101.0].into_iter().for_each(|truth| tally.add(&row(truth)));
+        tally.add(&Row { cell: 1, ..row(99.0) });
+        tally.add(&Row::default());
+        let [first, second] = tally.finish().try_into().expect("two cells");
+        assert_eq!((first.trials, first.inside, second.trials), (4, 3, 1));
+        assert_eq!((first.bias(), first.width(), first.truth()), (0.0, 5.0, 100.0));
+        assert!((first.rms() - 5f64.sqrt()).abs() < 1e-12);
+        assert_eq!(first.coverage().expect("trials").value, 0.75);
+    }
+}

@@ -1,0 +1,93 @@
+//! What every answer of a scenario has to predict: `[predict]`.
+
+use predict::Kind;
+use serde::{Deserialize, Serialize};
+
+use crate::problem::{KeyPath, Problem};
+
+/// Manoeuvres that are predicted from every answer and held against the same ship making them.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct PredictWire {
+    pub manoeuvres: Vec<String>,
+    /// Ships drawn for every prediction.
+    #[serde(default = "draws")]
+    pub draws: u64,
+}
+
+fn draws() -> u64 {
+    200
+}
+
+/// Numbers of draws that say something and end.
+const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
+
+/// Manoeuvres that are predicted, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Predictions {
+    /// The manoeuvres.
+    pub kinds: Vec<Kind>,
+    /// Ships drawn for every prediction.
+    pub draws: usize,
+}
+
+impl PredictWire {
+    /// Checks every value; fails with the first one that makes no sense.
+    pub(crate) fn resolve(&self) -> Result<Predictions, Problem> {
+        let key = KeyPath::dotted("predict");
+        if !DRAWS.contains(&self.draws) {
+            let found = format!("`predict.draws` is {}", self.draws);
+            return Err(Problem::value(
+                key.child("draws"),
+                found,
+                "expected 50 to 10000",
+                "200 tell an interval of 90 %",
+            ));
+        }
+        if self.manoeuvres.is_empty() {
+            let found = "`predict.manoeuvres` is empty";
+            let expected = "expected at least one, such as \"zig-zag:20/20\"";
+            return Err(Problem::value(key.child("manoeuvres"), found, expected, "name one, or leave [predict] out"));
+        }
+        let mut kinds: Vec<Kind> = Vec::with_capacity(self.manoeuvres.len());
+        for text in &self.manoeuvres {
+            let refused = |expected: &str| {
+                let found = format!("`predict.manoeuvres` holds {text:?}");
+                Problem::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
+            };
+            let kind: Kind = text.parse().map_err(|error: predict::PredictError| refused(&error.to_string()))?;
+            if let Kind::Spiral { .. } = kind {
+                return Err(refused("expected a manoeuvre that is steered; a spiral is a curve"));
+            }
+            if kinds.contains(&kind) {
+                return Err(refused("expected every manoeuvre once"));
+            }
+            kinds.push(kind);
+        }
+        Ok(Predictions { kinds, draws: self.draws as usize })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn manoeuvres_are_read_and_nonsense_is_refused() {
+        let wire = |manoeuvres: &[&str], draws: u64| PredictWire {
+            manoeuvres: manoeuvres.iter().map(|&text| text.to_owned()).collect(),
+            draws,
+        };
+        let resolved = wire(&["zig-zag:10/10", "turning-circle:35"], 200).resolve().expect("known");
+        assert_eq!((resolved.kinds.len(), resolved.draws), (2, 200));
+        for (wrong, draws) in [
+            (&["zig-zag"][..], 200),
+            (&[], 200),
+            (&["spiral:15"], 200),
+            (&["pull-out:20", "pull-out:20"], 200),
+            (&["williamson"], 1),
+        ] {
+            assert!(wire(wrong, draws).resolve().is_err(), "{wrong:?}");
+        }
+    }
+}

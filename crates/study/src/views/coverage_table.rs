@@ -1,0 +1,61 @@
+//! Tables of predictions in a study: whether intervals hold, figure by figure.
+
+use report::number::{fixed, optional, significant};
+use report::{Column, Table};
+
+use super::predict_tables::words;
+use super::tables::head_of_cells;
+use campaign::design::Design;
+use campaign::statistics::share;
+use campaign::summary::PredictionSummary;
+
+/// Every figure of every cell and method.
+pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
+    let mut columns = head_of_cells(design);
+    columns.extend([Column::left("method"), Column::left("figure"), Column::left("unit"), Column::right("trials")]);
+    columns.extend(["inside 90 %", "lower 95", "upper 95"].map(|name| Column::decimal(name).unit("%")));
+    columns.extend(["of the ship", "bias", "rms error", "width"].map(|name| Column::decimal(name.to_owned())));
+    let mut table = Table::new(columns);
+    for line in lines {
+        let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
+        let (name, unit) = words(&line.name);
+        cells.extend([design.methods[line.method].label.clone(), name, unit.to_owned(), line.trials.to_string()]);
+        cells.extend(percent(line.inside, line.trials));
+        cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
+        table.push(cells);
+    }
+    table
+}
+
+/// All figures of a cell and a method together: the mean of their shares, and the lowest and the highest of them.
+pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
+    let mut columns = head_of_cells(design);
+    columns.extend([Column::left("method"), Column::right("figures"), Column::right("trials")]);
+    columns.extend(["inside 90 %", "lowest", "highest"].map(|name| Column::decimal(name).unit("%")));
+    columns.extend([Column::left("lowest of"), Column::left("highest of")]);
+    let mut table = Table::new(columns);
+    for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
+        let [first, ..] = group else { continue };
+        let mut cells: Vec<String> = design.cells[first.cell].labels.clone();
+        cells.push(design.methods[first.method].label.clone());
+        cells.push(group.len().to_string());
+        cells.push(group.iter().map(|line| line.trials).max().unwrap_or(0).to_string());
+        let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
+        let mut sorted: Vec<&PredictionSummary> = group.iter().collect();
+        sorted.sort_by(|one, other| of(one).total_cmp(&of(other)));
+        let ends = [sorted[0], sorted[sorted.len() - 1]];
+        let mean = group.iter().map(of).sum::<f64>() / group.len() as f64;
+        cells.extend([mean, of(ends[0]), of(ends[1])].map(|value| fixed(value, 1)));
+        cells.extend(ends.map(|line| words(&line.name).0));
+        table.push(cells);
+    }
+    table
+}
+
+/// A share with its 95 % interval.
+fn percent(inside: u64, trials: u64) -> [String; 3] {
+    let share = share(inside, trials);
+    let ends = share.and_then(|share| share.ci95);
+    [share.map(|share| share.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
+        .map(|value| optional(value.map(|value| 100.0 * value), 1))
+}
