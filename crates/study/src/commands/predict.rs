@@ -3,10 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use predict::{Kind, KnownShip, Mixture, PredictError, Prediction, imo};
+use predict::{KnownShip, Mixture, PredictError, Prediction, imo, kind};
 use serde_json::Value;
 use ship::Particulars;
 use ship::angle::KNOT;
+use trial::file::{self, Kind};
 
 use crate::options::{Common, Format, PredictRequest, ReadingOptions};
 use crate::records::{file_of, read_others};
@@ -26,6 +27,9 @@ const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
 
 /// Difference of two lengths, as a share, below which they are of one ship.
 const SAME_LENGTH: f64 = 1e-3;
+
+/// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
+const MODEL: Kind = Kind { name: "a model", largest: 1 << 26 };
 
 /// A file with what is known of the ship.
 struct Model {
@@ -52,7 +56,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     };
     let mixture = scaled(asked_scale(&request.reading)).map_err(refused)?;
     let kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty()) {
-        ([], true) => Kind::of_imo(),
+        ([], true) => kind::Kind::of_imo(),
         (asked, _) => asked.to_vec(),
     };
     let draws = request.draws as usize;
@@ -147,23 +151,27 @@ fn default_folder(model: &Path) -> PathBuf {
 }
 
 fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Model, Failure> {
-    let file = path.display().to_string();
+    let shown = path.display().to_string();
     name::of_file(path)?;
-    let text = std::fs::read_to_string(path).on("read", path)?;
+    let text = file::read_text(path, MODEL).map_err(|error| {
+        Failure::input(format!("{shown}: {error}; expected the fit.json or trace.json of this program"))
+    })?;
     let value: Value = serde_json::from_str(&text).map_err(|error| {
         Failure::input(format!(
-            "{file}: this is no JSON ({error}); expected the fit.json or trace.json of this program"
+            "{shown}: this is no JSON ({error}); expected the fit.json or trace.json of this program"
         ))
     })?;
     let old = |what: &str| {
-        Failure::input(format!("{file}: {what}; it was written by an older program, make it again with `study {what}`"))
+        Failure::input(format!(
+            "{shown}: {what}; it was written by an older program, make it again with `study {what}`"
+        ))
     };
     let known = match value["schema"].as_str() {
         Some(schema) if schema.starts_with("fit/") => {
             let ships = value.get("ships").and_then(Value::as_object).ok_or_else(|| old("fit"))?;
-            let id = method(&file, ships, request.method.as_deref())?;
+            let id = method(&shown, ships, request.method.as_deref())?;
             if request.method.is_none() {
-                warnings.push(format!("{file}: the answer of {id} is used; --method names another"));
+                warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
             }
             ships[&id].clone()
         }
@@ -171,14 +179,14 @@ fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Re
         found => {
             let found = found.map_or_else(|| String::from("no `schema`"), |schema| format!("schema = \"{schema}\""));
             return Err(Failure::input(format!(
-                "{file}: {found}; expected the fit.json or trace.json of this program"
+                "{shown}: {found}; expected the fit.json or trace.json of this program"
             )));
         }
     };
     let known: KnownShip = serde_json::from_value(known)
-        .map_err(|error| Failure::input(format!("{file}: what is known of the ship cannot be read: {error}")))?;
+        .map_err(|error| Failure::input(format!("{shown}: what is known of the ship cannot be read: {error}")))?;
     let known = if request.calm { known.in_calm() } else { Ok(known) };
-    Ok(Model { known: known.map_err(|error| Failure::input(format!("{file}: {error}")))?, file })
+    Ok(Model { known: known.map_err(|error| Failure::input(format!("{shown}: {error}")))?, file: shown })
 }
 
 /// The method whose answer is used.
