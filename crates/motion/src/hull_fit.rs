@@ -150,13 +150,13 @@ impl Windows<'_> {
         let free: Vec<usize> = free(self, at, &gradient).into_iter().filter(|i| *i >= COEFFICIENTS).collect();
         let symbol = |i: usize| YAW_SYMBOLS[free[i] - COEFFICIENTS];
         let scale: Vec<f64> = free.iter().map(|&i| normal[(i, i)].sqrt()).collect();
-        if let Some(open) = scale.iter().position(|scale| !(*scale > 0.0)) {
+        if let Some(open) = scale.iter().position(|scale| scale.is_nan() || *scale <= 0.0) {
             return Err(MotionError::Undetermined { symbol: symbol(open) });
         }
         let unit = DMatrix::from_fn(free.len(), free.len(), |i, j| normal[(free[i], free[j])] / (scale[i] * scale[j]));
         let eigen = unit.symmetric_eigen();
         let (least, value) = eigen.eigenvalues.argmin();
-        if !(value >= OPEN) {
+        if value.is_nan() || value < OPEN {
             let weighs = eigen.eigenvectors.column(least).iamax();
             return Err(MotionError::Undetermined { symbol: symbol(weighs) });
         }
@@ -164,8 +164,8 @@ impl Windows<'_> {
     }
 }
 
-/// (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ over the fits to all records but one; `None` with too few records or where one of the
-/// fits has no answer.
+/// (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ over the fits to all records but one; `None` with too few records or where one of
+/// the fits has no answer.
 fn jackknife(trials: &[Trial], length: f64, start: Yaw) -> Option<DMatrix<f64>> {
     let count = trials.len();
     if count < JACKKNIFE {

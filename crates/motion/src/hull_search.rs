@@ -17,6 +17,7 @@ pub(crate) struct Windows<'a> {
 }
 
 impl Windows<'_> {
+    /// All windows: record and number of the window.
     pub fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.courses.iter().enumerate().flat_map(|(index, course)| (0..course.windows.len()).map(move |w| (index, w)))
     }
@@ -34,9 +35,9 @@ impl Windows<'_> {
         let outputs = if self.driven { 2 } else { OUTPUTS };
         let mut residuals = Vec::with_capacity(found.len() * outputs);
         for (row, state) in (first..=last).zip(&found) {
-            for output in 0..outputs {
+            for (output, value) in state.iter().enumerate().take(outputs) {
                 let reading = course.readings[output][row];
-                let residual = (state[output] - reading) / self.deviations[output];
+                let residual = (value - reading) / self.deviations[output];
                 residuals.push(if reading.is_finite() { residual } else { 0.0 });
             }
         }

@@ -9,8 +9,8 @@ pub const YAW_COEFFICIENTS: usize = 6;
 /// Symbols of the coefficients, in the order of [`Yaw::to_array`].
 pub const YAW_SYMBOLS: [&str; YAW_COEFFICIENTS] = ["N_r", "N_v", "N_vrr", "N_d", "N_ud", "N_0"];
 
-/// Least and largest value of every coefficient: turning is damped, the rudder turns the ship to its own side, and a quick
-/// turn takes from the moment of drift. The other ends are far beyond any ship and keep a search finite.
+/// Least and largest value of every coefficient: turning is damped, the rudder turns the ship to its own side, and a
+/// quick turn takes from the moment of drift. The other ends are far beyond any ship and keep a search finite.
 pub(crate) const YAW_BOUNDS: [[f64; 2]; YAW_COEFFICIENTS] =
     [[1e-3, 30.0], [-10.0, 30.0], [-50.0, 0.0], [1e-3, 10.0], [0.0, 10.0], [-1.0, 1.0]];
 
