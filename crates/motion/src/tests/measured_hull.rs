@@ -49,8 +49,8 @@ fn steered(hull: &Hull, rudder: f64, change: f64) -> Vec<f64> {
 /// Aim: advance within 2 % and tactical diameter within 4 % of MARIN's positions, overshoots within 1.5° of MARIN's.
 ///
 /// Found: −1.5 and −1.8 %; overshoots too large by 0.4 and 3.3° (10/10), by 1.1 and 2.2° (20/20 begun to port as the
-/// 10/10 is) and by 2.5, 0.6 and 1.1° (20/20 begun to starboard). HSVA's own 10/10 has a second overshoot of 20.5° where
-/// MARIN's has 14.7°: the two models differ by more than the equations miss.
+/// 10/10 is) and by 2.5, 0.6 and 1.1° (20/20 begun to starboard). HSVA's own 10/10 has a second overshoot of 20.5°
+/// where MARIN's has 14.7°: the two models differ by more than the equations miss.
 #[test]
 fn a_hull_fitted_to_zig_zags_foretells_trials_of_another_model() {
     let Some(trials) = zig_zags() else { return };
