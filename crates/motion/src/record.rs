@@ -106,7 +106,7 @@ pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Readings that are missing lie on the straight line between their neighbours, or are the nearest one.
-fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
+pub(crate) fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
     let there: Vec<usize> = (0..values.len()).filter(|&row| values[row].is_finite()).collect();
     let mut next = 0;
     let at = |row: usize, next: usize| match (next.checked_sub(1).map(|before| there[before]), there.get(next)) {
@@ -127,9 +127,9 @@ fn filled(time: &[f64], values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Slope of the heading in every row: a parabola by least squares over the rows within `half` seconds, at least two on
-/// each side. At the ends of a record the window is one-sided and the slope is that of the parabola there.
-fn slope(time: &[f64], heading: &[f64], half: f64) -> Vec<f64> {
+/// Value and slope of a signal in every row: a parabola by least squares over the rows within `half` seconds, at least
+/// two on each side. At the ends of a record the window is one-sided and both are those of the parabola there.
+pub(crate) fn smoothed(time: &[f64], values: &[f64], half: f64) -> (Vec<f64>, Vec<f64>) {
     let rows = time.len();
     (0..rows)
         .map(|row| {
@@ -142,11 +142,14 @@ fn slope(time: &[f64], heading: &[f64], half: f64) -> Vec<f64> {
                 let x = (time[other] - time[row]) / scale;
                 let column = nalgebra::Vector3::new(1.0, x, x * x);
                 normal += column * column.transpose();
-                right += column * (heading[other] - heading[row]);
+                right += column * (values[other] - values[row]);
             }
-            normal.lu().solve(&right).map_or(0.0, |solution| solution[1] / scale)
+            normal
+                .lu()
+                .solve(&right)
+                .map_or((values[row], 0.0), |solution| (values[row] + solution[0], solution[1] / scale))
         })
-        .collect()
+        .unzip()
 }
 
 /// Mean and its standard deviation.
@@ -220,7 +223,7 @@ impl<'a> Record<'a> {
         let approach = Approach { speed: guess, deviation, is_start: known.is_none() };
         let yaw_rate = match has(Channel::YawRate) {
             Some(rate) => filled(time, rate),
-            None => slope(time, &heading, WINDOW * length / guess),
+            None => smoothed(time, &heading, WINDOW * length / guess).1,
         };
         let beginning = |values: Option<&[f64]>| values.and_then(|v| median(v.iter().copied().take(APPROACH_ROWS)));
         let start = [beginning(surge.or(speed)).unwrap_or(guess), beginning(sway).unwrap_or(0.0)];

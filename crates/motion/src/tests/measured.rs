@@ -7,7 +7,7 @@ use trial::{Channel, Columns, Origin, Trial};
 use crate::{Output, Planar, SYMBOLS, Turn, TurningCircle, fit, track, turning_circle};
 
 /// `None` (and one line) where the data are not there.
-fn measured(file: &str) -> Option<Trial> {
+pub(super) fn measured(file: &str) -> Option<Trial> {
     let folder = std::env::var_os("TRIAL_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
     let path = folder.join(file);

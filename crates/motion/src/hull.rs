@@ -1,0 +1,163 @@
+//! A hull of three degrees of freedom whose coefficients are all fitted, ready to be steered.
+
+use serde::{Deserialize, Serialize};
+use ship::{Dynamics, Input, Motion};
+
+use crate::coefficients::{COEFFICIENTS, SYMBOLS};
+use crate::error::MotionError;
+use crate::planar::Planar;
+use crate::yaw::{YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};
+
+/// Number of coefficients of a hull: those of surge and sway, then those of yaw.
+pub const HULL_COEFFICIENTS: usize = COEFFICIENTS + YAW_COEFFICIENTS;
+
+/// From what a covariance follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Spread {
+    /// The coefficients were given; the covariance is zero.
+    Known,
+    /// From residuals within the records: a sandwich with the long-run covariance of the scores. Surge and sway on the
+    /// one hand and yaw on the other are taken to be independent.
+    Scores,
+    /// From what changes when one record is left out (jackknife). It holds what differs from record to record because
+    /// the equations are too simple, which is more than noise.
+    Records,
+}
+
+/// What is random in yaw: an Ornstein–Uhlenbeck moment that explains what is left of the yaw equation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Moment {
+    /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
+    pub deviation: f64,
+    /// Time in which its autocorrelation falls to 1/e, s.
+    pub correlation_time: f64,
+}
+
+/// What is left of the yaw equation in one record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HullRecord {
+    /// Name of the record.
+    pub name: String,
+    /// Root mean square of the heading of the steered hull minus that of the record, in windows of 10 L/U₀ that begin
+    /// at measured states, rad.
+    pub heading: f64,
+    /// The same of the yaw rate, rad/s.
+    pub yaw_rate: f64,
+}
+
+/// A ship with surge, sway and yaw: coefficients, what is known of them, and what they leave open.
+///
+/// States ψ (rad), r (rad/s), u and v (m/s). ψ' = r; u' and v' as in [`Coefficients`](crate::Coefficients), r' as in
+/// [`Yaw`]. The disturbance of an input is added to the rudder of the yaw equation alone; the force of that rudder in
+/// surge and sway is left out. Made by [`fit_hull`](crate::fit_hull) or from known coefficients; immutable.
+///
+/// The equations hold for rudders, speeds and yaw rates like those of the records. A full ship may be unstable on a
+/// straight course; replays without a helmsman then drift apart however good the coefficients are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hull {
+    /// Surge and sway, with length and approach speed.
+    pub planar: Planar,
+    /// Yaw.
+    pub yaw: Yaw,
+    /// Covariance of all coefficients in the order of [`Hull::symbols`].
+    pub covariance: Vec<Vec<f64>>,
+    /// From what the covariance follows.
+    pub spread: Spread,
+    /// What is random in yaw; zero where the coefficients were given.
+    pub moment: Moment,
+    /// The records of the fit, in their order; none where the coefficients were given.
+    pub records: Vec<HullRecord>,
+}
+
+impl Hull {
+    /// A ship with known coefficients.
+    pub fn new(planar: Planar, yaw: Yaw) -> Self {
+        Self {
+            planar,
+            yaw: Yaw::from_array(yaw.to_array()),
+            covariance: vec![vec![0.0; HULL_COEFFICIENTS]; HULL_COEFFICIENTS],
+            spread: Spread::Known,
+            moment: Moment { deviation: 0.0, correlation_time: 0.0 },
+            records: Vec::new(),
+        }
+    }
+
+    /// The same coefficients on a ship of another length (m) and approach speed (m/s).
+    ///
+    /// At the same Froude number this is the ship of the model; see [`Planar::scaled_to`]. The correlation time of the
+    /// moment scales with L/U₀. Fails with [`MotionError::NotPositive`].
+    pub fn scaled_to(&self, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
+        let planar = self.planar.scaled_to(length, approach_speed)?;
+        let ratio = length / approach_speed * self.planar.approach_speed / self.planar.length;
+        let moment = Moment { correlation_time: ratio * self.moment.correlation_time, ..self.moment };
+        Ok(Self { planar, moment, ..self.clone() })
+    }
+
+    /// The coefficients in the order of [`Hull::symbols`].
+    pub fn coefficients(&self) -> Vec<f64> {
+        [self.planar.coefficients(), self.yaw.to_array().to_vec()].concat()
+    }
+
+    /// Symbols of the coefficients: surge and sway, then yaw.
+    pub fn symbols() -> Vec<&'static str> {
+        [&SYMBOLS[..], &YAW_SYMBOLS[..]].concat()
+    }
+
+    /// The same ship with other coefficients, in the order of [`Hull::symbols`]: a draw from the covariance.
+    ///
+    /// A value of a sign that the equations do not allow is put to the nearest that they do. Fails with
+    /// [`MotionError::Coefficients`] when the number is wrong or one is not finite.
+    pub fn with_coefficients(&self, values: &[f64]) -> Result<Self, MotionError> {
+        let found = values.iter().filter(|value| value.is_finite()).count();
+        if found != HULL_COEFFICIENTS || values.len() != found {
+            return Err(MotionError::Coefficients { needed: HULL_COEFFICIENTS, found });
+        }
+        let (planar, yaw) = values.split_at(COEFFICIENTS);
+        let yaw = Yaw::from_array(std::array::from_fn(|i| yaw[i]));
+        Ok(Self { planar: self.planar.with_coefficients(planar)?, yaw, ..self.clone() })
+    }
+
+    /// Standard deviations of the coefficients.
+    pub fn deviations(&self) -> Vec<f64> {
+        (0..self.covariance.len()).map(|i| self.covariance[i][i].max(0.0).sqrt()).collect()
+    }
+
+    /// r' in rad/s² at surge u and sway v (m/s), yaw rate r (rad/s), rudder (rad) and a disturbance (rad) beside it.
+    pub fn yaw_acceleration(&self, u: f64, v: f64, r: f64, rudder: f64, disturbance: f64) -> f64 {
+        let Planar { length, approach_speed: speed, .. } = self.planar;
+        let rate = speed / length;
+        self.yaw.rate(u / speed, v / speed, r / rate, rudder, disturbance) * rate * rate
+    }
+}
+
+impl Dynamics for Hull {
+    fn dimension(&self) -> usize {
+        4
+    }
+
+    /// Straight ahead at approach speed, without drift.
+    fn approach(&self, heading: f64, yaw_rate: f64, state: &mut [f64]) {
+        state.copy_from_slice(&[heading, yaw_rate, self.planar.approach_speed, 0.0]);
+    }
+
+    fn rates(&self, _t: f64, state: &[f64], input: &Input, rate: &mut [f64]) {
+        let [r, u, v] = [state[1], state[2], state[3]];
+        let [surge, sway] = self.planar.rates(u, v, r, input.rudder);
+        rate.copy_from_slice(&[r, self.yaw_acceleration(u, v, r, input.rudder, input.disturbance), surge, sway]);
+    }
+
+    fn motion(&self, _t: f64, state: &[f64], input: &Input) -> Motion {
+        let [heading, yaw_rate, u, v] = [state[0], state[1], state[2], state[3]];
+        let yaw_acceleration = self.yaw_acceleration(u, v, yaw_rate, input.rudder, input.disturbance);
+        Motion { heading, yaw_rate, yaw_acceleration, speed: Some(u.hypot(v)), sway: Some(v) }
+    }
+
+    /// A fiftieth of the time the ship needs for its own length.
+    fn largest_step(&self) -> f64 {
+        self.planar.length / self.planar.approach_speed / 50.0
+    }
+}
