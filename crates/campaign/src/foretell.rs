@@ -37,7 +37,7 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
 /// out.
 pub fn foretold(predictions: &Predictions, known: KnownShip, deeds: &Deeds) -> Box<[Foretold]> {
     // Without length and speed on either side.
-    let bare = KnownShip { length_m: None, speed_m_s: None, motion: None, ..known };
+    let bare = KnownShip { length_m: None, speed_m_s: None, motion: None, hull: None, ..known };
     let Ok(mixture) = Mixture::new(vec![(bare, 1.0)]) else { return Box::default() };
     let mut all = Vec::new();
     for (kind, deeds) in predictions.kinds.iter().zip(&deeds.0) {

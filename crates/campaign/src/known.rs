@@ -55,6 +55,7 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
         length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
         motion: None,
+        hull: None,
     })
 }
 
@@ -81,15 +82,25 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
         length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
         motion: None,
+        hull: None,
     }
 }
 
-/// Speed and drift, where the length is known and the records have speed or position that tell them.
-pub fn motion(trials: &[Trial]) -> Option<motion::Planar> {
-    let length = trials.iter().find_map(|trial| Some(trial.particulars()?.length))?;
+/// What is known of a ship with speed and drift: a hull where the length is known and all records have surge and sway,
+/// else two equations beside the yaw response where they have speed or position. As it was where neither can be fitted.
+pub fn with_motion(known: KnownShip, trials: &[Trial]) -> KnownShip {
+    let Some(length) = known.length_m else { return known };
+    let all_have = |channel: Channel| trials.iter().all(|trial| trial.channel(channel).is_some());
+    if all_have(Channel::Surge)
+        && all_have(Channel::Sway)
+        && let Ok(hull) = motion::fit_hull(trials, length)
+    {
+        return KnownShip { hull: Some(hull), ..known };
+    }
     let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
     let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
-    trials.iter().all(is_told).then(|| motion::fit(trials, length).ok()).flatten()
+    let planar = trials.iter().all(is_told).then(|| motion::fit(trials, length).ok()).flatten();
+    KnownShip { motion: planar, ..known }
 }
 
 fn member(plausible: &Plausible) -> Member {

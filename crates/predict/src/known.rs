@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use motion::Planar;
+use motion::{Hull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Response, ResponseModel};
@@ -108,6 +108,10 @@ pub struct KnownShip {
     /// Speed and drift; none where the records have neither speed nor position.
     #[serde(default)]
     pub motion: Option<Planar>,
+    /// A hull of three degrees of freedom, where the records have speed and sway; predictions are then made with it and
+    /// not with the structures.
+    #[serde(default)]
+    pub hull: Option<Hull>,
 }
 
 /// Structure and values of a member as the equations take them.
@@ -226,6 +230,7 @@ impl KnownShip {
         scaled.approach_yaw_rate_rad_s /= second;
         scaled.seen.yaw_rate_rad_s /= second;
         scaled.motion = self.motion.as_ref().map(|planar| planar.scaled_to(length, speed)).transpose()?;
+        scaled.hull = self.hull.as_ref().map(|hull| hull.scaled_to(length, speed)).transpose()?;
         scaled.length_m = Some(length);
         scaled.speed_m_s = Some(speed);
         Ok(scaled)
@@ -235,6 +240,9 @@ impl KnownShip {
     pub fn in_calm(&self) -> Result<Self, PredictError> {
         let mut calm = self.clone();
         calm.noise.moment = Moment::None;
+        if let Some(hull) = &mut calm.hull {
+            hull.moment.deviation = 0.0;
+        }
         for member in &mut calm.members {
             let equations = member.equations()?;
             let mut first = ship::response::BASE_PARAMETERS;
@@ -259,8 +267,25 @@ impl KnownShip {
         Ok(calm)
     }
 
-    /// A time of the ship, s: (K/T)^(−1/2) of its most probable structure, about L/U.
+    /// What is random in yaw: what the hull leaves, or what the structures do.
+    pub(crate) fn process_noise(&self) -> KnownNoise {
+        match &self.hull {
+            None => self.noise,
+            Some(hull) => KnownNoise {
+                moment: if hull.moment.deviation > 0.0 { Moment::OrnsteinUhlenbeck } else { Moment::None },
+                moment_sd_rudder_rad: hull.moment.deviation,
+                moment_correlation_s: Some(hull.moment.correlation_time),
+                ..self.noise
+            },
+        }
+    }
+
+    /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is about
+    /// that.
     pub fn timescale(&self) -> Option<f64> {
+        if let (Some(length), Some(speed)) = (self.length_m, self.speed_m_s) {
+            return Some(length / speed);
+        }
         let gain = *self.members.first()?.parameters.get(1)?;
         (gain > 0.0).then(|| gain.sqrt().recip())
     }

@@ -39,5 +39,6 @@ pub(crate) fn known() -> KnownShip {
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         motion: None,
+        hull: None,
     }
 }

@@ -1,7 +1,7 @@
 //! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
 //! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
 
-use motion::Planar;
+use motion::{Hull, Planar};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -68,7 +68,7 @@ struct Part {
 pub struct Mixture {
     parts: Vec<Part>,
     files: Vec<KnownShip>,
-    /// Square roots of the covariances of speed and drift, of every file.
+    /// Square roots of the covariances of the hull, or of speed and drift, of every file.
     motions: Vec<DMatrix<f64>>,
     timescale: f64,
 }
@@ -80,6 +80,8 @@ pub struct Drawn {
     pub response: Response,
     /// How it loses speed and drifts, where that is known.
     pub planar: Option<Planar>,
+    /// The hull, where one was fitted; it takes the place of the response.
+    pub hull: Option<Hull>,
     /// Its steering gear.
     pub gear: SteeringGear,
     /// What acts on it.
@@ -136,9 +138,10 @@ impl Mixture {
                 });
             }
         }
-        let motion = |(known, _): &(KnownShip, f64)| match &known.motion {
-            Some(planar) => root_of(&planar.covariance.map(|row| row.to_vec())),
-            None => Ok(DMatrix::zeros(0, 0)),
+        let motion = |(known, _): &(KnownShip, f64)| match (&known.hull, &known.motion) {
+            (Some(hull), _) => root_of(&hull.covariance),
+            (None, Some(planar)) => root_of(&planar.covariance.map(|row| row.to_vec())),
+            (None, None) => Ok(DMatrix::zeros(0, 0)),
         };
         let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
@@ -182,14 +185,22 @@ impl Mixture {
             let doubt = if has(Source::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
             SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
         });
-        let planar = known.motion.as_ref().map(|planar| match has(Source::Parameters) {
-            true => self.drawn_motion(part.file, planar, &key),
-            false => planar.clone(),
+        let step = has(Source::Parameters).then(|| self.step(part.file, &key));
+        let hull = known.hull.as_ref().map(|hull| match &step {
+            Some(step) => hull.with_coefficients(&plus(hull.coefficients(), step)).unwrap_or_else(|_| hull.clone()),
+            None => hull.clone(),
         });
-        let noise = if has(Source::ProcessNoise) { known.noise } else { KnownNoise::default() };
+        let planar = known.motion.as_ref().map(|planar| match &step {
+            Some(step) => {
+                planar.with_coefficients(&plus(planar.coefficients(), step)).unwrap_or_else(|_| planar.clone())
+            }
+            None => planar.clone(),
+        });
+        let noise = if has(Source::ProcessNoise) { known.process_noise() } else { KnownNoise::default() };
         Drawn {
             response: part.equations.with(values),
-            planar,
+            planar: hull.as_ref().map(|hull| hull.planar.clone()).or(planar),
+            hull,
             gear,
             disturbances: self.disturbances(&noise),
             yaw_rate: if has(Source::InitialState) { of_rate * known.approach_yaw_rate_rad_s } else { 0.0 },
@@ -197,14 +208,11 @@ impl Mixture {
         }
     }
 
-    /// Speed and drift by the covariance of their coefficients.
-    fn drawn_motion(&self, file: usize, planar: &Planar, key: &StreamKey) -> Planar {
+    /// A step by the covariance of the coefficients of the hull, or of speed and drift.
+    fn step(&self, file: usize, key: &StreamKey) -> DVector<f64> {
         let mut rng = key.indexed(Purpose::Specification, 2);
         let root = &self.motions[file];
-        let step = root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal));
-        let values: Vec<f64> =
-            planar.coefficients().iter().zip(step.iter()).map(|(value, step)| value + step).collect();
-        planar.with_coefficients(&values).unwrap_or_else(|_| planar.clone())
+        root * DVector::from_fn(root.ncols(), |_, _| rng.sample::<f64, _>(StandardNormal))
     }
 
     fn disturbances(&self, noise: &KnownNoise) -> Disturbances {
@@ -242,6 +250,11 @@ impl Mixture {
         }
         self.likeliest()
     }
+}
+
+fn plus(mut values: Vec<f64>, step: &DVector<f64>) -> Vec<f64> {
+    values.iter_mut().zip(step.iter()).for_each(|(value, step)| *value += step);
+    values
 }
 
 impl Part {

@@ -60,6 +60,9 @@ fn period(timescale: f64) -> f64 {
 
 /// What is steered: with speed and drift where effects of the response ask for them.
 fn vessel(ship: &Drawn) -> Vessel {
+    if let Some(hull) = &ship.hull {
+        return Vessel::hull(Arc::new(hull.clone()));
+    }
     let needs = [Regressor::Speed, Regressor::Sway].iter().any(|channel| ship.response.needs(*channel));
     match &ship.planar {
         Some(planar) if needs => {
@@ -107,8 +110,12 @@ impl Passage {
         };
         simulation.approach.yaw_rate = ship.yaw_rate;
         simulation.disturbances = ship.disturbances;
-        if !ship.response.model().effects().is_empty() {
-            let step = (ship.response.shortest_time() / STEPS).min(period(timescale));
+        let shortest = match &ship.hull {
+            Some(_) => Some(timescale),
+            None => (!ship.response.model().effects().is_empty()).then(|| ship.response.shortest_time()),
+        };
+        if let Some(shortest) = shortest {
+            let step = (shortest / STEPS).min(period(timescale));
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
         let (mut passage, truth) = Self::of(simulation, &ship.key, timescale)?;

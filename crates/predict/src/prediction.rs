@@ -139,7 +139,7 @@ impl Mixture {
     /// Steady turns; chance has no part in them.
     fn spiral(&self, rudder: f64, draws: usize, shares: bool) -> Prediction {
         let curve = |number: usize, sources: &[Source]| {
-            SteadyCurve::of(&self.draw(number as u64, sources).response, rudder, self.timescale())
+            SteadyCurve::of(&self.draw(number as u64, sources), rudder, self.timescale())
         };
         let all: Vec<SteadyCurve> = (0..draws).into_par_iter().map(|number| curve(number, &Source::ALL)).collect();
         let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(rudder)).collect();

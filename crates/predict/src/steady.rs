@@ -1,10 +1,11 @@
 //! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship that
 //! is not stable on a straight course.
 
-use ship::Response;
+use motion::{Hull, Planar};
 use ship::angle::to_deg;
 
 use crate::figures::Figure;
+use crate::mixture::Drawn;
 
 /// Points to either side of a straight course.
 const POINTS: usize = 24;
@@ -33,10 +34,18 @@ pub struct Loop {
 impl SteadyCurve {
     /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates that
     /// no rudder makes are left out.
-    pub fn of(ship: &Response, largest: f64, timescale: f64) -> Self {
+    pub fn of(ship: &Drawn, largest: f64, timescale: f64) -> Self {
+        let steady = |rate: f64| match &ship.hull {
+            Some(hull) => hull_rudder(hull, rate),
+            None => ship.response.steady_rudder(rate),
+        };
+        Self::of_turns(steady, largest, timescale)
+    }
+
+    fn of_turns(steady: impl Fn(f64) -> Option<f64>, largest: f64, timescale: f64) -> Self {
         let mut curve = Self::default();
         let end = |side: f64| {
-            let is_within = |rate: f64| ship.steady_rudder(side * rate).is_some_and(|rudder| side * rudder < largest);
+            let is_within = |rate: f64| steady(side * rate).is_some_and(|rudder| side * rudder < largest);
             let (mut within, mut beyond) = (0.0, 0.02 / timescale);
             for _ in 0..DOUBLINGS {
                 if !is_within(beyond) {
@@ -54,7 +63,7 @@ impl SteadyCurve {
         for point in -(POINTS as i32)..=POINTS as i32 {
             let share = f64::from(point) / POINTS as f64;
             let rate = share * if share < 0.0 { port } else { starboard };
-            if let Some(rudder) = ship.steady_rudder(rate) {
+            if let Some(rudder) = steady(rate) {
                 curve.yaw_rate.push(rate);
                 curve.rudder.push(rudder);
             }
@@ -106,6 +115,37 @@ impl SteadyCurve {
     }
 }
 
+/// Times L/U over which speed and drift of a hull settle in a turn, and steps in each.
+const SETTLING: [usize; 2] = [60, 8];
+
+/// Largest rudder that is looked at, rad.
+const LARGEST_RUDDER: f64 = 1.2;
+
+/// Rudder (rad) at which a hull turns steadily at a yaw rate (rad/s): speed and drift settle while the rudder keeps the
+/// rate (reversed spiral, Bech 1968). `None` where no rudder does.
+fn hull_rudder(hull: &Hull, rate: f64) -> Option<f64> {
+    let Planar { length, approach_speed, .. } = hull.planar;
+    let [lengths, steps] = SETTLING;
+    let step = length / approach_speed / steps as f64;
+    let (mut u, mut v, mut rudder) = (approach_speed, 0.0, 0.0);
+    for _ in 0..lengths * steps {
+        // Nearly linear in the rudder.
+        for _ in 0..3 {
+            let [here, there] = [rudder, rudder + 1e-3].map(|rudder| hull.yaw_acceleration(u, v, rate, rudder, 0.0));
+            let slope = (there - here) / 1e-3;
+            if slope.abs() < f64::MIN_POSITIVE {
+                return None;
+            }
+            rudder = (rudder - here / slope).clamp(-LARGEST_RUDDER, LARGEST_RUDDER);
+        }
+        let [du, dv] = hull.planar.rates(u, v, rate, rudder);
+        let (half_u, half_v) = (u + 0.5 * step * du, v + 0.5 * step * dv);
+        let [du, dv] = hull.planar.rates(half_u, half_v, rate, rudder);
+        (u, v) = (u + step * du, v + step * dv);
+    }
+    (rudder.abs() < LARGEST_RUDDER && u.is_finite() && v.is_finite()).then_some(rudder)
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
@@ -114,16 +154,17 @@ mod tests {
     use ship::ResponseModel;
     use ship::effects::NonlinearDamping;
 
-    fn cubic(inverse_time: f64) -> Response {
+    fn curve(inverse_time: f64) -> SteadyCurve {
         let model = ResponseModel::new(vec![Arc::new(NonlinearDamping::Cubic)]);
-        model.with(vec![inverse_time, 6e-3, 0.0, 300.0])
+        let ship = model.with(vec![inverse_time, 6e-3, 0.0, 300.0]);
+        SteadyCurve::of_turns(|rate| ship.steady_rudder(rate), 0.3, 12.0)
     }
 
     /// a r + n r³ = b δ with a < 0: the loop ends at r = √(−a/3n), δ = ∓(2/3)(−a/b) r, and the outer branches cross
     /// amidships at r = ±√(−a/n).
     #[test]
     fn the_loop_of_an_unstable_ship_is_that_of_its_cubic() {
-        let curve = SteadyCurve::of(&cubic(-0.02), 0.3, 12.0);
+        let curve = curve(-0.02);
         let found = curve.instability().expect("unstable");
         let rate = (0.02f64 / 900.0).sqrt();
         let width = 2.0 * (2.0 / 3.0) * 0.02 / 6e-3 * rate;
@@ -133,7 +174,7 @@ mod tests {
 
     #[test]
     fn a_stable_ship_has_no_loop() {
-        let curve = SteadyCurve::of(&cubic(0.06), 0.3, 12.0);
+        let curve = curve(0.06);
         assert_eq!(curve.instability(), None);
         let rate = curve.outer(0.2).expect("within");
         assert!((0.06 * rate + 300.0 * rate.powi(3) - 6e-3 * 0.2).abs() < 2e-5, "{rate}");

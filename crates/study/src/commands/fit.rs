@@ -107,12 +107,17 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
 
 /// What every method with a covariance knows of the ship; speed and drift are the same for all.
 fn with_motion(answers: &[(MethodEntry, Option<Estimate>)], trials: &[Trial]) -> BTreeMap<String, KnownShip> {
-    let motion = known::motion(trials);
     let one = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
-        let known = known::of_estimate(estimate.as_ref()?, trials)?;
-        Some((entry.method.clone(), KnownShip { motion: motion.clone(), ..known }))
+        Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, trials)?))
     };
-    answers.iter().filter_map(one).collect()
+    let mut ships: BTreeMap<String, KnownShip> = answers.iter().filter_map(one).collect();
+    if let Some(first) = ships.values().next().cloned() {
+        let KnownShip { motion, hull, .. } = known::with_motion(first, trials);
+        for ship in ships.values_mut() {
+            (ship.motion, ship.hull) = (motion.clone(), hull.clone());
+        }
+    }
+    ships
 }
 
 fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier>>, Failure> {

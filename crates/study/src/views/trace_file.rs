@@ -340,10 +340,7 @@ impl TraceFile {
                 .filter(|(_, times)| !times.is_empty())
                 .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
                 .collect(),
-            ship: KnownShip {
-                motion: campaign::known::motion(report.trials),
-                ..campaign::known::of_analysis(analysis, report.trials)
-            },
+            ship: campaign::known::with_motion(campaign::known::of_analysis(analysis, report.trials), report.trials),
         }
     }
 }
