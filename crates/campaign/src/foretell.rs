@@ -7,8 +7,8 @@ use simulate::{Sensors, Simulation, StreamKey};
 
 use crate::rows::Foretold;
 
-/// What the ship of a trial does in the manoeuvres that are predicted: figures by name, `None` where it does not come to
-/// the end of one.
+/// What the ship of a trial does in the manoeuvres that are predicted: figures by name, `None` where it does not come
+/// to the end of one.
 pub struct Deeds(Vec<Option<Vec<(&'static str, Option<f64>)>>>);
 
 /// The key of the trials that were not made: their chance is not that of the record.
@@ -33,8 +33,8 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
     Deeds(predictions.kinds.iter().map(one).collect())
 }
 
-/// What is predicted of the manoeuvres, beside the deeds; figures that the ship or the prediction does not have are left
-/// out.
+/// What is predicted of the manoeuvres, beside the deeds; figures that the ship or the prediction does not have are
+/// left out.
 pub fn foretold(predictions: &Predictions, known: KnownShip, deeds: &Deeds) -> Box<[Foretold]> {
     // Without length and speed on either side.
     let bare = KnownShip { length_m: None, speed_m_s: None, motion: None, hull: None, ..known };

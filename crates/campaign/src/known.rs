@@ -50,7 +50,7 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
             moment_correlation_s: told("gusts_correlation_s"),
         },
         gear: gear(trials),
-        approach_yaw_rate_rad_s: (initial / replays.len() as f64).sqrt(),
+        approach_yaw_rate_rad_s: approach(trials).unwrap_or((initial / replays.len() as f64).sqrt()),
         seen: seen(trials, replays.iter().map(|replay| replay.yaw_rate.as_slice())),
         length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
@@ -77,7 +77,7 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
             moment_correlation_s: noise.correlation,
         },
         gear: gear(trials),
-        approach_yaw_rate_rad_s: analysis.initial_yaw_rate(),
+        approach_yaw_rate_rad_s: approach(trials).unwrap_or(analysis.initial_yaw_rate()),
         seen: seen(trials, analysis.identification.iter().map(|judged| judged.after.replay.yaw_rate.as_slice())),
         length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
@@ -101,6 +101,18 @@ pub fn with_motion(known: KnownShip, trials: &[Trial]) -> KnownShip {
     let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
     let planar = trials.iter().all(is_told).then(|| motion::fit(trials, length).ok()).flatten();
     KnownShip { motion: planar, ..known }
+}
+
+/// Root mean square of the yaw rates at the first executes, rad/s, without what their reading errors make of it; `None`
+/// where a record does not show its first execute.
+fn approach(trials: &[Trial]) -> Option<f64> {
+    let square = |trial: &Trial| {
+        let zigzag = ZigZag::of(trial).ok().filter(|zigzag| !zigzag.begins_within_trial())?;
+        let rate = zigzag.executes.first()?.yaw_rate?;
+        Some(rate.value.powi(2) - rate.sd.unwrap_or(0.0).powi(2))
+    };
+    let sum: f64 = trials.iter().map(square).sum::<Option<f64>>()?;
+    Some((sum / trials.len() as f64).max(0.0).sqrt())
 }
 
 fn member(plausible: &Plausible) -> Member {
@@ -150,8 +162,8 @@ const FEWEST_STEPS: usize = 4;
 
 /// The steering gear, from the reversals of zig-zags; `None` where no record resolves them.
 ///
-/// The rate is the mean of the steps inside movements, its error what these steps differ by. Where movements are about as
-/// long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
+/// The rate is the mean of the steps inside movements, its error what these steps differ by. Where movements are about
+/// as long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
 /// duration.
 fn gear(trials: &[Trial]) -> Option<KnownGear> {
     let (mut rates, mut variances) = (Vec::new(), Vec::new());

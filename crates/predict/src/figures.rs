@@ -149,8 +149,8 @@ mod tests {
         figures.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value).unwrap_or(f64::NAN)
     }
 
-    /// YUKUN with a rudder of 2.5 deg/s: overshoots of 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), computed apart with a
-    /// step of 0.01 s that lets executes be late.
+    /// YUKUN with a rudder of 2.5 deg/s: overshoots of 6.35 and 8.07 deg (10/10), 18.8 deg (20/20), computed apart with
+    /// a step of 0.01 s that lets executes be late.
     #[test]
     fn overshoots_are_those_of_the_reference() {
         let kind: Kind = "zig-zag:10/10".parse().expect("known");

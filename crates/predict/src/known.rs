@@ -280,8 +280,8 @@ impl KnownShip {
         }
     }
 
-    /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is about
-    /// that.
+    /// A time of the ship, s: L/U where they are known, else (K/T)^(−1/2) of the most probable structure, which is
+    /// about that.
     pub fn timescale(&self) -> Option<f64> {
         if let (Some(length), Some(speed)) = (self.length_m, self.speed_m_s) {
             return Some(length / speed);

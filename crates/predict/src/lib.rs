@@ -1,9 +1,9 @@
 //! What an identified ship will do in a trial that was not made.
 //!
 //! A fit leaves a model with a covariance and a noise. Ships are drawn from it, each is steered through the manoeuvre,
-//! and what they do is told as medians with intervals of 50 and 90 %. An interval holds the errors of the parameters, the
-//! structures that the records cannot tell apart, the random moment of one trial, the rate of the rudder and the yaw rate
-//! of the approach; the share of each is told beside it.
+//! and what they do is told as medians with intervals of 50 and 90 %. An interval holds the errors of the parameters,
+//! the structures that the records cannot tell apart, the random moment of one trial, the rate of the rudder and the
+//! yaw rate of the approach; the share of each is told beside it.
 //!
 //! | to learn about | read |
 //! |---|---|

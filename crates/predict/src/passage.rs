@@ -14,7 +14,8 @@ use crate::mixture::Drawn;
 /// Rows per time of the ship.
 const ROWS: f64 = 20.0;
 
-/// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the response.
+/// Steps of the solver per shortest time constant: the classical Runge–Kutta step is then exact to 10⁻⁵ of the
+/// response.
 const STEPS: f64 = 6.0;
 
 /// Shortest step, s.
@@ -149,6 +150,26 @@ impl Passage {
         for place in self.way.iter_mut().flat_map(|way| &mut way.track) {
             let [north, east] = *place;
             *place = [north * cos - east * sin, north * sin + east * cos];
+        }
+    }
+
+    /// The same without what comes after `time` s.
+    pub fn until(&self, time: f64) -> Self {
+        let rows = ((time / self.period).floor() as usize + 1).min(self.heading.len());
+        let cut = |values: &[f64]| values[..rows.min(values.len())].to_vec();
+        let way = |way: &Way| Way {
+            length: way.length,
+            surge: cut(&way.surge),
+            sway: cut(&way.sway),
+            track: way.track[..rows.min(way.track.len())].to_vec(),
+        };
+        Self {
+            period: self.period,
+            heading: cut(&self.heading),
+            yaw_rate: cut(&self.yaw_rate),
+            rudder: cut(&self.rudder),
+            executes: self.executes.clone(),
+            way: self.way.as_ref().map(way),
         }
     }
 

@@ -17,7 +17,8 @@ const ALONE: usize = 4;
 /// Share of the draws that have to come to the end of a manoeuvre.
 const FEWEST: f64 = 0.5;
 
-/// How far beyond what was seen is still within it: a rudder overshoots its order, a largest rate is that of one record.
+/// How far beyond what was seen is still within it: a rudder overshoots its order, a largest rate is that of one
+/// record.
 const MARGIN: f64 = 1.05;
 
 /// A figure of merit.

@@ -51,8 +51,8 @@ pub struct Replayed {
     pub measured: Vec<f64>,
 }
 
-/// First heading (rad) and yaw rate (rad/s) of a record with their standard deviations: a straight line through what the
-/// readings of its beginning are away from a ship that begins on heading 0 without a yaw rate.
+/// First heading (rad) and yaw rate (rad/s) of a record with their standard deviations: a straight line through what
+/// the readings of its beginning are away from a ship that begins on heading 0 without a yaw rate.
 fn beginning(trial: &Trial, at_rest: &Passage, timescale: f64) -> Option<[(f64, f64); 2]> {
     let start = trial.time()[0];
     let read = |row: usize| {
@@ -78,8 +78,8 @@ fn beginning(trial: &Trial, at_rest: &Passage, timescale: f64) -> Option<[(f64, 
 impl Mixture {
     /// Replays the rudder of a record and holds the prediction against it; the ship has to be of its scale.
     ///
-    /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those of
-    /// a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
+    /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
+    /// of a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
     /// heading. `None` where the record has too few headings at its beginning.
     pub fn replay(&self, trial: &Trial, draws: usize) -> Result<Option<Replayed>, PredictError> {
         let start = trial.time()[0];
@@ -227,9 +227,9 @@ fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<f64>) -> Ve
 
 /// Figures of a record that is a turn.
 fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64) -> Vec<Compared> {
-    let Some((execute, side)) = execute(trial.rudder_signal()) else { return Vec::new() };
+    let Some(Turn { execute, until, side }) = Turn::of(trial.rudder_signal()) else { return Vec::new() };
     let Some((sample, _)) = made.first() else { return Vec::new() };
-    let execute = execute - trial.time()[0];
+    let [execute, until] = [execute, until].map(|time| time - trial.time()[0]);
     let rows: Vec<usize> = trial.observed_rows().collect();
     let on_rows = |rows: &[usize], values: &[f64]| -> Option<Vec<f64>> {
         let rows: Vec<usize> = rows.iter().copied().filter(|&row| values[row].is_finite()).collect();
@@ -258,6 +258,8 @@ fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64) -> Vec<Com
         heading,
     };
     let figures = |passage: &Passage| -> Vec<Figure> {
+        let whole = passage.until(until);
+        let passage = &whole;
         let first = (execute / passage.period).round() as usize;
         let start = at(passage, &passage.heading, execute);
         let after = Passage {
@@ -266,11 +268,11 @@ fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64) -> Vec<Com
             rudder: Vec::new(),
             executes: Vec::new(),
             way: None,
-            ..*passage
+            period: passage.period,
         };
         let mut figures = Vec::new();
         figures::turn(&after, side, &mut figures);
-        figures::circle(passage, execute, &mut figures);
+        figures::circle(&whole, execute, &mut figures);
         figures
     };
     let measured = figures(&record);
@@ -282,18 +284,35 @@ fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64) -> Vec<Com
     compared(&drawn, |name| measured.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value))
 }
 
-/// Time (s) at which a rudder first leaves its beginning for its largest angle, and the side (±1) of that.
-fn execute(signal: &Polyline) -> Option<(f64, f64)> {
-    let (times, values) = (signal.times(), signal.values());
-    let away = |value: f64| value - values[0];
-    let largest = values.iter().copied().map(away).max_by(|one, other| one.abs().total_cmp(&other.abs()))?;
-    let row = values.iter().position(|value| away(*value) * largest.signum() > 0.2 * largest.abs())?;
-    // Back along the ramp.
-    let mut start = row;
-    while start > 0 && (away(values[start - 1]) * largest.signum()) > 0.01 * largest.abs() {
-        start -= 1;
+/// A rudder that is put over and held.
+struct Turn {
+    /// Time at which it leaves its beginning, s.
+    execute: f64,
+    /// Time until which it is held, s.
+    until: f64,
+    /// Side it is put to, ±1.
+    side: f64,
+}
+
+/// Share of the largest angle above which a rudder is held.
+const HELD: f64 = 0.8;
+
+impl Turn {
+    /// The turn with the largest rudder; `None` for a rudder that never moves.
+    fn of(signal: &Polyline) -> Option<Self> {
+        let (times, values) = (signal.times(), signal.values());
+        let away = |value: f64| value - values[0];
+        let largest = values.iter().copied().map(away).max_by(|one, other| one.abs().total_cmp(&other.abs()))?;
+        let side = largest.signum();
+        let share = |row: usize| away(values[row]) * side / largest.abs();
+        let mut start = (0..values.len()).find(|&row| share(row) > HELD)?;
+        let until = (start..values.len()).find(|&row| share(row) < HELD).map_or(values.len() - 1, |row| row - 1);
+        // Back along the ramp.
+        while start > 0 && share(start - 1) > 0.01 {
+            start -= 1;
+        }
+        Some(Self { execute: times[start.saturating_sub(1)], until: times[until], side })
     }
-    Some((times[start.saturating_sub(1)], largest.signum()))
 }
 
 /// A series on the rows of a passage at a time, s.

@@ -1,5 +1,5 @@
-//! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship that
-//! is not stable on a straight course.
+//! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship
+//! that is not stable on a straight course.
 
 use motion::{Hull, Planar};
 use ship::angle::to_deg;
@@ -32,8 +32,8 @@ pub struct Loop {
 }
 
 impl SteadyCurve {
-    /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates that
-    /// no rudder makes are left out.
+    /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates
+    /// that no rudder makes are left out.
     pub fn of(ship: &Drawn, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
             Some(hull) => hull_rudder(hull, rate),

@@ -114,8 +114,8 @@ pub struct Row {
     pub stop: Option<&'static str>,
     /// What a trace said.
     pub traced: Option<Box<TraceAnswer>>,
-    /// Figures of manoeuvres that were predicted from the answer, empty where it has no covariance; `None` where nothing
-    /// is predicted.
+    /// Figures of manoeuvres that were predicted from the answer, empty where it has no covariance; `None` where
+    /// nothing is predicted.
     pub predicted: Option<Box<[Foretold]>>,
     /// Drawn values of the trial, in the order and units of the scenario's draws; shared by the rows of a trial.
     pub drawn: Option<Arc<[f64]>>,

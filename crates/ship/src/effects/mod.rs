@@ -71,8 +71,8 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
 /// The effect with this identifier, form and constants ([`Effect::constants`]); `None` where there is none, or one that
 /// has other constants.
 ///
-/// Constants are positive: an approach speed (m/s), a rate of the propeller (1/s), an edge (s); a reference time (s) may
-/// be any.
+/// Constants are positive: an approach speed (m/s), a rate of the propeller (1/s), an edge (s); a reference time (s)
+/// may be any.
 pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>> {
     let known = all().into_iter().find(|effect| effect.id() == id && effect.form() == form)?;
     let holds = constants.iter().all(|constant| constant.is_finite()) && constants.len() == known.constants().len();
