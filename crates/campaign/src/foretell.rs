@@ -9,7 +9,7 @@ use crate::rows::Foretold;
 
 /// What the ship of a trial does in the manoeuvres that are predicted: figures by name, `None` where it does not come
 /// to the end of one.
-pub struct Deeds(Vec<Option<Vec<(&'static str, Option<f64>)>>>);
+pub struct Deeds(Vec<Option<Vec<figures::Figure>>>);
 
 /// The key of the trials that were not made: their chance is not that of the record.
 fn other(key: &StreamKey) -> StreamKey {

@@ -2,6 +2,7 @@
 
 use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::replay;
+use identify::{Identifier, maximum_likelihood};
 use predict::KnownShip;
 use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
 use ship::Response;
@@ -60,6 +61,9 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
 }
 
 /// What an analysis knows of the ship of its fitted records.
+///
+/// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for: its
+/// covariance holds the doubt about the noise, which that of a trace does not.
 pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
     let noise = &analysis.randomness;
     let moment = match noise.wander {
@@ -68,7 +72,7 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
         Some(Wander::OrnsteinUhlenbeck(_)) => Moment::OrnsteinUhlenbeck,
         None | Some(Wander::Compass(_)) => Moment::None,
     };
-    KnownShip {
+    let known = KnownShip {
         members: analysis.plausible().iter().map(member).collect(),
         noise: KnownNoise {
             heading_sd_rad: noise.white,
@@ -83,7 +87,26 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
         speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
         motion: None,
         hull: None,
+    };
+    match known.members.first() {
+        Some(first) if first.effects.is_empty() && moment != Moment::None => with_likelihood(known, trials),
+        _ => known,
     }
+}
+
+/// The same with the first-order member and the noise of `maximum-likelihood`, where that finds a random moment, too.
+fn with_likelihood(mut known: KnownShip, trials: &[Trial]) -> KnownShip {
+    let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
+    let Some(likelihood) = method.identify(trials).ok().and_then(|estimate| of_estimate(&estimate, trials)) else {
+        return known;
+    };
+    if let [member] = &likelihood.members[..]
+        && likelihood.noise.moment != Moment::None
+    {
+        known.members[0] = Member { weight: known.members[0].weight, ..member.clone() };
+        known.noise = likelihood.noise;
+    }
+    known
 }
 
 /// What is known of a ship with speed and drift: a hull where the length is known and all records have surge and sway,
@@ -211,7 +234,7 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use identify::{Identifier, maximum_likelihood, output_error};
+    use identify::output_error;
     use predict::{Kind, Mixture};
     use ship::FirstOrder;
     use simulate::manoeuvre::ZigZagEnd;
