@@ -117,13 +117,20 @@ pub fn with_motion(known: KnownShip, trials: &[Trial]) -> KnownShip {
     if all_have(Channel::Surge)
         && all_have(Channel::Sway)
         && let Ok(hull) = motion::fit_hull(trials, length)
+        && loses_speed(&hull.planar)
     {
         return KnownShip { hull: Some(hull), ..known };
     }
     let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
     let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
     let planar = trials.iter().all(is_told).then(|| motion::fit(trials, length).ok()).flatten();
-    KnownShip { motion: planar, ..known }
+    KnownShip { motion: planar.filter(loses_speed), ..known }
+}
+
+/// Whether a ship loses speed as it turns: records of a ship that is still gathering way do not tell it.
+fn loses_speed(planar: &motion::Planar) -> bool {
+    let coefficients = &planar.coefficients;
+    coefficients.X_vr + coefficients.X_dd + coefficients.X_dv > 0.0
 }
 
 /// Root mean square of the yaw rates at the first executes, rad/s, without what their reading errors make of it; `None`

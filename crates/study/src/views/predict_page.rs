@@ -1,5 +1,6 @@
 //! The page of a prediction: words, tables and figures.
 
+use predict::Kind;
 use report::markdown::text;
 use report::number::fixed;
 use ship::angle::to_deg;
@@ -21,6 +22,10 @@ pub fn words(predicted: &Predicted) -> String {
             fixed(to_deg(predicted.seen.rudder_rad), 1),
             fixed(to_deg(predicted.seen.yaw_rate_rad_s), 2)
         );
+    }
+    let turns = predicted.manoeuvres.iter().filter(|one| matches!(one.kind, Kind::TurningCircle { .. }));
+    if turns.filter_map(|one| one.most_probable.as_ref()).any(|passage| passage.way.is_none()) {
+        words += "no track: the length of the ship is not known, or its records do not tell speed loss and drift\n";
     }
     for prediction in predicted.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
         words += &format!("{}: {} drawn ships do not come to its end\n", prediction.kind, prediction.lost);
