@@ -15,7 +15,7 @@ use trial::{Channel, Trial, ZigZag};
 /// What a method knows of the ship of some records; `None` for a method without a covariance.
 ///
 /// The random moment is that of `maximum-likelihood`, which alone looks for one; of any other method the heading noise
-/// is what its replay leaves.
+/// is that of the readings, or what its replay leaves where the records are no zig-zags.
 pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
@@ -45,7 +45,7 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
             degrees_of_freedom: covariance.degrees_of_freedom,
         }],
         noise: KnownNoise {
-            heading_sd_rad: told("heading_sd_deg").map_or(left, from_deg),
+            heading_sd_rad: told("heading_sd_deg").map(from_deg).or_else(|| reading_noise(trials)).unwrap_or(left),
             moment,
             moment_sd_rudder_rad,
             moment_correlation_s: told("gusts_correlation_s"),
@@ -119,7 +119,8 @@ pub fn with_motion(known: KnownShip, trials: &[Trial]) -> KnownShip {
         && let Ok(hull) = motion::fit_hull(trials, length)
         && loses_speed(&hull.planar)
     {
-        return KnownShip { hull: Some(hull), ..known };
+        let heading_sd_rad = reading_noise(trials).unwrap_or(known.noise.heading_sd_rad);
+        return KnownShip { hull: Some(hull), noise: KnownNoise { heading_sd_rad, ..known.noise }, ..known };
     }
     let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
     let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
@@ -131,6 +132,14 @@ pub fn with_motion(known: KnownShip, trials: &[Trial]) -> KnownShip {
 fn loses_speed(planar: &motion::Planar) -> bool {
     let coefficients = &planar.coefficients;
     coefficients.X_vr + coefficients.X_dd + coefficients.X_dv > 0.0
+}
+
+/// Root mean square noise of the readings of the heading, rad, whatever a model makes of them; `None` where a record does
+/// not show it.
+fn reading_noise(trials: &[Trial]) -> Option<f64> {
+    let square = |trial: &Trial| ZigZag::of(trial).ok()?.heading_noise.map(|noise| noise * noise);
+    let sum: f64 = trials.iter().map(square).sum::<Option<f64>>()?;
+    Some((sum / trials.len() as f64).sqrt())
 }
 
 /// Root mean square of the yaw rates at the first executes, rad/s, without what their reading errors make of it; `None`

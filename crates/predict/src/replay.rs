@@ -75,6 +75,29 @@ fn beginning(trial: &Trial, at_rest: &Passage, timescale: f64) -> Option<[(f64, 
     Some([first, (rate, (variance / spread).sqrt())])
 }
 
+/// Difference up to which a rudder is straight between two readings, rad: a hundredth of a degree.
+const STRAIGHT: f64 = 2e-4;
+
+/// The corners of a rudder (Douglas and Peucker 1973): a step of the solver ends at every one.
+fn thinned(signal: &Polyline) -> Polyline {
+    let (times, values) = (signal.times(), signal.values());
+    let last = times.len() - 1;
+    let mut kept = vec![false; times.len()];
+    (kept[0], kept[last]) = (true, true);
+    let mut open = vec![(0, last)];
+    while let Some((from, to)) = open.pop() {
+        let slope = (values[to] - values[from]) / (times[to] - times[from]);
+        let off = |row: usize| (values[row] - values[from] - slope * (times[row] - times[from])).abs();
+        let worst = (from + 1..to).max_by(|one, other| off(*one).total_cmp(&off(*other)));
+        if let Some(row) = worst.filter(|row| off(*row) > STRAIGHT) {
+            kept[row] = true;
+            open.extend([(from, row), (row, to)]);
+        }
+    }
+    let only = |all: &[f64]| all.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect();
+    Polyline::new(only(times), only(values)).unwrap_or_else(|_| signal.clone())
+}
+
 impl Mixture {
     /// Replays the rudder of a record and holds the prediction against it; the ship has to be of its scale.
     ///
@@ -83,7 +106,7 @@ impl Mixture {
     /// heading. `None` where the record has too few headings at its beginning.
     pub fn replay(&self, trial: &Trial, draws: usize) -> Result<Option<Replayed>, PredictError> {
         let start = trial.time()[0];
-        let manoeuvre = Manoeuvre::Replay(trial.rudder_signal().clone());
+        let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
         let at_rest = Passage::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(|_| lost(0))?;
         let Some([first, rate]) = beginning(trial, &at_rest, self.timescale()) else { return Ok(None) };
@@ -361,6 +384,16 @@ mod tests {
         let share = inside as f64 / all as f64;
         assert!((0.80..=0.97).contains(&share), "{inside} of {all}");
         assert!((0.80..=0.97).contains(&band), "{band}");
+    }
+
+    #[test]
+    fn a_rudder_is_its_corners() {
+        let times: Vec<f64> = (0..400).map(f64::from).collect();
+        let angle = |t: f64| (0.02 * (t - 50.0)).clamp(0.0, 0.3) - (0.02 * (t - 200.0)).clamp(0.0, 0.6);
+        let signal = Polyline::new(times.clone(), times.iter().map(|t| angle(*t)).collect()).expect("increasing");
+        let thin = thinned(&signal);
+        assert!(thin.times().len() <= 8, "{:?}", thin.times());
+        assert!(times.iter().all(|t| (thin.at(*t) - signal.at(*t)).abs() <= STRAIGHT));
     }
 
     #[test]

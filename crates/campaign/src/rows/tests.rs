@@ -176,10 +176,29 @@ fn errors_are_relative_to_the_truth() {
 fn every_column_is_documented() {
     let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/results.md"))
         .expect("the page is there");
-    for Column { name, meaning, .. } in COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS) {
+    for Column { name, meaning, .. } in COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&PREDICT_COLUMNS)
+    {
         let meaning = meaning.replace('|', "\\|");
         assert!(page.contains(&format!("| `{name}` | {meaning} |")), "{name}: {meaning}");
     }
+}
+
+/// A study that predicts has one column more, and reads from it what was written.
+#[test]
+fn predictions_are_stored_and_read_again() {
+    let design = Design { predicts: true, ..design() };
+    let figure = |truth: f64| Foretold {
+        name: "zig-zag 20/20 first_overshoot_deg".into(),
+        truth,
+        median: 1.0 / 3.0,
+        ci90: [-0.1, 1e-17],
+    };
+    let own = Row { predicted: Some([figure(0.1), figure(7.0)].into()), ..good(0) };
+    let none = Row { predicted: Some(Box::default()), ..good(1) };
+    let layout = Layout::of(&design);
+    let columns: Vec<_> = layout.take(&[own.clone(), none.clone()]).collect();
+    assert_eq!(layout.put(columns, 2).expect("what was written"), [own, none]);
+    assert_eq!(layout.names().filter(|name| name == "predicted").count(), 1);
 }
 
 /// 10⁹ trials of seven methods are 106 812 groups of rows, more than a signed number of 16 bits holds.

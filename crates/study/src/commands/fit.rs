@@ -112,8 +112,11 @@ fn with_motion(answers: &[(MethodEntry, Option<Estimate>)], trials: &[Trial]) ->
     };
     let mut ships: BTreeMap<String, KnownShip> = answers.iter().filter_map(one).collect();
     if let Some(first) = ships.values().next().cloned() {
-        let KnownShip { motion, hull, .. } = known::with_motion(first, trials);
+        let KnownShip { motion, hull, noise, .. } = known::with_motion(first, trials);
         for ship in ships.values_mut() {
+            if hull.is_some() {
+                ship.noise.heading_sd_rad = noise.heading_sd_rad;
+            }
             (ship.motion, ship.hull) = (motion.clone(), hull.clone());
         }
     }
