@@ -61,9 +61,22 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     };
     let draws = request.draws as usize;
     let busy = progress::busy("predicting", common.quiet);
-    let manoeuvres: Result<Vec<Prediction>, PredictError> =
-        kinds.iter().map(|kind| mixture.predict(kind, draws, true)).collect();
-    let manoeuvres = manoeuvres.map_err(refused)?;
+    let mut manoeuvres: Vec<Prediction> = Vec::with_capacity(kinds.len());
+    let mut lost = None;
+    for kind in &kinds {
+        match mixture.predict(kind, draws, true) {
+            Ok(prediction) => manoeuvres.push(prediction),
+            // One manoeuvre that the model cannot make says nothing of the others.
+            Err(error @ PredictError::Lost { .. }) => {
+                warnings.push(format!("{first}: {error}; it is left out"));
+                lost = Some(error);
+            }
+            Err(error) => return Err(refused(error)),
+        }
+    }
+    if let Some(error) = lost.filter(|_| manoeuvres.is_empty() && records.is_empty()) {
+        return Err(refused(error));
+    }
     let mut replays = Vec::with_capacity(records.len());
     for record in records {
         // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
@@ -90,6 +103,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         manoeuvres,
         replays,
         particulars,
+        hull: mixture.first().hull.is_some(),
         seen: mixture.first().seen,
     };
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;

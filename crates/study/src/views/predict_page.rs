@@ -16,6 +16,9 @@ pub fn words(predicted: &Predicted) -> String {
         false => "in the weather of the records",
     };
     let mut words = format!("{}: {} ships drawn, {weather}\n", files.join(", "), predicted.draws);
+    if predicted.hull {
+        words += "the records have surge and sway: the ship is the hull fitted to them, not the yaw response\n";
+    }
     if predicted.manoeuvres.iter().any(|prediction| prediction.extrapolated) {
         words += &format!(
             "extrapolated: beyond the rudder of {}° and the yaw rate of {}°/s of the records\n",

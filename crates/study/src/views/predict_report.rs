@@ -21,6 +21,8 @@ pub struct Predicted {
     pub criteria: Vec<imo::Criterion>,
     /// Length and speed.
     pub particulars: Option<Particulars>,
+    /// Whether a hull takes the place of the yaw response.
+    pub hull: bool,
     /// Where the ship was seen.
     pub seen: predict::known::Seen,
 }

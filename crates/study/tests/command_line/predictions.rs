@@ -119,6 +119,23 @@ fn models_are_mixed_calmed_and_scaled() {
     assert!((larger / own - 2.0).abs() < 0.01, "four times as long is twice as slow: {own} {larger}");
 }
 
+/// A ship whose rudder is off by 20 deg makes no 10/10, but a circle.
+#[test]
+fn a_manoeuvre_that_the_model_cannot_make_is_left_out() {
+    let desk = with_fit();
+    let mut json = desk.json("f/fit.json");
+    for ship in json["ships"].as_object_mut().expect("ships").values_mut() {
+        ship["members"][0]["parameters"][2] = (-0.35).into();
+    }
+    desk.file("off.json", json.to_string());
+    let run = desk.run(&["predict", "off.json", "--draws", "50", "--out", "p"]);
+    assert!(run.is_done().err.contains("zig-zag 10/10: only 0 of 50"), "{}", run.err);
+    let kinds = desk.json("p/predict.json")["manoeuvres"].as_array().map(Vec::len);
+    assert!(kinds.is_some_and(|count| (1..3).contains(&count)), "{kinds:?}");
+    let alone = ["predict", "off.json", "--draws", "50", "--manoeuvre", "zig-zag:10/10"];
+    desk.run(&alone).is_refused(2, &["only 0 of 50"]);
+}
+
 #[test]
 fn what_cannot_be_predicted_is_refused_with_the_cure() {
     let desk = with_fit();
