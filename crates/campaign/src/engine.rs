@@ -224,7 +224,9 @@ impl<'a> Bench<'a> {
                         Ok(analysis) => {
                             let missing = &specimen.specification.missing;
                             Row {
-                                predicted: predicted(&|| Some(known::of_analysis(&analysis, trials))),
+                                predicted: predicted(&|| {
+                                    Some(known::with_motion(known::of_analysis(&analysis, trials), trials))
+                                }),
                                 ..traced(blank, validation, &analysis, missing, yardstick.expected)
                             }
                         }

@@ -36,9 +36,7 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
 /// What is predicted of the manoeuvres, beside the deeds; figures that the ship or the prediction does not have are
 /// left out.
 pub fn foretold(predictions: &Predictions, known: KnownShip, deeds: &Deeds) -> Box<[Foretold]> {
-    // Without length and speed on either side.
-    let bare = KnownShip { length_m: None, speed_m_s: None, motion: None, hull: None, ..known };
-    let Ok(mixture) = Mixture::new(vec![(bare, 1.0)]) else { return Box::default() };
+    let Ok(mixture) = Mixture::new(vec![(known, 1.0)]) else { return Box::default() };
     let mut all = Vec::new();
     for (kind, deeds) in predictions.kinds.iter().zip(&deeds.0) {
         let Some(deeds) = deeds else { continue };

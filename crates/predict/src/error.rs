@@ -40,6 +40,17 @@ pub enum PredictError {
     /// A ship of unknown length or speed cannot be scaled.
     #[error("length and speed of the identified ship are not known, so it cannot be scaled; give them to fit or trace")]
     NoParticulars,
+    /// The model asks for a channel that nobody predicts.
+    #[error(
+        "the model uses the measured {channel}, which a trial that was not made does not have; give --length-m to fit or \
+         trace so that speed and drift are fitted, or trace with --without {option}"
+    )]
+    Needs {
+        /// The channel, in words.
+        channel: &'static str,
+        /// The channel as it is withheld from a trace.
+        option: &'static str,
+    },
     /// Speed and drift of the ship make no sense.
     #[error("speed and drift: {0}")]
     Motion(#[from] motion::MotionError),

@@ -5,7 +5,7 @@ use motion::{Hull, Planar};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
-use ship::Response;
+use ship::{Regressor, Response};
 use simulate::disturbance::GaussMarkov;
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
@@ -128,9 +128,19 @@ impl Mixture {
                 if !(weight.is_finite() && weight >= 0.0) {
                     return Err(PredictError::Value { key: "weight", value: member.weight });
                 }
+                let equations = member.equations()?;
+                let has_motion = known.hull.is_some() || known.motion.is_some();
+                for (regressor, channel, option) in
+                    [(Regressor::Sway, "sway velocity", "sway"), (Regressor::Speed, "speed", "speed")]
+                {
+                    let needs = equations.model.effects().iter().any(|effect| effect.needs() == Some(regressor));
+                    if needs && !has_motion {
+                        return Err(PredictError::Needs { channel, option });
+                    }
+                }
                 parts.push(Part {
                     weight,
-                    equations: member.equations()?,
+                    equations,
                     fitted: member.fitted.clone(),
                     root: root_of(&member.covariance)?,
                     degrees_of_freedom: member.degrees_of_freedom,
@@ -342,6 +352,17 @@ mod tests {
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());
         assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);
+    }
+
+    /// A term in the measured sway says nothing where there is no sway.
+    #[test]
+    fn a_model_that_needs_what_is_not_there_is_refused() {
+        let mut known = made_up::known();
+        let sway = ship::effects::SwayCouplingMeasured;
+        known.members[0].effects[0].id = ship::effects::Effect::id(&sway).into();
+        known.members[0].effects[0].form = ship::effects::Effect::form(&sway).into();
+        let error = Mixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
+        assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }
 
     #[test]

@@ -82,7 +82,9 @@ impl PredictionTally {
     }
 
     /// All cells, methods and figures.
-    pub fn finish(self) -> Vec<PredictionSummary> {
+    pub fn finish(mut self) -> Vec<PredictionSummary> {
+        // A figure may be seen for the first time after those of another method.
+        self.0.sort_by_key(|line| (line.cell, line.method));
         self.0
     }
 }
