@@ -62,8 +62,8 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
 
 /// What an analysis knows of the ship of its fitted records.
 ///
-/// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for: its
-/// covariance holds the doubt about the noise, which that of a trace does not.
+/// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for:
+/// its covariance holds the doubt about the noise, which that of a trace does not.
 pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
     let noise = &analysis.randomness;
     let moment = match noise.wander {
@@ -134,8 +134,8 @@ fn loses_speed(planar: &motion::Planar) -> bool {
     coefficients.X_vr + coefficients.X_dd + coefficients.X_dv > 0.0
 }
 
-/// Root mean square noise of the readings of the heading, rad, whatever a model makes of them; `None` where a record does
-/// not show it.
+/// Root mean square noise of the readings of the heading, rad, whatever a model makes of them; `None` where a
+/// record does not show it.
 fn reading_noise(trials: &[Trial]) -> Option<f64> {
     let square = |trial: &Trial| ZigZag::of(trial).ok()?.heading_noise.map(|noise| noise * noise);
     let sum: f64 = trials.iter().map(square).sum::<Option<f64>>()?;
