@@ -19,11 +19,12 @@ use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simula
 use trial::{Quantity, Trial};
 
 use crate::design::CellFacts;
+use crate::known::{self, Shown};
 use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
-use crate::{bound, foretell, known};
+use crate::{bound, foretell};
 use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
 
 /// Rows of one trial, and what they took.
@@ -193,11 +194,12 @@ impl<'a> Bench<'a> {
         };
         let predictions = self.scenario.predictions.as_ref();
         let deeds = predictions.map(|asked| foretell::deeds(asked, &specimen.specification.simulation, &key));
-        let predicted = |known: &dyn Fn() -> Option<KnownShip>| {
-            let (asked, deeds) = predictions.zip(deeds.as_ref())?;
-            Some(known().map(|known| foretell::foretold(asked, known, deeds)).unwrap_or_default())
-        };
         let trials = std::slice::from_ref(&simulated.trial);
+        let shown = predictions.map(|_| Shown::of(trials));
+        let predicted = |known: &dyn Fn(&Shown) -> Option<KnownShip>| {
+            let ((asked, deeds), shown) = predictions.zip(deeds.as_ref()).zip(shown.as_ref())?;
+            Some(known(shown).map(|known| foretell::foretold(asked, known, deeds)).unwrap_or_default())
+        };
         let mut rows = Vec::with_capacity(cell.methods.len());
         let mut methods = Vec::with_capacity(cell.methods.len());
         for (index, method) in cell.methods.iter().enumerate() {
@@ -211,7 +213,7 @@ impl<'a> Bench<'a> {
                     match answer {
                         Err(error) => Row { failure: Some(error.kind().into()), ..blank },
                         Ok(estimate) => Row {
-                            predicted: predicted(&|| known::of_estimate(&estimate, trials)),
+                            predicted: predicted(&|shown| known::of_estimate(&estimate, shown)),
                             ..answered(blank, &simulated.trial, validation, &estimate)
                         },
                     }
@@ -224,8 +226,9 @@ impl<'a> Bench<'a> {
                         Ok(analysis) => {
                             let missing = &specimen.specification.missing;
                             Row {
-                                predicted: predicted(&|| {
-                                    Some(known::with_motion(known::of_analysis(&analysis, trials), trials))
+                                // Effects may ask for a speed and a sway.
+                                predicted: predicted(&|shown| {
+                                    Some(known::of_analysis(&analysis, &shown.clone().with_motion()))
                                 }),
                                 ..traced(blank, validation, &analysis, missing, yardstick.expected)
                             }

@@ -27,7 +27,7 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
     let one = |kind: &Kind| {
         let calm =
             Simulation { manoeuvre: kind.manoeuvre(timescale)?, sensors: Sensors::default(), ..simulation.clone() };
-        let (passage, _) = Passage::of(calm, &other(key), timescale).ok()?;
+        let passage = Passage::of(calm, &other(key), timescale, None).ok()?;
         Some(figures::of(kind, &passage, None))
     };
     Deeds(predictions.kinds.iter().map(one).collect())

@@ -3,23 +3,101 @@
 use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::replay;
 use identify::{Identifier, maximum_likelihood};
+use motion::{Hull, Planar};
 use predict::KnownShip;
 use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
-use ship::Response;
 use ship::angle::{from_deg, to_deg};
+use ship::{Particulars, Response};
 use trace::Analysis;
 use trace::analysis::Plausible;
 use trace::noise::Wander;
 use trial::{Channel, Trial, ZigZag};
 
+/// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
+#[derive(Debug, Clone)]
+pub struct Shown<'a> {
+    trials: &'a [Trial],
+    gear: Option<KnownGear>,
+    /// Noise of the readings of the heading, rad.
+    reading_noise: Option<f64>,
+    /// Yaw rate at the first execute, rad/s.
+    approach: Option<f64>,
+    length: Option<f64>,
+    speed: Option<f64>,
+    motion: Option<Planar>,
+    hull: Option<Hull>,
+}
+
+impl<'a> Shown<'a> {
+    /// What some records of one ship show, but for speed and drift.
+    pub fn of(trials: &'a [Trial]) -> Self {
+        let zigzags: Vec<Option<ZigZag>> = trials.iter().map(|trial| ZigZag::of(trial).ok()).collect();
+        let particular = |of: fn(Particulars) -> f64| trials.iter().find_map(|trial| trial.particulars().map(of));
+        Self {
+            trials,
+            gear: gear(trials, &zigzags),
+            reading_noise: reading_noise(&zigzags),
+            approach: approach(&zigzags),
+            length: particular(|own| own.length),
+            speed: particular(|own| own.speed),
+            motion: None,
+            hull: None,
+        }
+    }
+
+    /// The same with speed and drift: a hull where the length is known and all records have surge and sway, else two
+    /// equations beside the yaw response where they have speed or position. As it was where neither can be fitted.
+    pub fn with_motion(mut self) -> Self {
+        let Some(length) = self.length else { return self };
+        let all_have = |channel: Channel| self.trials.iter().all(|trial| trial.channel(channel).is_some());
+        if all_have(Channel::Surge) && all_have(Channel::Sway) {
+            self.hull = motion::fit_hull(self.trials, length).ok().filter(|hull| loses_speed(&hull.planar));
+        }
+        let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
+        let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
+        if self.hull.is_none() && self.trials.iter().all(is_told) {
+            self.motion = motion::fit(self.trials, length).ok().filter(loses_speed);
+        }
+        self
+    }
+
+    /// What is known of the ship, when a model says the rest of it.
+    fn with<'b>(
+        &self,
+        members: Vec<Member>,
+        noise: KnownNoise,
+        initial_yaw_rate: f64,
+        rates: impl Iterator<Item = &'b [f64]>,
+    ) -> KnownShip {
+        let largest =
+            |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
+        // A hull leaves no residual that would tell the noise of a reading.
+        let of_readings = self.hull.as_ref().and(self.reading_noise);
+        KnownShip {
+            members,
+            noise: KnownNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
+            gear: self.gear,
+            approach_yaw_rate_rad_s: self.approach.unwrap_or(initial_yaw_rate),
+            seen: Seen {
+                rudder_rad: largest(&mut self.trials.iter().flat_map(|trial| trial.rudder().iter().copied())),
+                yaw_rate_rad_s: largest(&mut rates.flat_map(|rates| rates.iter().copied())),
+            },
+            length_m: self.length,
+            speed_m_s: self.speed,
+            motion: self.motion.clone(),
+            hull: self.hull.clone(),
+        }
+    }
+}
+
 /// What a method knows of the ship of some records; `None` for a method without a covariance.
 ///
 /// The random moment is that of `maximum-likelihood`, which alone looks for one; of any other method the heading noise
 /// is that of the readings, or what its replay leaves where the records are no zig-zags.
-pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
+pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<KnownShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
-    let replays: Vec<_> = trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
+    let replays: Vec<_> = shown.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
     let told = |name: &str| estimate.diagnostics.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
     let (mut square, mut rows) = (0.0, 0usize);
     for (_, residual) in replays.iter().flat_map(|replay| replay.observed()) {
@@ -35,36 +113,29 @@ pub fn of_estimate(estimate: &Estimate, trials: &[Trial]) -> Option<KnownShip> {
     let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(told(name)?))));
     let (moment, moment_sd_rudder_rad) = moment.unwrap_or_default();
     let initial: f64 = replays.iter().map(|replay| replay.initial()[1].powi(2)).sum();
-    Some(KnownShip {
-        members: vec![Member {
-            weight: 1.0,
-            effects: Vec::new(),
-            parameters: vec![response.inverse_T, response.K_over_T, response.rudder_bias],
-            fitted: vec![0, 1, 2],
-            covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
-            degrees_of_freedom: covariance.degrees_of_freedom,
-        }],
-        noise: KnownNoise {
-            heading_sd_rad: told("heading_sd_deg").map(from_deg).or_else(|| reading_noise(trials)).unwrap_or(left),
-            moment,
-            moment_sd_rudder_rad,
-            moment_correlation_s: told("gusts_correlation_s"),
-        },
-        gear: gear(trials),
-        approach_yaw_rate_rad_s: approach(trials).unwrap_or((initial / replays.len() as f64).sqrt()),
-        seen: seen(trials, replays.iter().map(|replay| replay.yaw_rate.as_slice())),
-        length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
-        speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
-        motion: None,
-        hull: None,
-    })
+    let member = Member {
+        weight: 1.0,
+        effects: Vec::new(),
+        parameters: vec![response.inverse_T, response.K_over_T, response.rudder_bias],
+        fitted: vec![0, 1, 2],
+        covariance: (0..3).map(|i| (0..3).map(|j| covariance.matrix[(i, j)]).collect()).collect(),
+        degrees_of_freedom: covariance.degrees_of_freedom,
+    };
+    let noise = KnownNoise {
+        heading_sd_rad: told("heading_sd_deg").map(from_deg).or(shown.reading_noise).unwrap_or(left),
+        moment,
+        moment_sd_rudder_rad,
+        moment_correlation_s: told("gusts_correlation_s"),
+    };
+    let initial = (initial / replays.len() as f64).sqrt();
+    Some(shown.with(vec![member], noise, initial, replays.iter().map(|replay| replay.yaw_rate.as_slice())))
 }
 
 /// What an analysis knows of the ship of its fitted records.
 ///
 /// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for:
 /// its covariance holds the doubt about the noise, which that of a trace does not.
-pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
+pub fn of_analysis(analysis: &Analysis, shown: &Shown) -> KnownShip {
     let noise = &analysis.randomness;
     let moment = match noise.wander {
         Some(Wander::White) => Moment::White,
@@ -72,32 +143,25 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> KnownShip {
         Some(Wander::OrnsteinUhlenbeck(_)) => Moment::OrnsteinUhlenbeck,
         None | Some(Wander::Compass(_)) => Moment::None,
     };
-    let known = KnownShip {
-        members: analysis.plausible().iter().map(member).collect(),
-        noise: KnownNoise {
-            heading_sd_rad: noise.white,
-            moment,
-            moment_sd_rudder_rad: noise.rudder,
-            moment_correlation_s: noise.correlation,
-        },
-        gear: gear(trials),
-        approach_yaw_rate_rad_s: approach(trials).unwrap_or(analysis.initial_yaw_rate()),
-        seen: seen(trials, analysis.identification.iter().map(|judged| judged.after.replay.yaw_rate.as_slice())),
-        length_m: trials.iter().find_map(|trial| Some(trial.particulars()?.length)),
-        speed_m_s: trials.iter().find_map(|trial| Some(trial.particulars()?.speed)),
-        motion: None,
-        hull: None,
+    let noise = KnownNoise {
+        heading_sd_rad: noise.white,
+        moment,
+        moment_sd_rudder_rad: noise.rudder,
+        moment_correlation_s: noise.correlation,
     };
+    let members = analysis.plausible().iter().map(member).collect();
+    let rates = analysis.identification.iter().map(|judged| judged.after.replay.yaw_rate.as_slice());
+    let known = shown.with(members, noise, analysis.initial_yaw_rate(), rates);
     match known.members.first() {
-        Some(first) if first.effects.is_empty() && moment != Moment::None => with_likelihood(known, trials),
+        Some(first) if first.effects.is_empty() && moment != Moment::None => with_likelihood(known, shown),
         _ => known,
     }
 }
 
 /// The same with the first-order member and the noise of `maximum-likelihood`, where that finds a random moment, too.
-fn with_likelihood(mut known: KnownShip, trials: &[Trial]) -> KnownShip {
+fn with_likelihood(mut known: KnownShip, shown: &Shown) -> KnownShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
-    let Some(likelihood) = method.identify(trials).ok().and_then(|estimate| of_estimate(&estimate, trials)) else {
+    let Some(likelihood) = method.identify(shown.trials).ok().and_then(|estimate| of_estimate(&estimate, shown)) else {
         return known;
     };
     if let [member] = &likelihood.members[..]
@@ -109,49 +173,32 @@ fn with_likelihood(mut known: KnownShip, trials: &[Trial]) -> KnownShip {
     known
 }
 
-/// What is known of a ship with speed and drift: a hull where the length is known and all records have surge and sway,
-/// else two equations beside the yaw response where they have speed or position. As it was where neither can be fitted.
-pub fn with_motion(known: KnownShip, trials: &[Trial]) -> KnownShip {
-    let Some(length) = known.length_m else { return known };
-    let all_have = |channel: Channel| trials.iter().all(|trial| trial.channel(channel).is_some());
-    if all_have(Channel::Surge)
-        && all_have(Channel::Sway)
-        && let Ok(hull) = motion::fit_hull(trials, length)
-        && loses_speed(&hull.planar)
-    {
-        let heading_sd_rad = reading_noise(trials).unwrap_or(known.noise.heading_sd_rad);
-        return KnownShip { hull: Some(hull), noise: KnownNoise { heading_sd_rad, ..known.noise }, ..known };
-    }
-    let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
-    let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
-    let planar = trials.iter().all(is_told).then(|| motion::fit(trials, length).ok()).flatten();
-    KnownShip { motion: planar.filter(loses_speed), ..known }
-}
-
 /// Whether a ship loses speed as it turns: records of a ship that is still gathering way do not tell it.
-fn loses_speed(planar: &motion::Planar) -> bool {
+fn loses_speed(planar: &Planar) -> bool {
     let coefficients = &planar.coefficients;
     coefficients.X_vr + coefficients.X_dd + coefficients.X_dv > 0.0
 }
 
 /// Root mean square noise of the readings of the heading, rad, whatever a model makes of them; `None` where a
 /// record does not show it.
-fn reading_noise(trials: &[Trial]) -> Option<f64> {
-    let square = |trial: &Trial| ZigZag::of(trial).ok()?.heading_noise.map(|noise| noise * noise);
-    let sum: f64 = trials.iter().map(square).sum::<Option<f64>>()?;
-    Some((sum / trials.len() as f64).sqrt())
+fn reading_noise(zigzags: &[Option<ZigZag>]) -> Option<f64> {
+    let square = |zigzag: &Option<ZigZag>| zigzag.as_ref()?.heading_noise.map(|noise| noise * noise);
+    mean(zigzags, square).map(f64::sqrt)
+}
+
+/// The mean over all records; `None` where one does not have the number.
+fn mean(zigzags: &[Option<ZigZag>], of: impl Fn(&Option<ZigZag>) -> Option<f64>) -> Option<f64> {
+    Some(zigzags.iter().map(of).sum::<Option<f64>>()? / zigzags.len() as f64)
 }
 
 /// Root mean square of the yaw rates at the first executes, rad/s, without what their reading errors make of it; `None`
 /// where a record does not show its first execute.
-fn approach(trials: &[Trial]) -> Option<f64> {
-    let square = |trial: &Trial| {
-        let zigzag = ZigZag::of(trial).ok().filter(|zigzag| !zigzag.begins_within_trial())?;
-        let rate = zigzag.executes.first()?.yaw_rate?;
+fn approach(zigzags: &[Option<ZigZag>]) -> Option<f64> {
+    let square = |zigzag: &Option<ZigZag>| {
+        let rate = zigzag.as_ref().filter(|zigzag| !zigzag.begins_within_trial())?.executes.first()?.yaw_rate?;
         Some(rate.value.powi(2) - rate.sd.unwrap_or(0.0).powi(2))
     };
-    let sum: f64 = trials.iter().map(square).sum::<Option<f64>>()?;
-    Some((sum / trials.len() as f64).max(0.0).sqrt())
+    mean(zigzags, square).map(|square| square.max(0.0).sqrt())
 }
 
 fn member(plausible: &Plausible) -> Member {
@@ -179,14 +226,6 @@ fn written(response: &Response) -> Vec<WrittenEffect> {
     response.model().effects().iter().map(write).collect()
 }
 
-fn seen<'a>(trials: &[Trial], rates: impl Iterator<Item = &'a [f64]>) -> Seen {
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
-    Seen {
-        rudder_rad: largest(&mut trials.iter().flat_map(|trial| trial.rudder().iter().copied())),
-        yaw_rate_rad_s: largest(&mut rates.flat_map(|rates| rates.iter().copied())),
-    }
-}
-
 /// Rates a steering gear can have, rad/s; outside, a recorded rudder is an order or says nothing about its gear.
 const RATES_DEG_S: [f64; 2] = [0.5, 40.0];
 
@@ -204,10 +243,10 @@ const FEWEST_STEPS: usize = 4;
 /// The rate is the mean of the steps inside movements, its error what these steps differ by. Where movements are about
 /// as long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
 /// duration.
-fn gear(trials: &[Trial]) -> Option<KnownGear> {
+fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<KnownGear> {
     let (mut rates, mut variances) = (Vec::new(), Vec::new());
-    for trial in trials {
-        let Ok(zigzag) = ZigZag::of(trial) else { continue };
+    for (trial, zigzag) in trials.iter().zip(zigzags) {
+        let Some(zigzag) = zigzag else { continue };
         let Some(rate) = zigzag.rudder_rate.filter(|rate| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate)))
         else {
             continue;
@@ -271,7 +310,7 @@ mod tests {
     fn a_ten_ten_tells_the_twenty_twenty() {
         let trials = [record(0.0)];
         let estimate = output_error::Settings::default().build().expect("defaults").identify(&trials).expect("a fit");
-        let known = of_estimate(&estimate, &trials).expect("a covariance");
+        let known = of_estimate(&estimate, &Shown::of(&trials)).expect("a covariance");
         let gear = known.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
@@ -287,7 +326,7 @@ mod tests {
     fn the_moment_of_the_likelihood_is_handed_on() {
         let trials = [record(0.1)];
         let method = maximum_likelihood::Settings::default().build().expect("defaults");
-        let known = of_estimate(&method.identify(&trials).expect("a fit"), &trials).expect("a covariance");
+        let known = of_estimate(&method.identify(&trials).expect("a fit"), &Shown::of(&trials)).expect("a covariance");
         assert_ne!(known.noise.moment, Moment::None);
         assert!(known.noise.moment_sd_rudder_rad > 0.0);
     }
@@ -296,7 +335,7 @@ mod tests {
     fn an_analysis_knows_its_effects() {
         let trials = [record(0.0)];
         let analysis = trace::trace(&trials, &[], &trace::Settings::default()).expect("a base");
-        let known = of_analysis(&analysis, &trials);
+        let known = of_analysis(&analysis, &Shown::of(&trials));
         assert!((known.members.iter().map(|member| member.weight).sum::<f64>() - 1.0).abs() < 1e-9);
         let first = &known.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);

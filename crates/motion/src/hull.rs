@@ -134,6 +134,41 @@ impl Hull {
     }
 }
 
+/// Times L/U₀ over which speed and drift settle in a turn, and steps in each.
+const SETTLING: [usize; 2] = [60, 8];
+
+/// Largest rudder that is looked at in a turn, rad.
+const LARGEST_RUDDER: f64 = 1.2;
+
+impl Hull {
+    /// Rudder (rad) at which the hull turns steadily at a yaw rate (rad/s): speed and drift settle while the rudder
+    /// keeps the rate (reversed spiral, Bech 1968), so the branch that a spiral test jumps over is found, too. `None`
+    /// where no rudder within 1.2 rad does it.
+    pub fn steady_rudder(&self, yaw_rate: f64) -> Option<f64> {
+        let Planar { length, approach_speed, .. } = self.planar;
+        let [lengths, steps] = SETTLING;
+        let step = length / approach_speed / steps as f64;
+        let (mut u, mut v, mut rudder) = (approach_speed, 0.0, 0.0);
+        for _ in 0..lengths * steps {
+            // Nearly linear in the rudder.
+            for _ in 0..3 {
+                let [here, there] =
+                    [rudder, rudder + 1e-3].map(|rudder| self.yaw_acceleration(u, v, yaw_rate, rudder, 0.0));
+                let slope = (there - here) / 1e-3;
+                if slope.abs() < f64::MIN_POSITIVE {
+                    return None;
+                }
+                rudder = (rudder - here / slope).clamp(-LARGEST_RUDDER, LARGEST_RUDDER);
+            }
+            let [du, dv] = self.planar.rates(u, v, yaw_rate, rudder);
+            let (half_u, half_v) = (u + 0.5 * step * du, v + 0.5 * step * dv);
+            let [du, dv] = self.planar.rates(half_u, half_v, yaw_rate, rudder);
+            (u, v) = (u + step * du, v + step * dv);
+        }
+        (rudder.abs() < LARGEST_RUDDER && u.is_finite() && v.is_finite()).then_some(rudder)
+    }
+}
+
 impl Dynamics for Hull {
     fn dimension(&self) -> usize {
         4

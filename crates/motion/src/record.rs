@@ -1,6 +1,7 @@
 //! One record as the fit sees it: what turned the ship, what is to be explained, and how fast the ship approached.
 
 use serde::{Deserialize, Serialize};
+use trial::zigzag::median::upper_median;
 use trial::{Channel, Trial};
 
 use crate::error::MotionError;
@@ -100,9 +101,7 @@ pub(crate) fn range(values: &[f64]) -> f64 {
 
 /// The median of what is finite.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    upper_median(&mut values.filter(|value| value.is_finite()).collect::<Vec<f64>>())
 }
 
 /// Readings that are missing lie on the straight line between their neighbours, or are the nearest one.

@@ -9,10 +9,10 @@ use crate::passage::Passage;
 /// A figure of merit with its value.
 pub type Figure = (&'static str, Option<f64>);
 
-const OVERSHOOTS: [&str; EXECUTES - 2] =
+pub(crate) const OVERSHOOTS: [&str; EXECUTES - 2] =
     ["first_overshoot_deg", "second_overshoot_deg", "third_overshoot_deg", "fourth_overshoot_deg"];
 
-const EXECUTE_TIMES: [&str; EXECUTES - 1] =
+pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
     ["second_execute_s", "third_execute_s", "fourth_execute_s", "fifth_execute_s", "sixth_execute_s"];
 
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.

@@ -19,15 +19,20 @@ pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[low] + part * (sorted[high] - sorted[low])
 }
 
+/// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are put in order.
+///
+/// # Panics
+/// Without a value.
+pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
+    values.sort_by(f64::total_cmp);
+    [0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(values, share))
+}
+
 impl Interval {
     /// The interval of some draws, which are put in order; `None` without one.
     pub fn of(values: &mut [f64]) -> Option<Self> {
-        if values.is_empty() {
-            return None;
-        }
-        values.sort_by(f64::total_cmp);
-        let ends = |tail: f64| [quantile(values, tail), quantile(values, 1.0 - tail)];
-        Some(Self { median: quantile(values, 0.5), ci50: ends(0.25), ci90: ends(0.05) })
+        let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
+        Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
     }
 
     /// Whether a value lies within nine tenths of the draws.

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+pub use likelihood::Moment;
 use motion::{Hull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
@@ -37,21 +38,6 @@ pub struct Member {
     pub covariance: Vec<Vec<f64>>,
     /// Degrees of freedom of the covariance; none for a normal law.
     pub degrees_of_freedom: Option<f64>,
-}
-
-/// Kind of a random yaw moment.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Moment {
-    /// None.
-    #[default]
-    None,
-    /// White.
-    White,
-    /// Gusts of one correlation time (Ornstein–Uhlenbeck).
-    OrnsteinUhlenbeck,
-    /// Random walk.
-    Walk,
 }
 
 /// Noise of the records the ship is known from.

@@ -55,7 +55,7 @@ pub struct Way {
 }
 
 /// Time between rows, s.
-fn period(timescale: f64) -> f64 {
+pub(crate) fn period(timescale: f64) -> f64 {
     (timescale / ROWS).clamp(2e-3, 900.0)
 }
 
@@ -73,9 +73,9 @@ fn vessel(ship: &Drawn) -> Vessel {
     }
 }
 
-/// Speed, drift and track of a ship that turned and steered like this, from a surge and a sway velocity on.
-fn way(planar: &Planar, truth: &Truth, start: [f64; 2]) -> Way {
-    let velocities = planar.drive(&truth.time, &truth.yaw_rate, &truth.rudder, start);
+/// Speed, drift and track of a ship that turned and steered like this, from her approach speed on.
+fn way(planar: &Planar, truth: &Truth) -> Way {
+    let velocities = planar.drive(&truth.time, &truth.yaw_rate, &truth.rudder, [planar.approach_speed, 0.0]);
     let (surge, sway): (Vec<f64>, Vec<f64>) = velocities.into_iter().map(|[u, v]| (u, v)).unzip();
     let track = motion::track(&truth.time, &truth.heading, &surge, &sway);
     Way { length: planar.length, surge, sway, track }
@@ -119,28 +119,25 @@ impl Passage {
             let step = (shortest / STEPS).min(period(timescale));
             simulation.solver = Solver::RungeKutta(step.max(SHORTEST_STEP));
         }
-        let (mut passage, truth) = Self::of(simulation, &ship.key, timescale)?;
-        passage.way = ship.planar.as_ref().map(|planar| way(planar, &truth, [planar.approach_speed, 0.0]));
-        Ok(passage)
+        Self::of(simulation, &ship.key, timescale, ship.planar.as_ref())
     }
 
-    /// What any simulated ship does, with the truth behind it; how often and how long it is recorded follows from
-    /// `timescale`, a time of the ship, s.
+    /// What any simulated ship does; how often and how long it is recorded follows from `timescale`, a time of the
+    /// ship, s. It has a way where speed and drift are given.
     ///
     /// Fails as the simulation does.
-    pub fn of(mut simulation: Simulation, key: &StreamKey, timescale: f64) -> Result<(Self, Truth), SimulateError> {
+    pub fn of(
+        mut simulation: Simulation,
+        key: &StreamKey,
+        timescale: f64,
+        planar: Option<&Planar>,
+    ) -> Result<Self, SimulateError> {
         simulation.recording = Recording { period: period(timescale), ..Recording::default() };
         simulation.longest_wait = LONGEST_WAIT * timescale;
         let truth = Arc::unwrap_or_clone(simulation.run(key)?.truth);
-        let passage = Self {
-            way: None,
-            period: simulation.recording.period,
-            heading: truth.heading.clone(),
-            yaw_rate: truth.yaw_rate.clone(),
-            rudder: truth.rudder.clone(),
-            executes: truth.executes.clone(),
-        };
-        Ok((passage, truth))
+        let way = planar.map(|planar| way(planar, &truth));
+        let Truth { heading, yaw_rate, rudder, executes, .. } = truth;
+        Ok(Self { period: simulation.recording.period, heading, yaw_rate, rudder, executes, way })
     }
 
     /// The same on another course: every heading is larger by `angle` (rad).

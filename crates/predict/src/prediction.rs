@@ -5,10 +5,10 @@ use ship::Particulars;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figure};
-use crate::interval::{Interval, quantile};
+use crate::interval::{Interval, band, quantile};
 use crate::kind::Kind;
 use crate::mixture::{Mixture, Source};
-use crate::passage::Passage;
+use crate::passage::{self, Passage};
 use crate::steady::SteadyCurve;
 
 /// Draws for every source alone, as a share of all.
@@ -79,6 +79,14 @@ struct Draw {
 /// Draws whose tracks are kept.
 const TRACKS: usize = 40;
 
+/// Refuses what less than half of the drawn ships come to the end of.
+pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
+    if made == 0 || (made as f64) < FEWEST * draws as f64 {
+        return Err(PredictError::Lost { kind: what.to_string(), made, draws });
+    }
+    Ok(())
+}
+
 impl Mixture {
     /// Length and speed, where the first file has them.
     pub fn particulars(&self) -> Option<Particulars> {
@@ -108,9 +116,7 @@ impl Mixture {
             })
             .collect();
         let made: Vec<&Draw> = all.iter().flatten().collect();
-        if (made.len() as f64) < FEWEST * draws as f64 || made.is_empty() {
-            return Err(PredictError::Lost { kind: kind.to_string(), made: made.len(), draws });
-        }
+        enough(kind, made.len(), draws)?;
         let values: Vec<Option<&[Figure]>> =
             all.iter().map(|draw| draw.as_ref().map(|draw| draw.figures.as_slice())).collect();
         let alone = shares.then(|| {
@@ -124,7 +130,7 @@ impl Mixture {
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         let mut rates: Vec<f64> = made.iter().map(|draw| draw.largest_rate).collect();
         rates.sort_by(f64::total_cmp);
-        let heading = bands(&made, most_probable.as_ref(), passage_period(self.timescale(), most_probable.as_ref()));
+        let heading = bands(&made, most_probable.as_ref(), passage::period(self.timescale()));
         Ok(Prediction {
             kind: *kind,
             figures,
@@ -179,10 +185,6 @@ impl Mixture {
     }
 }
 
-fn passage_period(timescale: f64, passage: Option<&Passage>) -> f64 {
-    passage.map_or(timescale, |passage| passage.period)
-}
-
 /// Figures from the draws, with the shares of sources that were drawn alone.
 fn predicted(draws: &[Option<&[Figure]>], alone: &[(Source, Vec<Option<Vec<Figure>>>)]) -> Vec<Predicted> {
     let Some(names) = draws.iter().flatten().next() else { return Vec::new() };
@@ -220,9 +222,8 @@ fn bands(draws: &[&Draw], most_probable: Option<&Passage>, period: f64) -> Bands
         if (values.len() as f64) < 0.9 * draws.len() as f64 || values.is_empty() {
             break;
         }
-        values.sort_by(f64::total_cmp);
         bands.time.push(row as f64 * period);
-        bands.quantiles.push([0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(&values, share)));
+        bands.quantiles.push(band(&mut values));
         let known = most_probable.and_then(|passage| passage.heading.get(row));
         bands.most_probable.push(known.copied().unwrap_or(f64::NAN));
     }

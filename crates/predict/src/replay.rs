@@ -9,12 +9,12 @@ use simulate::{Manoeuvre, Purpose, Side};
 use trial::{Channel, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::figures::{self, Figure};
-use crate::interval::{Interval, quantile};
+use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
+use crate::interval::{Interval, band};
 use crate::kind::{EXECUTES, Kind};
 use crate::mixture::{Mixture, Source};
 use crate::passage::{Passage, Way};
-use crate::prediction::Bands;
+use crate::prediction::{Bands, enough};
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
 const BEGINNING: f64 = 1.0;
@@ -136,9 +136,8 @@ impl Mixture {
             })
             .collect();
         let most_probable = sail(0, &[]).map(|(passage, _)| passage);
-        let (Some(most_probable), false) = (most_probable, 2 * made.len() < draws) else {
-            return Err(lost(made.len()));
-        };
+        enough(trial.name(), made.len(), draws)?;
+        let Some(most_probable) = most_probable else { return Err(lost(made.len())) };
         let measured: Vec<f64> = rows.iter().map(|&row| trial.heading()[row]).collect();
         let mut heading = Bands {
             time: rows.iter().map(|&row| trial.time()[row] - start).collect(),
@@ -149,8 +148,7 @@ impl Mixture {
         for row in 0..rows.len() {
             values.clear();
             values.extend(made.iter().map(|(_, headings)| headings[row]));
-            values.sort_by(f64::total_cmp);
-            heading.quantiles.push([0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(&values, share)));
+            heading.quantiles.push(band(&mut values));
         }
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
@@ -208,25 +206,17 @@ impl Mixture {
                 Some(figures::of(&kind, &passage, None))
             })
             .collect();
-        if 2 * drawn.len() < draws {
-            return Err(PredictError::Lost { kind: kind.to_string(), made: drawn.len(), draws });
-        }
+        enough(kind, drawn.len(), draws)?;
         let begin = executes[0].time.value;
         let value = |name: &str| -> Option<f64> {
             let overshoot = |n| measured.nth_overshoot(n).map(|overshoot| ship::angle::to_deg(overshoot.angle.value));
             let execute = |n: usize| executes.get(n).map(|execute| execute.time.value - begin);
-            match name {
-                "initial_turning_time_s" => measured.initial_turning_time.map(|time| time.value),
-                "first_overshoot_deg" => overshoot(1),
-                "second_overshoot_deg" => overshoot(2),
-                "third_overshoot_deg" => overshoot(3),
-                "fourth_overshoot_deg" => overshoot(4),
-                "second_execute_s" => execute(1),
-                "third_execute_s" => execute(2),
-                "fourth_execute_s" => execute(3),
-                "fifth_execute_s" => execute(4),
-                "sixth_execute_s" => execute(5),
-                "period_s" => measured.period.map(|period| period.value),
+            let place = |names: &[&str]| names.iter().position(|own| *own == name).map(|place| place + 1);
+            match (place(&OVERSHOOTS), place(&EXECUTE_TIMES), name) {
+                (Some(number), ..) => overshoot(number),
+                (_, Some(number), _) => execute(number),
+                (.., "initial_turning_time_s") => measured.initial_turning_time.map(|time| time.value),
+                (.., "period_s") => measured.period.map(|period| period.value),
                 _ => None,
             }
         };

@@ -1,7 +1,6 @@
 //! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship
 //! that is not stable on a straight course.
 
-use motion::{Hull, Planar};
 use ship::angle::to_deg;
 
 use crate::figures::Figure;
@@ -36,7 +35,7 @@ impl SteadyCurve {
     /// that no rudder makes are left out.
     pub fn of(ship: &Drawn, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
-            Some(hull) => hull_rudder(hull, rate),
+            Some(hull) => hull.steady_rudder(rate),
             None => ship.response.steady_rudder(rate),
         };
         Self::of_turns(steady, largest, timescale)
@@ -113,37 +112,6 @@ impl SteadyCurve {
             ("loop_height_deg_s", of_loop(|found| found.height)),
         ]
     }
-}
-
-/// Times L/U over which speed and drift of a hull settle in a turn, and steps in each.
-const SETTLING: [usize; 2] = [60, 8];
-
-/// Largest rudder that is looked at, rad.
-const LARGEST_RUDDER: f64 = 1.2;
-
-/// Rudder (rad) at which a hull turns steadily at a yaw rate (rad/s): speed and drift settle while the rudder keeps the
-/// rate (reversed spiral, Bech 1968). `None` where no rudder does.
-fn hull_rudder(hull: &Hull, rate: f64) -> Option<f64> {
-    let Planar { length, approach_speed, .. } = hull.planar;
-    let [lengths, steps] = SETTLING;
-    let step = length / approach_speed / steps as f64;
-    let (mut u, mut v, mut rudder) = (approach_speed, 0.0, 0.0);
-    for _ in 0..lengths * steps {
-        // Nearly linear in the rudder.
-        for _ in 0..3 {
-            let [here, there] = [rudder, rudder + 1e-3].map(|rudder| hull.yaw_acceleration(u, v, rate, rudder, 0.0));
-            let slope = (there - here) / 1e-3;
-            if slope.abs() < f64::MIN_POSITIVE {
-                return None;
-            }
-            rudder = (rudder - here / slope).clamp(-LARGEST_RUDDER, LARGEST_RUDDER);
-        }
-        let [du, dv] = hull.planar.rates(u, v, rate, rudder);
-        let (half_u, half_v) = (u + 0.5 * step * du, v + 0.5 * step * dv);
-        let [du, dv] = hull.planar.rates(half_u, half_v, rate, rudder);
-        (u, v) = (u + step * du, v + step * dv);
-    }
-    (rudder.abs() < LARGEST_RUDDER && u.is_finite() && v.is_finite()).then_some(rudder)
 }
 
 #[cfg(test)]

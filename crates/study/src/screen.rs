@@ -5,8 +5,10 @@
 use std::borrow::Cow;
 use std::io::{ErrorKind, Write};
 
+use report::Table;
 use report::printable::escaped;
 
+use crate::options::{Common, Format};
 use scenario::failure::{Blame, Failure};
 
 /// Writes lines of results to standard output and ends them with a line break.
@@ -25,6 +27,24 @@ pub fn say(lines: &str) -> Result<(), Failure> {
 /// Writes a line to standard error. Where that is not possible, nobody is there to be told.
 pub fn warn(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", shown(line));
+}
+
+/// Tells a result, unless nothing is to be said: a table in the format that was asked for with words before and behind
+/// it, and notes, which go to standard error where another program reads the table.
+///
+/// Fails as [`say`] does.
+pub fn tell(common: &Common, [before, behind]: [&str; 2], table: &Table, notes: &str) -> Result<(), Failure> {
+    if common.quiet {
+        return Ok(());
+    }
+    let table = common.format.render(table);
+    if common.format == Format::Text {
+        return say(&format!("{before}\n{table}{behind}{notes}"));
+    }
+    // Nothing else may stand beside it.
+    say(table.trim_end())?;
+    warn(notes.trim_start());
+    Ok(())
 }
 
 /// The lines without anything but text in them, as they are written.

@@ -1,18 +1,16 @@
 //! `study fit`: identify measured records with every method, replay the answers on them and on others.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
-use predict::KnownShip;
 use rayon::prelude::*;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
-use crate::options::{Common, FitRequest, Format};
+use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_repetition};
 use crate::views::fit_figures::{self, Drawn};
 use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
@@ -20,7 +18,7 @@ use crate::views::method_table;
 use crate::{progress, screen};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::folder::ResultFolder;
-use campaign::known;
+use campaign::known::{self, Shown};
 use scenario::failure::{Failure, OnPath};
 
 /// What other programs read.
@@ -55,12 +53,18 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
     let entries_of_trials: Vec<TrialEntry> =
         trials.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
+    let shown = Shown::of(&trials).with_motion();
     let file = FitFile {
         schema: "fit/1".into(),
         zigzag: entries_of_trials[0].zigzag.clone(),
         trials: entries_of_trials,
         methods: entries,
-        ships: with_motion(&answers, &trials),
+        ships: answers
+            .iter()
+            .filter_map(|(entry, estimate)| {
+                Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
+            })
+            .collect(),
     };
     let path = folder.path().join(FIT);
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
@@ -75,27 +79,18 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         .collect();
     fit_figures::draw(&records, &answers, &zigzags, &folder)?;
 
-    if !common.quiet {
-        let table = method_table::table(&file.methods, &names[trials.len()..]);
-        let table = common.format.render(&table);
-        let mut notes = renamed(&records) + &reasons(&file.methods);
-        for ((zigzag, entry), name) in zigzags.iter().zip(&file.trials).zip(&names) {
-            let of = if trials.len() > 1 { format!("{name}: ") } else { String::new() };
-            match (zigzag, &entry.zigzag) {
-                (_, Some(entry)) => notes += &format!("\n{of}{}", characteristics(entry)),
-                (Err(error), None) => notes += &format!("\n{of}no zig-zag characteristics: {error}\n"),
-                (Ok(_), None) => {}
-            }
-        }
-        notes += &format!("\nresults: {}", path.display());
-        if common.format == Format::Text {
-            screen::say(&format!("{}\n\n{table}{notes}", headline(&trials)))?;
-        } else {
-            // Another program reads the table: nothing else may stand beside it.
-            screen::say(table.trim_end())?;
-            screen::warn(notes.trim_start());
+    let mut notes = renamed(&records) + &reasons(&file.methods);
+    for ((zigzag, entry), name) in zigzags.iter().zip(&file.trials).zip(&names) {
+        let of = if trials.len() > 1 { format!("{name}: ") } else { String::new() };
+        match (zigzag, &entry.zigzag) {
+            (_, Some(entry)) => notes += &format!("\n{of}{}", characteristics(entry)),
+            (Err(error), None) => notes += &format!("\n{of}no zig-zag characteristics: {error}\n"),
+            (Ok(_), None) => {}
         }
     }
+    notes += &format!("\nresults: {}", path.display());
+    let table = method_table::table(&file.methods, &names[trials.len()..]);
+    screen::tell(common, [&format!("{}\n", headline(&trials)), ""], &table, &notes)?;
     for entry in &file.methods {
         warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
     }
@@ -103,24 +98,6 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         screen::warn(&format!("warning: {warning}"));
     }
     Ok(())
-}
-
-/// What every method with a covariance knows of the ship; speed and drift are the same for all.
-fn with_motion(answers: &[(MethodEntry, Option<Estimate>)], trials: &[Trial]) -> BTreeMap<String, KnownShip> {
-    let one = |(entry, estimate): &(MethodEntry, Option<Estimate>)| {
-        Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, trials)?))
-    };
-    let mut ships: BTreeMap<String, KnownShip> = answers.iter().filter_map(one).collect();
-    if let Some(first) = ships.values().next().cloned() {
-        let KnownShip { motion, hull, noise, .. } = known::with_motion(first, trials);
-        for ship in ships.values_mut() {
-            if hull.is_some() {
-                ship.noise.heading_sd_rad = noise.heading_sd_rad;
-            }
-            (ship.motion, ship.hull) = (motion.clone(), hull.clone());
-        }
-    }
-    ships
 }
 
 fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier>>, Failure> {

@@ -9,7 +9,7 @@ use ship::Particulars;
 use ship::angle::KNOT;
 use trial::file::{self, Kind};
 
-use crate::options::{Common, Format, PredictRequest, ReadingOptions};
+use crate::options::{Common, PredictRequest, ReadingOptions};
 use crate::records::{file_of, read_others};
 use crate::views::predict_file::{self, PredictFile};
 use crate::views::predict_report::Predicted;
@@ -115,21 +115,9 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         folder.write(&format!("{stem}.csv"), table)?;
     }
     folder.write("report.md", predict_page::page(&predicted, &drawn))?;
-    if !common.quiet {
-        let table = common.format.render(&predict_tables::figures(&predicted));
-        let notes = format!("results: {}", path.display());
-        if common.format == Format::Text {
-            screen::say(&format!(
-                "{}\n{table}{}\n{notes}",
-                predict_page::words(&predicted),
-                predict_page::rest(&predicted)
-            ))?;
-        } else {
-            // Another program reads the table: nothing else may stand beside it.
-            screen::say(table.trim_end())?;
-            screen::warn(&notes);
-        }
-    }
+    let words = [predict_page::words(&predicted), predict_page::rest(&predicted)];
+    let notes = format!("\nresults: {}", path.display());
+    screen::tell(common, words.each_ref().map(String::as_str), &predict_tables::figures(&predicted), &notes)?;
     for warning in warnings {
         screen::warn(&format!("warning: {warning}"));
     }

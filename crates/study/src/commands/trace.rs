@@ -5,7 +5,7 @@ use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
 use crate::commands::planned;
-use crate::options::{Common, Format, TraceRequest, Withheld};
+use crate::options::{Common, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read_all, read_others, warn_of_repetition};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
@@ -62,18 +62,9 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     }
     let drawn = trace_figures::draw(&report, &theme, &folder)?;
     folder.write("report.md", trace_page::page(&report, &drawn))?;
-    if !common.quiet {
-        let table = common.format.render(&trace_tables::errors(&report));
-        let words = trace_page::words(&report);
-        let notes = format!("results: {}", path.display());
-        if common.format == Format::Text {
-            screen::say(&format!("{words}\n\n{table}\n{notes}"))?;
-        } else {
-            // Another program reads the table: nothing else may stand beside it.
-            screen::say(table.trim_end())?;
-            screen::warn(&notes);
-        }
-    }
+    let notes = format!("\nresults: {}", path.display());
+    let words = format!("{}\n", trace_page::words(&report));
+    screen::tell(common, [&words, ""], &trace_tables::errors(&report), &notes)?;
     for warning in warnings {
         screen::warn(&format!("warning: {warning}"));
     }

@@ -6,7 +6,6 @@ use report::{Column, Table};
 use super::predict_tables::words;
 use super::tables::head_of_cells;
 use campaign::design::Design;
-use campaign::statistics::share;
 use campaign::summary::PredictionSummary;
 
 /// Every figure of every cell and method.
@@ -20,7 +19,7 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
         let (name, unit) = words(&line.name);
         cells.extend([design.methods[line.method].label.clone(), name, unit.to_owned(), line.trials.to_string()]);
-        cells.extend(percent(line.inside, line.trials));
+        cells.extend(percent(line));
         cells.extend([line.truth(), line.bias(), line.rms(), line.width()].map(|value| significant(value, 3)));
         table.push(cells);
     }
@@ -52,9 +51,9 @@ pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     table
 }
 
-/// A share with its 95 % interval.
-fn percent(inside: u64, trials: u64) -> [String; 3] {
-    let share = share(inside, trials);
+/// The share of trials whose interval holds, with its own 95 % interval.
+fn percent(line: &PredictionSummary) -> [String; 3] {
+    let share = line.coverage();
     let ends = share.and_then(|share| share.ci95);
     [share.map(|share| share.value), ends.map(|ends| ends[0]), ends.map(|ends| ends[1])]
         .map(|value| optional(value.map(|value| 100.0 * value), 1))

@@ -1,6 +1,7 @@
 //! The page of a prediction: words, tables and figures.
 
 use predict::Kind;
+use predict::replay::Replayed;
 use report::markdown::text;
 use report::number::fixed;
 use ship::angle::to_deg;
@@ -40,12 +41,7 @@ pub fn words(predicted: &Predicted) -> String {
 pub fn rest(predicted: &Predicted) -> String {
     let mut rest = String::new();
     for (trial, replayed) in &predicted.replays {
-        rest += &format!(
-            "\n{}: {} % of the headings are inside the 90 % band, rms {}°\n",
-            trial.name(),
-            fixed(100.0 * replayed.band_coverage_90, 0),
-            fixed(to_deg(replayed.rms), 2)
-        );
+        rest += &format!("\n{}: {}\n", trial.name(), coverage(replayed));
     }
     if !predicted.criteria.is_empty() {
         rest += &format!("\nIMO MSC.137(76)\n{}", predict_tables::criteria(predicted).to_text());
@@ -53,6 +49,15 @@ pub fn rest(predicted: &Predicted) -> String {
         rest += "\nIMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
     }
     rest
+}
+
+/// How near a record is to its replay.
+fn coverage(replayed: &Replayed) -> String {
+    format!(
+        "{} % of the headings are inside the 90 % band, rms {}°",
+        fixed(100.0 * replayed.band_coverage_90, 0),
+        fixed(to_deg(replayed.rms), 2)
+    )
 }
 
 /// The page.
@@ -75,12 +80,7 @@ pub fn page(predicted: &Predicted, drawn: &[(String, String)]) -> String {
         page += "\n## Records\n\nNothing is fitted to these records. The band is that of the recorded rudder; figures of a \
                  zig-zag are those of a helm that reverses the rudder at the headings of the record.\n\n";
         for (trial, replayed) in &predicted.replays {
-            page += &format!(
-                "- {}: {} % of the headings are inside the 90 % band, rms {}°\n",
-                text(trial.name()),
-                fixed(100.0 * replayed.band_coverage_90, 0),
-                fixed(to_deg(replayed.rms), 2)
-            );
+            page += &format!("- {}: {}\n", text(trial.name()), coverage(replayed));
         }
     }
     for (stem, caption) in drawn {

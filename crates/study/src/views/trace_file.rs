@@ -18,6 +18,7 @@ use super::trace_page;
 use super::trace_report::TraceReport;
 use crate::records::file_of;
 use campaign::answer::Parameters;
+use campaign::known::{self, Shown};
 
 /// K and T that follow the measured speed.
 #[derive(Debug, Serialize)]
@@ -340,7 +341,7 @@ impl TraceFile {
                 .filter(|(_, times)| !times.is_empty())
                 .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
                 .collect(),
-            ship: campaign::known::with_motion(campaign::known::of_analysis(analysis, report.trials), report.trials),
+            ship: known::of_analysis(analysis, &Shown::of(report.trials).with_motion()),
         }
     }
 }
