@@ -124,7 +124,7 @@ pub fn entry(
 }
 
 /// Root mean square replay error over all rows of all trials, deg.
-fn pooled_rmse_deg(trials: &[trial::Trial], estimate: &Estimate) -> Option<f64> {
+pub(crate) fn pooled_rmse_deg(trials: &[trial::Trial], estimate: &Estimate) -> Option<f64> {
     let mut square = 0.0;
     let mut rows = 0usize;
     for trial in trials {

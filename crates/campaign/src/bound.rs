@@ -4,42 +4,35 @@ mod coloured;
 
 use identify::{maximum_likelihood, output_error};
 use likelihood::{Moment, Noise};
-use nalgebra::{Matrix2, Matrix2x3};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3};
 use ship::FirstOrder;
 use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderColumn;
-use simulate::{Simulated, Simulation};
+use simulate::{Simulated, Simulation, StreamKey};
 
 use crate::rows::Bound;
 use coloured::CompassError;
 
-/// Cramér–Rao bound of one trial: as standard deviations, and as covariance of relative errors of K and T, %².
+/// Cramér–Rao bound of all records of one trial together: as standard deviations, and as covariance of relative errors of K and T, %².
 ///
 /// Random are the compass, the recorded rudder, the gyro, and one moment: a random walk or gusts. What the rest of the
 /// sea does is no noise but a fault of the model, which no bound knows. It leaves out spikes, too,
 /// which only take information away. `None` without heading noise, under two random moments at once, for a compass with
 /// a white and a coloured error where something else is random too, and for a record that does not determine the ship.
-pub fn of(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) -> Option<(Bound, Matrix2<f64>)> {
-    let white = simulation.sensors.declared_noise().heading;
-    let wander = simulation.sensors.heading.wander.filter(|wander| wander.sd > 0.0);
-    let compass = match (white, wander) {
-        (white, None) => Noise::compass(white?),
-        (_, Some(GaussMarkov { sd, correlation_time })) => {
-            Noise { heading_correlation: Some(correlation_time), ..Noise::compass(sd) }
-        }
-    };
-    let noise = noise(simulation, truth, compass)?;
-    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
-    let trial = &simulated.trial;
-    let covariance = match (white, wander) {
-        (Some(white), Some(coloured)) if noise == compass => {
-            coloured::cramer_rao(trial, truth, initial, &CompassError { white, coloured })?
-        }
-        (Some(_), Some(_)) => return None,
-        (_, None) if noise == compass => output_error::cramer_rao(trial, truth, initial, noise.heading_sd)?.matrix,
-        _ => maximum_likelihood::cramer_rao(trial, truth, initial, &noise)?.matrix,
-    };
+///
+/// What several records tell of the ship adds up, each with an initial state of its own.
+pub fn of<'a>(
+    simulations: impl Iterator<Item = (&'a Simulation, StreamKey)>,
+    simulated: &[Simulated],
+    truth: &FirstOrder,
+) -> Option<(Bound, Matrix2<f64>)> {
+    let mut records = simulations.zip(simulated).map(|((simulation, _), record)| of_record(simulation, record, truth));
+    let first = records.next()??;
+    let covariance = records.try_fold(first, |so_far, next| {
+        let information = so_far.cholesky()?.inverse() + next?.cholesky()?.inverse();
+        Some(information.cholesky()?.inverse())
+    })?;
     let (a, b) = (truth.inverse_T, truth.K_over_T);
     // Gradients of ln K = ln b − ln a and ln T = −ln a.
     let gradient = Matrix2x3::new(-1.0 / a, 1.0 / b, 0.0, -1.0 / a, 0.0, 0.0);
@@ -51,6 +44,29 @@ pub fn of(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) ->
     };
     let finite = [bound.k_per_s, bound.t_s, bound.k_over_t_per_s2].iter().all(|sd| sd.is_finite());
     finite.then_some((bound, relative * 1e4))
+}
+
+/// The bound of (1/T, K/T, K δ_r/T) from one record, its initial state unknown as well.
+fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) -> Option<Matrix3<f64>> {
+    let white = simulation.sensors.declared_noise().heading;
+    let wander = simulation.sensors.heading.wander.filter(|wander| wander.sd > 0.0);
+    let compass = match (white, wander) {
+        (white, None) => Noise::compass(white?),
+        (_, Some(GaussMarkov { sd, correlation_time })) => {
+            Noise { heading_correlation: Some(correlation_time), ..Noise::compass(sd) }
+        }
+    };
+    let noise = noise(simulation, truth, compass)?;
+    let initial = State { heading: *simulated.truth.heading.first()?, yaw_rate: *simulated.truth.yaw_rate.first()? };
+    let trial = &simulated.trial;
+    Some(match (white, wander) {
+        (Some(white), Some(coloured)) if noise == compass => {
+            coloured::cramer_rao(trial, truth, initial, &CompassError { white, coloured })?
+        }
+        (Some(_), Some(_)) => return None,
+        (_, None) if noise == compass => output_error::cramer_rao(trial, truth, initial, noise.heading_sd)?.matrix,
+        _ => maximum_likelihood::cramer_rao(trial, truth, initial, &noise)?.matrix,
+    })
 }
 
 /// What is random in trials of a simulation, beside the errors of its `compass`, as the likelihood of a first-order

@@ -8,23 +8,22 @@ use std::time::{Duration, Instant};
 
 use ::trace::analysis::{OnRecord, Traced};
 use ::trace::{Analysis, TraceError};
-use identify::replay::replay;
-use identify::{Estimate, Identifier, StopReason, output_error};
-use nalgebra::Matrix2;
+use identify::{Estimate, StopReason};
 use predict::KnownShip;
 use ship::FirstOrder;
 use ship::angle::to_deg;
-use simulate::recording::RudderColumn;
-use simulate::{Disturbances, Prepared, Recording, Sensors, SimulateError, Simulated, Simulation, StreamKey};
+use simulate::{Prepared, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
+use crate::answer::pooled_rmse_deg;
 use crate::design::CellFacts;
+use crate::foretell;
 use crate::known::{self, Shown};
-use crate::rows::{Bound, NamedEffect, Row, TraceAnswer};
+use crate::rows::{NamedEffect, Row, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
-use crate::{bound, foretell};
+use crate::yardstick::{Yardstick, nearest_first_order};
 use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
 
 /// Rows of one trial, and what they took.
@@ -40,11 +39,12 @@ pub fn key(scenario: &Scenario, task: Task) -> StreamKey {
     StreamKey { seed: scenario.seed, cell: task.cell as u64, replicate: task.replicate }
 }
 
-/// Simulates one trial.
-pub fn simulate(scenario: &Scenario, task: Task) -> Result<Simulated, String> {
+/// Simulates one trial: its record, and further ones of the same ship where the scenario asks for them.
+pub fn simulate(scenario: &Scenario, task: Task) -> Result<Vec<Simulated>, String> {
     let key = key(scenario, task);
     let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
-    specimen.specification.simulation.run(&key).map_err(|error| error.to_string())
+    let records = specimen.specification.records(&key).map(|(simulation, key)| simulation.run(&key));
+    records.collect::<Result<_, _>>().map_err(|error| error.to_string())
 }
 
 /// The responses that answers to a trial are held against.
@@ -60,67 +60,9 @@ pub struct Truths {
 pub fn truths(scenario: &Scenario, task: Task) -> Result<Truths, String> {
     let key = key(scenario, task);
     let specimen = scenario.cells[task.cell].specimen(&key).map_err(|refusal| refusal.to_string())?;
-    let Specification { simulation, truth, base, .. } = &*specimen.specification;
-    let nearest = truth.or_else(|| Some(nearest_first_order(simulation, &key)?.response));
+    let Specification { truth, base, .. } = &*specimen.specification;
+    let nearest = truth.or_else(|| Some(nearest_first_order(&specimen.specification, &key)?.response));
     Ok(Truths { nearest, own: base.filter(|_| truth.is_none()) })
-}
-
-/// What the trials of a cell are held against.
-struct Yardstick {
-    /// The first-order response that comes nearest to the ship: the ship itself where it is exactly first order.
-    nearest: Option<FirstOrder>,
-    /// The base of a response ship with effects, where that is another one.
-    own: Option<FirstOrder>,
-    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T,
-    /// %².
-    bound: Option<(Bound, Matrix2<f64>)>,
-    /// Undisturbed second manoeuvre, perfectly recorded.
-    validation: Option<Trial>,
-    /// What a likelihood ratio of the whole truth against the nearest first-order response would be on average.
-    expected: Option<f64>,
-}
-
-impl Yardstick {
-    fn of(specimen: &Specimen, simulated: &Simulated, key: &StreamKey, traces: bool) -> Self {
-        let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
-        let near = if truth.is_none() || traces { nearest_first_order(simulation, key) } else { None };
-        let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
-        let own = base.filter(|_| truth.is_none());
-        let sd = simulation.sensors.declared_noise().heading;
-        let bound = nearest.and_then(|nearest| bound::of(simulation, simulated, &nearest));
-        let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
-        // Of a likelihood with white heading noise: what has a colour is another one.
-        let compass = simulation.sensors.heading;
-        let white = sd.filter(|_| compass.wander.is_none());
-        let ratio =
-            |(near, sd): (Nearest, f64)| near.mean_square / (sd * sd) * near.rows.div_ceil(compass.every_rows) as f64;
-        let expected = near.filter(|_| traces).zip(white).map(ratio);
-        Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
-    }
-}
-
-/// The first-order response that comes nearest to an undisturbed, perfectly recorded trial, and how near.
-struct Nearest {
-    response: FirstOrder,
-    /// Mean square heading error, rad².
-    mean_square: f64,
-    rows: usize,
-}
-
-/// The first-order response nearest to the trial of a ship that is none.
-fn nearest_first_order(simulation: &Simulation, key: &StreamKey) -> Option<Nearest> {
-    let calm = Simulation {
-        disturbances: Disturbances::default(),
-        sensors: Sensors::default(),
-        recording: Recording { rudder: RudderColumn::Feedback, ..simulation.recording },
-        ..simulation.clone()
-    };
-    let trial = calm.run(key).ok()?.trial;
-    let method = output_error::Settings::default().build().ok()?;
-    let response = method.identify(std::slice::from_ref(&trial)).ok()?.response;
-    let residual = replay(&trial, &response)?.residual;
-    let rows = residual.len();
-    Some(Nearest { response, mean_square: residual.iter().map(|e| e * e).sum::<f64>() / rows as f64, rows })
 }
 
 /// Runs trials of one study; what all trials of a cell share is made once.
@@ -149,16 +91,18 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn simulate(&self, cell: usize, specimen: &Specimen, key: &StreamKey) -> Result<Simulated, SimulateError> {
-        let simulation = &specimen.specification.simulation;
+    fn simulate(&self, cell: usize, specimen: &Specimen, key: &StreamKey) -> Result<Vec<Simulated>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
-        match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
-            None => simulation.run(key),
+        let mut records = specimen.specification.records(key);
+        let (simulation, key) = records.next().expect("a trial has a record");
+        let first = match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
+            None => simulation.run(&key),
             Some(prepared) => match prepared.get_or_init(|| Prepared::new(simulation.clone())) {
-                Ok(prepared) => prepared.run(key),
+                Ok(prepared) => prepared.run(&key),
                 Err(error) => Err(error.clone()),
             },
-        }
+        };
+        std::iter::once(first).chain(records.map(|(simulation, key)| simulation.run(&key))).collect()
     }
 
     /// Runs one trial.
@@ -194,7 +138,8 @@ impl<'a> Bench<'a> {
         };
         let predictions = self.scenario.predictions.as_ref();
         let deeds = predictions.map(|asked| foretell::deeds(asked, &specimen.specification.simulation, &key));
-        let trials = std::slice::from_ref(&simulated.trial);
+        let trials: Vec<Trial> = simulated.into_iter().map(|record| record.trial).collect();
+        let trials = trials.as_slice();
         let shown = predictions.map(|_| Shown::of(trials));
         let predicted = |known: &dyn Fn(&Shown) -> Option<KnownShip>| {
             let ((asked, deeds), shown) = predictions.zip(deeds.as_ref()).zip(shown.as_ref())?;
@@ -208,13 +153,13 @@ impl<'a> Bench<'a> {
             let validation = yardstick.validation.as_ref();
             rows.push(match &method.procedure {
                 Procedure::Identify { identifier, .. } => {
-                    let answer = identify(identifier.as_ref(), &simulated.trial, &key);
+                    let answer = identify(identifier.as_ref(), trials, &key);
                     methods.push(start.elapsed());
                     match answer {
                         Err(error) => Row { failure: Some(error.kind().into()), ..blank },
                         Ok(estimate) => Row {
                             predicted: predicted(&|shown| known::of_estimate(&estimate, shown)),
-                            ..answered(blank, &simulated.trial, validation, &estimate)
+                            ..answered(blank, trials, validation, &estimate)
                         },
                     }
                 }
@@ -230,7 +175,7 @@ impl<'a> Bench<'a> {
                                 predicted: predicted(&|shown| {
                                     Some(known::of_analysis(&analysis, &shown.clone().with_motion()))
                                 }),
-                                ..traced(blank, validation, &analysis, missing, yardstick.expected)
+                                ..traced(blank, trials, validation, &analysis, missing, yardstick.expected)
                             }
                         }
                     }
@@ -264,6 +209,19 @@ fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Durat
     Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }
 }
 
+/// Root mean square heading error of a traced model over all rows of its records, rad.
+fn misfit(analysis: &Analysis, trials: &[Trial]) -> f64 {
+    let errors = analysis.identification.iter().map(|judged| judged.after.errors.heading);
+    let mut errors = errors.zip(trials.iter().map(|trial| trial.len() as f64));
+    match errors.len() {
+        1 => errors.next().map_or(f64::NAN, |(error, _)| error),
+        _ => {
+            let (square, rows) = errors.fold((0.0, 0.0), |(square, rows), (e, n)| (square + e * e * n, rows + n));
+            (square / rows).sqrt()
+        }
+    }
+}
+
 /// Why there is no trace, in a word.
 fn reason(error: &TraceError) -> &'static str {
     match error {
@@ -277,6 +235,7 @@ fn reason(error: &TraceError) -> &'static str {
 /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
 fn traced(
     blank: Row,
+    trials: &[Trial],
     validation: Option<&Trial>,
     analysis: &Analysis,
     missing: &[String],
@@ -290,9 +249,10 @@ fn traced(
         NamedEffect { id: effect.id.into(), aliases: ids[1..].iter().map(|&id| id.into()).collect() }
     };
     let [k, t] = analysis.indices;
-    let bias = analysis.rudder_bias.expect("one record has one rudder bias");
+    // Several records may have a rudder bias each.
+    let bias = analysis.rudder_bias.unwrap_or(Quantity::bare(f64::NAN));
     Row {
-        heading_rmse_deg: finite(to_deg(analysis.identification[0].after.errors.heading)),
+        heading_rmse_deg: finite(to_deg(misfit(analysis, trials))),
         validation_rmse_deg: elsewhere.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
         stop: Some(StopReason::Converged.as_str()),
         traced: Some(Box::new(TraceAnswer {
@@ -344,11 +304,11 @@ fn with_indices(blank: Row, [k, t, bias]: [Quantity; 3]) -> Row {
     }
 }
 
-fn answered(blank: Row, trial: &Trial, validation: Option<&Trial>, estimate: &Estimate) -> Row {
-    let error = |trial: &Trial| replay(trial, &estimate.response).map(|replay| to_deg(replay.rms()));
+fn answered(blank: Row, trials: &[Trial], validation: Option<&Trial>, estimate: &Estimate) -> Row {
+    let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
     Row {
-        heading_rmse_deg: error(trial),
-        validation_rmse_deg: validation.and_then(error),
+        heading_rmse_deg: error(trials),
+        validation_rmse_deg: validation.and_then(|trial| error(std::slice::from_ref(trial))),
         evaluations: Some(estimate.evaluations as u64),
         stop: Some(estimate.stop.as_str()),
         ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
@@ -403,6 +363,36 @@ method.output-error = {}
         let scenario = Scenario::parse(Path::new("s.toml"), "s", format!("{TEXT}{more}"), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
         Bench::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
+    }
+
+    /// Information of separate records adds up: the bound of two is that of 1/(1/a + 1/b) where they tell alike, and
+    /// what a method makes of both is nearer than what it makes of one.
+    #[test]
+    fn further_records_of_the_ship_are_identified_together() {
+        let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
+        let linear = TEXT.replace("[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 1.0\n", "");
+        let of = |text: &str, trials: u64| -> Vec<Row> {
+            let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
+            let bench = Bench::new(&scenario, 0..=0);
+            (0..trials).map(|replicate| bench.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
+        };
+        let (one, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
+        let bound = |rows: &[Row]| rows[0].bound.expect("white noise").k_per_s;
+        let share = bound(&both) / bound(&one);
+        assert!((share - 0.5f64.sqrt()).abs() < 0.01, "two records of one manoeuvre: {share}");
+        let spread = |rows: &[Row]| {
+            let square = rows.iter().map(|row| row.k_error().expect("an answer").powi(2)).sum::<f64>();
+            (square / rows.len() as f64).sqrt() * 0.1
+        };
+        assert!((0.8..1.25).contains(&(spread(&both) / bound(&both))), "{} {}", spread(&both), bound(&both));
+        let first = |text: &str| {
+            let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
+            simulate(&scenario, Task { cell: 0, replicate: 0 }).expect("records").into_iter().map(|one| one.trial)
+        };
+        let records: Vec<Trial> = first(&format!("{linear}{further}")).collect();
+        let alone = first(&linear).next().expect("a record");
+        assert_eq!(alone.heading(), records[0].heading(), "a further record does not change the first");
+        assert_ne!(records[0].heading(), records[1].heading(), "each has a chance of its own");
     }
 
     /// The ship is the same whoever asks: a trace beside a method changes nothing of what the method is held against.

@@ -39,5 +39,6 @@ pub mod summary;
 pub mod task;
 pub mod timings;
 pub mod unfinished;
+mod yardstick;
 
 pub use observer::{Observer, Unwatched};

@@ -45,15 +45,16 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
     let first = Task { cell: index, replicate: 0 };
     let simulated = engine::simulate(scenario, first).ok()?;
     let truth_of_ship = cell.specimen(&engine::key(scenario, first)).ok()?.specification.truth;
-    let (trial, truth) = (&simulated.trial, &simulated.truth);
+    let trials: Vec<Trial> = simulated.iter().map(|record| record.trial.clone()).collect();
+    let (trial, truth) = (&trials[0], &simulated[0].truth);
     let answers: Vec<(MethodEntry, Option<Estimate>)> = cell
         .methods
         .iter()
         .filter_map(|method| {
             // A trace is no first-order response; it has a report of its own.
             let Procedure::Identify { identifier, .. } = &method.procedure else { return None };
-            let answer = identify(identifier.as_ref(), trial, &engine::key(scenario, first));
-            Some(entry(&method.label, answer, std::slice::from_ref(trial)))
+            let answer = identify(identifier.as_ref(), &trials, &engine::key(scenario, first));
+            Some(entry(&method.label, answer, &trials))
         })
         .collect();
     let title = |what: &str| match cell.labels.is_empty() {

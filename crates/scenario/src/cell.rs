@@ -64,6 +64,11 @@ impl Cell {
         self.methods.iter().any(|method| matches!(method.procedure, Procedure::Trace(_)))
     }
 
+    /// Records of each of its trials.
+    pub fn records(&self) -> usize {
+        1 + self.specification.also.len()
+    }
+
     /// Effects a first-order base lacks in its trials.
     pub fn missing(&self) -> Vec<String> {
         self.specification.missing.clone()

@@ -88,7 +88,8 @@ impl DrawWire {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
         limits::depth(&key, &place.child("key"))?;
-        let is_of_trial = |first: &String| Part::of(first) == Part::Trial && first != "validation";
+        let is_of_trial =
+            |first: &String| Part::of(first) == Part::Trial && !["validation", "also"].contains(&first.as_str());
         if !key.parts().first().is_some_and(is_of_trial) {
             return Err(Problem::value(
                 place.child("key"),

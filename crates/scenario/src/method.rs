@@ -51,10 +51,10 @@ pub struct MethodName {
     pub id: String,
 }
 
-/// Identifies one trial; a method that draws at random draws from the stream of this trial.
-pub fn identify(identifier: &dyn Identifier, trial: &Trial, key: &StreamKey) -> Result<Estimate, IdentifyError> {
+/// Identifies all records of one trial together; a method that draws at random draws from the stream of this trial.
+pub fn identify(identifier: &dyn Identifier, trials: &[Trial], key: &StreamKey) -> Result<Estimate, IdentifyError> {
     let own = identifier.with_seed(key.rng(Purpose::Method).random());
-    own.as_deref().unwrap_or(identifier).identify(std::slice::from_ref(trial))
+    own.as_deref().unwrap_or(identifier).identify(trials)
 }
 
 /// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks.

@@ -15,7 +15,7 @@ use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::problem::{KeyPath, Problem, suggestion};
 use crate::specification::{HULL, Specification};
-use crate::wire::{FirstOrderWire, ScenarioWire, SecondOrderWire, ValidationWire};
+use crate::wire::{AlsoWire, FirstOrderWire, ScenarioWire, SecondOrderWire, ValidationWire};
 use crate::{effect, reader, sweep};
 
 /// Resolves everything about a trial.
@@ -30,6 +30,9 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
         disturbances: wire.disturbance.build()?,
         ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, folder)?)
     })?;
+    let also = wire.also.iter().enumerate();
+    let also =
+        also.map(|(index, further)| also_steered(further, index, &simulation, folder)).collect::<Result<_, _>>()?;
     let validation = wire.validation.as_ref().map(|second| validation(second, &simulation, folder)).transpose()?;
     let base = match &ship.model {
         Model::Response(response) => Some(response.first_order()),
@@ -37,6 +40,7 @@ pub fn specification(wire: &ScenarioWire, folder: &Path) -> Result<Specification
     };
     let assumed = Assumption::ALL.map(|assumption| assumption.holds(&wire.steering_gear, &simulation));
     Ok(Specification {
+        also,
         validation,
         truth: ship.first_order(),
         base,
@@ -65,6 +69,31 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     missing
 }
 
+/// A further record: the same ship, gear, helmsman, weather and instruments in another manoeuvre.
+fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
+    let recording = match &wire.recording {
+        Some(own) => own.build(),
+        None => Ok(trial.recording),
+    };
+    let resolved = recording.map_err(Problem::from).and_then(|recording| {
+        let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;
+        Ok(settings::checked(Simulation { recording, manoeuvre, ..trial.clone() })?)
+    });
+    resolved.map_err(|problem| {
+        let what = format!("in the further record {}", index + 1);
+        inside(problem, KeyPath::dotted("also").child(index), &what)
+    })
+}
+
+/// What both share has been checked with the first manoeuvre, so what is wrong now is of the other one.
+fn inside(problem: Problem, place: KeyPath, what: &str) -> Problem {
+    Problem {
+        key: problem.key.parts().iter().fold(place, |key, part| key.child(part)),
+        found: format!("{what}, {}", problem.found),
+        ..problem
+    }
+}
+
 /// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so
 /// that the error of a replay is that of the response.
 fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
@@ -82,12 +111,7 @@ fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Resul
         };
         Ok(settings::checked(simulation)?)
     };
-    // What both share has been checked with the first manoeuvre, so what is wrong now is of the second.
-    resolved().map_err(|problem: Problem| Problem {
-        key: problem.key.parts().iter().fold(KeyPath::dotted("validation"), |key, part| key.child(part)),
-        found: format!("in the validation manoeuvre, {}", problem.found),
-        ..problem
-    })
+    resolved().map_err(|problem| inside(problem, KeyPath::dotted("validation"), "in the validation manoeuvre"))
 }
 
 /// The ship that a scenario names, or describes by numbers of its own.

@@ -9,7 +9,7 @@ use crate::wire::{FirstOrderWire, ScenarioWire, SecondOrderWire};
 use crate::{effect, reader, resolve};
 
 /// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
-const ORDER: [&str; 15] = [
+const ORDER: [&str; 16] = [
     "question",
     "analysis",
     "finding",
@@ -18,6 +18,7 @@ const ORDER: [&str; 15] = [
     "ship",
     "effect",
     "manoeuvre",
+    "also",
     "steering-gear",
     "helmsman",
     "approach",
@@ -37,6 +38,9 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
     wire.steering_gear = wire.steering_gear.complete(&wire.steering_gear.build(&ship)?);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());
+    }
+    for also in &mut wire.also {
+        also.recording.get_or_insert_with(|| wire.recording.clone());
     }
     if let Some(validation) = &mut wire.validation {
         let RecordingSettings { sampling_s, duration_s, .. } = wire.recording;
@@ -110,7 +114,11 @@ impl Lines {
 
     /// Settings that have no value here, with what that means.
     fn left_out(&mut self, path: &[&str], table: &Table) {
-        let path = path.strip_prefix(&["validation"]).unwrap_or(path).join(".");
+        let path = path
+            .split_first()
+            .filter(|(first, _)| ["validation", "also"].contains(first))
+            .map_or(path, |(_, rest)| rest)
+            .join(".");
         for Key { key, unit, default, meaning } in &self.keys {
             let name = key.strip_prefix(&path).and_then(|rest| rest.strip_prefix('.'));
             let Some(name) = name.filter(|name| !name.contains('.') && !table.contains_key(*name)) else { continue };

@@ -1,14 +1,16 @@
 //! What the engine accepts: everything about a trial but its chance.
 
 use ship::FirstOrder;
-use simulate::Simulation;
 use simulate::settings::Assumption;
+use simulate::{Simulation, StreamKey};
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]
 pub struct Specification {
     /// How a trial is made.
     pub simulation: Simulation,
+    /// Further records of the same ship, which methods identify together with that of the trial.
+    pub also: Vec<Simulation>,
     /// A second manoeuvre of the same ship, in a calm and perfectly recorded.
     pub validation: Option<Simulation>,
     /// The truth, where the ship is exactly first order.
@@ -28,8 +30,17 @@ pub const HULL: &str = "hull";
 impl Specification {
     /// Trials carry the name of their scenario.
     pub fn name(&mut self, scenario: &str) {
-        for simulation in [Some(&mut self.simulation), self.validation.as_mut()].into_iter().flatten() {
+        let first = std::iter::once(&mut self.simulation);
+        for simulation in first.chain(&mut self.also).chain(&mut self.validation) {
             simulation.scenario = scenario.to_owned();
         }
+    }
+
+    /// How every record of a trial is made, with the key of its own chance.
+    pub fn records(&self, key: &StreamKey) -> impl Iterator<Item = (&Simulation, StreamKey)> {
+        /// Odd, so that no two of 2⁶⁴ records share a seed.
+        const NEXT: u64 = 0x9E37_79B9_7F4A_7C15;
+        let own = |number: usize| StreamKey { seed: key.seed.wrapping_add(NEXT.wrapping_mul(number as u64)), ..*key };
+        std::iter::once(&self.simulation).chain(&self.also).enumerate().map(move |(number, one)| (one, own(number)))
     }
 }

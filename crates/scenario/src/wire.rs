@@ -37,6 +37,8 @@ pub struct ScenarioWire {
     pub effect: Vec<EffectWire>,
     pub manoeuvre: ManoeuvreSettings,
     #[serde(default)]
+    pub also: Vec<AlsoWire>,
+    #[serde(default)]
     pub steering_gear: GearSettings,
     #[serde(default)]
     pub helmsman: HelmsmanSettings,
@@ -62,6 +64,15 @@ pub struct ScenarioWire {
 
 fn one() -> u64 {
     1
+}
+
+/// A further record of the same ship, in the same weather and with the same instruments.
+#[derive(Debug, Clone, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct AlsoWire {
+    pub manoeuvre: ManoeuvreSettings,
+    /// That of the trial when left out.
+    pub recording: Option<RecordingSettings>,
 }
 
 /// A second manoeuvre, which no method sees.

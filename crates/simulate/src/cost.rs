@@ -13,7 +13,6 @@ use crate::recording::{Recording, Start};
 use crate::simulation::Simulation;
 use crate::vessel::Solver;
 use crate::wave_path;
-use crate::weather::GRID;
 
 /// What a run may take at most.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -127,7 +126,7 @@ impl Simulation {
             Watches::TrueHeading => 0.0,
             Watches::Display { period } => 1.0 / period,
         };
-        let weather = if self.disturbances.change() { 1.0 / GRID } else { 0.0 };
+        let weather = if self.disturbances.change() { 1.0 / self.weather_grid } else { 0.0 };
         let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
         let seas = self.disturbances.waves.iter().chain(self.vessel.random_headings()).map(sea).sum::<f64>();
         // The rows, and the instants at which instruments are read.

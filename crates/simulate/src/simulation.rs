@@ -23,7 +23,7 @@ use crate::sensor::Sensors;
 use crate::stream::StreamKey;
 use crate::vessel::{Solver, Vessel};
 use crate::wave_path::Waves;
-use crate::weather::Weather;
+use crate::weather::{GRID, Weather};
 
 /// How the ship comes to the first execute.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -87,6 +87,9 @@ pub struct Simulation {
     pub recording: Recording,
     /// How the motion is computed.
     pub solver: Solver,
+    /// Width of the cells in which weather is drawn, s, linear within a cell: short against every correlation time of
+    /// the weather and every time constant of the ship.
+    pub weather_grid: f64,
     /// Longest time to wait for a heading after an execute, s; a ship that does not reach it then is an error.
     pub longest_wait: f64,
 }
@@ -179,6 +182,7 @@ impl Simulation {
             sensors: Sensors::default(),
             recording: Recording::default(),
             solver: Solver::default(),
+            weather_grid: GRID,
             longest_wait: LONGEST_WAIT,
         }
     }
@@ -193,6 +197,7 @@ impl Simulation {
         self.recording.validate()?;
         self.approach.validate()?;
         error::positive_time("longest_wait", self.longest_wait)?;
+        error::between("weather_grid", self.weather_grid, SHORTEST_STEP, LONGEST_STEP)?;
         if let Solver::RungeKutta(step) = self.solver {
             error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
         }
@@ -239,7 +244,7 @@ impl Simulation {
     /// Moves the ship from the beginning to the end of its record.
     fn sail(&self, key: &StreamKey) -> Result<Passage, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
-        let weather = || Weather::new(&self.disturbances, key);
+        let weather = || Weather::new(&self.disturbances, self.weather_grid, key);
         match self.closed_form() {
             Some(ship) => self.drive(key, || ClosedForm::new(ship, weather(), approach, self.recording.period)),
             None => {

@@ -1,5 +1,5 @@
-//! The weather of one run: the moments of [`Disturbances`] that are functions of time, drawn cell by cell on a fixed
-//! grid and linear within a cell. Because the grid depends on nothing but itself, the weather is the same whatever the
+//! The weather of one run: the moments of [`Disturbances`] that are functions of time, drawn cell by cell on a grid
+//! and linear within a cell. Because the grid depends on nothing but itself, the weather is the same whatever the
 //! step of the solver, the sampling and the helmsman do. Wind as a function of heading is evaluated by the propagator.
 
 use rand::rngs::ChaCha8Rng;
@@ -7,7 +7,7 @@ use rand::rngs::ChaCha8Rng;
 use crate::disturbance::{Disturbances, GaussMarkov, Squall};
 use crate::stream::{Purpose, StreamKey, normal};
 
-/// Width of a cell, s: short against every correlation time of weather and every time constant of a ship.
+/// Width of a cell, s, unless a simulation asks for another: short against every correlation time of weather and every time constant of a ship.
 pub(crate) const GRID: f64 = 0.1;
 
 /// The weather within one cell, linear in time.
@@ -17,6 +17,8 @@ pub(crate) struct Cell {
     pub start: f64,
     /// End, s; infinite when nothing ever changes.
     pub end: f64,
+    /// Width, s.
+    pub width: f64,
     moment: [f64; 2],
     gust: [f64; 2],
 }
@@ -25,7 +27,7 @@ impl Cell {
     /// Slope of the moment, rad/s.
     #[inline]
     pub fn moment_slope(&self) -> f64 {
-        (self.moment[1] - self.moment[0]) / GRID
+        (self.moment[1] - self.moment[0]) / self.width
     }
 
     /// Moment that depends on time alone, as equivalent rudder angle, rad.
@@ -37,7 +39,7 @@ impl Cell {
     /// Factor 1 + g on the moment of the wind.
     #[inline]
     pub fn gust(&self, t: f64) -> f64 {
-        self.gust[0] + (self.gust[1] - self.gust[0]) / GRID * (t - self.start)
+        self.gust[0] + (self.gust[1] - self.gust[0]) / self.width * (t - self.start)
     }
 }
 
@@ -51,8 +53,8 @@ struct Chain {
 }
 
 impl Chain {
-    fn new(process: &GaussMarkov, mut rng: ChaCha8Rng) -> Self {
-        let decay = (-GRID / process.correlation_time).exp();
+    fn new(process: &GaussMarkov, grid: f64, mut rng: ChaCha8Rng) -> Self {
+        let decay = (-grid / process.correlation_time).exp();
         let value = process.sd * normal(&mut rng);
         Self { rng, value, decay, kick: process.sd * (1.0 - decay * decay).sqrt() }
     }
@@ -75,11 +77,11 @@ pub(crate) struct Weather {
 }
 
 impl Weather {
-    /// The weather at the beginning of a run.
-    pub fn new(disturbances: &Disturbances, key: &StreamKey) -> Self {
+    /// The weather at the beginning of a run, in cells of `grid` s.
+    pub fn new(disturbances: &Disturbances, grid: f64, key: &StreamKey) -> Self {
         let gusting = disturbances.wind.and_then(|wind| wind.gusting);
         let mut weather = Self {
-            cell: Cell { start: 0.0, end: f64::INFINITY, moment: [0.0; 2], gust: [1.0; 2] },
+            cell: Cell { start: 0.0, end: f64::INFINITY, width: grid, moment: [0.0; 2], gust: [1.0; 2] },
             index: 0,
             drift: disturbances.drift,
             squall: disturbances.squall,
@@ -87,16 +89,16 @@ impl Weather {
                 rng: key.rng(Purpose::RandomWalk),
                 value: 0.0,
                 decay: 1.0,
-                kick: disturbances.random_walk * GRID.sqrt(),
+                kick: disturbances.random_walk * grid.sqrt(),
             }),
-            gusts: disturbances.gusts.map(|process| Chain::new(&process, key.rng(Purpose::Gust))),
-            gusting: gusting.map(|process| Chain::new(&process, key.rng(Purpose::WindGust))),
+            gusts: disturbances.gusts.map(|process| Chain::new(&process, grid, key.rng(Purpose::Gust))),
+            gusting: gusting.map(|process| Chain::new(&process, grid, key.rng(Purpose::WindGust))),
         };
         if disturbances.change() {
-            weather.cell.end = GRID;
+            weather.cell.end = grid;
             let (moment, gust) = (weather.moment(0.0), weather.gust());
             weather.step();
-            weather.cell.moment = [moment, weather.moment(GRID)];
+            weather.cell.moment = [moment, weather.moment(grid)];
             weather.cell.gust = [gust, weather.gust()];
         }
         weather
@@ -111,11 +113,12 @@ impl Weather {
     /// Makes the cell that follows the current one.
     pub fn enter_next(&mut self) {
         self.index += 1;
-        let end = (self.index + 1) as f64 * GRID;
+        let end = (self.index + 1) as f64 * self.cell.width;
         self.step();
         self.cell = Cell {
             start: self.cell.end,
             end,
+            width: self.cell.width,
             moment: [self.cell.moment[1], self.moment(end)],
             gust: [self.cell.gust[1], self.gust()],
         };
@@ -143,7 +146,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn path(disturbances: &Disturbances, cells: usize, replicate: u64) -> Vec<[f64; 2]> {
-        let mut weather = Weather::new(disturbances, &StreamKey { seed: 11, cell: 0, replicate });
+        let mut weather = Weather::new(disturbances, GRID, &StreamKey { seed: 11, cell: 0, replicate });
         (0..cells)
             .map(|_| {
                 let cell = *weather.cell();

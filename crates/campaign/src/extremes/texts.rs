@@ -206,6 +206,15 @@ duration-s = 270.0
 rudder = \"orders\"
 assumed-rudder-rate-deg-s = 2.5
 
+[[also]]
+[also.manoeuvre.zig-zag]
+rudder-deg = 20.0
+heading-deg = 20.0
+
+[also.recording]
+sampling-s = 1.0
+duration-s = 270.0
+
 [validation.manoeuvre.zig-zag]
 rudder-deg = 20.0
 heading-deg = 20.0

@@ -7,7 +7,7 @@ use crate::gear::{RudderPath, Segment, Shape};
 use crate::propagate::propagator::{Limits, Propagator, acting, has_diverged};
 use crate::recording::Tap;
 use crate::sample::Sample;
-use crate::weather::{GRID, Weather};
+use crate::weather::Weather;
 
 /// Longest step, s, and longest step in units of |T|: a course-unstable ship must be caught before it overflows.
 const LONGEST_STEP: f64 = 60.0;
@@ -35,7 +35,7 @@ impl ClosedForm {
     /// The ship at time 0; `period` is the step most often asked for, s.
     pub fn new(ship: FirstOrder, weather: Weather, state: State, period: f64) -> Self {
         let longest = Self::longest_step(&ship);
-        let usual = [period, GRID].map(|h| Transition::new(ship.inverse_T, h));
+        let usual = [period, weather.cell().width].map(|h| Transition::new(ship.inverse_T, h));
         Self { ship, weather, time: 0.0, state, candidate: state, cursor: 0, longest, usual }
     }
 

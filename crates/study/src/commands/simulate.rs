@@ -30,15 +30,16 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
         return Err(Failure::input("no place for the records is given; add --out FILE.csv or --out DIR"));
     };
     let tasks = tasks(&scenario, request)?;
+    let records: u64 = tasks.iter().map(|task| scenario.cells[task.cell].records() as u64).sum();
     let is_file = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    let (folder, names) = match (is_file, tasks.len()) {
+    let (folder, names) = match (is_file, records) {
         (true, 1) => {
             let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
             (ResultFolder::shared(parent)?, vec![scenario::name::of_file(out)?])
         }
         (true, several) => {
             return Err(Failure::input(format!(
-                "--out {} is one file, and {several} trials are asked for; name a folder, or one of them with --cell and \
+                "--out {} is one file, and {several} records are asked for; name a folder, or one trial with --cell and \
                  --replicate",
                 out.display()
             )));
@@ -55,9 +56,9 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
     if common.quiet {
         return Ok(());
     }
-    match names.as_slice() {
-        [name] => screen::say(&format!("{}", folder.path().join(format!("{name}.csv")).display())),
-        names => screen::say(&format!("{} records in {}", names.len(), folder.path().display())),
+    match (names.as_slice(), records) {
+        ([name], 1) => screen::say(&format!("{}", folder.path().join(format!("{name}.csv")).display())),
+        _ => screen::say(&format!("{records} records in {}", folder.path().display())),
     }
 }
 
@@ -115,7 +116,7 @@ fn name_of(scenario: &Scenario, task: Task) -> String {
     name
 }
 
-/// Writes one record, its sidecar where the ship has a length, and its truth.
+/// Writes the records of a trial, the sidecar of each where the ship has a length, and its truth.
 fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
     let refuse = |error: String| {
         Failure::work(format!(
@@ -123,8 +124,17 @@ fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> 
             task.replicate, task.cell, scenario.name
         ))
     };
-    let simulated: Simulated = engine::simulate(scenario, task).map_err(refuse)?;
+    let records: Vec<Simulated> = engine::simulate(scenario, task).map_err(refuse)?;
     let truths: Truths = engine::truths(scenario, task).map_err(refuse)?;
+    for (number, simulated) in records.iter().enumerate() {
+        let name = if number == 0 { name.to_owned() } else { format!("{name}-also-{number}") };
+        let truth = TruthFile::of(scenario, task, simulated, truths).map_err(refuse)?;
+        write_record(simulated, &truth, &name, folder)?;
+    }
+    Ok(())
+}
+
+fn write_record(simulated: &Simulated, truth: &TruthFile, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
     let path: PathBuf = folder.path().join(format!("{name}.csv"));
     let mut table = Vec::new();
     trial::write_csv(&simulated.trial, &mut table).on("write", &path)?;
@@ -133,7 +143,6 @@ fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> 
         let sidecar = format!("[ship]\nlength-m = {:?}\nspeed-m-s = {:?}\n", particulars.length, particulars.speed);
         folder.write(&format!("{name}.trial.toml"), sidecar)?;
     }
-    let truth = TruthFile::of(scenario, task, &simulated, truths).map_err(refuse)?;
-    let text = serde_json::to_string(&truth).on("describe", &path)?;
+    let text = serde_json::to_string(truth).on("describe", &path)?;
     folder.write(&format!("{name}.truth.json"), text + "\n")
 }

@@ -1,0 +1,78 @@
+//! What the answers to a trial are held against: the truth, the bound, and a manoeuvre that no method sees.
+
+use identify::replay::replay;
+use identify::{Identifier, output_error};
+use nalgebra::Matrix2;
+use ship::FirstOrder;
+use simulate::recording::RudderColumn;
+use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKey};
+use trial::Trial;
+
+use crate::bound;
+use crate::rows::Bound;
+use scenario::{Specification, Specimen};
+
+/// What the trials of a cell are held against.
+pub struct Yardstick {
+    /// The first-order response that comes nearest to the ship: the ship itself where it is exactly first order.
+    pub nearest: Option<FirstOrder>,
+    /// The base of a response ship with effects, where that is another one.
+    pub own: Option<FirstOrder>,
+    /// Best covariance of (1/T, K/T, δ_r) on this trial, as [`Bound`] and as covariance of relative errors of K and T,
+    /// %².
+    pub bound: Option<(Bound, Matrix2<f64>)>,
+    /// Undisturbed second manoeuvre, perfectly recorded.
+    pub validation: Option<Trial>,
+    /// What a likelihood ratio of the whole truth against the nearest first-order response would be on average.
+    pub expected: Option<f64>,
+}
+
+impl Yardstick {
+    /// Of a trial with this chance; `traces` when a trace is among the methods.
+    pub fn of(specimen: &Specimen, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
+        let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
+        let near = if truth.is_none() || traces { nearest_first_order(&specimen.specification, key) } else { None };
+        let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
+        let own = base.filter(|_| truth.is_none());
+        let sd = simulation.sensors.declared_noise().heading;
+        let bound = nearest.and_then(|nearest| bound::of(specimen.specification.records(key), simulated, &nearest));
+        let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
+        // Of a likelihood with white heading noise: what has a colour is another one.
+        let compass = simulation.sensors.heading;
+        let white = sd.filter(|_| compass.wander.is_none());
+        let ratio =
+            |(near, sd): (Nearest, f64)| near.mean_square / (sd * sd) * near.rows.div_ceil(compass.every_rows) as f64;
+        let expected = near.filter(|_| traces).zip(white).map(ratio);
+        Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
+    }
+}
+
+/// The first-order response that comes nearest to undisturbed, perfectly recorded records of a trial, and how near.
+pub struct Nearest {
+    /// The response.
+    pub response: FirstOrder,
+    /// Mean square heading error, rad².
+    mean_square: f64,
+    rows: usize,
+}
+
+/// The first-order response nearest to the trial of a ship that is none.
+pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Option<Nearest> {
+    let calm = |(simulation, key): (&Simulation, StreamKey)| {
+        let calm = Simulation {
+            disturbances: Disturbances::default(),
+            sensors: Sensors::default(),
+            recording: Recording { rudder: RudderColumn::Feedback, ..simulation.recording },
+            ..simulation.clone()
+        };
+        Some(calm.run(&key).ok()?.trial)
+    };
+    let trials: Vec<Trial> = specification.records(key).map(calm).collect::<Option<_>>()?;
+    let method = output_error::Settings::default().build().ok()?;
+    let response = method.identify(&trials).ok()?.response;
+    let residuals: Vec<Vec<f64>> =
+        trials.iter().map(|trial| Some(replay(trial, &response)?.residual)).collect::<Option<_>>()?;
+    let rows = residuals.iter().map(Vec::len).sum();
+    let square: f64 = residuals.iter().flatten().map(|e| e * e).sum();
+    Some(Nearest { response, mean_square: square / rows as f64, rows })
+}
