@@ -17,6 +17,7 @@
 //! | a hull of three degrees of freedom | [`Hull`] |
 //! | the path over ground | [`track`] |
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
+//! | a current that two rounds show | [`current`](current()) |
 //!
 //! Propeller revolutions are constant, as they are in trials that keep to the rules; a ship that is slowed down by its
 //! engine is not described. Water is deep and at rest apart from a uniform current that only moves positions.
@@ -25,6 +26,7 @@ mod circle;
 mod coefficients;
 mod course;
 mod covariance;
+mod current;
 mod error;
 mod fit;
 mod hull;
@@ -42,6 +44,7 @@ mod yaw;
 
 pub use circle::{Turn, TurningCircle, track, turning_circle};
 pub use coefficients::{COEFFICIENTS, Coefficients, SYMBOLS};
+pub use current::{Current, current, without_current};
 pub use error::MotionError;
 pub use fit::fit;
 pub use hull::{HULL_COEFFICIENTS, Hull, HullRecord, Moment, Spread};

@@ -13,6 +13,7 @@
 //! | figures of merit | [`figures`] |
 //! | a manoeuvre predicted | [`prediction`] |
 //! | a recorded rudder replayed, held against the record | [`replay`] |
+//! | a record that is a turn, and the current it shows | [`turn`] |
 //! | steady turns and the unstable loop | [`steady`] |
 //! | the criteria of IMO | [`imo`] |
 //!
@@ -31,6 +32,7 @@ pub mod passage;
 pub mod prediction;
 pub mod replay;
 pub mod steady;
+pub mod turn;
 
 pub use error::PredictError;
 pub use interval::Interval;

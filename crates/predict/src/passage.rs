@@ -7,7 +7,7 @@ use ship::Regressor;
 use simulate::helm::Execute;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
-use simulate::{Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Disturbances, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
 
 use crate::mixture::Drawn;
 
@@ -57,6 +57,17 @@ pub struct Way {
 /// Time between rows, s.
 pub(crate) fn period(timescale: f64) -> f64 {
     (timescale / ROWS).clamp(2e-3, 900.0)
+}
+
+/// Longest cell of the weather, s, and its share of a correlation time: what turns a ship is then within 2 % of the
+/// process.
+const LONGEST_CELL: f64 = 60.0;
+const SHARE_OF_CORRELATION: f64 = 0.5;
+
+/// Width of the cells of the weather, s: as fine as the rows, because a ship does not answer to what is quicker.
+fn weather_grid(disturbances: &Disturbances, timescale: f64) -> f64 {
+    let correlation = disturbances.gusts.map_or(f64::INFINITY, |gusts| gusts.correlation_time);
+    period(timescale).min(SHARE_OF_CORRELATION * correlation).min(LONGEST_CELL)
 }
 
 /// What is steered: with speed and drift where effects of the response ask for them.
@@ -111,6 +122,7 @@ impl Passage {
         };
         simulation.approach.yaw_rate = ship.yaw_rate;
         simulation.disturbances = ship.disturbances;
+        simulation.weather_grid = weather_grid(&ship.disturbances, timescale);
         let shortest = match &ship.hull {
             Some(_) => Some(timescale),
             None => (!ship.response.model().effects().is_empty()).then(|| ship.response.shortest_time()),

@@ -1,20 +1,22 @@
 //! A recorded rudder replayed and held against its record: the record is not fitted, so it says whether intervals hold.
 
+use motion::Current;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use ship::Polyline;
 use simulate::manoeuvre::{ZigZag, ZigZagEnd};
 use simulate::{Manoeuvre, Purpose, Side};
-use trial::{Channel, Trial, ZigZag as Measured};
+use trial::{Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
 use crate::interval::{Interval, band};
 use crate::kind::{EXECUTES, Kind};
 use crate::mixture::{Mixture, Source};
-use crate::passage::{Passage, Way};
+use crate::passage::Passage;
 use crate::prediction::{Bands, enough};
+use crate::turn;
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
 const BEGINNING: f64 = 1.0;
@@ -45,6 +47,8 @@ pub struct Replayed {
     pub rms: f64,
     /// Figures that the record shows.
     pub figures: Vec<Compared>,
+    /// The current that was taken out of the track of the record.
+    pub current: Option<Current>,
     /// Heading with the band of a reading, at the rows of the record.
     pub heading: Bands,
     /// Measured headings at these rows, rad.
@@ -103,8 +107,14 @@ impl Mixture {
     ///
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
     /// of a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
-    /// heading. `None` where the record has too few headings at its beginning.
-    pub fn replay(&self, trial: &Trial, draws: usize) -> Result<Option<Replayed>, PredictError> {
+    /// heading. The track of a turn is that without the current of another record where one is given, else without its
+    /// own where it goes on for two rounds. `None` where the record has too few headings at its beginning.
+    pub fn replay(
+        &self,
+        trial: &Trial,
+        draws: usize,
+        current: Option<Current>,
+    ) -> Result<Option<Replayed>, PredictError> {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
@@ -153,14 +163,15 @@ impl Mixture {
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
-        let figures = match Measured::of(trial) {
-            Ok(zigzag) if zigzag.executes.len() > 1 => self.zig_zag(&zigzag, draws)?,
-            _ => turns(trial, &made, self.timescale()),
+        let (figures, current) = match Measured::of(trial) {
+            Ok(zigzag) if zigzag.executes.len() > 1 => (self.zig_zag(&zigzag, draws)?, None),
+            _ => turn::turns(trial, &made, self.timescale(), current),
         };
         Ok(Some(Replayed {
             band_coverage_90: held as f64 / rows.len() as f64,
             rms: (square / rows.len() as f64).sqrt(),
             figures,
+            current,
             heading,
             measured,
         }))
@@ -225,7 +236,7 @@ impl Mixture {
 }
 
 /// Figures that were measured, beside their draws.
-fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<f64>) -> Vec<Compared> {
+pub(crate) fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<f64>) -> Vec<Compared> {
     let Some(names) = drawn.first() else { return Vec::new() };
     names
         .iter()
@@ -238,98 +249,8 @@ fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<f64>) -> Ve
         .collect()
 }
 
-/// Figures of a record that is a turn.
-fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64) -> Vec<Compared> {
-    let Some(Turn { execute, until, side }) = Turn::of(trial.rudder_signal()) else { return Vec::new() };
-    let Some((sample, _)) = made.first() else { return Vec::new() };
-    let [execute, until] = [execute, until].map(|time| time - trial.time()[0]);
-    let rows: Vec<usize> = trial.observed_rows().collect();
-    let on_rows = |rows: &[usize], values: &[f64]| -> Option<Vec<f64>> {
-        let rows: Vec<usize> = rows.iter().copied().filter(|&row| values[row].is_finite()).collect();
-        let times: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - trial.time()[0]).collect();
-        let signal = Polyline::new(times, rows.iter().map(|&row| values[row]).collect()).ok()?;
-        Some((0..sample.heading.len()).map(|row| signal.at(sample.time(row))).collect())
-    };
-    let Some(heading) = on_rows(&rows, trial.heading()) else { return Vec::new() };
-    let all: Vec<usize> = (0..trial.len()).collect();
-    let channel = |channel: Channel| on_rows(&all, trial.channel(channel)?);
-    let way = || {
-        let length = sample.way.as_ref()?.length;
-        let [north, east] = [channel(Channel::North)?, channel(Channel::East)?];
-        let rest = |channel: Option<Vec<f64>>| channel.unwrap_or_else(|| vec![f64::NAN; heading.len()]);
-        let [surge, sway] = [Channel::Surge, Channel::Sway].map(|own| rest(channel(own)));
-        Some(Way { length, surge, sway, track: north.into_iter().zip(east).map(|(n, e)| [n, e]).collect() })
-    };
-    let slope = |row: usize| (heading[row + 1] - heading[row]) / sample.period;
-    let count = heading.len();
-    let record = Passage {
-        period: sample.period,
-        yaw_rate: (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect(),
-        rudder: sample.rudder.clone(),
-        executes: Vec::new(),
-        way: way(),
-        heading,
-    };
-    let figures = |passage: &Passage| -> Vec<Figure> {
-        let whole = passage.until(until);
-        let passage = &whole;
-        let first = (execute / passage.period).round() as usize;
-        let start = at(passage, &passage.heading, execute);
-        let after = Passage {
-            heading: passage.heading.iter().skip(first).map(|heading| heading - start).collect(),
-            yaw_rate: Vec::new(),
-            rudder: Vec::new(),
-            executes: Vec::new(),
-            way: None,
-            period: passage.period,
-        };
-        let mut figures = Vec::new();
-        figures::turn(&after, side, &mut figures);
-        figures::circle(&whole, execute, &mut figures);
-        figures
-    };
-    let measured = figures(&record);
-    let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
-    if !is_turn {
-        return Vec::new();
-    }
-    let drawn: Vec<Vec<Figure>> = made.iter().map(|(passage, _)| figures(passage)).collect();
-    compared(&drawn, |name| measured.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value))
-}
-
-/// A rudder that is put over and held.
-struct Turn {
-    /// Time at which it leaves its beginning, s.
-    execute: f64,
-    /// Time until which it is held, s.
-    until: f64,
-    /// Side it is put to, ±1.
-    side: f64,
-}
-
-/// Share of the largest angle above which a rudder is held.
-const HELD: f64 = 0.8;
-
-impl Turn {
-    /// The turn with the largest rudder; `None` for a rudder that never moves.
-    fn of(signal: &Polyline) -> Option<Self> {
-        let (times, values) = (signal.times(), signal.values());
-        let away = |value: f64| value - values[0];
-        let largest = values.iter().copied().map(away).max_by(|one, other| one.abs().total_cmp(&other.abs()))?;
-        let side = largest.signum();
-        let share = |row: usize| away(values[row]) * side / largest.abs();
-        let mut start = (0..values.len()).find(|&row| share(row) > HELD)?;
-        let until = (start..values.len()).find(|&row| share(row) < HELD).map_or(values.len() - 1, |row| row - 1);
-        // Back along the ramp.
-        while start > 0 && share(start - 1) > 0.01 {
-            start -= 1;
-        }
-        Some(Self { execute: times[start.saturating_sub(1)], until: times[until], side })
-    }
-}
-
 /// A series on the rows of a passage at a time, s.
-fn at(passage: &Passage, values: &[f64], time: f64) -> f64 {
+pub(crate) fn at(passage: &Passage, values: &[f64], time: f64) -> f64 {
     let place = (time / passage.period).clamp(0.0, (values.len() - 1) as f64);
     let (low, share) = (place.floor() as usize, place.fract());
     let high = (low + 1).min(values.len() - 1);
@@ -365,7 +286,7 @@ mod tests {
         let records = 40;
         for number in 0..records {
             let trial = record(&mixture, manoeuvre.clone(), 1000 + number);
-            let replayed = mixture.replay(&trial, 100).expect("it sails").expect("it begins");
+            let replayed = mixture.replay(&trial, 100, None).expect("it sails").expect("it begins");
             let held = replayed.figures.iter().filter(|figure| figure.interval.holds90(figure.measured)).count();
             inside += held;
             all += replayed.figures.len();
@@ -391,7 +312,7 @@ mod tests {
         let mixture = Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
         let kind: Kind = "turning-circle:-15".parse().expect("known");
         let trial = record(&mixture, kind.manoeuvre(mixture.timescale()).expect("steered"), 3);
-        let replayed = mixture.replay(&trial, 50).expect("it sails").expect("it begins");
+        let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
         let names: Vec<&str> = replayed.figures.iter().map(|figure| figure.name).collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
         for figure in &replayed.figures {

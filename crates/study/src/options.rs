@@ -309,6 +309,10 @@ pub struct PredictRequest {
     /// Record whose rudder is replayed, and which is held against its prediction; nothing is fitted to it
     #[arg(long = "replay", value_name = "RECORD")]
     pub replays: Vec<PathBuf>,
+    /// Circle of 720° or more whose current is taken out of the tracks of all replayed turns [default: out of each its
+    /// own, where it turns that far]
+    #[arg(long, value_name = "RECORD", requires = "replays")]
+    pub current_from: Option<PathBuf>,
     /// Method whose answer in fit.json is used [default: maximum-likelihood, or the next that has a covariance]
     #[arg(long, value_name = "ID")]
     pub method: Option<String>,

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use predict::turn::Current;
 use predict::{KnownShip, Mixture, PredictError, Prediction, imo, kind};
 use serde_json::Value;
 use ship::Particulars;
@@ -46,6 +47,10 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let models: Vec<Model> =
         request.models.iter().map(|path| read(path, request, &mut warnings)).collect::<Result<_, _>>()?;
     let records = read_others(&request.replays, &request.reading, &mut warnings)?;
+    let current = match &request.current_from {
+        Some(path) => Some(current_of(path, request, &mut warnings)?),
+        None => None,
+    };
     let first = models[0].file.clone();
     let refused = |error: PredictError| Failure::input(format!("{first}: {error}"));
     let scaled = |particulars: Option<Particulars>| -> Result<Mixture, PredictError> {
@@ -83,7 +88,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         let scale = asked_scale(&request.reading).or_else(|| record.particulars());
         let own = scaled(scale).map_err(refused)?;
         let file = file_of(&record).0.to_owned();
-        match own.replay(&record, draws) {
+        match own.replay(&record, draws, current) {
             Ok(Some(replayed)) => replays.push((record, replayed)),
             Ok(None) => {
                 let what = "too few headings at its beginning to say how the ship began";
@@ -189,6 +194,18 @@ fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Re
         .map_err(|error| Failure::input(format!("{shown}: what is known of the ship cannot be read: {error}")))?;
     let known = if request.calm { known.in_calm() } else { Ok(known) };
     Ok(Model { known: known.map_err(|error| Failure::input(format!("{shown}: {error}")))?, file: shown })
+}
+
+/// The current that a record shows.
+fn current_of(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Current, Failure> {
+    let records = read_others(std::slice::from_ref(&path.to_owned()), &request.reading, warnings)?;
+    records.first().and_then(predict::turn::current_of).ok_or_else(|| {
+        Failure::input(format!(
+            "--current-from {}: this record shows no current; give positions north_m and east_m of a circle in which the \
+             rudder is held for 720° or more",
+            path.display()
+        ))
+    })
 }
 
 /// The method whose answer is used.

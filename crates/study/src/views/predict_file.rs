@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use predict::interval::Interval;
 use predict::prediction::Bands;
+use predict::turn::Current;
 use predict::{Kind, Prediction};
 use serde::Serialize;
 use ship::angle::to_deg;
@@ -58,7 +59,28 @@ struct ReplayEntry {
     file: String,
     band_coverage_90: f64,
     heading_rmse_deg: f64,
+    /// What was taken out of the track.
+    current: Option<CurrentEntry>,
     figures: BTreeMap<&'static str, ComparedEntry>,
+}
+
+#[derive(Debug, Serialize)]
+struct CurrentEntry {
+    speed_m_s: f64,
+    /// Direction it sets to.
+    set_deg: f64,
+    north_m_s: f64,
+    east_m_s: f64,
+    north_sd_m_s: f64,
+    east_sd_m_s: f64,
+}
+
+impl From<Current> for CurrentEntry {
+    fn from(current: Current) -> Self {
+        let ([north_m_s, east_m_s], [north_sd_m_s, east_sd_m_s]) = (current.velocity, current.deviation);
+        let (speed_m_s, set_deg) = (current.speed(), to_deg(current.set()));
+        Self { speed_m_s, set_deg, north_m_s, east_m_s, north_sd_m_s, east_sd_m_s }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -100,6 +122,7 @@ impl PredictFile {
                     file: file_of(trial).0.to_owned(),
                     band_coverage_90: replayed.band_coverage_90,
                     heading_rmse_deg: to_deg(replayed.rms),
+                    current: replayed.current.map(CurrentEntry::from),
                     figures: (replayed.figures.iter())
                         .map(|figure| {
                             let Interval { median, ci50, ci90 } = figure.interval;

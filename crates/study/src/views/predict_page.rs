@@ -3,7 +3,7 @@
 use predict::Kind;
 use predict::replay::Replayed;
 use report::markdown::text;
-use report::number::fixed;
+use report::number::{fixed, with_uncertainty};
 use ship::angle::to_deg;
 
 use super::predict_report::Predicted;
@@ -53,11 +53,17 @@ pub fn rest(predicted: &Predicted) -> String {
 
 /// How near a record is to its replay.
 fn coverage(replayed: &Replayed) -> String {
-    format!(
+    let mut words = format!(
         "{} % of the headings are inside the 90 % band, rms {}°",
         fixed(100.0 * replayed.band_coverage_90, 0),
         fixed(to_deg(replayed.rms), 2)
-    )
+    );
+    if let Some(current) = replayed.current {
+        let doubt = current.deviation[0].hypot(current.deviation[1]);
+        let (speed, set) = (with_uncertainty(current.speed(), Some(doubt)), fixed(to_deg(current.set()), 0));
+        words += &format!("; a current of {speed} m/s that sets to {set}° is not part of its track");
+    }
+    words
 }
 
 /// The page.

@@ -1,0 +1,127 @@
+//! A uniform current, from a turn that goes on for two rounds.
+
+use std::f64::consts::{PI, TAU};
+
+/// Heading change from which a turn is steady enough, rad.
+const STEADY: f64 = PI;
+
+/// Heading change that a turn has to have, rad: 180° of pairs that are a round apart.
+pub const ENOUGH: f64 = 2.0 * TAU;
+
+/// Heading between two pairs, rad (10°).
+const BETWEEN: f64 = PI / 18.0;
+
+/// Water that moves over ground, and wind that moves the ship through it: a turn cannot tell one from the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Current {
+    /// North and east, m/s.
+    pub velocity: [f64; 2],
+    /// Standard deviation of each, m/s: by how much the pairs differ.
+    pub deviation: [f64; 2],
+}
+
+impl Current {
+    /// Its speed, m/s.
+    pub fn speed(&self) -> f64 {
+        self.velocity[0].hypot(self.velocity[1])
+    }
+
+    /// The direction it sets to, rad clockwise from north, 0 to 2π.
+    pub fn set(&self) -> f64 {
+        self.velocity[1].atan2(self.velocity[0]).rem_euclid(TAU)
+    }
+}
+
+/// The current of a turn: the mean way over ground between two instants at which the heading is the same, a round
+/// apart, over the time between them,
+///
+/// V = [x(ψ + 2π) − x(ψ)] / [t(ψ + 2π) − t(ψ)], ψ from 180° of heading change on.
+///
+/// Heading in rad, not wrapped; track north and east in m; time in s, all of one length, from the execute on. `None`
+/// for a turn of less than 720°. The pairs overlap, so their scatter is not divided by their number. A current that
+/// changes within a round, or wind, is part of it. Sources: IMO MSC/Circ.1053 (2002); ITTC 7.5-04-02-01.
+pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Current> {
+    let rows = time.len();
+    if rows < 2 || heading.len() != rows || track.len() != rows {
+        return None;
+    }
+    let side = (heading[rows - 1] - heading[0]).signum();
+    let change = |row: usize| side * (heading[row] - heading[0]);
+    let whole = change(rows - 1);
+    // The first time at which the heading has changed that much: time, north and east.
+    let reached = |angle: f64| {
+        let row = (1..rows).find(|&row| change(row) >= angle)?;
+        let share = (angle - change(row - 1)) / (change(row) - change(row - 1));
+        let between = |from: f64, to: f64| from + share * (to - from);
+        let [before, after] = [track[row - 1], track[row]];
+        let found = [between(time[row - 1], time[row]), between(before[0], after[0]), between(before[1], after[1])];
+        found.iter().all(|value| value.is_finite()).then_some(found)
+    };
+    if whole.is_nan() || whole < ENOUGH {
+        return None;
+    }
+    let pairs = ((whole - TAU - STEADY) / BETWEEN) as usize;
+    let drifts: Vec<[f64; 2]> = (0..=pairs)
+        .filter_map(|pair| {
+            let angle = STEADY + pair as f64 * BETWEEN;
+            let (one, next) = (reached(angle)?, reached(angle + TAU)?);
+            let elapsed = next[0] - one[0];
+            (elapsed > 0.0).then(|| [(next[1] - one[1]) / elapsed, (next[2] - one[2]) / elapsed])
+        })
+        .collect();
+    let count = drifts.len() as f64;
+    let mean = [0, 1].map(|axis| drifts.iter().map(|drift| drift[axis]).sum::<f64>() / count);
+    let spread = |axis: usize| drifts.iter().map(|drift| (drift[axis] - mean[axis]).powi(2)).sum::<f64>();
+    let deviation = [0, 1].map(|axis| (spread(axis) / (count - 1.0)).sqrt());
+    (drifts.len() > 2).then_some(Current { velocity: mean, deviation })
+}
+
+/// The same track without a current, which began to act on it at the time `from`, s.
+pub fn without_current(time: &[f64], track: &[[f64; 2]], velocity: [f64; 2], from: f64) -> Vec<[f64; 2]> {
+    let still = |(time, place): (&f64, &[f64; 2])| [0, 1].map(|axis| place[axis] - velocity[axis] * (time - from));
+    time.iter().zip(track).map(still).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rounds in a current, the first quarter of them slower.
+    fn turn(rounds: f64, side: f64, [north, east]: [f64; 2]) -> (Vec<f64>, Vec<f64>, Vec<[f64; 2]>) {
+        let time: Vec<f64> = (0..=2000).map(|row| f64::from(row) * 0.5).collect();
+        let rate = side * rounds * TAU / 1000.0;
+        let heading: Vec<f64> = time.iter().map(|t| 0.3 + rate * t).collect();
+        let radius = 400.0;
+        let place = |(t, psi): (&f64, &f64)| {
+            [
+                radius * side * (psi.sin() - 0.3f64.sin()) + north * t,
+                radius * side * (0.3f64.cos() - psi.cos()) + east * t,
+            ]
+        };
+        let track = time.iter().zip(&heading).map(place).collect();
+        (time, heading, track)
+    }
+
+    #[test]
+    fn a_uniform_current_is_found_and_taken_out() {
+        for side in [-1.0, 1.0] {
+            let (time, heading, track) = turn(2.2, side, [0.4, -0.3]);
+            let found = current(&time, &heading, &track).expect("two rounds");
+            assert!((found.velocity[0] - 0.4).abs() < 1e-3 && (found.velocity[1] + 0.3).abs() < 1e-3, "{found:?}");
+            assert!((found.speed() - 0.5).abs() < 1e-3 && found.deviation.iter().all(|sd| *sd < 1e-3));
+            assert!((found.set().to_degrees() - 323.13).abs() < 0.2, "{}", found.set().to_degrees());
+            let still = turn(2.2, side, [0.0; 2]).2;
+            for (one, other) in without_current(&time, &track, found.velocity, time[0]).iter().zip(&still) {
+                assert!((one[0] - other[0]).hypot(one[1] - other[1]) < 1.5, "{one:?} {other:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn less_than_two_rounds_tell_no_current() {
+        let (time, heading, track) = turn(1.9, 1.0, [0.4, -0.3]);
+        assert_eq!(current(&time, &heading, &track), None);
+        assert_eq!(current(&time[..1], &heading[..1], &track[..1]), None);
+        assert_eq!(current(&time, &heading[1..], &track), None);
+    }
+}
