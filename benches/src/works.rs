@@ -1,11 +1,13 @@
 //! All pieces of work, in groups: what is measured, what stands beside it and what is to be reached.
 
 mod identification;
+mod prediction;
 mod simulation;
 mod studies;
 mod tracing;
 
 pub use identification::{RIVAL, identification};
+pub use prediction::prediction;
 pub use simulation::simulation;
 pub use studies::{CHECK_S, SHARE, scenarios, scenarios_folder, studies, throughput};
 pub use tracing::tracing;
@@ -14,7 +16,7 @@ use crate::work::Group;
 
 /// Every group, in the order of reports.
 pub fn all() -> Vec<Group> {
-    vec![simulation(), identification(), tracing(), studies()]
+    vec![simulation(), identification(), tracing(), prediction(), studies()]
 }
 
 #[cfg(test)]

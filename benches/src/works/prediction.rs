@@ -1,0 +1,71 @@
+//! Predicting a manoeuvre from a thousand drawn ships.
+
+use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
+use predict::{Kind, KnownShip, Mixture};
+use ship::angle::from_deg;
+use ship::effects::{Effect, NonlinearDamping};
+
+use crate::records::{K, T};
+use crate::work::{Group, Reach, Work};
+
+/// Ships of a prediction.
+const DRAWS: usize = 1000;
+
+/// What a good 10/10 tells of a ship of 75 m at 6 m/s.
+fn known(effect: Option<&dyn Effect>, moment: Moment) -> KnownShip {
+    let damping = effect.map(|effect| WrittenEffect {
+        id: effect.id().to_owned(),
+        form: effect.form().to_owned(),
+        constants: Vec::new(),
+    });
+    let (mut parameters, mut sd) = (vec![1.0 / T, K / T, 0.0], vec![2e-3, 1.5e-4, 1e-3]);
+    if damping.is_some() {
+        parameters.push(60.0);
+        sd.push(6.0);
+    }
+    let count = parameters.len();
+    let variance = |i: usize, j: usize| if i == j { sd[i] * sd[i] } else { 0.0 };
+    KnownShip {
+        members: vec![Member {
+            weight: 1.0,
+            effects: damping.into_iter().collect(),
+            parameters,
+            fitted: (0..count).collect(),
+            covariance: (0..count).map(|i| (0..count).map(|j| variance(i, j)).collect()).collect(),
+            degrees_of_freedom: None,
+        }],
+        noise: KnownNoise {
+            heading_sd_rad: from_deg(0.1),
+            moment,
+            moment_sd_rudder_rad: if moment == Moment::None { 0.0 } else { from_deg(0.5) },
+            moment_correlation_s: (moment == Moment::OrnsteinUhlenbeck).then_some(10.0),
+        },
+        gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
+        approach_yaw_rate_rad_s: from_deg(0.01),
+        seen: Seen { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
+        length_m: Some(75.0),
+        speed_m_s: Some(6.0),
+        motion: None,
+        hull: None,
+    }
+}
+
+/// A 20/20 zig-zag, figures and bands, of ships in a calm and in gusts, in closed form and integrated.
+pub fn prediction() -> Group {
+    let mut group = Group::new(
+        "predict",
+        "A 20/20 zig-zag predicted from 1000 drawn ships, on one core: figures of merit with their intervals, and the bands \
+         of the heading.",
+    );
+    let kind: Kind = "zig-zag:20/20".parse().expect("a manoeuvre");
+    let mut add = |name: &str, known: KnownShip| {
+        let mixture = Mixture::new(vec![(known, 1.0)]).expect("a ship");
+        let work = Work::new(name, move || mixture.predict(&kind, DRAWS, false).is_ok()).slow();
+        group.alone(work, Some(Reach::Time(0.05)));
+    };
+    add("first order, calm", known(None, Moment::None));
+    add("first order, gusts", known(None, Moment::OrnsteinUhlenbeck));
+    add("first order, white moment", known(None, Moment::White));
+    add("cubic damping, calm", known(Some(&NonlinearDamping::Cubic), Moment::None));
+    group
+}
