@@ -253,6 +253,14 @@ impl KnownShip {
         Ok(calm)
     }
 
+    /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre that
+    /// was not made has the sway of an equation fitted beside it.
+    pub fn leans_on_sway(&self) -> bool {
+        let sway = ship::effects::Effect::id(&ship::effects::SwayCouplingMeasured);
+        let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
+        self.hull.is_none() && likeliest.is_some_and(|member| member.effects.iter().any(|effect| effect.id == sway))
+    }
+
     /// What is random in yaw: what the hull leaves, or what the structures do.
     pub(crate) fn process_noise(&self) -> KnownNoise {
         match &self.hull {

@@ -192,6 +192,12 @@ fn read(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Re
     };
     let known: KnownShip = serde_json::from_value(known)
         .map_err(|error| Failure::input(format!("{shown}: what is known of the ship cannot be read: {error}")))?;
+    if known.leans_on_sway() {
+        warnings.push(format!(
+            "{shown}: a term of the model takes the measured sway, and here that of an equation fitted to it; intervals of \
+             such models held less often than others, so trace again with --without-effect sway_coupling_measured"
+        ));
+    }
     let known = if request.calm { known.in_calm() } else { Ok(known) };
     Ok(Model { known: known.map_err(|error| Failure::input(format!("{shown}: {error}")))?, file: shown })
 }
