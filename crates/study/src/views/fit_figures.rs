@@ -5,7 +5,7 @@ use identify::Estimate;
 use rayon::prelude::*;
 use report::figures::{self, Fit, RecordFit, Replay, Replays};
 use report::{Figure, Origin, Theme};
-use trial::{Channel, Trial, ZigZag, ZigZagError};
+use trial::{Channel, Trial, ZigZag};
 
 use super::picture::{first_failure, write_figure};
 use campaign::answer::MethodEntry;
@@ -31,23 +31,22 @@ pub struct Drawn<'a> {
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
-    zigzags: &[Result<ZigZag, ZigZagError>],
+    theme: &Theme,
     folder: &ResultFolder,
 ) -> Result<(), Failure> {
-    let theme = Theme::screen();
     first_failure(records.par_iter().enumerate().map(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
-        if let Some(Ok(zigzag)) = zigzags.get(number) {
+        if let Some(zigzag) = ZigZag::of(record.trial).ok().filter(|_| !record.validation) {
             let data =
-                figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, zigzag) };
-            write_figure(&figures::zigzag_trial(&data, &theme), folder, &format!("trial{suffix}"))?;
+                figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, &zigzag) };
+            write_figure(&figures::zigzag_trial(&data, theme), folder, &format!("trial{suffix}"))?;
         }
         if !record.trial.marks().is_empty() {
-            write_figure(&raw(record, &theme), folder, &format!("raw{suffix}"))?;
+            write_figure(&raw(record, theme), folder, &format!("raw{suffix}"))?;
         }
         let replays = replays(record, answers);
-        write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
-        write_figure(&best_fit(record, &replays, &theme), folder, &format!("fit{suffix}"))
+        write_figure(&figures::replays(&replays, theme), folder, &format!("replays{suffix}"))?;
+        write_figure(&best_fit(record, &replays, theme), folder, &format!("fit{suffix}"))
     }))
 }
 

@@ -2,10 +2,19 @@
 
 use ::trace::Analysis;
 use ::trace::missing_moment::MissingMoment;
+use ship::Particulars;
 use trial::Trial;
+
+use super::scale_comparison::ScalesEntry;
 
 /// Everything that is said about one analysis.
 pub struct TraceReport<'a> {
+    /// Length and speed at which numbers with a dimension are told, where they are known.
+    pub ship: Option<Particulars>,
+    /// What was done to records of several scales, in a sentence.
+    pub scaled: Option<String>,
+    /// Where the fitted records are of several scales: which terms scale.
+    pub scales: Option<ScalesEntry>,
     /// Records that were fitted.
     pub trials: &'a [Trial],
     /// Records that were not.
