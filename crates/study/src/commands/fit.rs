@@ -10,10 +10,11 @@ use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
+use crate::commands::alone;
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_repetition};
 use crate::scales::{self, Together};
-use crate::views::fit_figures::{self, Drawn};
+use crate::views::fit_figures::{self, Drawn, Whole};
 use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
 use crate::views::{fit_scales, method_table};
 use crate::{progress, screen};
@@ -85,7 +86,15 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         .enumerate()
         .map(|(number, (trial, name))| Drawn { trial, name, validation: number >= trials.len() })
         .collect();
-    fit_figures::draw(&records, &answers, &theme, &folder)?;
+    let whole = Whole {
+        title: match trials {
+            [only] => only.name().to_owned(),
+            several => format!("{} records together", several.len()),
+        },
+        ship,
+        amplitudes: alone::of_records(trials),
+    };
+    fit_figures::draw(&records, &answers, &whole, &theme, &folder)?;
 
     let mut notes = renamed(&records) + &reasons(&file.methods);
     for ((zigzag, entry), name) in zigzags.iter().zip(&file.trials).zip(&names) {

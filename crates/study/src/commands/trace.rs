@@ -4,7 +4,7 @@
 use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
-use crate::commands::planned;
+use crate::commands::{alone, planned, steady};
 use crate::options::{Common, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read_all, read_others, warn_of_repetition};
 use crate::scales::{self, Together};
@@ -29,6 +29,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = without(read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(read_others(&request.validate, &request.reading, &mut warnings)?);
     warn_of_repetition(&trials, &others, &mut warnings);
+    let sailed_by = trials.iter().chain(&others).map(Trial::particulars).collect();
     let together = scales::together(&trials, &others)?;
     let Together { trials, others, .. } = &together;
     let settings =
@@ -52,6 +53,9 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let report = TraceReport {
         names: names(trials.iter().chain(others).map(Trial::name)),
         ship: scales::particulars(trials),
+        sailed_by,
+        amplitudes: alone::of_analysis(&analysis, trials),
+        steady: steady::of_analysis(&analysis, trials),
         scaled: together.sentence(),
         scales: trace_scales::compared(&analysis, &together),
         prospects: analysis.prospects(&planned),

@@ -6,6 +6,7 @@ pub mod drawings;
 pub mod fit_figures;
 pub mod fit_file;
 pub mod fit_scales;
+pub mod index_figures;
 pub mod method_table;
 pub mod missing_moment;
 pub mod picture;

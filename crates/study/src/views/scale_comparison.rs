@@ -113,7 +113,7 @@ impl ScalesEntry {
                 .iter()
                 .map(|group| Column::left(scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }))),
         );
-        columns.extend([Column::decimal("difference").unit("sd"), Column::left("")]);
+        columns.extend([Column::decimal("difference").unit("sd"), Column::left("verdict")]);
         let mut table = Table::new(columns);
         let number = |quantity: &Quantity| match quantity.value.is_finite() {
             true => uncertain(quantity.value, quantity.sd),

@@ -1,0 +1,83 @@
+//! Every record of several identified alone, and zig-zags of a fitted model identified as if they were records: whether
+//! K and T of a first-order response depend on the amplitude.
+
+use ::trace::Analysis;
+use identify::{Estimate, Identifier, maximum_likelihood, output_error};
+use rayon::prelude::*;
+use ship::angle::{from_deg, to_deg};
+use simulate::manoeuvre::{ZigZag as Order, ZigZagEnd};
+use simulate::{Manoeuvre, Side};
+use trial::{Trial, ZigZag};
+
+use super::planned;
+use crate::views::index_figures::{Alone, Amplitudes};
+
+/// Rudder and heading of the zig-zags of a model, deg.
+const SAILED: [f64; 7] = [5.0, 7.5, 10.0, 15.0, 20.0, 25.0, 30.0];
+
+/// Executes of each.
+const EXECUTES: usize = 5;
+
+/// A model is sailed up to so many times the largest rudder of the records.
+const BEYOND: f64 = 1.05;
+
+fn methods() -> [Box<dyn Identifier>; 2] {
+    let likelihood = maximum_likelihood::Settings::default().build().expect("default settings are valid");
+    let replay = output_error::Settings::default().build().expect("default settings are valid");
+    [Box::new(likelihood), Box::new(replay)]
+}
+
+/// Mean heading at the peaks of a zig-zag, rad.
+fn amplitude(trial: &Trial) -> Option<f64> {
+    let zigzag = ZigZag::of(trial).ok()?;
+    let base = zigzag.base_course.heading.value;
+    let peaks: Vec<f64> = zigzag.overshoots.iter().map(|one| (one.peak_heading.value - base).abs()).collect();
+    (!peaks.is_empty()).then(|| peaks.iter().sum::<f64>() / peaks.len() as f64)
+}
+
+fn alone(trial: &Trial, method: &dyn Identifier) -> Option<Alone> {
+    let of = |estimate: Estimate| Some(Alone { amplitude: amplitude(trial)?, k: estimate.K(), t: estimate.T() });
+    method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k.value.is_finite())
+}
+
+/// Every record alone, by the likelihood or, where that fails for one of them, by the output error; `None` for less
+/// than two zig-zags.
+pub fn of_records(trials: &[Trial]) -> Option<Amplitudes> {
+    let zigzags: Vec<&Trial> = trials.iter().filter(|trial| amplitude(trial).is_some()).collect();
+    if zigzags.len() < 2 {
+        return None;
+    }
+    let mut best: Option<Amplitudes> = None;
+    for method in methods() {
+        let records: Vec<Alone> = zigzags.par_iter().filter_map(|trial| alone(trial, method.as_ref())).collect();
+        let complete = records.len() == zigzags.len();
+        if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
+            best = Some(Amplitudes { method: method.id(), records, model: Vec::new() });
+        }
+        if complete {
+            break;
+        }
+    }
+    best.filter(|best| best.records.len() > 1)
+}
+
+/// The same with zig-zags that the fitted model was steered through.
+pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> Option<Amplitudes> {
+    let mut all = of_records(trials)?;
+    let [_, replay] = methods();
+    let rudders = trials.iter().flat_map(|trial| trial.rudder());
+    let largest = to_deg(rudders.fold(0.0, |largest: f64, rudder| largest.max(rudder.abs())));
+    let sail = |angle: &f64| {
+        let order = Order {
+            rudder: from_deg(*angle),
+            heading: from_deg(*angle),
+            first: Side::Starboard,
+            end: ZigZagEnd::Executes(EXECUTES),
+        };
+        alone(&planned::sailed(analysis, trials, Manoeuvre::ZigZag(order))?, replay.as_ref())
+    };
+    let angles: Vec<f64> = SAILED.into_iter().filter(|angle| *angle <= BEYOND * largest).collect();
+    all.model = angles.par_iter().filter_map(sail).collect();
+    all.model.sort_by(|one, other| one.amplitude.total_cmp(&other.amplitude));
+    Some(all)
+}
