@@ -9,6 +9,7 @@ use crate::clip::Place;
 use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
+use crate::legend::stroke_of;
 use crate::markup::symbol;
 use crate::number::significant;
 use crate::palette::Origin;
@@ -48,20 +49,24 @@ const REACH: f64 = 4.0;
 /// Draws the regions, the points and the labels right of the frame.
 pub fn index_plane(data: &IndexPlane, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let [k, t] = if data.prime { ["′", "′"] } else { [" [1/s]", " [s]"] };
+    let [k, t] = match data.prime {
+        true => [symbol("K′"), symbol("T′")],
+        false => [format!("{} [1/s]", symbol("K")), format!("{} [s]", symbol("T"))],
+    };
     let axes = [0, 1].map(|part| axis(data, part));
     let label = |answer: &IndexAnswer| Text::new(answer.origin.label(), theme.small_font);
     let names = data.answers.iter().map(|answer| label(answer).width()).fold(0.0, f64::max);
     let strip = theme.width - names - 1.2 * theme.small_font;
     let [across, up] = axes;
-    let row = (Side::new(up, format!("{}{t}", symbol("T"))), theme.tall(0.5));
-    let grid = Grid::stack(Side::new(across, format!("{}{k}", symbol("K"))), vec![row]);
+    let row = (Side::new(up, t), theme.tall(0.5));
+    let grid = Grid::stack(Side::new(across, k), vec![row]);
     let mut outside: Vec<&IndexAnswer> = Vec::new();
     for panel in &sheet.grid_within(grid, (0.0, strip)) {
         let mut labels: Vec<(Place, &IndexAnswer)> = Vec::new();
         for answer in &data.answers {
             let look = answer.origin.look();
-            panel.line(&mut sheet.scene, answer.region.pairs(), Stroke::solid(look.colour, 1.2 * theme.line));
+            // Two methods that agree would hide each other without their dashes.
+            panel.line(&mut sheet.scene, answer.region.pairs(), stroke_of(&answer.origin, theme));
             panel.marker(&mut sheet.scene, answer.place, 0.95 * theme.marker, &look);
             match anchor(panel, answer) {
                 Some(place) => labels.push((place, answer)),
@@ -70,12 +75,19 @@ pub fn index_plane(data: &IndexPlane, theme: &Theme) -> Figure {
         }
         beside(panel, &mut sheet.scene, theme, labels);
     }
+    let mut notes = Vec::new();
+    if data.answers.iter().any(|answer| answer.region.finite().next().is_some()) {
+        notes.push(format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T")));
+    }
     if !outside.is_empty() {
         let of = |answer: &&IndexAnswer| {
             let (k, t) = answer.place;
             format!("{} (K = {}, T = {})", answer.origin.label(), significant(k, 3), significant(t, 3))
         };
-        sheet.note(&format!("Outside the axes: {}.", outside.iter().map(of).collect::<Vec<_>>().join(", ")));
+        notes.push(format!("Outside the axes: {}.", outside.iter().map(of).collect::<Vec<_>>().join(", ")));
+    }
+    if !notes.is_empty() {
+        sheet.note(&notes.join(" "));
     }
     sheet.finish()
 }
@@ -155,7 +167,7 @@ mod tests {
         };
         let answers =
             vec![answer("output-error", 0.1), answer("srivc", 0.101), answer("least-squares", 0.099), answer("x", 9.0)];
-        let svg = index_plane(&IndexPlane { title: None, prime: false, answers }, &Theme::screen()).svg();
-        assert!(svg.contains("Outside the axes: x (K = 9.00, T = 1440)."), "{svg}");
+        let figure = index_plane(&IndexPlane { title: None, prime: false, answers }, &Theme::screen());
+        assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
     }
 }

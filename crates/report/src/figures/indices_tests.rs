@@ -1,5 +1,5 @@
-//! The phase plane, the plane of the indices, indices over the amplitude and replayed overshoots with ordinary, wild and
-//! missing values.
+//! The phase plane, the plane of the indices, indices over the amplitude and replayed overshoots with ordinary, wild
+//! and missing values.
 
 use super::tests::check;
 use super::*;
@@ -97,7 +97,7 @@ fn labels_carry_symbol_and_unit() {
     for text in ["record, slope of its smoothed heading", "before", "after", "drawn ships"] {
         assert!(svg("phase").contains(&format!("\n{text}\n")), "{text}");
     }
-    assert!(svg("indices").contains(&format!("{}′", italic("K"))) && svg("indices").contains("maximum-likelihood"));
+    assert!(svg("indices").contains(&italic("K′")) && svg("indices").contains("maximum-likelihood"));
     for text in ["all records together, 95 %", "Arrows: beyond the axis.", "heading amplitude [°]"] {
         assert!(svg("amplitude").contains(text), "{text}");
     }

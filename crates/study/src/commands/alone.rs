@@ -2,7 +2,7 @@
 //! K and T of a first-order response depend on the amplitude.
 
 use ::trace::Analysis;
-use identify::{Estimate, Identifier, maximum_likelihood, output_error};
+use identify::{Estimate, Identifier, output_error};
 use rayon::prelude::*;
 use ship::angle::{from_deg, to_deg};
 use simulate::manoeuvre::{ZigZag as Order, ZigZagEnd};
@@ -21,12 +21,6 @@ const EXECUTES: usize = 5;
 /// A model is sailed up to so many times the largest rudder of the records.
 const BEYOND: f64 = 1.05;
 
-fn methods() -> [Box<dyn Identifier>; 2] {
-    let likelihood = maximum_likelihood::Settings::default().build().expect("default settings are valid");
-    let replay = output_error::Settings::default().build().expect("default settings are valid");
-    [Box::new(likelihood), Box::new(replay)]
-}
-
 /// Mean heading at the peaks of a zig-zag, rad.
 fn amplitude(trial: &Trial) -> Option<f64> {
     let zigzag = ZigZag::of(trial).ok()?;
@@ -40,16 +34,13 @@ fn alone(trial: &Trial, method: &dyn Identifier) -> Option<Alone> {
     method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k.value.is_finite())
 }
 
-/// Every record alone, by the likelihood or, where that fails for one of them, by the output error; `None` for less
+/// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for less
 /// than two zig-zags.
-pub fn of_records(trials: &[Trial]) -> Option<Amplitudes> {
+pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<Amplitudes> {
     let zigzags: Vec<&Trial> = trials.iter().filter(|trial| amplitude(trial).is_some()).collect();
-    if zigzags.len() < 2 {
-        return None;
-    }
     let mut best: Option<Amplitudes> = None;
-    for method in methods() {
-        let records: Vec<Alone> = zigzags.par_iter().filter_map(|trial| alone(trial, method.as_ref())).collect();
+    for method in methods.iter().filter(|_| zigzags.len() > 1) {
+        let records: Vec<Alone> = zigzags.par_iter().filter_map(|trial| alone(trial, *method)).collect();
         let complete = records.len() == zigzags.len();
         if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
             best = Some(Amplitudes { method: method.id(), records, model: Vec::new() });
@@ -61,10 +52,14 @@ pub fn of_records(trials: &[Trial]) -> Option<Amplitudes> {
     best.filter(|best| best.records.len() > 1)
 }
 
-/// The same with zig-zags that the fitted model was steered through.
+/// The same by the method that gives an analysis its base, with zig-zags that the fitted model was steered through. A
+/// model that follows a measured quantity, such as the speed, cannot be steered without it.
 pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> Option<Amplitudes> {
-    let mut all = of_records(trials)?;
-    let [_, replay] = methods();
+    let method = output_error::Settings::default().build().expect("default settings are valid");
+    let mut all = of_records(trials, &[&method])?;
+    if analysis.ship().model().effects().iter().any(|effect| effect.needs().is_some()) {
+        return Some(all);
+    }
     let rudders = trials.iter().flat_map(|trial| trial.rudder());
     let largest = to_deg(rudders.fold(0.0, |largest: f64, rudder| largest.max(rudder.abs())));
     let sail = |angle: &f64| {
@@ -74,7 +69,7 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> Option<Amplitudes> 
             first: Side::Starboard,
             end: ZigZagEnd::Executes(EXECUTES),
         };
-        alone(&planned::sailed(analysis, trials, Manoeuvre::ZigZag(order))?, replay.as_ref())
+        alone(&planned::sailed(analysis, trials, Manoeuvre::ZigZag(order))?, &method)
     };
     let angles: Vec<f64> = SAILED.into_iter().filter(|angle| *angle <= BEYOND * largest).collect();
     all.model = angles.par_iter().filter_map(sail).collect();

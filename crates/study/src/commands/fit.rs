@@ -92,7 +92,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
             several => format!("{} records together", several.len()),
         },
         ship,
-        amplitudes: alone::of_records(trials),
+        amplitudes: alone::of_records(trials, &speakers(&methods, &file.methods)),
     };
     fit_figures::draw(&records, &answers, &whole, &theme, &folder)?;
 
@@ -133,6 +133,18 @@ fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier
         .filter(|method| names.is_empty() || names.iter().any(|name| name == method.id()))
         .map(|method| seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method))
         .collect())
+}
+
+/// The methods that were used and gave an answer with an interval, those first whose intervals hold most.
+fn speakers<'a>(methods: &'a [Box<dyn Identifier>], entries: &[MethodEntry]) -> Vec<&'a dyn Identifier> {
+    let has_interval = |entry: &&MethodEntry| entry.parameters.is_some_and(|own| own.k_per_s.ci95.is_some());
+    let answered: Vec<&str> = entries.iter().filter(has_interval).map(|entry| entry.method.as_str()).collect();
+    let mut found: Vec<&dyn Identifier> =
+        methods.iter().map(Box::as_ref).filter(|method| answered.contains(&method.id())).collect();
+    let rank = |id: &str| fit_scales::SPEAKERS.iter().position(|speaker| *speaker == id);
+    found.sort_by_key(|method| rank(method.id()).unwrap_or(fit_scales::SPEAKERS.len()));
+    found.truncate(fit_scales::SPEAKERS.len());
+    found
 }
 
 /// The message when no method gives an answer: every reason once.

@@ -1,5 +1,5 @@
-//! Figures of `study fit`: the first record with its characteristic points, every record with the replays of all methods
-//! and with the best fit, over time and in the phase plane, and K and T of all methods and of every record alone.
+//! Figures of `study fit`: the first record with its characteristic points, every record with the replays of all
+//! methods and with the best fit, over time and in the phase plane, and K and T of all methods and of every record alone.
 
 use identify::Estimate;
 use identify::replay::replay;
@@ -41,8 +41,8 @@ pub struct Whole {
 }
 
 /// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `raw` (where readings are left out or
-/// doubtful), `replays`, `fit` and `phase` of the first record, and the same with `-NAME` of the others; `indices`, K and
-/// T of all methods, and `amplitude`, those of every record alone.
+/// doubtful), `replays`, `fit` and `phase` of the first record, and the same with `-NAME` of the others; `indices`, K
+/// and T of all methods, and `amplitude`, those of every record alone.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],

@@ -14,7 +14,7 @@ use campaign::answer::MethodEntry;
 
 /// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
 /// first.
-const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
+pub const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
 pub fn compared(

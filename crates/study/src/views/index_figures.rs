@@ -97,14 +97,17 @@ pub fn amplitude(
     joint: Option<[Quantity; 2]>,
     ship: Option<Particulars>,
 ) -> Amplitude {
-    let prime = |unit: &str| if ship.is_some() { String::from("′") } else { format!(" [{unit}]") };
+    let name = |letter: &str, unit: &str| match ship {
+        Some(_) => symbol(&format!("{letter}′")),
+        None => format!("{} [{unit}]", symbol(letter)),
+    };
     let panel = |place: usize, letter: &str, unit: &str| {
         let factor = factors(ship)[place];
         let of = |own: &Alone| [own.k, own.t][place].scaled(factor);
         let joint = joint.map(|joint| joint[place].scaled(factor)).filter(|joint| joint.value.is_finite());
         let (x, y): (Vec<f64>, Vec<f64>) = all.model.iter().map(|own| (to_deg(own.amplitude), of(own).value)).unzip();
         AmplitudePanel {
-            title: format!("{}{}", symbol(letter), prime(unit)),
+            title: name(letter, unit),
             points: all
                 .records
                 .iter()

@@ -1,13 +1,12 @@
 //! What was found at each scale beside what was found at all of them together, without dimension: which terms scale.
 
-use report::number::{MISSING, fixed};
+use report::number::{MISSING, fixed, uncertain};
 use report::{Column, Table};
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use trial::{Quantity, Scaling};
 
 use super::method_table::estimate;
-use super::trace_tables::uncertain;
 use crate::scales::scale_name;
 
 /// One number without dimension at every scale.

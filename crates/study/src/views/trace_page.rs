@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use ::trace::analysis::{Empirical, Fitted, Judged, Outcome, Randomness, RunnerUp, Traced, Verdict};
 use ::trace::noise::Wander;
-use report::number::{self, significant};
+use report::number::{self, significant, uncertain};
 use ship::Shown;
 use ship::angle::to_deg;
 use trial::Trial;
@@ -12,7 +12,7 @@ use trial::Trial;
 use super::scale_comparison::ScalesEntry;
 use super::trace_report::TraceReport;
 use super::trace_scales::prime;
-use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures, uncertain};
+use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures};
 use crate::scales::scale_name;
 
 /// How what wanders is called.

@@ -31,6 +31,11 @@ fn shown(fitted: &Fitted, quantity: Quantity, unit: String) -> (Quantity, String
     }
 }
 
+/// A number whose error is not known where the search for it ended at a bound.
+fn told(quantity: Quantity, at_bound: bool) -> Quantity {
+    if at_bound { Quantity::bare(quantity.value) } else { quantity }
+}
+
 /// The final model on the records of every scale alone, against its parameters from all; `None` where the fitted
 /// records have one scale.
 pub fn compared(analysis: &Analysis, together: &Together) -> Option<ScalesEntry> {
@@ -44,7 +49,7 @@ pub fn compared(analysis: &Analysis, together: &Together) -> Option<ScalesEntry>
     let mut terms = Vec::new();
     for (place, symbol, dimension) in [(0, "K′", [-1, 0]), (1, "T′", [1, 0])] {
         let prime = |indices: &[Quantity; 2]| indices[place].scaled(first.prime(dimension));
-        let found = own.iter().map(|own| own.as_ref().map(|own| prime(&own.indices))).collect();
+        let found = own.iter().map(|own| own.as_ref().map(|own| told(prime(&own.indices), own.ends()))).collect();
         terms.push(ComparedTerm::new(symbol, "1", prime(&analysis.indices), found));
     }
     // What belongs to one record is of one scale.
@@ -56,7 +61,8 @@ pub fn compared(analysis: &Analysis, together: &Together) -> Option<ScalesEntry>
             })
         };
         let (symbol, joint, unit) = of(fitted);
-        let found = own.iter().map(|own| own.as_ref()?.counterpart(fitted).map(|own| of(own).1)).collect();
+        let counterpart = |own: &Apart| own.counterpart(fitted).map(|own| told(of(own).1, own.at_bound));
+        let found = own.iter().map(|own| own.as_ref().and_then(counterpart)).collect();
         terms.push(ComparedTerm::new(symbol, &unit, joint, found));
     }
     let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();

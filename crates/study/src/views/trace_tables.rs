@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use ::trace::analysis::{Fitted, Prospect};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use ::trace::structure::TermName;
-use report::number::{self, MISSING, optional, significant, with_uncertainty};
+use report::number::{self, MISSING, optional, significant, uncertain};
 use report::{Column, Table};
 use ship::angle::to_deg;
 use ship::effects::Parameter;
@@ -30,20 +30,6 @@ pub fn in_degrees(fitted: &Fitted) -> (Quantity, String) {
         _ => (factor, unit.replace("rad", "deg")),
     };
     (fitted.quantity.scaled(factor), unit)
-}
-
-/// A value with its uncertainty, whatever its size.
-pub fn uncertain(value: f64, sd: Option<f64>) -> String {
-    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
-        let exponent = value.abs().log10().floor() as i32;
-        let unit = 10f64.powi(exponent);
-        return format!(
-            "({})×{}",
-            with_uncertainty(value / unit, sd.map(|sd| sd / unit)),
-            number::power_of_ten(exponent)
-        );
-    }
-    with_uncertainty(value, sd)
 }
 
 /// Errors before and after on every record.

@@ -24,6 +24,12 @@ impl Apart {
         let is_it = |own: &&Fitted| own.parameter == of.parameter && own.only == of.only;
         self.parameters.iter().find(is_it)
     }
+
+    /// Whether K or T rest on a parameter at an end of its range.
+    pub fn ends(&self) -> bool {
+        let of_base = |fitted: &&Fitted| ["inverse_T", "K_over_T"].contains(&fitted.parameter.key);
+        self.parameters.iter().filter(of_base).any(|fitted| fitted.at_bound)
+    }
 }
 
 impl Analysis {

@@ -1,11 +1,11 @@
 //! Yaw rate over heading of a record, measured or from the slope of its heading.
 
-use super::ZigZag;
+use super::findings::ZigZag;
 use super::heading::Heading;
 use crate::record::Trial;
 
-/// Heading (rad) and yaw rate (rad/s) of a record in the order of time, and whether the rate is the slope of the smoothed
-/// heading because the record has no yaw rate.
+/// Heading (rad) and yaw rate (rad/s) of a record in the order of time, and whether the rate is the slope of the
+/// smoothed heading because the record has no yaw rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhasePlane {
     /// Heading ψ, rad.
