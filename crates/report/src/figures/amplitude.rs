@@ -1,4 +1,4 @@
-//! K and T found in every record alone, over the amplitude of its zig-zag: a ship whose indices change with the
+//! K and T found in every record alone, over the amplitudes of its zig-zag: a ship whose indices change with the
 //! amplitude is no first-order ship.
 
 use serde::{Deserialize, Serialize};
@@ -16,11 +16,14 @@ use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 
+/// Horizontal axes: a zig-zag has an amplitude of the rudder and one of the heading.
+pub const COLUMNS: usize = 2;
+
 /// One record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AmplitudePoint {
-    /// Amplitude, degrees.
-    pub amplitude_deg: f64,
+    /// Its amplitude on every horizontal axis, degrees.
+    pub amplitudes_deg: [f64; COLUMNS],
     /// Value of the index.
     pub value: f64,
     /// Its 95 % interval.
@@ -36,8 +39,8 @@ pub struct AmplitudePanel {
     pub points: Vec<AmplitudePoint>,
     /// From all records together, with its 95 % interval.
     pub joint: Option<Reference95>,
-    /// What a first-order fit finds in zig-zags of a model, over their amplitude, degrees; may be empty.
-    pub model: Curve,
+    /// What a first-order fit finds in zig-zags of a model, over every horizontal axis, degrees; may be empty.
+    pub model: [Curve; COLUMNS],
 }
 
 /// What [`amplitude`] draws.
@@ -45,8 +48,8 @@ pub struct AmplitudePanel {
 pub struct Amplitude {
     /// Title above the figure.
     pub title: Option<String>,
-    /// Title of the horizontal axis with unit.
-    pub x_title: String,
+    /// Titles of the horizontal axes with unit: rudder and heading.
+    pub x_titles: [String; COLUMNS],
     /// The method that was used on every record, which gives the colour.
     pub origin: Origin,
     /// Name of the joint line.
@@ -63,20 +66,22 @@ pub fn amplitude(data: &Amplitude, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
     let all = || data.panels.iter();
-    let across = all().flat_map(|panel| {
-        panel.points.iter().map(|point| point.amplitude_deg).chain(panel.model.finite().map(|(x, _)| x))
-    });
-    let column = Side::new(Axis::covering(across, PAD, Steps::Angle), data.x_title.clone());
+    let column = |place: usize| {
+        let points = all().flat_map(|panel| panel.points.iter().map(|point| point.amplitudes_deg[place]));
+        let model = all().flat_map(|panel| panel.model[place].finite().map(|(x, _)| x));
+        Side::new(Axis::covering(points.chain(model), PAD, Steps::Angle), data.x_titles[place].clone())
+    };
     let rows = all().map(|panel| (Side::new(up(panel), panel.title.clone()), theme.tall(0.3)));
-    let panels = sheet.grid(Grid::stack(column, rows.collect()));
+    let panels = sheet.grid(Grid::new((0..COLUMNS).map(column).collect(), rows.collect()));
+    let contents = all().flat_map(|content| (0..COLUMNS).map(move |place| (place, content)));
     let mut beyond = false;
-    for (panel, content) in panels.iter().zip(&data.panels) {
+    for (panel, (place, content)) in panels.iter().zip(contents) {
         if let Some(joint) = &content.joint {
             joint.horizontal(panel, &mut sheet.scene, theme);
         }
-        panel.line(&mut sheet.scene, content.model.pairs(), model(theme));
+        panel.line(&mut sheet.scene, content.model[place].pairs(), model(theme));
         for point in &content.points {
-            beyond |= draw(panel, &mut sheet.scene, theme, point, &look(data));
+            beyond |= draw(panel, &mut sheet.scene, theme, (point.amplitudes_deg[place], point), &look(data));
         }
     }
     if beyond {
@@ -101,7 +106,7 @@ fn entries(data: &Amplitude, theme: &Theme) -> Vec<Entry> {
     if data.panels.iter().any(|panel| panel.joint.is_some()) {
         entries.push(Entry::new(Sample::Line(Stroke::solid(INK, 0.8 * theme.line)), data.joint_name.clone()));
     }
-    if data.panels.iter().any(|panel| panel.model.finite().next().is_some()) {
+    if data.panels.iter().any(|panel| panel.model[0].finite().next().is_some()) {
         entries.push(Entry::new(Sample::Line(model(theme)), "first-order fit to zig-zags of the model"));
     }
     entries
@@ -112,7 +117,8 @@ fn up(panel: &AmplitudePanel) -> Axis {
     let points = || panel.points.iter().map(|point| point.value);
     let limit = FAR * median(points().map(f64::abs)).unwrap_or(f64::INFINITY);
     let joint = panel.joint.iter().map(|joint| joint.value);
-    let core = points().chain(joint).chain(panel.model.finite().map(|(_, y)| y)).filter(|value| value.abs() <= limit);
+    let core =
+        points().chain(joint).chain(panel.model[0].finite().map(|(_, y)| y)).filter(|value| value.abs() <= limit);
     let core: Vec<f64> = core.collect();
     let room = axis::range(core.iter().copied()).map_or(0.0, |(lo, hi)| (hi - lo).max(0.2 * limit.min(hi.abs())));
     let (lo, hi) = axis::range(core.iter().copied()).unwrap_or((0.0, 1.0));
@@ -122,8 +128,14 @@ fn up(panel: &AmplitudePanel) -> Axis {
 }
 
 /// Draws one record; tells whether something lies beyond the axis.
-fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, point: &AmplitudePoint, look: &Look) -> bool {
-    let Some(x) = panel.across(point.amplitude_deg).filter(|x| x.is_finite()) else { return false };
+fn draw(
+    panel: &Panel,
+    scene: &mut Scene,
+    theme: &Theme,
+    (amplitude, point): (f64, &AmplitudePoint),
+    look: &Look,
+) -> bool {
+    let Some(x) = panel.across(amplitude).filter(|x| x.is_finite()) else { return false };
     let (top, bottom) = (panel.rect.y, panel.rect.bottom());
     let place = |value: f64| panel.up(value.clamp(-f64::MAX, f64::MAX)).filter(|y| !y.is_nan());
     let Some(y) = place(point.value) else { return false };
@@ -145,6 +157,6 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, point: &AmplitudePoint,
             beyond = true;
         }
     }
-    panel.marker(scene, (point.amplitude_deg, point.value), theme.marker, look);
+    panel.marker(scene, (amplitude, point.value), theme.marker, look);
     beyond
 }

@@ -32,7 +32,7 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
     let answers = palette::method_ids().take(n).enumerate().map(answer).collect();
     let plane_of_indices = IndexPlane { title: None, prime: n > 2, answers };
     let point = |k: usize| AmplitudePoint {
-        amplitude_deg: 5.0 * k as f64,
+        amplitudes_deg: [5.0 * k as f64, 7.0 + k as f64],
         value: if k == 1 { wild } else { 0.1 + 0.01 * k as f64 },
         interval: (k != 2).then_some([0.08, if k == 3 { wild } else { 0.13 }]),
     };
@@ -40,11 +40,11 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         title: title.to_owned(),
         points: (0..n.min(12)).map(point).collect(),
         joint: (n > 1).then_some(Reference95 { value: 0.12, band: [0.11, if n == 2 { wild } else { 0.13 }] }),
-        model: if n > 2 { Curve { x: vec![5.0, 30.0], y: vec![0.11, wild] } } else { Curve::default() },
+        model: [5.0, 6.0].map(|x| Curve { x: if n > 2 { vec![x, 6.0 * x] } else { vec![] }, y: vec![0.11, wild] }),
     };
     let over = Amplitude {
         title: None,
-        x_title: "heading amplitude [°]".into(),
+        x_titles: ["rudder [°]", "heading amplitude [°]"].map(str::to_owned),
         origin: Origin::Method("output-error".into()),
         joint_name: "all records together, 95 %".into(),
         panels: vec![panel("K [1/s]"), panel("T [s]")],

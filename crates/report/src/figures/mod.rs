@@ -28,7 +28,7 @@ mod track;
 mod violins;
 mod zigzag_trial;
 
-pub use amplitude::{Amplitude, AmplitudePanel, AmplitudePoint, amplitude};
+pub use amplitude::{Amplitude, AmplitudePanel, AmplitudePoint, COLUMNS as AMPLITUDES, amplitude};
 pub use curve_fit::{CurveFit, curve_fit};
 pub use derivatives::{Derivatives, MotionCurves, derivatives};
 pub use dots::{Dot, DotColumn, DotPlot, dots};

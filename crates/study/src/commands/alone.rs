@@ -21,23 +21,25 @@ const EXECUTES: usize = 5;
 /// A model is sailed up to so many times the largest rudder of the records.
 const BEYOND: f64 = 1.05;
 
-/// Mean heading at the peaks of a zig-zag, rad.
-fn amplitude(trial: &Trial) -> Option<f64> {
+/// Mean size of the rudder of a zig-zag, and of its heading at the peaks, rad.
+fn amplitudes(trial: &Trial) -> Option<[f64; 2]> {
     let zigzag = ZigZag::of(trial).ok()?;
     let base = zigzag.base_course.heading.value;
     let peaks: Vec<f64> = zigzag.overshoots.iter().map(|one| (one.peak_heading.value - base).abs()).collect();
-    (!peaks.is_empty()).then(|| peaks.iter().sum::<f64>() / peaks.len() as f64)
+    let rudders: Vec<f64> = zigzag.executes.iter().map(|one| one.rudder_after.abs()).collect();
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    (!peaks.is_empty() && !rudders.is_empty()).then(|| [mean(&rudders), mean(&peaks)])
 }
 
 fn alone(trial: &Trial, method: &dyn Identifier) -> Option<Alone> {
-    let of = |estimate: Estimate| Some(Alone { amplitude: amplitude(trial)?, k: estimate.K(), t: estimate.T() });
+    let of = |estimate: Estimate| Some(Alone { amplitudes: amplitudes(trial)?, k: estimate.K(), t: estimate.T() });
     method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k.value.is_finite())
 }
 
 /// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for less
 /// than two zig-zags.
 pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<Amplitudes> {
-    let zigzags: Vec<&Trial> = trials.iter().filter(|trial| amplitude(trial).is_some()).collect();
+    let zigzags: Vec<&Trial> = trials.iter().filter(|trial| amplitudes(trial).is_some()).collect();
     let mut best: Option<Amplitudes> = None;
     for method in methods.iter().filter(|_| zigzags.len() > 1) {
         let records: Vec<Alone> = zigzags.par_iter().filter_map(|trial| alone(trial, *method)).collect();
@@ -73,6 +75,6 @@ pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> Option<Amplitudes> 
     };
     let angles: Vec<f64> = SAILED.into_iter().filter(|angle| *angle <= BEYOND * largest).collect();
     all.model = angles.par_iter().filter_map(sail).collect();
-    all.model.sort_by(|one, other| one.amplitude.total_cmp(&other.amplitude));
+    all.model.sort_by(|one, other| one.amplitudes[0].total_cmp(&other.amplitudes[0]));
     Some(all)
 }

@@ -4,7 +4,7 @@ use identify::Estimate;
 use identify::estimate::Uncertainty;
 use identify::replay::Replay;
 use report::figures::{
-    Amplitude, AmplitudePanel, AmplitudePoint, IndexAnswer, IndexPlane, PhaseCurve, PhasePlane, Reference95,
+    AMPLITUDES, Amplitude, AmplitudePanel, AmplitudePoint, IndexAnswer, IndexPlane, PhaseCurve, PhasePlane, Reference95,
 };
 use report::{Curve, Origin, symbol};
 use ship::Particulars;
@@ -17,8 +17,8 @@ use campaign::answer::MethodEntry;
 /// K and T of one zig-zag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Alone {
-    /// Mean heading at the peaks, from the base course, rad.
-    pub amplitude: f64,
+    /// Mean size of the rudder between its executes, and of the heading at the peaks from the base course, rad.
+    pub amplitudes: [f64; AMPLITUDES],
     /// K, 1/s.
     pub k: Quantity,
     /// T, s.
@@ -105,25 +105,26 @@ pub fn amplitude(
         let factor = factors(ship)[place];
         let of = |own: &Alone| [own.k, own.t][place].scaled(factor);
         let joint = joint.map(|joint| joint[place].scaled(factor)).filter(|joint| joint.value.is_finite());
-        let (x, y): (Vec<f64>, Vec<f64>) = all.model.iter().map(|own| (to_deg(own.amplitude), of(own).value)).unzip();
+        let y: Vec<f64> = all.model.iter().map(|own| of(own).value).collect();
+        let x = |column: usize| all.model.iter().map(|own| to_deg(own.amplitudes[column])).collect::<Vec<f64>>();
         AmplitudePanel {
             title: name(letter, unit),
             points: all
                 .records
                 .iter()
                 .map(|own| AmplitudePoint {
-                    amplitude_deg: to_deg(own.amplitude),
+                    amplitudes_deg: own.amplitudes.map(to_deg),
                     value: of(own).value,
                     interval: of(own).ci95,
                 })
                 .collect(),
             joint: joint.map(|own| Reference95 { value: own.value, band: own.ci95.unwrap_or([own.value; 2]) }),
-            model: Curve { x, y },
+            model: [0, 1].map(|column| Curve { x: x(column), y: y.clone() }),
         }
     };
     Amplitude {
         title: Some(title),
-        x_title: format!("mean heading {} at the peaks [°]", symbol("ψ")),
+        x_titles: [format!("rudder {} [°]", symbol("δ")), format!("peak heading {} [°]", symbol("ψ"))],
         origin: Origin::Method(all.method.to_owned()),
         joint_name: String::from("all records together, 95 %"),
         panels: vec![panel(0, "K", "1/s"), panel(1, "T", "s")],
