@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use identify::{Estimate, IdentifyError};
 use serde::{Deserialize, Serialize};
+use ship::Particulars;
 use ship::angle::to_deg;
 use trial::Quantity;
 
@@ -18,6 +19,24 @@ pub struct Parameters {
     pub t_s: Quantity,
     /// δ_r, deg.
     pub delta_r_deg: Quantity,
+}
+
+/// K and T without dimension: K' = K L/V, T' = T V/L.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PrimeIndices {
+    /// K'.
+    #[serde(rename = "K")]
+    pub k: Quantity,
+    /// T'.
+    #[serde(rename = "T")]
+    pub t: Quantity,
+}
+
+impl Parameters {
+    /// The indices without dimension of a ship of these particulars.
+    pub fn prime(&self, ship: Particulars) -> PrimeIndices {
+        PrimeIndices { k: self.k_per_s.scaled(ship.prime([-1, 0])), t: self.t_s.scaled(ship.prime([1, 0])) }
+    }
 }
 
 /// Heading error on a record that was not used for identification.
@@ -52,6 +71,9 @@ pub struct MethodEntry {
     pub failure: Option<String>,
     /// K, T and δ_r.
     pub parameters: Option<Parameters>,
+    /// K' and T', where length and speed of the ship are known; left out elsewhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prime: Option<PrimeIndices>,
     /// 1/T < 0, in words "course-unstable".
     pub course_unstable: bool,
     /// Root mean square heading error of the replay on the records themselves, deg.
@@ -79,6 +101,7 @@ impl MethodEntry {
                 t_s: estimate.T(),
                 delta_r_deg: estimate.rudder_bias().scaled(to_deg(1.0)),
             }),
+            prime: None,
             course_unstable: estimate.response.is_course_unstable(),
             heading_rmse_deg,
             validation: Vec::new(),
@@ -101,6 +124,7 @@ impl MethodEntry {
             reason: Some(error.to_string()),
             failure: Some(error.kind().to_owned()),
             parameters: None,
+            prime: None,
             course_unstable: false,
             heading_rmse_deg: None,
             validation: Vec::new(),

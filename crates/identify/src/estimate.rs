@@ -164,6 +164,36 @@ impl Covariance {
         }
     }
 
+    /// Outline of the region that holds K (1/s) and T (s) together with 95 %, closed: the image of the ellipse of 1/T
+    /// and K/T, which bends where they are not well known.
+    ///
+    /// (a, b)ᵀ = (1/T, K/T)ᵀ + √q L u with the Cholesky factor L of their covariance, u on the unit circle and
+    /// q = ν (0.05^(−2/ν) − 1), which is 2 F₀.₉₅(2, ν), −2 ln 0.05 for a known variance. `None` where the region of
+    /// 1/T holds zero, and with it an endless T, and where there is no covariance.
+    pub fn outline(&self, response: &FirstOrder) -> Option<Vec<[f64; 2]>> {
+        const CORNERS: usize = 120;
+        let miss: f64 = 0.05;
+        let q = match self.degrees_of_freedom {
+            Some(freedom) => freedom * (miss.powf(-2.0 / freedom) - 1.0),
+            None => -2.0 * miss.ln(),
+        };
+        let m = &self.matrix;
+        let l11 = m[(0, 0)].sqrt();
+        let l21 = m[(1, 0)] / l11;
+        let l22 = (m[(1, 1)] - l21 * l21).max(0.0).sqrt();
+        let reach = q.sqrt() * l11;
+        if !(l11 > 0.0 && l21.is_finite() && l22.is_finite() && reach < response.inverse_T.abs()) {
+            return None;
+        }
+        let corner = |k: usize| {
+            let (sine, cosine) = (2.0 * std::f64::consts::PI * k as f64 / CORNERS as f64).sin_cos();
+            let a = response.inverse_T + q.sqrt() * l11 * cosine;
+            let b = response.K_over_T + q.sqrt() * (l21 * cosine + l22 * sine);
+            [b / a, a.recip()]
+        };
+        Some((0..=CORNERS).map(corner).collect())
+    }
+
     fn sd_along(&self, gradient: &Vector3<f64>) -> f64 {
         gradient.dot(&(self.matrix * gradient)).max(0.0).sqrt()
     }
@@ -246,6 +276,28 @@ mod tests {
         let K = index_K(&response, &covariance);
         let [lo, hi] = K.ci95.expect("bounded");
         assert_relative_eq!(0.5 * (lo + hi), 0.1, max_relative = 1e-6);
+    }
+
+    /// A well-known ship has the ellipse of the delta method; a ship that may be neutrally stable has no outline.
+    #[test]
+    fn the_outline_is_an_ellipse_where_errors_are_small() {
+        let response = FirstOrder::from_indices(0.1, 16.3, 0.0);
+        let small = covariance(1e-5, 1e-6);
+        let outline = small.outline(&response).expect("bounded");
+        let half = |part: usize| {
+            let of = || outline.iter().map(|place| place[part]);
+            0.5 * (of().fold(f64::MIN, f64::max) - of().fold(f64::MAX, f64::min))
+        };
+        let sd = [index_K(&response, &small), index_T(&response, &small)].map(|one| one.sd.expect("a covariance"));
+        for (part, sd) in sd.into_iter().enumerate() {
+            assert_relative_eq!(half(part), 5.991465f64.sqrt() * sd, max_relative = 2e-3);
+        }
+        assert_eq!(outline[0], outline[outline.len() - 1]);
+        assert_eq!(covariance(0.04, 1e-6).outline(&response), None);
+        let few = Covariance { degrees_of_freedom: Some(10.0), ..small };
+        let wider = few.outline(&response).expect("bounded")[0][1] - response.T();
+        // 2 F₀.₉₅(2, 10) = 8.2056.
+        assert_relative_eq!(wider / (outline[0][1] - response.T()), (8.2056f64 / 5.9915).sqrt(), max_relative = 2e-3);
     }
 
     /// Both ends of the interval of δ_r solve the equation of Fieller (1954) for the ratio of b δ_r to b, and there are

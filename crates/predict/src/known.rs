@@ -151,23 +151,6 @@ impl Member {
     }
 }
 
-/// Exponents of second and metre in a unit such as "rad s²/m²".
-fn dimension(unit: &str) -> [i32; 2] {
-    let mut exponents = [0; 2];
-    let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
-    for (part, sign) in [(above, 1), (below, -1)] {
-        for symbol in part.split(' ') {
-            let (base, power) = symbol.strip_suffix('²').map_or((symbol, 1), |base| (base, 2));
-            match base {
-                "s" => exponents[0] += sign * power,
-                "m" => exponents[1] += sign * power,
-                _ => {}
-            }
-        }
-    }
-    exponents
-}
-
 impl KnownShip {
     /// The same ship at another length and approach speed: every time grows by (L₂/U₂)/(L₁/U₁), every length by L₂/L₁,
     /// and what has no dimension stays (K′, T′ and all others). With U ~ √L this is the scaling of Froude (1868).
@@ -186,7 +169,7 @@ impl KnownShip {
         for member in &mut scaled.members {
             let equations = member.equations()?;
             let factors: Vec<f64> =
-                equations.parameters().iter().map(|parameter| factor(dimension(parameter.unit))).collect();
+                equations.parameters().iter().map(|parameter| factor(parameter.dimension())).collect();
             for (value, factor) in member.parameters.iter_mut().zip(&factors) {
                 *value *= factor;
             }
@@ -289,15 +272,6 @@ impl KnownShip {
 mod tests {
     use super::*;
     use crate::made_up;
-
-    #[test]
-    fn units_are_read() {
-        assert_eq!(dimension("rad s²/m²"), [2, -2]);
-        assert_eq!(dimension("1/s²"), [-2, 0]);
-        assert_eq!(dimension("s/rad²"), [1, 0]);
-        assert_eq!(dimension("rad s/m"), [1, -1]);
-        assert_eq!(dimension("1"), [0, 0]);
-    }
 
     /// There and back is where one was, and K′ = K L/U does not change on the way.
     #[test]

@@ -55,6 +55,17 @@ pub fn with_uncertainty(value: f64, sd: Option<f64>) -> String {
     }
 }
 
+/// The same for a value of any size: one below 0.001 or from 100,000 on with its power of ten, `(1.23 ± 0.04)×10⁻⁵`.
+pub fn uncertain(value: f64, sd: Option<f64>) -> String {
+    if value != 0.0 && value.is_finite() && !(1e-3..1e5).contains(&value.abs()) {
+        let exponent = value.abs().log10().floor() as i32;
+        let unit = 10f64.powi(exponent);
+        let number = with_uncertainty(value / unit, sd.map(|sd| sd / unit));
+        return format!("({number})×{}", power_of_ten(exponent));
+    }
+    with_uncertainty(value, sd)
+}
+
 /// `[0.0989, 0.1017]`: both ends to the decimal their distance supports; [`MISSING`] when there is none.
 pub fn interval(bounds: Option<[f64; 2]>) -> String {
     match bounds {
@@ -117,6 +128,13 @@ fn exponent(value: f64, digits: usize) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_value_of_any_size_has_its_power_of_ten() {
+        assert_eq!(uncertain(1.234e-5, Some(4e-7)), "(1.23 ± 0.04)×10⁻⁵");
+        assert_eq!(uncertain(0.1, Some(0.01)), with_uncertainty(0.1, Some(0.01)));
+        assert_eq!(uncertain(f64::INFINITY, None), with_uncertainty(f64::INFINITY, None));
+    }
 
     #[test]
     fn digits_follow_the_uncertainty() {

@@ -16,6 +16,7 @@ mod interrupt;
 pub mod options;
 mod progress;
 mod records;
+pub mod scales;
 pub mod screen;
 mod terminal;
 mod threads;

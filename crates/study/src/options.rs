@@ -190,6 +190,9 @@ pub struct FitRequest {
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
+    /// How the figures are drawn
+    #[command(flatten)]
+    pub style: Style,
 }
 
 /// What `study simulate` is asked to do.

@@ -2,6 +2,7 @@
 //! `quantity_unit`; this module knows both halves and the factor to SI units, and nothing of files.
 
 use ship::angle::{DEGREE, KNOT};
+use ship::particulars::Dimension;
 
 /// A quantity of a record. Inside, every channel is in SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -156,6 +157,23 @@ impl Channel {
         Channel::WindTrueSpeed,
         Channel::WindTrueFrom,
     ];
+
+    /// Exponents of second and metre in the unit; angles have none.
+    pub fn dimension(self) -> Dimension {
+        match self {
+            Channel::Heading
+            | Channel::Rudder
+            | Channel::RudderOrder
+            | Channel::Roll
+            | Channel::WindRelativeFrom
+            | Channel::WindTrueFrom => [0, 0],
+            Channel::YawRate | Channel::PropellerRate => [-1, 0],
+            Channel::Speed | Channel::Surge | Channel::Sway | Channel::WindRelativeSpeed | Channel::WindTrueSpeed => {
+                [-1, 1]
+            }
+            Channel::North | Channel::East => [0, 1],
+        }
+    }
 
     /// The quantity as it begins a column name.
     pub fn quantity(self) -> &'static str {

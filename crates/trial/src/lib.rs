@@ -12,6 +12,7 @@
 //! | what is checked before a record is believed | [`plausibility`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
 //! | IMO criteria | [`imo`] |
+//! | records of similar ships of different size and speed | [`scale`] |
 
 mod cells;
 pub mod channel;
@@ -26,6 +27,7 @@ pub mod plausibility;
 mod quantity;
 pub mod reader;
 pub mod record;
+pub mod scale;
 pub mod sidecar;
 mod sidecar_error;
 mod words;
@@ -37,6 +39,7 @@ pub use file::FileError;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, Reading, read, read_with};
 pub use record::{Columns, Mark, Noise, Origin, Trial, TrialError};
+pub use scale::{ScaleError, Scales, Scaling};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;
 pub use zigzag::{ZigZag, ZigZagError};

@@ -236,6 +236,34 @@ impl Trial {
         self
     }
 
+    /// The record that a similar ship of another length and approach speed would have made: every time is multiplied
+    /// with (L₂/V₂)/(L₁/V₁), a yaw rate and the rate of the propeller are divided by it, speeds are multiplied with
+    /// V₂/V₁ and lengths with L₂/L₁; angles stay, and so do columns that are not known.
+    ///
+    /// What has no dimension is the same in both (K', T'). `None` where length and speed of this ship are not declared
+    /// and where a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
+    pub fn scaled_to(&self, particulars: Particulars) -> Option<Self> {
+        let own = self.particulars?;
+        let second = own.factor_to(particulars, [1, 0]);
+        let metre = own.factor_to(particulars, [0, 1]);
+        if ![second, metre].iter().all(|factor| factor.is_finite() && *factor > 0.0) {
+            return None;
+        }
+        let factor = |channel: Channel| own.factor_to(particulars, channel.dimension());
+        let times = self.time().iter().map(|time| time * second).collect();
+        let mut scaled = self.clone();
+        scaled.rudder = signal(times, self.rudder().to_vec()).ok()?;
+        for (channel, values) in &mut scaled.channels {
+            values.iter_mut().for_each(|value| *value *= factor(*channel));
+        }
+        for mark in &mut scaled.marks {
+            *mark = Mark { time: mark.time * second, value: mark.value * factor(mark.channel), ..*mark };
+        }
+        scaled.noise.yaw_rate = self.noise.yaw_rate.map(|sd| sd * factor(Channel::YawRate));
+        scaled.particulars = Some(particulars);
+        Some(scaled)
+    }
+
     /// Name of the record: the stem of its file, or the cell of its scenario.
     pub fn name(&self) -> &str {
         &self.name
@@ -360,4 +388,46 @@ fn integrate(time: &[f64], rate: &[f64]) -> Vec<f64> {
             total
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What has no dimension stays, there and back is where one was, and nothing is scaled from an unknown scale.
+    #[test]
+    fn another_scale_keeps_what_has_no_dimension() {
+        let time: Vec<f64> = (0..60).map(|row| 3.0 + 0.5 * f64::from(row)).collect();
+        let of = |value: fn(f64) -> f64| time.iter().map(|t| value(*t)).collect::<Vec<f64>>();
+        let channels = [
+            (Channel::Rudder, of(|t| 0.1 * (0.3 * t).sin())),
+            (Channel::Heading, of(|t| 0.2 * (0.3 * t).cos())),
+            (Channel::YawRate, of(|t| -0.06 * (0.3 * t).sin())),
+            (Channel::Speed, of(|_| 1.2)),
+            (Channel::North, of(|t| 1.2 * t)),
+        ];
+        let origin = Origin::Measured { file: "run.csv".into(), sha256: String::new() };
+        let columns = Columns { time: time.clone(), channels: channels.into(), unknown: Vec::new() };
+        let trial = Trial::new("run", origin, columns).expect("a record");
+        let (model, ship) = (Particulars { length: 7.0, speed: 1.2 }, Particulars { length: 320.0, speed: 8.0 });
+        assert!(trial.scaled_to(ship).is_none());
+        let trial = trial.with_particulars(model).with_noise(Noise { yaw_rate: Some(0.01), ..Noise::default() });
+        let large = trial.scaled_to(ship).expect("a known scale");
+        let prime = |trial: &Trial, channel: Channel| {
+            let own = trial.particulars().expect("declared").prime(channel.dimension());
+            trial.channel(channel).expect("a channel")[20] * own
+        };
+        for channel in [Channel::Heading, Channel::Rudder, Channel::YawRate, Channel::Speed, Channel::North] {
+            assert!((prime(&trial, channel) - prime(&large, channel)).abs() < 1e-12, "{channel:?}");
+        }
+        assert!((large.duration() / trial.duration() - 40.0 / (7.0 / 1.2)).abs() < 1e-12);
+        // The yaw rate is still the slope of the heading.
+        let slope = |trial: &Trial| (trial.heading()[21] - trial.heading()[19]) / (trial.time()[21] - trial.time()[19]);
+        let ratio = |trial: &Trial| slope(trial) / trial.yaw_rate().expect("a channel")[20];
+        assert!((ratio(&large) / ratio(&trial) - 1.0).abs() < 1e-12);
+        let back = large.scaled_to(model).expect("a known scale");
+        assert!(back.time().iter().zip(&time).all(|(one, other)| (one - other).abs() < 1e-12));
+        assert!((back.noise().yaw_rate.expect("declared") - 0.01).abs() < 1e-15);
+        assert!(trial.scaled_to(Particulars { length: 0.0, speed: 1.0 }).is_none());
+    }
 }

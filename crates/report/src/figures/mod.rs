@@ -1,6 +1,7 @@
 //! One file per kind of figure: the data it shows, as plain numbers in display units, and the function that draws it.
 //! What they share is in `shared`.
 
+mod amplitude;
 mod curve_fit;
 mod derivatives;
 mod dots;
@@ -8,9 +9,12 @@ mod ecdf;
 mod error_curves;
 mod evidence;
 mod heat_map;
+mod index_plane;
 mod intervals;
 mod missing_moment;
+mod overshoot_replays;
 mod overshoots;
+mod phase_plane;
 mod power;
 mod prediction_bands;
 mod raw_record;
@@ -24,6 +28,7 @@ mod track;
 mod violins;
 mod zigzag_trial;
 
+pub use amplitude::{Amplitude, AmplitudePanel, AmplitudePoint, COLUMNS as AMPLITUDES, amplitude};
 pub use curve_fit::{CurveFit, curve_fit};
 pub use derivatives::{Derivatives, MotionCurves, derivatives};
 pub use dots::{Dot, DotColumn, DotPlot, dots};
@@ -31,9 +36,12 @@ pub use ecdf::{Ecdf, EcdfCurve, EcdfPanel, ecdf};
 pub use error_curves::{ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
 pub use evidence::{Evidence, EvidenceBar, Fate, evidence};
 pub use heat_map::{HeatMap, HeatPanel, heat_map};
+pub use index_plane::{IndexAnswer, IndexPlane, index_plane};
 pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
 pub use missing_moment::{Banded, MissingMoment, MomentPanel, missing_moment};
+pub use overshoot_replays::{OvershootReplays, ReplayedOvershoot, overshoot_replays};
 pub use overshoots::{OvershootRow, Overshoots, overshoots};
+pub use phase_plane::{PhaseCurve, PhasePlane, phase_plane};
 pub use power::{Power, PowerSeries, power};
 pub use prediction_bands::{PredictionBands, prediction_bands};
 pub use raw_record::{RawRecord, raw_record};
@@ -47,6 +55,8 @@ pub use track::{Track, track};
 pub use violins::{Violin, ViolinPanel, Violins, violins};
 pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial, zigzag_trial};
 
+#[cfg(test)]
+mod indices_tests;
 #[cfg(test)]
 mod prediction_tests;
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::dynamics::{Measured, Regressor};
 use crate::number::{Real, Tangent};
+use crate::particulars::{self, Dimension};
 
 /// One parameter of an effect or of the base.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +29,11 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Exponents of second and metre in the unit; angles have none.
+    pub fn dimension(&self) -> Dimension {
+        particulars::dimension(self.unit)
+    }
+
     /// Whether a value lies within the physical range.
     pub fn holds(&self, value: f64) -> bool {
         (self.lowest..=self.highest).contains(&value)

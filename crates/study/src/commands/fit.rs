@@ -10,11 +10,13 @@ use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
+use crate::commands::alone;
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_repetition};
-use crate::views::fit_figures::{self, Drawn};
+use crate::scales::{self, Together};
+use crate::views::fit_figures::{self, Drawn, Whole};
 use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
-use crate::views::method_table;
+use crate::views::{fit_scales, method_table};
 use crate::{progress, screen};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::folder::ResultFolder;
@@ -30,15 +32,20 @@ const FIT: &str = "fit.json";
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(&request.methods, common.seed)?;
     let mut warnings = Vec::new();
-    let trials = read_all(&request.trials, &request.reading, &mut warnings)?;
-    let others = read_others(&request.validate, &request.reading, &mut warnings)?;
-    warn_of_repetition(&trials, &others, &mut warnings);
+    let read = read_all(&request.trials, &request.reading, &mut warnings)?;
+    let read_to_validate = read_others(&request.validate, &request.reading, &mut warnings)?;
+    warn_of_repetition(&read, &read_to_validate, &mut warnings);
+    let theme = request.style.theme()?;
+    let together = scales::together(&read, &read_to_validate)?;
+    let (trials, others) = (&together.trials[..], &together.others[..]);
+    let ship = scales::particulars(trials);
 
     let answers: Vec<(MethodEntry, Option<Estimate>)> = methods
         .par_iter()
         .progress_with(progress::of("methods", methods.len() as u64, common.quiet))
         .map(|method| {
-            let (mut entry, estimate) = entry(method.id(), method.identify(&trials), &trials);
+            let (mut entry, estimate) = entry(method.id(), method.identify(trials), trials);
+            entry.prime = entry.parameters.zip(ship).map(|(own, ship)| own.prime(ship));
             entry.validation = others.iter().map(|other| validate(other, estimate.as_ref())).collect();
             (entry, estimate)
         })
@@ -49,11 +56,12 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         return Err(unusable(&request.trials[0], &entries, &warnings));
     }
 
-    let zigzags: Vec<Result<ZigZag, ZigZagError>> = trials.iter().map(ZigZag::of).collect();
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "fit")))?;
+    // Times and limits of a record are those of its own scale.
+    let zigzags: Vec<Result<ZigZag, ZigZagError>> = read.iter().map(ZigZag::of).collect();
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(trials, "fit")))?;
     let entries_of_trials: Vec<TrialEntry> =
-        trials.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
-    let shown = Shown::of(&trials).with_motion();
+        read.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
+    let shown = Shown::of(trials).with_motion();
     let file = FitFile {
         schema: "fit/1".into(),
         zigzag: entries_of_trials[0].zigzag.clone(),
@@ -65,19 +73,28 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
                 Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
             })
             .collect(),
+        scales: fit_scales::compared(&methods, &answers, &together),
     };
     let path = folder.path().join(FIT);
     let text = serde_json::to_string_pretty(&file).on("describe", &path)?;
     folder.keep(FIT, text + "\n")?;
-    let names = names(trials.iter().chain(&others).map(Trial::name));
+    let names = names(trials.iter().chain(others).map(Trial::name));
     let records: Vec<Drawn> = trials
         .iter()
-        .chain(&others)
+        .chain(others)
         .zip(&names)
         .enumerate()
         .map(|(number, (trial, name))| Drawn { trial, name, validation: number >= trials.len() })
         .collect();
-    fit_figures::draw(&records, &answers, &zigzags, &folder)?;
+    let whole = Whole {
+        title: match trials {
+            [only] => only.name().to_owned(),
+            several => format!("{} records together", several.len()),
+        },
+        ship,
+        amplitudes: alone::of_records(trials, &speakers(&methods, &file.methods)),
+    };
+    fit_figures::draw(&records, &answers, &whole, &theme, &folder)?;
 
     let mut notes = renamed(&records) + &reasons(&file.methods);
     for ((zigzag, entry), name) in zigzags.iter().zip(&file.trials).zip(&names) {
@@ -88,9 +105,10 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
             (Ok(_), None) => {}
         }
     }
+    notes += &fit_scales::words(&file, ship);
     notes += &format!("\nresults: {}", path.display());
     let table = method_table::table(&file.methods, &names[trials.len()..]);
-    screen::tell(common, [&format!("{}\n", headline(&trials)), ""], &table, &notes)?;
+    screen::tell(common, [&format!("{}\n", headline(&together)), ""], &table, &notes)?;
     for entry in &file.methods {
         warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
     }
@@ -115,6 +133,18 @@ fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier
         .filter(|method| names.is_empty() || names.iter().any(|name| name == method.id()))
         .map(|method| seed.and_then(|seed| method.with_seed(seed)).unwrap_or(method))
         .collect())
+}
+
+/// The methods that were used and gave an answer with an interval, those first whose intervals hold most.
+fn speakers<'a>(methods: &'a [Box<dyn Identifier>], entries: &[MethodEntry]) -> Vec<&'a dyn Identifier> {
+    let has_interval = |entry: &&MethodEntry| entry.parameters.is_some_and(|own| own.k_per_s.ci95.is_some());
+    let answered: Vec<&str> = entries.iter().filter(has_interval).map(|entry| entry.method.as_str()).collect();
+    let mut found: Vec<&dyn Identifier> =
+        methods.iter().map(Box::as_ref).filter(|method| answered.contains(&method.id())).collect();
+    let rank = |id: &str| fit_scales::SPEAKERS.iter().position(|speaker| *speaker == id);
+    found.sort_by_key(|method| rank(method.id()).unwrap_or(fit_scales::SPEAKERS.len()));
+    found.truncate(fit_scales::SPEAKERS.len());
+    found
 }
 
 /// The message when no method gives an answer: every reason once.
@@ -149,12 +179,13 @@ fn unusable(path: &Path, entries: &[MethodEntry], warnings: &[String]) -> Failur
     Failure::input(message)
 }
 
-fn headline(trials: &[Trial]) -> String {
-    let rows: usize = trials.iter().map(Trial::len).sum();
-    match trials {
+fn headline(together: &Together) -> String {
+    let rows: usize = together.trials.iter().map(Trial::len).sum();
+    let head = match &together.trials[..] {
         [only] => format!("{}: {rows} rows, {:.1} s", only.name(), only.duration()),
         several => format!("{} records together: {rows} rows", several.len()),
-    }
+    };
+    together.sentence().map_or_else(|| head.clone(), |sentence| format!("{head}\n{sentence}"))
 }
 
 /// Which record is meant, where several have the same name.

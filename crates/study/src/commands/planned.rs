@@ -47,17 +47,21 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     );
     zigzags
         .chain([turn, pull_out])
-        .filter_map(|(name, manoeuvre)| {
-            let mut simulation = Simulation::new(Vessel::response(analysis.ship()), manoeuvre);
-            simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
-            simulation.recording.period = records[0].sampling_period();
-            simulation.longest_wait = LONGEST * longest;
-            let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
-            let is_manoeuvre =
-                trial.duration() <= LONGEST * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
-            is_manoeuvre.then_some((name, trial))
-        })
+        .filter_map(|(name, manoeuvre)| Some((name, sailed(analysis, records, manoeuvre)?)))
         .collect()
+}
+
+/// The fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` where it does not
+/// come to the end of it.
+pub fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
+    let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
+    let mut simulation = Simulation::new(Vessel::response(analysis.ship()), manoeuvre);
+    simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));
+    simulation.recording.period = records[0].sampling_period();
+    simulation.longest_wait = LONGEST * longest;
+    let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
+    let is_manoeuvre = trial.duration() <= LONGEST * longest && trial.heading().iter().all(|psi| psi.abs() < 1e3);
+    is_manoeuvre.then_some(trial)
 }
 
 /// Rate at which the rudder of a record moves: the upper end of its steps, without the few largest.

@@ -4,12 +4,13 @@
 use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
-use crate::commands::planned;
+use crate::commands::{alone, planned, steady};
 use crate::options::{Common, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read_all, read_others, warn_of_repetition};
+use crate::scales::{self, Together};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
-use crate::views::{missing_moment, trace_figures, trace_page, trace_tables};
+use crate::views::{missing_moment, trace_figures, trace_page, trace_scales, trace_tables};
 use crate::{progress, screen};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
@@ -28,10 +29,13 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = without(read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(read_others(&request.validate, &request.reading, &mut warnings)?);
     warn_of_repetition(&trials, &others, &mut warnings);
+    let sailed_by = trials.iter().chain(&others).map(Trial::particulars).collect();
+    let together = scales::together(&trials, &others)?;
+    let Together { trials, others, .. } = &together;
     let settings =
         Settings { own_bias: request.own_bias, rule: request.rule, wanted: request.wanted(), ..Settings::default() };
     let busy = progress::busy("tracing", common.quiet);
-    let analysis = ::trace::trace(&trials, &others, &settings);
+    let analysis = ::trace::trace(trials, others, &settings);
     busy.finish_and_clear();
     let analysis = analysis.map_err(|error| {
         let first = request.trials[0].display();
@@ -44,14 +48,20 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
         };
         Failure::input(format!("{first}: {error}{why}"))
     })?;
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
-    let planned = planned::trials(&analysis, &trials);
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(trials, "trace")))?;
+    let planned = planned::trials(&analysis, trials);
     let report = TraceReport {
-        names: names(trials.iter().chain(&others).map(Trial::name)),
+        names: names(trials.iter().chain(others).map(Trial::name)),
+        ship: scales::particulars(trials),
+        sailed_by,
+        amplitudes: alone::of_analysis(&analysis, trials),
+        steady: steady::of_analysis(&analysis, trials),
+        scaled: together.sentence(),
+        scales: trace_scales::compared(&analysis, &together),
         prospects: analysis.prospects(&planned),
         missing: analysis.missing_moments(),
-        trials: &trials,
-        others: &others,
+        trials,
+        others,
         analysis: &analysis,
     };
     let path = folder.path().join(TRACE);

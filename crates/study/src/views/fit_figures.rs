@@ -1,13 +1,17 @@
-//! Figures of `study fit`: the first record with its characteristic points, and every record with the replays of all
-//! methods and with the best fit.
+//! Figures of `study fit`: the first record with its characteristic points, every record with the replays of all
+//! methods and with the best fit, over time and in the phase plane, and K and T of all methods and of every record alone.
 
 use identify::Estimate;
+use identify::replay::replay;
 use rayon::prelude::*;
-use report::figures::{self, Fit, RecordFit, Replay, Replays};
+use report::figures::{self, Fit, PhasePlane, RecordFit, Replay, Replays};
 use report::{Figure, Origin, Theme};
-use trial::{Channel, Trial, ZigZag, ZigZagError};
+use ship::Particulars;
+use trial::{Channel, Trial, ZigZag};
 
+use super::index_figures;
 use super::picture::{first_failure, write_figure};
+use crate::views::index_figures::Amplitudes;
 use campaign::answer::MethodEntry;
 use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::folder::ResultFolder;
@@ -26,28 +30,50 @@ pub struct Drawn<'a> {
     pub validation: bool,
 }
 
+/// What is drawn of all records together.
+pub struct Whole {
+    /// Name of the records.
+    pub title: String,
+    /// Length and speed, where they are known.
+    pub ship: Option<Particulars>,
+    /// Every zig-zag alone, where there are several.
+    pub amplitudes: Option<Amplitudes>,
+}
+
 /// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `raw` (where readings are left out or
-/// doubtful), `replays` and `fit` of the first record, and the same with `-NAME` of the others.
+/// doubtful), `replays`, `fit` and `phase` of the first record, and the same with `-NAME` of the others; `indices`, K
+/// and T of all methods, and `amplitude`, those of every record alone.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
-    zigzags: &[Result<ZigZag, ZigZagError>],
+    whole: &Whole,
+    theme: &Theme,
     folder: &ResultFolder,
 ) -> Result<(), Failure> {
-    let theme = Theme::screen();
+    let indices = index_figures::index_plane(whole.title.clone(), answers, whole.ship);
+    write_figure(&figures::index_plane(&indices, theme), folder, "indices")?;
+    if let Some(all) = &whole.amplitudes {
+        let joint = answers.iter().find(|(entry, _)| entry.method == all.method);
+        let joint = joint.and_then(|(_, estimate)| estimate.as_ref()).map(|estimate| [estimate.K(), estimate.T()]);
+        let data = index_figures::amplitude(whole.title.clone(), all, joint, whole.ship);
+        write_figure(&figures::amplitude(&data, theme), folder, "amplitude")?;
+    }
     first_failure(records.par_iter().enumerate().map(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
-        if let Some(Ok(zigzag)) = zigzags.get(number) {
+        if let Some(zigzag) = ZigZag::of(record.trial).ok().filter(|_| !record.validation) {
             let data =
-                figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, zigzag) };
-            write_figure(&figures::zigzag_trial(&data, &theme), folder, &format!("trial{suffix}"))?;
+                figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, &zigzag) };
+            write_figure(&figures::zigzag_trial(&data, theme), folder, &format!("trial{suffix}"))?;
         }
         if !record.trial.marks().is_empty() {
-            write_figure(&raw(record, &theme), folder, &format!("raw{suffix}"))?;
+            write_figure(&raw(record, theme), folder, &format!("raw{suffix}"))?;
         }
         let replays = replays(record, answers);
-        write_figure(&figures::replays(&replays, &theme), folder, &format!("replays{suffix}"))?;
-        write_figure(&best_fit(record, &replays, &theme), folder, &format!("fit{suffix}"))
+        write_figure(&figures::replays(&replays, theme), folder, &format!("replays{suffix}"))?;
+        if let Some(phase) = phase(record, answers) {
+            write_figure(&figures::phase_plane(&phase, theme), folder, &format!("phase{suffix}"))?;
+        }
+        write_figure(&best_fit(record, &replays, theme), folder, &format!("fit{suffix}"))
     }))
 }
 
@@ -77,6 +103,15 @@ fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Repla
     let trial = record.trial;
     let replays = replay_curves(trial, answers, |method| Origin::Method(method.to_owned()));
     Replays { title: title(record), record: curve(trial.time(), trial.heading()), truth: None, replays }
+}
+
+/// The record in the phase plane with the replay that is drawn on its own in `fit`.
+fn phase(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Option<PhasePlane> {
+    let found = || answers.iter().filter_map(|(entry, estimate)| Some((&entry.method, estimate.as_ref()?)));
+    let (method, estimate) = found().find(|(method, _)| *method == BEST).or_else(|| found().next())?;
+    let replay = replay(record.trial, &estimate.response)?;
+    let fit = index_figures::phase_of(Origin::Method(method.clone()), &replay);
+    Some(index_figures::phase_plane(title(record)?, record.trial, vec![fit]))
 }
 
 fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {

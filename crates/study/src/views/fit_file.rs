@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
+use super::scale_comparison::ScalesEntry;
 use crate::records::file_of;
 
 /// One record of `fit.json`.
@@ -69,6 +70,9 @@ pub struct FitFile {
     /// What every method with a covariance knows of the ship, for `study predict`; SI units and radians.
     #[serde(default)]
     pub ships: BTreeMap<String, KnownShip>,
+    /// Where the records are of several scales: which terms scale.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scales: Option<ScalesEntry>,
 }
 
 /// The entry of a record.

@@ -42,7 +42,7 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
 const DIGITS: i32 = 5;
 
 /// A value and its interval, with the digits the interval supports and no more than five significant ones.
-fn estimate(quantity: &Quantity) -> [String; 2] {
+pub fn estimate(quantity: &Quantity) -> [String; 2] {
     let value = quantity.value;
     if !value.is_finite() {
         return [MISSING.to_owned(), MISSING.to_owned()];

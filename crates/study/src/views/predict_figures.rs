@@ -2,15 +2,17 @@
 //! limits of IMO.
 
 use predict::imo::Criterion;
+use predict::known::Seen;
 use predict::prediction::Bands;
 use predict::steady::SteadyCurve;
 use predict::{Kind, Prediction};
 use rayon::prelude::*;
-use report::figures::{self, OvershootRow, Overshoots, PredictionBands, SteadyCurves, Track};
+use report::figures::{self, OvershootRow, Overshoots, PhasePlane, PredictionBands, SteadyCurves, Track};
 use report::{Curve, Figure, Theme};
 use ship::angle::to_deg;
 use trial::imo::Unit;
 
+use super::index_figures;
 use super::picture::{first_failure, write_figure};
 use super::predict_file::stems;
 use super::predict_report::Predicted;
@@ -36,12 +38,21 @@ pub fn draw(predicted: &Predicted, theme: &Theme, folder: &ResultFolder) -> Resu
         if let Kind::Spiral { .. } = prediction.kind {
             let caption =
                 format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
-            let draw = move || figures::steady_curves(&steady(prediction, predicted), theme);
+            let draw = move || figures::steady_curves(&steady(&prediction.curves, predicted.seen), theme);
             drawings.push((stem.clone(), caption, Box::new(draw)));
             continue;
         }
         let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", predicted.draws);
         drawings.push((stem.clone(), caption, Box::new(move || bands_of(prediction, theme))));
+        if let (Kind::ZigZag { .. }, Some(passage)) = (&prediction.kind, &prediction.most_probable) {
+            let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
+            let draw = move || {
+                let way = index_figures::phase_named("most probable ship", &passage.heading, &passage.yaw_rate);
+                let title = Some(prediction.kind.to_string());
+                figures::phase_plane(&PhasePlane { title, fits: vec![way], ..PhasePlane::default() }, theme)
+            };
+            drawings.push((format!("{stem}-phase"), caption, Box::new(draw)));
+        }
         if prediction.most_probable.as_ref().is_some_and(|passage| passage.way.is_some()) {
             let caption =
                 format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.tracks.len());
@@ -132,7 +143,8 @@ fn track(prediction: &Prediction, theme: &Theme) -> Figure {
     figures::track(&data, theme)
 }
 
-fn steady(prediction: &Prediction, predicted: &Predicted) -> SteadyCurves {
+/// The diagram of steady turns of some ships, the most probable one first, and the range in which it was seen.
+pub fn steady(curves: &[SteadyCurve], seen: Seen) -> SteadyCurves {
     let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
         let rows = 0..of.rudder.len();
         let (x, y): (Vec<f64>, Vec<f64>) = rows
@@ -143,7 +155,7 @@ fn steady(prediction: &Prediction, predicted: &Predicted) -> SteadyCurves {
             .unzip();
         Curve::new(x, y)
     };
-    let Some((first, rest)) = prediction.curves.split_first() else { return SteadyCurves::default() };
+    let Some((first, rest)) = curves.split_first() else { return SteadyCurves::default() };
     // Where the rudder goes back while the yaw rate grows.
     let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
     let is_unstable = |row: usize| falls(row) || (row > 0 && falls(row - 1));
@@ -152,8 +164,8 @@ fn steady(prediction: &Prediction, predicted: &Predicted) -> SteadyCurves {
         most_probable: curve(first, &|_| true),
         unstable: if first.instability().is_some() { curve(first, &is_unstable) } else { Curve::default() },
         drawn: rest.iter().take(CURVES).map(|ship| curve(ship, &|_| true)).collect(),
-        seen_rudder_deg: Some(to_deg(predicted.seen.rudder_rad)),
-        seen_rate_deg_s: Some(to_deg(predicted.seen.yaw_rate_rad_s)),
+        seen_rudder_deg: Some(to_deg(seen.rudder_rad)),
+        seen_rate_deg_s: Some(to_deg(seen.yaw_rate_rad_s)),
     }
 }
 

@@ -6,6 +6,8 @@ use ::trace::analysis::{Considered, Fitted, Outcome, Traced};
 use ::trace::search::{Weighted, Weights};
 use ::trace::structure::TermName;
 use serde::Serialize;
+use ship::Particulars;
+use ship::particulars::prime_unit;
 use trial::Quantity;
 
 /// A parameter.
@@ -16,11 +18,24 @@ pub struct ParameterEntry {
     pub quantity: Quantity,
     /// Unit.
     pub unit: &'static str,
+    /// The same without dimension, where length and speed of the ship are known and it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub prime: Option<PrimeEntry>,
     /// The one record it belongs to.
     pub only: Option<String>,
     /// Whether it ends at an end of its range; left out where it does not.
     #[serde(skip_serializing_if = "is_false")]
     pub at_bound: bool,
+}
+
+/// A number without dimension; angles in radians.
+#[derive(Debug, Clone, Serialize)]
+pub struct PrimeEntry {
+    /// Value, standard deviation and 95 % interval.
+    #[serde(flatten)]
+    pub quantity: Quantity,
+    /// Unit: 1, or one of angles.
+    pub unit: String,
 }
 
 /// Whether a flag is left out.
@@ -100,18 +115,24 @@ pub struct PriorEntry {
     structures: usize,
 }
 
-impl From<&Fitted> for ParameterEntry {
-    fn from(fitted: &Fitted) -> Self {
+impl ParameterEntry {
+    /// The entry of a parameter of a ship of these particulars.
+    pub fn new(fitted: &Fitted, ship: Option<Particulars>) -> Self {
         let Fitted { parameter, quantity, ref only, at_bound } = *fitted;
-        Self { quantity, unit: parameter.unit, only: only.clone(), at_bound }
+        let prime = ship
+            .filter(|_| parameter.dimension() != [0, 0])
+            .map(|ship| PrimeEntry { quantity: fitted.prime(ship), unit: prime_unit(parameter.unit) });
+        Self { quantity, unit: parameter.unit, prime, only: only.clone(), at_bound }
     }
 }
 
-impl From<&Traced> for EffectEntry {
-    fn from(effect: &Traced) -> Self {
+impl EffectEntry {
+    /// The entry of an effect of a ship of these particulars.
+    pub fn new(effect: &Traced, ship: Option<Particulars>) -> Self {
         let mut aliases: Vec<&'static str> =
             effect.aliases.iter().map(|(id, _)| *id).filter(|id| *id != effect.id).collect();
         aliases.dedup();
+        let parameter = |fitted: &Fitted| (fitted.parameter.symbol, ParameterEntry::new(fitted, ship));
         Self {
             id: effect.id,
             form: effect.form,
@@ -120,7 +141,7 @@ impl From<&Traced> for EffectEntry {
             asked: effect.asked,
             aliases,
             alias_forms: effect.aliases.iter().map(|(id, form)| format!("{id} ({form})")).collect(),
-            parameters: effect.parameters.iter().map(|fitted| (fitted.parameter.symbol, fitted.into())).collect(),
+            parameters: effect.parameters.iter().map(parameter).collect(),
             probability: effect.probability,
             delta_bic: -effect.evidence.gain,
             p_value: effect.evidence.p_value,

@@ -3,15 +3,21 @@
 
 use ::trace::analysis::{Judged, OnRecord, Outcome};
 use ::trace::diagnostics::{Series, autocorrelation, spectrum};
+use ::trace::replay_errors::replayed_zigzag;
 use identify::replay::Replay;
 use rayon::prelude::*;
-use report::figures::{self, Evidence, EvidenceBar, Fate, Fit, FitBand, RecordFit, ResidualPanel, ResidualPanels};
+use report::figures::{
+    self, Evidence, EvidenceBar, Fate, Fit, FitBand, OvershootReplays, RecordFit, ReplayedOvershoot, ResidualPanel,
+    ResidualPanels,
+};
 use report::{Curve, Figure, Origin, Theme};
 use ship::angle::to_deg;
-use trial::Trial;
+use trial::{Trial, ZigZag, imo};
 
+use super::index_figures;
 use super::missing_moment;
 use super::picture::{first_failure, slug, write_figure};
+use super::predict_figures::steady;
 use super::trace_page;
 use super::trace_report::TraceReport;
 use crate::records::names;
@@ -48,6 +54,14 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
             caption,
             Box::new(move || record(trial, judged, &record_title, theme)),
         ));
+        let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
+        let of_record = name.clone();
+        let draw = move || {
+            let models = [(Origin::Before, &judged.before), (Origin::After, &judged.after)];
+            let fits = models.map(|(origin, on)| index_figures::phase_of(origin, &on.replay)).into();
+            figures::phase_plane(&index_figures::phase_plane(of_record.clone(), trial, fits), theme)
+        };
+        drawings.push((format!("phase{suffix}"), caption, Box::new(draw)));
         // Held-out records are judged, not studied.
         if held_out {
             continue;
@@ -64,11 +78,74 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
         let draw = move || missing_moment::figure(report, &shown, theme);
         drawings.push((stem, caption, Box::new(draw)));
     }
+    drawings.extend(of_the_ship(report, theme));
     let caption =
         "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";
     drawings.push((String::from("candidates"), caption.into(), Box::new(move || candidates(report, theme))));
     first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
     Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
+}
+
+/// Figures of the model and not of a record: steady turns, K and T over the amplitude, overshoots.
+fn of_the_ship<'a>(report: &'a TraceReport, theme: &'a Theme) -> Vec<Drawing<'a>> {
+    let mut drawings: Vec<Drawing> = Vec::new();
+    if let Some((curves, seen)) = &report.steady {
+        let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the \
+                       records cannot tell from it; grey: the range of the records.";
+        let draw = move || figures::steady_curves(&steady(curves, *seen), theme);
+        drawings.push((String::from("steady"), caption.to_owned(), Box::new(draw)));
+    }
+    if let Some(all) = &report.amplitudes {
+        let caption = "K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag, \
+                       and what such a fit finds in zig-zags of the model.";
+        let base = &report.analysis.base;
+        let title = format!("{} records", all.records.len());
+        let data = index_figures::amplitude(title, all, Some([base.K(), base.T()]), report.ship);
+        drawings.push((
+            String::from("amplitude"),
+            caption.to_owned(),
+            Box::new(move || figures::amplitude(&data, theme)),
+        ));
+    }
+    let rows = overshoot_rows(report);
+    if !rows.is_empty() {
+        let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of \
+                       IMO MSC.137(76) where one is for this zig-zag.";
+        let data =
+            OvershootReplays { title: Some(String::from("Overshoots of the records and of their replays")), rows };
+        let draw = move || figures::overshoot_replays(&data, theme);
+        drawings.push((String::from("overshoots"), caption.to_owned(), Box::new(draw)));
+    }
+    drawings
+}
+
+/// The first two overshoots of every zig-zag, which are those that have a limit.
+fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
+    let analysis = report.analysis;
+    let trials = report.trials.iter().chain(report.others);
+    let judged = analysis.identification.iter().chain(&analysis.validation);
+    let mut rows = Vec::new();
+    for (((trial, judged), name), ship) in trials.zip(judged).zip(&report.names).zip(&report.sailed_by) {
+        let Ok(measured) = ZigZag::of(trial) else { continue };
+        let replays = [&judged.before, &judged.after].map(|on| replayed_zigzag(trial, &on.replay));
+        let limits: Vec<_> = ship.map(|ship| imo::criteria(&measured, ship)).unwrap_or_default();
+        for (number, word) in [(0, "first"), (1, "second")] {
+            let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
+            let Some(angle) = of(&measured) else { continue };
+            let limit = limits.iter().find(|limit| {
+                limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
+            });
+            let [before, after] = replays.each_ref().map(|replay| replay.as_ref().and_then(of));
+            rows.push(ReplayedOvershoot {
+                label: format!("{name}, {word}"),
+                measured: Some(angle),
+                before,
+                after,
+                limit: limit.map(|limit| limit.limit),
+            });
+        }
+    }
+    rows
 }
 
 fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {

@@ -7,17 +7,19 @@ use ::trace::noise::Wander;
 use ::trace::replay_errors::HORIZONS;
 use predict::KnownShip;
 use serde::Serialize;
+use ship::Particulars;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial};
 
 use super::missing_moment::{self, MissingMomentEntry};
+use super::scale_comparison::ScalesEntry;
 use super::trace_entries::{
     CandidateEntry, EffectEntry, ParameterEntry, PriorEntry, StructureEntry, candidates, is_false,
 };
 use super::trace_page;
 use super::trace_report::TraceReport;
 use crate::records::file_of;
-use campaign::answer::Parameters;
+use campaign::answer::{Parameters, PrimeIndices};
 use campaign::known::{self, Shown};
 
 /// K and T that follow the measured speed.
@@ -68,6 +70,9 @@ pub struct TraceFile {
     pub outliers: Vec<OutliersEntry>,
     /// What is known of the ship, for `study predict`; SI units and radians.
     pub ship: KnownShip,
+    /// Where the fitted records are of several scales: which terms scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scales: Option<ScalesEntry>,
 }
 
 /// Readings of one record that were left out.
@@ -161,6 +166,9 @@ struct Indices {
     #[serde(rename = "T_s")]
     t_s: Index,
     delta_r_deg: Index,
+    /// K' and T', where length and speed of the ship are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    prime: Option<PrimeIndices>,
 }
 
 /// An index, and whether it rests on a parameter at an end of its range.
@@ -181,9 +189,10 @@ pub struct NamedParameter {
     value: ParameterEntry,
 }
 
-impl From<&Fitted> for NamedParameter {
-    fn from(fitted: &Fitted) -> Self {
-        Self { key: fitted.parameter.key, symbol: fitted.parameter.symbol, value: fitted.into() }
+impl NamedParameter {
+    fn new(fitted: &Fitted, ship: Option<Particulars>) -> Self {
+        let value = ParameterEntry::new(fitted, ship);
+        Self { key: fitted.parameter.key, symbol: fitted.parameter.symbol, value }
     }
 }
 
@@ -257,6 +266,7 @@ impl TraceFile {
             whiteness_p: analysis.whiteness[k].p_value,
         };
         let [k, t] = analysis.indices;
+        let named = |fitted: &Fitted| NamedParameter::new(fitted, report.ship);
         let unknown = Quantity::bare(f64::NAN);
         let noise = &analysis.randomness;
         let compass = noise.wander.filter(|kind| kind.is_of_compass());
@@ -268,7 +278,7 @@ impl TraceFile {
             speed_scaling: analysis
                 .speed_scaling()
                 .map(|(speed, gain)| SpeedScalingEntry { speed_m_s: speed, delta_bic: -gain }),
-            effects: analysis.effects.iter().map(EffectEntry::from).collect(),
+            effects: analysis.effects.iter().map(|effect| EffectEntry::new(effect, report.ship)).collect(),
             candidates: candidates(&analysis.candidates, &analysis.weights),
             models: analysis.weights.alike().iter().map(|one| StructureEntry::new(one, &report.names)).collect(),
             prior: PriorEntry::new(&analysis.weights),
@@ -278,7 +288,7 @@ impl TraceFile {
                 empirical: analysis.empirical.as_ref().map(|empirical| EmpiricalEntry {
                     terms: empirical.group.clone(),
                     equation: empirical.equation,
-                    parameters: empirical.parameters.iter().map(NamedParameter::from).collect(),
+                    parameters: empirical.parameters.iter().map(named).collect(),
                     delta_bic: -empirical.evidence.gain,
                     p_value: empirical.evidence.p_value,
                     heading_rmse_deg: to_deg(empirical.error),
@@ -318,13 +328,15 @@ impl TraceFile {
                 indices: {
                     let bias = analysis.rudder_bias.map_or(unknown, |bias| bias.scaled(degree));
                     let [k_ends, t_ends, bias_ends] = analysis.indices_at_bound();
+                    let own = Parameters { k_per_s: k, t_s: t, delta_r_deg: bias };
                     Indices {
+                        prime: report.ship.map(|ship| own.prime(ship)),
                         k_per_s: Index { quantity: k, at_bound: k_ends },
                         t_s: Index { quantity: t, at_bound: t_ends },
                         delta_r_deg: Index { quantity: bias, at_bound: bias_ends },
                     }
                 },
-                parameters: analysis.parameters.iter().map(NamedParameter::from).collect(),
+                parameters: analysis.parameters.iter().map(named).collect(),
                 noise: NoiseEntry {
                     heading_sd_deg: to_deg(noise.white),
                     random_moment: moment.map(trace_page::kind),
@@ -342,6 +354,7 @@ impl TraceFile {
                 .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
                 .collect(),
             ship: known::of_analysis(analysis, &Shown::of(report.trials).with_motion()),
+            scales: report.scales.clone(),
         }
     }
 }

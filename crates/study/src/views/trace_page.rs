@@ -4,13 +4,16 @@ use std::fmt::Write as _;
 
 use ::trace::analysis::{Empirical, Fitted, Judged, Outcome, Randomness, RunnerUp, Traced, Verdict};
 use ::trace::noise::Wander;
-use report::number::{self, significant};
+use report::number::{self, significant, uncertain};
 use ship::Shown;
 use ship::angle::to_deg;
 use trial::Trial;
 
+use super::scale_comparison::ScalesEntry;
 use super::trace_report::TraceReport;
-use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures, uncertain};
+use super::trace_scales::prime;
+use super::trace_tables::{candidates, errors, in_degrees, overshoots, parameters, prospects, structures};
+use crate::scales::scale_name;
 
 /// How what wanders is called.
 pub fn kind(wander: Wander) -> &'static str {
@@ -59,6 +62,9 @@ pub fn words(report: &TraceReport) -> String {
         [only] => format!("{}: {rows} rows, {:.1} s", only.name(), only.duration()),
         several => format!("{} records together: {rows} rows", several.len()),
     };
+    if let Some(scaled) = &report.scaled {
+        let _ = write!(text, "\n{scaled}");
+    }
     let verdict = match analysis.verdict {
         Verdict::Clean if analysis.randomness.holds => "clean: nothing is missing, and the noise has a name",
         Verdict::Clean => "clean: nothing is missing",
@@ -80,6 +86,12 @@ pub fn words(report: &TraceReport) -> String {
     for effect in &analysis.effects {
         let _ = write!(text, "\n  {}", effect_line(effect));
     }
+    if let Some(indices) = prime_in_words(report) {
+        let _ = write!(text, "\n  prime: {indices}");
+    }
+    if let Some(model) = report.scales.iter().flat_map(|scales| &scales.comparisons).next() {
+        let _ = write!(text, "\n  every scale alone: {}", ScalesEntry::sentence(model));
+    }
     for refused in &analysis.refused {
         let _ = write!(text, "\n  {refused}");
     }
@@ -100,6 +112,21 @@ pub fn words(report: &TraceReport) -> String {
     }
     let _ = write!(text, "\nnext trial: {}", next_trial(report));
     text
+}
+
+/// K', T' and the parameters of the effects without dimension, where length and speed of the ship are known.
+fn prime_in_words(report: &TraceReport) -> Option<String> {
+    let ship = report.ship?;
+    let [k, t] = report.analysis.indices;
+    let mut parts: Vec<String> = [("K′", k.scaled(ship.prime([-1, 0]))), ("T′", t.scaled(ship.prime([1, 0])))]
+        .map(|(symbol, quantity)| format!("{symbol} = {}", uncertain(quantity.value, quantity.sd)))
+        .into();
+    let effects = report.analysis.effects.iter().flat_map(|effect| &effect.parameters);
+    parts.extend(effects.filter_map(|fitted| prime(fitted, ship)).map(|(symbol, quantity, unit)| {
+        let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+        format!("{symbol} = {}{unit}", uncertain(quantity.value, quantity.sd))
+    }));
+    Some(format!("{} with {}", parts.join(", "), scale_name(ship)))
 }
 
 /// Readings that are listed.
@@ -278,6 +305,23 @@ pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
         let _ = writeln!(text, "{remark}.\n");
     }
     let _ = writeln!(text, "## The model\n\n{}", parameters(report).to_markdown());
+    if let Some(ship) = report.ship {
+        let _ = writeln!(
+            text,
+            "Prime values are without dimension, with {}: times are divided by L/V, K′ = K L/V, T′ = T V/L.\n",
+            scale_name(ship)
+        );
+    }
+    if let Some(scales) = &report.scales {
+        text += "## Which terms scale\n\n";
+        for model in &scales.comparisons {
+            let _ = writeln!(text, "{}.\n\n{}", ScalesEntry::sentence(model), scales.table(model).to_markdown());
+        }
+        text += "The structure is that of all records; its parameters are fitted to the records of every scale alone. A difference of \
+                 more than three of its standard deviations does not scale; a term scales where it is smaller and a quarter of the \
+                 value would have been seen. Scales are sailed with other manoeuvres, gear and noise, too: what does not scale may be \
+                 an effect that the model lacks.\n\n";
+    }
     let noise = &analysis.randomness;
     let _ = write!(text, "Heading noise: {}° (white)", significant(to_deg(noise.white), 2));
     if let Some(wander) = wander_in_words(noise) {

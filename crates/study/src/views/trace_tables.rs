@@ -5,13 +5,14 @@ use std::fmt::Write as _;
 use ::trace::analysis::{Fitted, Prospect};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use ::trace::structure::TermName;
-use report::number::{self, MISSING, optional, significant, with_uncertainty};
+use report::number::{self, MISSING, optional, significant, uncertain};
 use report::{Column, Table};
 use ship::angle::to_deg;
 use ship::effects::Parameter;
 use trial::{Quantity, ZigZag};
 
 use super::trace_report::TraceReport;
+use super::trace_scales::prime;
 
 /// A parameter in degrees where its unit holds radians, and that unit; none where it is a plain number.
 pub fn in_degrees(fitted: &Fitted) -> (Quantity, String) {
@@ -29,20 +30,6 @@ pub fn in_degrees(fitted: &Fitted) -> (Quantity, String) {
         _ => (factor, unit.replace("rad", "deg")),
     };
     (fitted.quantity.scaled(factor), unit)
-}
-
-/// A value with its uncertainty, whatever its size.
-pub fn uncertain(value: f64, sd: Option<f64>) -> String {
-    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
-        let exponent = value.abs().log10().floor() as i32;
-        let unit = 10f64.powi(exponent);
-        return format!(
-            "({})×{}",
-            with_uncertainty(value / unit, sd.map(|sd| sd / unit)),
-            number::power_of_ten(exponent)
-        );
-    }
-    with_uncertainty(value, sd)
 }
 
 /// Errors before and after on every record.
@@ -111,22 +98,31 @@ fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
 pub fn parameters(report: &TraceReport) -> Table {
     let analysis = report.analysis;
     let remarks = analysis.parameters.iter().any(|fitted| fitted.at_bound);
-    let mut columns = ["parameter", "value", "95 % interval", "unit", "record"].map(Column::left).to_vec();
+    let mut columns = ["parameter", "value", "95 % interval", "unit"].map(Column::left).to_vec();
+    columns.extend(report.ship.iter().flat_map(|_| ["prime", "95 % interval", "unit"].map(Column::left)));
+    columns.push(Column::left("record"));
     columns.extend(remarks.then(|| Column::left("remark")));
     let mut table = Table::new(columns);
-    let mut push = |cells: [String; 5], at_bound: bool| {
+    let three = |Quantity { value, sd, ci95 }: Quantity, unit: String| [uncertain(value, sd), interval(ci95), unit];
+    let none = || [MISSING.to_owned(), MISSING.to_owned(), String::new()];
+    let mut push = |symbol: &str, own: [String; 3], prime: [String; 3], record: Option<String>, at_bound: bool| {
         let remark = remarks.then(|| if at_bound { "at its bound".to_owned() } else { String::new() });
-        table.push(cells.into_iter().chain(remark));
+        let record = record.unwrap_or_else(|| MISSING.into());
+        let prime = report.ship.map(|_| prime);
+        let cells = [symbol.to_owned()].into_iter().chain(own).chain(prime.into_iter().flatten());
+        table.push(cells.chain([record]).chain(remark));
     };
     let ([k, t], [k_ends, t_ends, _]) = (analysis.indices, analysis.indices_at_bound());
-    for (symbol, quantity, unit, ends) in [("K", k, "1/s", k_ends), ("T", t, "s", t_ends)] {
-        let [value, interval] = [uncertain(quantity.value, quantity.sd), number::interval(quantity.ci95)];
-        push([symbol.into(), value, interval, unit.into(), MISSING.into()], ends);
+    for (symbol, quantity, unit, dimension, ends) in [("K", k, "1/s", [-1, 0], k_ends), ("T", t, "s", [1, 0], t_ends)] {
+        let own = [uncertain(quantity.value, quantity.sd), number::interval(quantity.ci95), unit.to_owned()];
+        let prime = report.ship.map(|ship| three(quantity.scaled(ship.prime(dimension)), "1".into()));
+        push(symbol, own, prime.unwrap_or_else(none), None, ends);
     }
     for fitted in &analysis.parameters {
-        let (Quantity { value, sd, ci95 }, unit) = in_degrees(fitted);
-        let only = fitted.only.clone().unwrap_or_else(|| MISSING.into());
-        push([fitted.parameter.symbol.into(), uncertain(value, sd), interval(ci95), unit, only], fitted.at_bound);
+        let (quantity, unit) = in_degrees(fitted);
+        let prime = report.ship.and_then(|ship| prime(fitted, ship)).map(|(_, quantity, unit)| three(quantity, unit));
+        let prime = prime.unwrap_or_else(none);
+        push(fitted.parameter.symbol, three(quantity, unit), prime, fitted.only.clone(), fitted.at_bound);
     }
     table
 }

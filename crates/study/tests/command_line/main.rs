@@ -8,6 +8,7 @@ mod monte_carlo;
 mod names;
 mod predictions;
 mod records;
+mod scales;
 mod scenarios;
 mod stored;
 mod traces;

@@ -43,7 +43,7 @@ fn without<T: Clone>(all: &[T], left: usize) -> Vec<T> {
 }
 
 /// A structure with its parameters on all records but one, without what belongs to that one alone.
-fn on_others(structure: &Structure, theta: &[f64], left: RecordNumber) -> (Structure, Vec<f64>) {
+pub(super) fn on_others(structure: &Structure, theta: &[f64], left: RecordNumber) -> (Structure, Vec<f64>) {
     let (mut kept, mut values) = (structure.clone(), theta.to_vec());
     for place in structure.places().rev().filter(|&place| structure.term(place).only == Some(left)) {
         values = kept.drop_from(&values, place);

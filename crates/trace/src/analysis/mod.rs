@@ -1,5 +1,6 @@
 //! The whole analysis of some records of one ship, and its result.
 
+mod apart;
 mod base;
 mod elsewhere;
 mod fitted;
@@ -42,6 +43,7 @@ use parameters::{indices, parameter_covariance, parameters, randomness, runner_u
 use replays::{initial, on_records, starts, validate};
 use reporter::Reporter;
 
+pub use apart::Apart;
 pub use plausible::Plausible;
 pub use prospects::Prospect;
 pub use result::{

@@ -2,6 +2,7 @@
 
 use identify::Estimate;
 use identify::replay::Replay;
+use ship::Particulars;
 use ship::effects::Parameter;
 use ship::narrow_band::NarrowBand;
 use trial::Quantity;
@@ -83,6 +84,11 @@ impl Fitted {
     /// A parameter of all records whose error is not known.
     pub(super) fn bare(parameter: &'static Parameter, value: f64) -> Self {
         Self { parameter, quantity: Quantity::bare(value), only: None, at_bound: false }
+    }
+
+    /// The same without dimension, for a ship of these particulars.
+    pub fn prime(&self, particulars: Particulars) -> Quantity {
+        self.quantity.scaled(particulars.prime(self.parameter.dimension()))
     }
 }
 

@@ -95,6 +95,11 @@ impl Heading {
         self.half_width
     }
 
+    /// Half-width of local fits for slopes, s.
+    pub fn slope_half_width(&self) -> f64 {
+        WIDENING * self.half_width
+    }
+
     /// Half-width of the widest fit tried where headings are missing, s.
     pub fn widest_half_width(&self) -> f64 {
         WIDENINGS[WIDENINGS.len() - 1] * self.half_width

@@ -14,6 +14,7 @@ mod heading;
 pub mod holds;
 mod local;
 pub mod median;
+mod phase_plane;
 pub mod points;
 #[cfg(test)]
 pub(crate) mod simulator;
@@ -22,3 +23,4 @@ mod tests;
 
 pub use findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
 pub use heading::noise_sd;
+pub use phase_plane::PhasePlane;

@@ -1,0 +1,129 @@
+//! Overshoot angles of zig-zags as bars, with those of the replays of a model before and after something was added to
+//! it, against what the IMO standard allows.
+
+use serde::{Deserialize, Serialize};
+
+use crate::axis::{self, Axis};
+use crate::canvas::Anchor;
+use crate::figure::Figure;
+use crate::layout::{Grid, Sheet, Side, wrap};
+use crate::legend::{Entry, Sample};
+use crate::palette::{INK, Origin, RECORD};
+use crate::panel::Panel;
+use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::theme::Theme;
+use crate::ticks::Steps;
+
+/// One overshoot; degrees.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ReplayedOvershoot {
+    /// Record and number of the overshoot.
+    pub label: String,
+    /// What was measured.
+    pub measured: Option<f64>,
+    /// What the model before makes of it.
+    pub before: Option<f64>,
+    /// What the model after makes of it.
+    pub after: Option<f64>,
+    /// The largest value that the IMO standard allows, where it has one for this zig-zag.
+    pub limit: Option<f64>,
+}
+
+/// What [`overshoot_replays`] draws.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct OvershootReplays {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// The overshoots from top to bottom.
+    pub rows: Vec<ReplayedOvershoot>,
+}
+
+/// Largest share of the page for the names of the rows.
+const NAMES: f64 = 0.4;
+
+/// Draws the bars below each other.
+pub fn overshoot_replays(data: &OvershootReplays, theme: &Theme) -> Figure {
+    let mut sheet = Sheet::new(theme, data.title.as_deref());
+    sheet.legend(&entries(data, theme));
+    let names: Vec<Vec<String>> =
+        data.rows.iter().map(|row| wrap(&row.label, theme.tick_font, false, NAMES * theme.width)).collect();
+    let lines = names.iter().map(Vec::len).max().unwrap_or(1).max(1);
+    let pitch = (0.95 + 1.15 * lines as f64) * theme.tick_font;
+    let widest = names.iter().flatten().map(|name| Text::new(name.as_str(), theme.tick_font).width());
+    let rows = Axis::names(vec![String::new(); data.rows.len()]);
+    let row = (Side::new(rows, ""), (data.rows.len().max(1) as f64 + 0.2) * pitch);
+    let mut grid = Grid::stack(Side::new(across(data), "overshoot [°]"), vec![row]);
+    grid.left = Some(sheet.left_margin(&grid) + widest.fold(0.0, f64::max));
+    let panels = sheet.grid(grid);
+    let [panel] = &panels[..] else { return sheet.finish() };
+    for (index, (row, name)) in data.rows.iter().zip(&names).enumerate() {
+        let Some(y) = panel.up(index as f64) else { continue };
+        label(panel, &mut sheet.scene, theme, y, name);
+        draw(panel, &mut sheet.scene, theme, (y, pitch), row);
+    }
+    sheet.finish()
+}
+
+/// From zero to the largest of everything.
+fn across(data: &OvershootReplays) -> Axis {
+    let values = data.rows.iter().flat_map(|row| [row.measured, row.before, row.after, row.limit]).flatten();
+    let (lo, hi) = axis::range(values.filter(|value| value.abs() < 1e6).chain([0.0])).unwrap_or((0.0, 1.0));
+    let pad = 0.05 * (hi - lo);
+    match hi > lo {
+        true => Axis::linear(if lo < 0.0 { lo - pad } else { lo }, hi + pad, Steps::Decimal),
+        false => Axis::linear(0.0, 1.0, Steps::Decimal),
+    }
+}
+
+/// Pale, so that the marks on it can be seen.
+fn bar(theme: &Theme) -> Stroke {
+    Stroke { opacity: 0.45, ..Stroke::solid(RECORD, 0.75 * theme.tick_font) }
+}
+
+fn limit_stroke(theme: &Theme) -> Stroke {
+    Stroke::solid(INK, 1.6 * theme.line)
+}
+
+fn entries(data: &OvershootReplays, theme: &Theme) -> Vec<Entry> {
+    let any = |wanted: fn(&ReplayedOvershoot) -> Option<f64>| data.rows.iter().any(|row| wanted(row).is_some());
+    let mut entries = vec![Entry::new(Sample::Line(bar(theme)), "measured")];
+    let marks: [(Origin, fn(&ReplayedOvershoot) -> Option<f64>); 2] =
+        [(Origin::Before, |row| row.before), (Origin::After, |row| row.after)];
+    for (origin, wanted) in marks {
+        if any(wanted) {
+            entries.push(Entry::new(Sample::Marker(origin.look()), origin.label()));
+        }
+    }
+    if any(|row| row.limit) {
+        entries.push(Entry::new(Sample::Upright(limit_stroke(theme)), "IMO limit"));
+    }
+    entries
+}
+
+/// The name of a row left of the frame.
+fn label(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, lines: &[String]) {
+    let right = panel.rect.x - 0.62 * theme.tick_font;
+    let leading = 1.15 * theme.tick_font;
+    for (index, line) in lines.iter().enumerate() {
+        let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End);
+        let down = (index as f64 - (lines.len() - 1) as f64 / 2.0) * leading;
+        scene.text(Layer::Frame, (right, y + down + text.centring()), text);
+    }
+}
+
+fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (y, pitch): (f64, f64), row: &ReplayedOvershoot) {
+    let place = |value: f64| panel.across(value).map(|x| (x, y)).filter(|place| panel.rect.contains(*place));
+    if let (Some(from), Some(to)) = (place(0.0), row.measured.and_then(place)) {
+        scene.line(Layer::Data, [from, to], bar(theme));
+    }
+    if let Some((x, _)) = row.limit.and_then(place) {
+        let half = 0.42 * pitch;
+        scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
+    }
+    // One above the other, so that neither hides the other.
+    for (origin, value, aside) in [(Origin::Before, row.before, -0.16), (Origin::After, row.after, 0.16)] {
+        if let Some((x, y)) = value.and_then(place) {
+            scene.marker(Layer::Data, (x, y + aside * pitch), 0.85 * theme.marker, &origin.look());
+        }
+    }
+}

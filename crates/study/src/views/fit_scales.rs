@@ -1,0 +1,99 @@
+//! Indices without dimension of `study fit`, and what every method says of records of several scales.
+
+use identify::{Estimate, Identifier, Uncertainty};
+use rayon::prelude::*;
+use ship::Particulars;
+use ship::angle::to_deg;
+use trial::{Quantity, Trial};
+
+use super::fit_file::FitFile;
+use super::scale_comparison::{ComparedModel, ComparedTerm, ScalesEntry, prime_table};
+use crate::records::file_of;
+use crate::scales::{Together, scale_name};
+use campaign::answer::MethodEntry;
+
+/// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
+/// first.
+pub const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
+
+/// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
+pub fn compared(
+    methods: &[Box<dyn Identifier>],
+    answers: &[(MethodEntry, Option<Estimate>)],
+    together: &Together,
+) -> Option<ScalesEntry> {
+    let scales = together.scales.as_ref()?;
+    let first = scales.particulars[0];
+    let groups = scales.groups(together.trials.len());
+    if groups.len() < 2 {
+        return None;
+    }
+    let of_group =
+        |records: &[usize]| -> Vec<Trial> { records.iter().map(|&record| together.trials[record].clone()).collect() };
+    let groups_of_trials: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
+    let comparisons: Vec<ComparedModel> = methods
+        .par_iter()
+        .zip(answers)
+        .filter_map(|(method, (entry, joint))| {
+            let joint = joint.as_ref()?;
+            let own: Vec<Option<Estimate>> =
+                groups_of_trials.par_iter().map(|trials| method.identify(trials).ok()).collect();
+            Some(ComparedModel { model: entry.method.clone(), terms: terms(joint, &own, first) })
+        })
+        .collect();
+    let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
+    Some(ScalesEntry::new(&groups, &files, first, comparisons))
+}
+
+/// K', T', the regular 1/T' and K'/T', and δ_r.
+fn terms(joint: &Estimate, own: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
+    type Of = fn(&Estimate) -> Quantity;
+    let all: [(&str, &str, [i32; 2], Of); 5] = [
+        ("K′", "1", [-1, 0], Estimate::K),
+        ("T′", "1", [1, 0], Estimate::T),
+        ("1/T′", "1", [-1, 0], |estimate| parameter(estimate, 0)),
+        ("K′/T′", "1", [-2, 0], |estimate| parameter(estimate, 1)),
+        ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
+    ];
+    let term = |&(symbol, unit, dimension, of): &(&str, &str, [i32; 2], Of)| {
+        let prime = |estimate: &Estimate| of(estimate).scaled(ship.prime(dimension));
+        let own = own.iter().map(|own| own.as_ref().map(prime)).collect();
+        ComparedTerm::new(symbol, unit, prime(joint), own)
+    };
+    all.iter().map(term).collect()
+}
+
+/// 1/T or K/T with their errors.
+fn parameter(estimate: &Estimate, place: usize) -> Quantity {
+    let value = [estimate.response.inverse_T, estimate.response.K_over_T][place];
+    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return Quantity::bare(value) };
+    let sd = covariance.matrix[(place, place)].max(0.0).sqrt();
+    let reach = covariance.quantile95() * sd;
+    Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
+}
+
+/// What is said on the screen: K' and T' of every method, and which terms scale.
+pub fn words(file: &FitFile, ship: Option<Particulars>) -> String {
+    let mut text = String::new();
+    let rows: Vec<(String, Quantity, Quantity)> = file
+        .methods
+        .iter()
+        .filter_map(|entry| entry.prime.map(|prime| (entry.method.clone(), prime.k, prime.t)))
+        .collect();
+    if let Some(ship) = ship.filter(|_| !rows.is_empty()) {
+        text += &format!("\nprime indices K′ = K L/V, T′ = T V/L with {}\n", scale_name(ship));
+        text += &prime_table(&rows).to_text();
+    }
+    let Some(scales) = &file.scales else { return text };
+    let speaker = SPEAKERS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
+    if let Some(model) = speaker.or(scales.comparisons.first()) {
+        text += &format!(
+            "\nevery scale alone, {}: {}\n{}",
+            model.model,
+            ScalesEntry::sentence(model),
+            scales.table(model).to_text()
+        );
+        text += "a first-order response that lacks something differs between manoeuvres, too; `study trace` tells the two apart\n";
+    }
+    text
+}
