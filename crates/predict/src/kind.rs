@@ -12,8 +12,9 @@ use crate::error::PredictError;
 /// Executes of a predicted zig-zag; four overshoots are whole.
 pub(crate) const EXECUTES: usize = 6;
 
-/// Change of heading of a predicted turning circle, rad: the steady turn and the tactical diameter are past then.
-const TURN: f64 = 3.0 * std::f64::consts::PI;
+/// Change of heading of a predicted turning circle, rad: a little more than the 540° after which speed, drift and pivot
+/// of a steady turn can be read.
+const TURN: f64 = 3.05 * std::f64::consts::PI;
 
 /// Times of the ship that a turn of a pull-out is held, and that is waited after it.
 const PULL_OUT: f64 = 40.0;
@@ -40,7 +41,7 @@ pub enum Kind {
         /// Side.
         side: Side,
     },
-    /// Turning circle over 540°.
+    /// Turning circle over one and a half rounds.
     TurningCircle {
         /// Rudder angle, positive.
         rudder: f64,

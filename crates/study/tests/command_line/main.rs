@@ -12,4 +12,5 @@ mod scales;
 mod scenarios;
 mod stored;
 mod traces;
+mod tracks;
 mod troubles;

@@ -1,0 +1,111 @@
+//! Tracks: records of position alone, and the current that a circle shows.
+
+use ship::angle::{from_deg, to_deg};
+use simulate::manoeuvre::{TurnEnd, TurningCircle, ZigZagEnd};
+use simulate::{Manoeuvre, Recording, Side, Simulation, SteeringGear, StreamKey, Vessel};
+
+use crate::desk::Desk;
+
+const SCALE: [&str; 4] = ["--length-m", "160.9", "--speed-kn", "15"];
+
+/// Distance of the pivot point ahead of the point whose positions are recorded, m.
+const PIVOT: f64 = 60.0;
+
+/// Time in which its drift follows its turn, s.
+const LAG: f64 = 12.0;
+
+/// A record of the Mariner with positions in a current (north and east, m/s), and without speed; 1 Hz.
+fn record(manoeuvre: Manoeuvre, duration: f64, current: [f64; 2]) -> String {
+    let ship = ship::ships::find("mariner").expect("it is in the registry");
+    let simulation = Simulation {
+        gear: SteeringGear::with_rate(from_deg(2.5)),
+        recording: Recording { period: 1.0, duration: Some(duration), ..Recording::default() },
+        ..Simulation::new(Vessel::ship(&ship), manoeuvre)
+    };
+    let truth = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a manoeuvre").truth;
+    let speed = truth.speed.as_ref().expect("a hull has a speed");
+    let (mut place, mut sway) = ([0.0; 2], 0.0);
+    let mut text = String::from("t_s,heading_deg,rudder_deg,north_m,east_m\n");
+    for row in 0..truth.time.len() {
+        let surge = (speed[row].powi(2) - sway * sway).max(0.0).sqrt();
+        let (sin, cos) = truth.heading[row].sin_cos();
+        let over_ground = [surge * cos - sway * sin + current[0], surge * sin + sway * cos + current[1]];
+        let [heading, rudder] = [truth.heading[row], truth.rudder[row]].map(to_deg);
+        text += &format!("{},{heading:.6},{rudder:.4},{:.4},{:.4}\n", truth.time[row], place[0], place[1]);
+        place = [0, 1].map(|axis| place[axis] + over_ground[axis]);
+        sway += (-PIVOT * truth.yaw_rate[row] - sway) / LAG;
+    }
+    text
+}
+
+fn zig_zag() -> String {
+    record(Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0), ZigZagEnd::Record), 600.0, [0.0; 2])
+}
+
+fn circle(current: [f64; 2], turn_deg: f64) -> String {
+    let end = TurnEnd::HeadingChange(from_deg(turn_deg));
+    let turn = TurningCircle { rudder: from_deg(20.0), side: Side::Starboard, end };
+    record(Manoeuvre::TurningCircle(turn), if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
+}
+
+/// Positions and headings tell speed and drift: the model predicts an advance and a tactical diameter from them, with
+/// the drift angle and the pivot point.
+#[test]
+fn a_record_of_positions_tells_a_track() {
+    let desk = Desk::new();
+    desk.file("zig.csv", zig_zag());
+    desk.run(&[&["fit", "zig.csv", "--method", "maximum-likelihood", "--out", "f", "--quiet"][..], &SCALE].concat())
+        .is_done();
+    let circle = ["predict", "f/fit.json", "--manoeuvre", "turning-circle:20", "--draws", "60", "--out", "p"];
+    desk.run(&circle).is_done();
+    let json = desk.json("p/predict.json");
+    let figures = &json["manoeuvres"][0]["figures"];
+    let median = |name: &str| figures[name]["median"].as_f64().unwrap_or_else(|| panic!("{name}: {figures}"));
+    assert!((2.0..5.0).contains(&median("advance_lengths")), "{figures}");
+    assert!((0.2..0.6).contains(&median("pivot_ahead_lengths")), "{figures}");
+    assert!(median("drift_angle_deg") > 2.0 && median("speed_loss_share") > 0.05, "{figures}");
+    // A heading alone leaves nothing to draw a track from.
+    let bare: String =
+        zig_zag().lines().map(|line| line.rsplitn(3, ',').last().unwrap_or(line).to_owned() + "\n").collect();
+    desk.file("bare.csv", bare);
+    desk.run(&[&["fit", "bare.csv", "--method", "maximum-likelihood", "--out", "b", "--quiet"][..], &SCALE].concat())
+        .is_done();
+    let run = desk.run(&["predict", "b/fit.json", "--manoeuvre", "turning-circle:20", "--draws", "60", "--out", "q"]);
+    assert!(run.is_done().out.contains("no track"), "{}", run.out);
+}
+
+/// The current of a circle of two rounds is taken out of its own track, and of that of another record.
+#[test]
+fn a_current_is_found_and_taken_out() {
+    let desk = Desk::new();
+    desk.file("zig.csv", zig_zag());
+    desk.file("still.csv", circle([0.0; 2], 400.0));
+    desk.file("drifting.csv", circle([0.6, -0.8], 400.0));
+    desk.file("two-rounds.csv", circle([0.6, -0.8], 760.0));
+    desk.run(&[&["fit", "zig.csv", "--method", "maximum-likelihood", "--out", "f", "--quiet"][..], &SCALE].concat())
+        .is_done();
+    let replayed = |record: &str, more: &[&str]| {
+        let run =
+            [&["predict", "f/fit.json", "--replay", record, "--draws", "60", "--out", "p"][..], &SCALE, more].concat();
+        desk.run(&run).is_done();
+        desk.json("p/predict.json")["replays"][0].clone()
+    };
+    let measured = |replay: &serde_json::Value, name: &str| {
+        replay["figures"][name]["measured"].as_f64().unwrap_or_else(|| panic!("{name}: {replay}"))
+    };
+    let own = replayed("two-rounds.csv", &[]);
+    let current = &own["current"];
+    assert!((current["north_m_s"].as_f64().expect("found") - 0.6).abs() < 0.05, "{current}");
+    assert!((current["east_m_s"].as_f64().expect("found") + 0.8).abs() < 0.05, "{current}");
+    let (still, drifting) = (replayed("still.csv", &[]), replayed("drifting.csv", &[]));
+    assert!(still["current"].is_null() && drifting["current"].is_null(), "one round tells no current");
+    let mended = replayed("drifting.csv", &["--current-from", "two-rounds.csv"]);
+    for name in ["advance_m", "tactical_diameter_m"] {
+        let [truth, with, without] = [&still, &drifting, &mended].map(|replay| measured(replay, name));
+        assert!((without - truth).abs() < 0.1 * (with - truth).abs() + 5.0, "{name}: {truth} {with} {without}");
+        assert!((measured(&own, name) - truth).abs() < 10.0, "{name}");
+    }
+    let wrong = ["predict", "f/fit.json", "--replay", "still.csv", "--current-from", "drifting.csv"];
+    desk.run(&wrong).is_refused(2, &["--current-from drifting.csv", "720°"]);
+    desk.run(&["predict", "f/fit.json", "--current-from", "two-rounds.csv"]).is_refused(2, &["--replay"]);
+}
