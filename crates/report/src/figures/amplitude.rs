@@ -80,8 +80,10 @@ pub fn amplitude(data: &Amplitude, theme: &Theme) -> Figure {
             joint.horizontal(panel, &mut sheet.scene, theme);
         }
         panel.line(&mut sheet.scene, content.model[place].pairs(), model(theme));
-        for point in &content.points {
-            beyond |= draw(panel, &mut sheet.scene, theme, (point.amplitudes_deg[place], point), &look(data));
+        let across = |point: &AmplitudePoint| panel.across(point.amplitudes_deg[place]).unwrap_or(f64::NAN);
+        let places = asides(&content.points.iter().map(across).collect::<Vec<f64>>(), 2.4 * theme.marker);
+        for (point, x) in content.points.iter().zip(places) {
+            beyond |= draw(panel, &mut sheet.scene, theme, (x, point), &look(data));
         }
     }
     if beyond {
@@ -127,15 +129,27 @@ fn up(panel: &AmplitudePanel) -> Axis {
     Axis::covering(core.iter().copied().chain(ends), PAD, Steps::Decimal)
 }
 
+/// Places with those that are nearer to each other than `gap` moved aside, as far as they need about their middle:
+/// zig-zags of one rudder angle would hide each other.
+fn asides(places: &[f64], gap: f64) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..places.len()).filter(|&k| places[k].is_finite()).collect();
+    order.sort_by(|&one, &other| places[one].total_cmp(&places[other]));
+    let mut moved = places.to_vec();
+    for group in order.chunk_by(|&one, &other| places[other] - places[one] < gap) {
+        let middle = group.iter().map(|&k| places[k]).sum::<f64>() / group.len() as f64;
+        for (rank, &k) in group.iter().enumerate().filter(|_| group.len() > 1) {
+            moved[k] = middle + (rank as f64 - 0.5 * (group.len() - 1) as f64) * gap;
+        }
+    }
+    moved
+}
+
 /// Draws one record; tells whether something lies beyond the axis.
-fn draw(
-    panel: &Panel,
-    scene: &mut Scene,
-    theme: &Theme,
-    (amplitude, point): (f64, &AmplitudePoint),
-    look: &Look,
-) -> bool {
-    let Some(x) = panel.across(amplitude).filter(|x| x.is_finite()) else { return false };
+fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (x, point): (f64, &AmplitudePoint), look: &Look) -> bool {
+    if !x.is_finite() {
+        return false;
+    }
+    let x = x.clamp(panel.rect.x, panel.rect.right());
     let (top, bottom) = (panel.rect.y, panel.rect.bottom());
     let place = |value: f64| panel.up(value.clamp(-f64::MAX, f64::MAX)).filter(|y| !y.is_nan());
     let Some(y) = place(point.value) else { return false };
@@ -157,6 +171,20 @@ fn draw(
             beyond = true;
         }
     }
-    panel.marker(scene, (amplitude, point.value), theme.marker, look);
+    if (top..=bottom).contains(&y) {
+        scene.marker(Layer::Data, (x, y), theme.marker, look);
+    }
     beyond
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_of_one_rudder_stand_side_by_side() {
+        assert_eq!(asides(&[10.0, 50.0, 10.2, f64::NAN], 4.0)[..3], [8.1, 50.0, 12.1]);
+        assert_eq!(asides(&[1.0, 9.0], 4.0), [1.0, 9.0]);
+        assert!(asides(&[], 4.0).is_empty());
+    }
 }

@@ -84,11 +84,13 @@ fn limit_stroke(theme: &Theme) -> Stroke {
     Stroke::solid(INK, 1.6 * theme.line)
 }
 
+/// One of the angles of a row.
+type Part = fn(&ReplayedOvershoot) -> Option<f64>;
+
 fn entries(data: &OvershootReplays, theme: &Theme) -> Vec<Entry> {
-    let any = |wanted: fn(&ReplayedOvershoot) -> Option<f64>| data.rows.iter().any(|row| wanted(row).is_some());
+    let any = |wanted: Part| data.rows.iter().any(|row| wanted(row).is_some());
     let mut entries = vec![Entry::new(Sample::Line(bar(theme)), "measured")];
-    let marks: [(Origin, fn(&ReplayedOvershoot) -> Option<f64>); 2] =
-        [(Origin::Before, |row| row.before), (Origin::After, |row| row.after)];
+    let marks: [(Origin, Part); 2] = [(Origin::Before, |row| row.before), (Origin::After, |row| row.after)];
     for (origin, wanted) in marks {
         if any(wanted) {
             entries.push(Entry::new(Sample::Marker(origin.look()), origin.label()));

@@ -13,7 +13,7 @@ use super::planned;
 use crate::views::index_figures::{Alone, Amplitudes};
 
 /// Rudder and heading of the zig-zags of a model, deg.
-const SAILED: [f64; 7] = [5.0, 7.5, 10.0, 15.0, 20.0, 25.0, 30.0];
+const SAILED: [f64; 10] = [5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0, 25.0, 30.0, 35.0];
 
 /// Executes of each.
 const EXECUTES: usize = 5;

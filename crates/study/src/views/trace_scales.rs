@@ -19,8 +19,14 @@ pub fn prime(fitted: &Fitted, ship: Particulars) -> Option<(String, Quantity, St
     let parameter = fitted.parameter;
     (parameter.dimension() != [0, 0]).then(|| {
         let (quantity, unit) = shown(fitted, fitted.prime(ship), prime_unit(parameter.unit));
-        (format!("{}′", parameter.symbol), quantity, unit)
+        (primed(parameter.symbol), quantity, unit)
     })
+}
+
+/// A symbol without dimension: "n₃′/T′" of "n₃/T".
+fn primed(symbol: &str) -> String {
+    let part = |part: &str| if part == "1" { part.to_owned() } else { format!("{part}′") };
+    symbol.split('/').map(part).collect::<Vec<String>>().join("/")
 }
 
 /// A rudder angle in degrees; frequencies stay in radians.
@@ -68,4 +74,14 @@ pub fn compared(analysis: &Analysis, together: &Together) -> Option<ScalesEntry>
     let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
     let traced = ComparedModel { model: String::from("traced"), terms };
     Some(ScalesEntry::new(&groups, &files, first, vec![traced]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_letter_has_its_prime() {
+        assert_eq!(["1/T", "K/T", "n₃/T", "T₂"].map(primed), ["1/T′", "K′/T′", "n₃′/T′", "T₂′"]);
+    }
 }
