@@ -8,6 +8,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
+use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
 use crate::zigzag::median::upper_median;
 
 /// Where a record comes from.
@@ -152,6 +153,7 @@ pub struct Trial {
     heading_from_yaw_rate: bool,
     noise: Noise,
     particulars: Option<Particulars>,
+    conditions: Conditions,
     marks: Vec<Mark>,
 }
 
@@ -202,6 +204,7 @@ impl Trial {
             heading_from_yaw_rate,
             noise: Noise::default(),
             particulars: None,
+            conditions: Conditions::default(),
             marks: Vec::new(),
         })
     }
@@ -214,6 +217,11 @@ impl Trial {
     /// The same record with the length and speed of its ship.
     pub fn with_particulars(self, particulars: Particulars) -> Self {
         Self { particulars: Some(particulars), ..self }
+    }
+
+    /// The same record with what is declared of ship and trial for the form of MSC/Circ.1053.
+    pub fn with_conditions(self, conditions: Conditions) -> Self {
+        Self { conditions, ..self }
     }
 
     /// The same record with the readings that were taken as missing or told as doubtful.
@@ -330,6 +338,19 @@ impl Trial {
     /// Length and approach speed of the ship, where declared.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
+    }
+
+    /// What is declared of ship and trial for the form of MSC/Circ.1053.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
+    /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for.
+    pub fn shortcomings(&self) -> Vec<Shortcoming> {
+        let mut found = self.conditions.shortcomings();
+        let seconds = self.sampling_period();
+        found.extend((seconds > LONGEST_INTERVAL).then_some(Shortcoming::Interval { seconds }));
+        found
     }
 
     /// The recorded rudder alone, ready to be replayed through a model.
