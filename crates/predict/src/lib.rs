@@ -15,11 +15,20 @@
 //! | a recorded rudder replayed, held against the record | [`replay`] |
 //! | steady turns and the unstable loop | [`steady`] |
 //! | the criteria of IMO | [`imo`] |
+//! | a trial in ballast corrected to full load | [`correction`] |
+//! | the form of MSC/Circ.1053 | [`form`] |
 //!
 //! Time is in seconds from the first execute; everything else is in SI units and radians unless a name says otherwise.
 
+pub mod correction;
+mod doubt;
 pub mod error;
 pub mod figures;
+pub mod form;
+mod form_entries;
+mod form_entry;
+mod form_remarks;
+mod form_tested;
 pub mod imo;
 pub mod interval;
 pub mod kind;
@@ -31,6 +40,8 @@ pub mod passage;
 pub mod prediction;
 pub mod replay;
 pub mod steady;
+mod steered;
+mod turn;
 
 pub use error::PredictError;
 pub use interval::Interval;

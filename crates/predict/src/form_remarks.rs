@@ -1,0 +1,80 @@
+//! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, records
+//! that are no manoeuvre of the form, and what is to be known of predicted entries.
+
+use trial::{Conditions, Loading};
+
+use crate::form_entry::{Basis, Entry, Record};
+use crate::form_tested::{CIRCLE, TEN, TWENTY, Tested};
+
+/// The remarks, in the order in which a reader asks.
+pub(crate) fn remarks(
+    entries: &[Entry],
+    records: &[Record],
+    tested: &[Tested],
+    declared: Option<(&str, &Conditions)>,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    for (record, tested) in records.iter().zip(tested) {
+        let file = record.file();
+        remarks.extend(tested.remark.iter().map(|remark| format!("{file}: {remark}")));
+        // A record that fills in nothing need not be by the book.
+        if tested.is_used() {
+            remarks.extend(record.trial.shortcomings().iter().map(|shortcoming| format!("{file}: {shortcoming}")));
+            if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
+                remarks.push(format!(
+                    "{file}: tested at partial load and not corrected, and the criteria are for full load; give --ballast \
+                     with a model of the ship as she was tried"
+                ));
+            }
+            for doubt in record.correction.iter().flat_map(|correction| &correction.doubts) {
+                remarks.push(format!("{file}: correction to full load: {doubt}"));
+            }
+        }
+        for figure in record.correction.iter().filter(|_| tested.is_used()).flat_map(|own| &own.figures) {
+            let is_entry = tested.figures.iter().any(|(name, _)| *name == figure.name);
+            for doubt in figure.doubts.iter().filter(|_| is_entry) {
+                remarks.push(format!("{file}: correction of {}: {doubt}", figure.name));
+            }
+        }
+        remarks.extend(record.trial.conditions().remark.iter().map(|remark| format!("{file}: {remark}")));
+    }
+    remarks.extend(declared.into_iter().filter_map(|(file, form)| Some(format!("{file}: {}", form.remark.as_ref()?))));
+    for (sort, name) in [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")] {
+        let has = |side: &str| tested.iter().any(|tested| tested.what == Some((sort, side_of(side))));
+        match [has("port"), has("starboard")] {
+            [true, true] => {}
+            [true, false] => remarks.push(format!("{name}: tried to port only; trials are asked for to both sides")),
+            [false, true] => {
+                remarks.push(format!("{name}: tried to starboard only; trials are asked for to both sides"));
+            }
+            [false, false] => remarks.push(format!("{name}: not tried")),
+        }
+    }
+    let several = |sort: &str, side: &str| {
+        let own = tested.iter().filter(|tested| tested.what.is_some_and(|(it, to)| it == sort && to == side));
+        own.count() > 1
+    };
+    for (sort, side) in
+        [TEN, TWENTY, CIRCLE].into_iter().flat_map(|sort| ["port", "starboard"].map(|side| (sort, side)))
+    {
+        if several(sort, side) {
+            remarks.push(format!(
+                "{sort} to {side}: several records; the first that is at full load or corrected is used"
+            ));
+        }
+    }
+    if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { .. })) {
+        remarks.push(String::from(
+            "predicted entries hold for the loading, the water depth and the weather of the records that the models were \
+             fitted to, which a model does not say; they are no trial",
+        ));
+    }
+    if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { extrapolated: true, .. })) {
+        remarks.push(String::from("extrapolated entries are beyond the rudder or the yaw rate of those records"));
+    }
+    remarks
+}
+
+fn side_of(side: &str) -> &'static str {
+    if side == "port" { "port" } else { "starboard" }
+}
