@@ -38,6 +38,9 @@ const SAME_LENGTH: f64 = 1e-3;
 /// Difference of two approach speeds, as a share, above which it is said.
 const SAME_SPEED: f64 = 0.05;
 
+/// Figures that are read at the end of a turn.
+const AT_THE_END: [&str; 4] = ["steady_rate_deg_s", "speed_loss_share", "drift_angle_deg", "pivot_ahead_lengths"];
+
 /// Seed of the readings of T; those of ships are 0 and 1.
 const READING: u64 = 2;
 
@@ -119,7 +122,8 @@ type Draws = Vec<Option<Sailed>>;
 /// R = T F/B, draw by draw; the 50 and 90 % intervals hold the errors of both models, the random moment of one trial
 /// each and the reading of T. Two mixtures of the same files are drawn alike, so that F/B is 1. A zig-zag is steered as
 /// the record was, with its rate of the rudder and its first yaw rate; a turn has its rudder, held on for the slower of
-/// the two. Figures that the record does not show are left out; a record that is neither has none.
+/// the two; what is read at its end is read when the record ends. Figures that the record does not show are left out;
+/// a record that is neither has none.
 ///
 /// Fails where less than half of the drawn ships come to the end of the manoeuvre.
 /// Source: MSC/Circ.1053 (2002), 3.4.1.2.
@@ -205,7 +209,15 @@ fn turned(
                 let of_rate: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
                 ship.yaw_rate = rate.0 + rate.1 * of_rate;
                 let passage = Passage::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
-                Some(Sailed::new(turn.figures(&passage, start), &passage))
+                let mut figures = turn.figures(&passage, start);
+                // Of what is read at the end both ships have had as much time as that of the record.
+                let cut = turn.figures(&passage.until(turn.until - start), start);
+                for (figure, (name, value)) in figures.iter_mut().zip(cut) {
+                    if AT_THE_END.contains(&name) {
+                        figure.1 = value;
+                    }
+                }
+                Some(Sailed::new(figures, &passage))
             })
             .collect()
     };

@@ -62,18 +62,25 @@ pub enum Doubt {
     },
 }
 
+/// Four digits, as far as they are behind the point.
+fn short(value: f64) -> String {
+    let decimals = if value == 0.0 { 1.0 } else { (3.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
+    format!("{value:.*}", decimals as usize)
+}
+
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let length = |length: &Option<f64>| length.map_or_else(|| String::from("unknown"), |l| format!("{l} m"));
         match self {
             Self::Wide { share } => write!(f, "F/B is known to ±{:.0} % only", 100.0 * share),
-            Self::NearZero { ci90: [low, high] } => {
-                write!(f, "B is near zero (90 % [{low:.3}, {high:.3}]), so its ratio says little")
+            Self::NearZero { ci90 } => {
+                let [low, high] = ci90.map(short);
+                write!(f, "B is near zero (90 % [{low}, {high}]), so its ratio says little")
             }
-            Self::Outside { measured, ci90: [low, high] } => write!(
-                f,
-                "the model of the trial does not do what was measured: {measured:.3}, predicted [{low:.3}, {high:.3}]"
-            ),
+            Self::Outside { measured, ci90 } => {
+                let ([low, high], measured) = (ci90.map(short), short(*measured));
+                write!(f, "the model of the trial does not do what was measured: {measured}, not in [{low}, {high}]")
+            }
             Self::Undefined { share } => {
                 write!(f, "{:.0} % of the pairs of drawn ships come that far", 100.0 * share)
             }

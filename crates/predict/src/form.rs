@@ -94,7 +94,7 @@ pub fn fill(
             why: "never predicted: no model of this program goes astern; stop the ship and measure",
         },
     });
-    let remarks = form_remarks::remarks(&entries, records, &tested, declared);
+    let remarks = form_remarks::remarks(&entries, records, &tested, declared, particulars);
     Form { entries, remarks }
 }
 
@@ -159,7 +159,7 @@ mod tests {
             ship_type: Some("training ship".into()),
             beam: Some(15.0),
             draught: Some(5.0),
-            length: Some(75.0),
+            particulars: Some(Particulars { length: 75.0, speed: 6.0 }),
             full_load_draught: Some(5.0),
             rudder_area: Some(7.5),
             water_depth: Some(60.0),

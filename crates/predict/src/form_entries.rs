@@ -29,7 +29,7 @@ pub(crate) fn ship(said: &[Said], particulars: Option<Particulars>) -> Vec<Entry
     let number = |of: fn(&Conditions) -> Option<f64>| first(&|(_, form, _)| of(form).map(Value::Number));
     let count =
         |of: fn(&Conditions) -> Option<u8>| first(&|(_, form, _)| of(form).map(|n| Value::Number(f64::from(n))));
-    let length = |(_, form, length): &Said| form.length.or(*length);
+    let length = |(_, form, length): &Said| form.particulars.map(|own| own.length).or(*length);
     let mut scale =
         entry(SHIP, "L/V", "s", particulars.map(|own| (String::new(), Value::Number(own.length / own.speed))));
     if scale.value.is_some() {

@@ -1,10 +1,14 @@
 //! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, records
 //! that are no manoeuvre of the form, and what is to be known of predicted entries.
 
+use ship::Particulars;
 use trial::{Conditions, Loading};
 
 use crate::form_entry::{Basis, Entry, Record};
 use crate::form_tested::{CIRCLE, TEN, TWENTY, Tested};
+
+/// Length from which the criteria hold, m. Source: MSC.137(76), 2.
+const SHORTEST_SHIP: f64 = 100.0;
 
 /// The remarks, in the order in which a reader asks.
 pub(crate) fn remarks(
@@ -12,8 +16,16 @@ pub(crate) fn remarks(
     records: &[Record],
     tested: &[Tested],
     declared: Option<(&str, &Conditions)>,
+    particulars: Option<Particulars>,
 ) -> Vec<String> {
     let mut remarks = Vec::new();
+    if let Some(Particulars { length, speed }) = particulars.filter(|own| own.length < SHORTEST_SHIP) {
+        remarks.push(format!(
+            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
+             the 10/10 zig-zag follow L/V, here {length:.2} m at {speed:.2} m/s; for a model give --length-m and \
+             --speed-kn of the ship"
+        ));
+    }
     for (record, tested) in records.iter().zip(tested) {
         let file = record.file();
         remarks.extend(tested.remark.iter().map(|remark| format!("{file}: {remark}")));
@@ -49,6 +61,11 @@ pub(crate) fn remarks(
             }
             [false, false] => remarks.push(format!("{name}: not tried")),
         }
+    }
+    if tested.iter().any(Tested::is_used) {
+        remarks.push(String::from(
+            "not looked at: the test speed (at least 90 % of that at 85 % of the engine output), the engine, and current",
+        ));
     }
     let several = |sort: &str, side: &str| {
         let own = tested.iter().filter(|tested| tested.what.is_some_and(|(it, to)| it == sort && to == side));

@@ -1,6 +1,7 @@
 //! Which manoeuvre of the form of MSC/Circ.1053 a record is, and what it shows of it.
 
 use ship::angle::{from_deg, to_deg};
+use trial::zigzag::BaseCourseSource;
 use trial::{Quantity, ZigZag as Measured};
 
 use crate::form_entry::Record;
@@ -56,7 +57,8 @@ pub(crate) fn side(sign: f64) -> &'static str {
 }
 
 /// The record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from a
-/// straight course: the rudder amidships, the yaw rate below a twentieth of the largest or below twice its error.
+/// straight course: the rudder amidships, and, where the approach is recorded, a yaw rate below a twentieth of the
+/// largest or below three times its error.
 pub(crate) fn of(record: &Record) -> Tested {
     match Measured::of(record.trial) {
         Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record, &zigzag),
@@ -82,8 +84,10 @@ fn zig_zag(record: &Record, zigzag: &Measured) -> Tested {
         let before = to_deg(begin.rudder_before);
         return Tested::none(format!("the {sort} begins with the rudder at {before:.1}°, not from a straight course"));
     }
-    if let (Some(rate), Some(largest)) = (begin.yaw_rate, zigzag.largest_yaw_rate) {
-        let allowed = (STRAIGHT * largest.value).max(2.0 * rate.sd.unwrap_or(0.0));
+    // A slope that is read off the few headings behind a first execute says nothing of the approach.
+    let is_seen = zigzag.base_course.source == BaseCourseSource::Approach;
+    if let (true, Some(rate), Some(largest)) = (is_seen, begin.yaw_rate, zigzag.largest_yaw_rate) {
+        let allowed = (STRAIGHT * largest.value).max(3.0 * rate.sd.unwrap_or(0.0));
         if rate.value.abs() > allowed {
             let rate = to_deg(rate.value);
             return Tested::none(format!("the {sort} begins at {rate:.2} deg/s, not from a straight course"));
@@ -94,11 +98,12 @@ fn zig_zag(record: &Record, zigzag: &Measured) -> Tested {
     let show = |name| Some((name, steered::shown(trial, zigzag, name, None, trial.particulars())?));
     let figures = names.into_iter().filter_map(show).collect();
     let stands_in = sort == TEN && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
-    let remark = stands_in.then(|| {
-        String::from(
-            "no speed is recorded: the distance of the initial turning is V times its time, which is slightly long",
-        )
-    });
+    let mut remarks = Vec::new();
+    remarks.extend((!is_seen).then_some("the record begins with the first execute, and its approach is not seen"));
+    remarks.extend(stands_in.then_some(
+        "no speed is recorded: the distance of the initial turning is V times its time, which is slightly long",
+    ));
+    let remark = (!remarks.is_empty()).then(|| remarks.join("; "));
     Tested { what: Some((sort, side(first.sign()))), figures, remark }
 }
 

@@ -313,8 +313,8 @@ pub struct PredictRequest {
     /// of MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
     #[arg(long, value_name = "BALLAST.json")]
     pub ballast: Vec<PathBuf>,
-    /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured where
-    /// a record of --replay is that trial
+    /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured
+    /// where a record of --replay is that trial
     #[arg(long)]
     pub form: bool,
     /// Method whose answer in fit.json is used [default: maximum-likelihood, or the next that has a covariance]

@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use ship::Particulars;
+
 /// Water depth that a trial needs, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const FEWEST_DRAUGHTS: f64 = 4.0;
 /// Strongest wind of a trial, Beaufort number. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
@@ -40,8 +42,8 @@ impl Loading {
 pub struct Conditions {
     /// Container ship, tanker, gas carrier, ...
     pub ship_type: Option<String>,
-    /// Length between perpendiculars of the same sidecar, m, so that ratios are of one scale.
-    pub length: Option<f64>,
+    /// Length and approach speed of the same sidecar, so that ratios are of one scale.
+    pub particulars: Option<Particulars>,
     /// Breadth, m.
     pub beam: Option<f64>,
     /// Mean draught at the trial, m.

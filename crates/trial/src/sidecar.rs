@@ -240,7 +240,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
             rudder: deviation(&wire.noise.rudder_deg, "rudder-deg")?,
         },
         plausibility: wire.check.plausibility.unwrap_or(true),
-        conditions: sidecar_form::conditions(&wire.form, particulars.map(|particulars| particulars.length))?,
+        conditions: sidecar_form::conditions(&wire.form, particulars)?,
     })
 }
 
@@ -342,7 +342,8 @@ mod tests {
         approx::assert_relative_eq!(sidecar.noise().rudder.expect("declared"), from_deg(0.2));
         assert!(!sidecar.plausibility);
         let form = sidecar.conditions();
-        assert_eq!((form.ship_type.as_deref(), form.beam, form.length), (Some("tanker"), Some(58.0), Some(320.0)));
+        assert_eq!((form.ship_type.as_deref(), form.beam), (Some("tanker"), Some(58.0)));
+        assert_eq!(form.particulars, sidecar.particulars());
         assert_eq!(form.loading(), Some(crate::conditions::Loading::Partial));
         assert!(parse("").expect("no key is required").plausibility);
     }

@@ -2,6 +2,7 @@
 //! by hand, so that a message names key, value and what was expected.
 
 use serde::Deserialize;
+use ship::Particulars;
 use toml::{Spanned, Value};
 
 use crate::conditions::{Conditions, Loading};
@@ -84,11 +85,11 @@ fn whole(
     })
 }
 
-/// Checks the table; `length` is that of the ship in the same sidecar, m.
+/// Checks the table; `particulars` are those of the ship in the same sidecar.
 ///
 /// Fails for texts that are empty or long, for numbers outside their range, and for lengths that no ship has together:
 /// a breadth above the length, a draught above the depth of the water.
-pub(crate) fn conditions(wire: &WireForm, length: Option<f64>) -> Result<Conditions, Fault> {
+pub(crate) fn conditions(wire: &WireForm, particulars: Option<Particulars>) -> Result<Conditions, Fault> {
     let loading = |value: &Value| match value.as_str() {
         Some("full") => Some(Loading::Full),
         Some("partial") => Some(Loading::Partial),
@@ -99,7 +100,7 @@ pub(crate) fn conditions(wire: &WireForm, length: Option<f64>) -> Result<Conditi
     let form = Conditions {
         administration: text("administration", &wire.administration)?,
         ship_type: text("ship-type", &wire.ship_type)?,
-        length,
+        particulars,
         beam: metres("beam-m", &wire.beam_m)?,
         draught: metres("draught-m", &wire.draught_m)?,
         full_load_draught: metres("full-load-draught-m", &wire.full_load_draught_m)?,
@@ -125,7 +126,12 @@ pub(crate) fn conditions(wire: &WireForm, length: Option<f64>) -> Result<Conditi
     };
     let above = |one: Option<f64>, other: Option<f64>| matches!((one, other), (Some(one), Some(other)) if one >= other);
     let crossed = [
-        ("beam-m", &wire.beam_m, above(form.beam, length), "a breadth below the length of [ship]"),
+        (
+            "beam-m",
+            &wire.beam_m,
+            above(form.beam, particulars.map(|own| own.length)),
+            "a breadth below the length of [ship]",
+        ),
         ("draught-m", &wire.draught_m, above(form.draught, form.water_depth), "a draught below water-depth-m"),
         ("draught-m", &wire.draught_m, above(form.draught, form.beam), "a draught below beam-m"),
         (

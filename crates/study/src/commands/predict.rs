@@ -7,6 +7,7 @@ use predict::correction::{self, Correction, Doubt};
 use predict::form::{self, Record};
 use predict::replay::Replayed;
 use predict::{KnownShip, Mixture, PredictError, Prediction, imo, kind};
+use report::number::fixed;
 use serde_json::Value;
 use ship::Particulars;
 use ship::angle::KNOT;
@@ -69,7 +70,10 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         request.models.iter().map(|path| read(path, request, &mut warnings)).collect::<Result<_, _>>()?;
     let ballast: Vec<Model> =
         request.ballast.iter().map(|path| read(path, request, &mut warnings)).collect::<Result<_, _>>()?;
-    let records = read_others(&request.replays, &request.reading, &mut warnings)?;
+    let records: Vec<Trial> = read_others(&request.replays, &request.reading, &mut warnings)?
+        .into_iter()
+        .map(|record| at_own_scale(record, &mut warnings))
+        .collect();
     let declared = match (&request.reading.columns, request.form && records.is_empty()) {
         (Some(path), true) if path.is_file() => Some(Sidecar::load(path).map_err(Failure::input)?),
         _ => None,
@@ -163,6 +167,23 @@ fn manoeuvres(request: &PredictRequest) -> Vec<kind::Kind> {
     kinds
 }
 
+/// Whether a record is of a ship of this length, m, as far as is known.
+fn is_of(record: &Trial, length: f64) -> bool {
+    record.particulars().is_none_or(|own| (own.length / length - 1.0).abs() < SAME_LENGTH)
+}
+
+/// A record at the scale that its sidecar declares, where another one is asked for: a model is replayed as a model.
+fn at_own_scale(record: Trial, warnings: &mut Vec<String>) -> Trial {
+    let Some(own) = record.conditions().particulars.filter(|own| !is_of(&record, own.length)) else { return record };
+    warnings.push(format!(
+        "{}: its sidecar says {} m at {} m/s; it is replayed at that scale, and manoeuvres are predicted at the other",
+        file_of(&record).0,
+        fixed(own.length, 2),
+        fixed(own.speed, 2)
+    ));
+    record.with_particulars(own)
+}
+
 /// A record beside its replay, and corrected to full load where there is a model of its condition; `models` are those
 /// at full load and those in the condition of the record.
 fn held_against(
@@ -172,7 +193,8 @@ fn held_against(
     warnings: &mut Vec<String>,
 ) -> Result<(Replayed, Option<Correction>), Failure> {
     // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
-    let scale = asked_scale(&request.reading).or_else(|| record.particulars());
+    let asked = asked_scale(&request.reading);
+    let scale = asked.filter(|asked| is_of(record, asked.length)).or_else(|| record.particulars());
     let scaled = |models: &[Model]| {
         mixture_of(models, scale).map_err(|error| Failure::input(format!("{}: {error}", models[0].file)))
     };

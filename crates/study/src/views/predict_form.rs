@@ -3,14 +3,23 @@
 
 use predict::form::{Basis, Entry, Form, TRACK_REACH_LENGTHS, Value};
 use report::markdown::text;
-use report::number::{fixed, interval, significant, supported, with_uncertainty};
+use report::number::{fixed, significant};
 use report::{Column, Table};
 use serde::Serialize;
 
 use super::predict_report::Predicted;
+use super::predict_tables::{bracket, digits};
 
 /// What stands for an entry that nobody can fill in.
 const EMPTY: &str = "–";
+
+/// Most decimals of a result: no trial tells a hundredth of a degree or of a ship length.
+const DECIMALS: usize = 2;
+
+/// Decimals of a measured result: as many as its standard deviation supports.
+fn decimals_of(sd: Option<f64>) -> usize {
+    sd.filter(|sd| *sd > 0.0).map_or(DECIMALS, |sd| ((-sd.log10()).ceil().max(0.0) as usize).min(DECIMALS))
+}
 
 /// An entry of the form for other programs.
 #[derive(Debug, Serialize)]
@@ -77,19 +86,15 @@ fn filled(entry: &Entry) -> String {
         None => EMPTY.to_owned(),
         Some(Value::Text(words)) => words.clone(),
         Some(Value::Number(number)) => significant(*number, if number.fract() == 0.0 { 1 } else { 3 }),
-        Some(Value::Measured { value, sd: None }) => significant(*value, 3),
-        Some(Value::Measured { value, sd }) => {
-            let both = with_uncertainty(*value, *sd);
-            both.split(" ± ").next().unwrap_or(&both).to_owned()
-        }
-        Some(Value::Interval(told)) => supported(told.median, Some(told.ci90)),
+        Some(Value::Measured { value, sd }) => fixed(*value, decimals_of(*sd)),
+        Some(Value::Interval(told)) => fixed(told.median, digits(told).min(DECIMALS)),
     }
 }
 
 /// Where an entry comes from, in words.
 fn source(entry: &Entry, predicted: &Predicted) -> String {
     let range = match &entry.value {
-        Some(Value::Interval(told)) => interval(Some(told.ci90)),
+        Some(Value::Interval(told)) => bracket(told.ci90, digits(told).min(DECIMALS)),
         _ => String::new(),
     };
     match &entry.basis {
@@ -99,11 +104,10 @@ fn source(entry: &Entry, predicted: &Predicted) -> String {
         Basis::NotInRecords => String::from("not in the records"),
         Basis::NotTold { why } => (*why).to_owned(),
         Basis::Measured { file, partial } => {
-            let both = match &entry.value {
-                Some(Value::Measured { value, sd: Some(sd) }) => with_uncertainty(*value, Some(*sd)),
+            let sd = match &entry.value {
+                Some(Value::Measured { sd: Some(sd), .. }) => format!(" ± {}", significant(*sd, 1)),
                 _ => String::new(),
             };
-            let sd = both.split_once(" ± ").map_or_else(String::new, |(_, sd)| format!(" ± {sd}"));
             let load = if *partial { ", at partial load, not corrected" } else { "" };
             format!("measured, {file}{sd}{load}")
         }
@@ -111,8 +115,8 @@ fn source(entry: &Entry, predicted: &Predicted) -> String {
             let doubt = if *doubtful { "; see the remarks" } else { "" };
             format!(
                 "measured at partial load, {file}, and corrected by F/B = {} {}, 90 % {range}{doubt}",
-                supported(factor.median, Some(factor.ci90)),
-                interval(Some(factor.ci90))
+                fixed(factor.median, digits(factor).min(DECIMALS)),
+                bracket(factor.ci90, digits(factor).min(DECIMALS))
             )
         }
         Basis::Predicted { extrapolated, passing } => {
@@ -191,7 +195,7 @@ fn criterion(entry: &Entry) -> String {
         Some(limit) if limit == TRACK_REACH_LENGTHS && entry.section == "stopping" => {
             String::from("≤ 15, up to 20 where the Administration allows")
         }
-        Some(limit) => format!("≤ {}", significant(limit, 3)),
+        Some(limit) => format!("≤ {}", fixed(limit, 1)),
         None => String::from("depends on L/V, which is not known"),
     }
 }
