@@ -200,7 +200,9 @@ fn the_form_of_the_circular_names_the_source_of_every_entry() {
     assert!((first["value"].as_f64().expect("measured") - 6.82).abs() < 0.1, "{first}");
     assert!(first["source"].as_str().is_some_and(|source| source.starts_with("measured, run.csv ± ")), "{first}");
     let told = entry(&json, "1st overshoot angle", "port");
-    assert!((told["median"].as_f64().expect("predicted") - 6.82).abs() < 0.2, "{told}");
+    // Her rudder is off amidships, so her sides differ.
+    let port = told["median"].as_f64().expect("predicted");
+    assert!((5.5..6.5).contains(&port), "{told}");
     let source = told["source"].as_str().unwrap_or_default();
     assert!(source.starts_with("predicted from f/fit.json, 90 % [") && !source.contains("extrapolated"), "{source}");
     let twenty = json["form"].as_array().expect("a list").iter().find(|one| one["limit"] == 25.0).expect("20/20");
@@ -322,5 +324,5 @@ fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
     let turning = "distance to turn 10° with 10° rudder";
     let [measured, told] = [("starboard", "value"), ("port", "median")]
         .map(|(side, key)| entry(&json, turning, side)[key].as_f64().expect("a number"));
-    assert!((measured / told - 1.0).abs() < 0.1, "{measured} {told}");
+    assert!((measured / told - 1.0).abs() < 0.15, "{measured} {told}");
 }
