@@ -26,31 +26,16 @@ pub(crate) fn remarks(
              --speed-kn of the ship"
         ));
     }
+    let mut of_files = OfFiles::default();
     for (record, tested) in records.iter().zip(tested) {
-        let file = record.file();
-        remarks.extend(tested.remark.iter().map(|remark| format!("{file}: {remark}")));
-        // A record that fills in nothing need not be by the book.
-        if tested.is_used() {
-            remarks.extend(record.trial.shortcomings().iter().map(|shortcoming| format!("{file}: {shortcoming}")));
-            if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
-                remarks.push(format!(
-                    "{file}: tested at partial load and not corrected, and the criteria are for full load; give --ballast \
-                     with a model of the ship as she was tried"
-                ));
-            }
-            for doubt in record.correction.iter().flat_map(|correction| &correction.doubts) {
-                remarks.push(format!("{file}: correction to full load: {doubt}"));
-            }
+        for text in of_record(record, tested) {
+            of_files.add(record.file(), text);
         }
-        for figure in record.correction.iter().filter(|_| tested.is_used()).flat_map(|own| &own.figures) {
-            let is_entry = tested.figures.iter().any(|(name, _)| *name == figure.name);
-            for doubt in figure.doubts.iter().filter(|_| is_entry) {
-                remarks.push(format!("{file}: correction of {}: {doubt}", figure.name));
-            }
-        }
-        remarks.extend(record.trial.conditions().remark.iter().map(|remark| format!("{file}: {remark}")));
     }
-    remarks.extend(declared.into_iter().filter_map(|(file, form)| Some(format!("{file}: {}", form.remark.as_ref()?))));
+    if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
+        of_files.add(file, text);
+    }
+    remarks.extend(of_files.0.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
     for (sort, name) in [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")] {
         let has = |side: &str| tested.iter().any(|tested| tested.what == Some((sort, side_of(side))));
         match [has("port"), has("starboard")] {
@@ -89,6 +74,44 @@ pub(crate) fn remarks(
     if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { extrapolated: true, .. })) {
         remarks.push(String::from("extrapolated entries are beyond the rudder or the yaw rate of those records"));
     }
+    remarks
+}
+
+/// Remarks with the files they are of; what holds for several is said once.
+#[derive(Default)]
+struct OfFiles(Vec<(String, Vec<String>)>);
+
+impl OfFiles {
+    fn add(&mut self, file: &str, text: String) {
+        match self.0.iter_mut().find(|(own, _)| *own == text) {
+            Some((_, files)) => files.push(file.to_owned()),
+            None => self.0.push((text, vec![file.to_owned()])),
+        }
+    }
+}
+
+/// What is to be said of one record.
+fn of_record(record: &Record, tested: &Tested) -> Vec<String> {
+    let mut remarks: Vec<String> = tested.remark.iter().cloned().collect();
+    // A record that fills in nothing need not be by the book.
+    if tested.is_used() {
+        remarks.extend(record.trial.shortcomings().iter().map(ToString::to_string));
+        if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
+            remarks.push(String::from(
+                "tested at partial load and not corrected, and the criteria are for full load; give --ballast with a model \
+                 of the ship as she was tried",
+            ));
+        }
+        if let Some(correction) = record.correction {
+            remarks.extend(correction.doubts.iter().map(|doubt| format!("correction to full load: {doubt}")));
+            let is_entry = |name: &str| tested.figures.iter().any(|(own, _)| *own == name);
+            for figure in correction.figures.iter().filter(|figure| is_entry(figure.name)) {
+                let name = figure.name.replace('_', " ");
+                remarks.extend(figure.doubts.iter().map(|doubt| format!("correction of {name}: {doubt}")));
+            }
+        }
+    }
+    remarks.extend(record.trial.conditions().remark.clone());
     remarks
 }
 

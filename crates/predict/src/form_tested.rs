@@ -94,9 +94,12 @@ fn zig_zag(record: &Record, zigzag: &Measured) -> Tested {
         }
     }
     let trial = record.trial;
-    let names = ["first_overshoot_deg", "second_overshoot_deg", "initial_turning_lengths"];
-    let show = |name| Some((name, steered::shown(trial, zigzag, name, None, trial.particulars())?));
-    let figures = names.into_iter().filter_map(show).collect();
+    let names: &[&'static str] = match sort {
+        TEN => &["first_overshoot_deg", "second_overshoot_deg", "initial_turning_lengths"],
+        _ => &["first_overshoot_deg"],
+    };
+    let show = |name: &&'static str| Some((*name, steered::shown(trial, zigzag, name, None, trial.particulars())?));
+    let figures = names.iter().filter_map(show).collect();
     let stands_in = sort == TEN && zigzag.initial_turning_distance.is_none() && trial.particulars().is_some();
     let mut remarks = Vec::new();
     remarks.extend((!is_seen).then_some("the record begins with the first execute, and its approach is not seen"));
