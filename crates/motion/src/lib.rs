@@ -44,7 +44,7 @@ mod yaw;
 
 pub use circle::{Turn, TurningCircle, track, turning_circle};
 pub use coefficients::{COEFFICIENTS, Coefficients, SYMBOLS};
-pub use current::{Current, current, without_current};
+pub use current::{Current, current};
 pub use error::MotionError;
 pub use fit::fit;
 pub use hull::{HULL_COEFFICIENTS, Hull, HullRecord, Moment, Spread};

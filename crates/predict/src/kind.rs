@@ -89,6 +89,19 @@ impl Kind {
         ]
     }
 
+    /// The same manoeuvre to port; a spiral goes to either side.
+    pub fn to_port(mut self) -> Self {
+        match &mut self {
+            Self::ZigZag { first: side, .. }
+            | Self::InitialTurning { side, .. }
+            | Self::TurningCircle { side, .. }
+            | Self::PullOut { side, .. }
+            | Self::Williamson { side, .. } => *side = Side::Port,
+            Self::Spiral { .. } => {}
+        }
+        self
+    }
+
     /// Largest rudder angle, rad.
     pub fn rudder(&self) -> f64 {
         match *self {

@@ -16,11 +16,20 @@
 //! | a record that is a turn, and the current it shows | [`turn`] |
 //! | steady turns and the unstable loop | [`steady`] |
 //! | the criteria of IMO | [`imo`] |
+//! | a trial in ballast corrected to full load | [`correction`] |
+//! | the form of MSC/Circ.1053 | [`form`] |
 //!
 //! Time is in seconds from the first execute; everything else is in SI units and radians unless a name says otherwise.
 
+pub mod correction;
+mod doubt;
 pub mod error;
 pub mod figures;
+pub mod form;
+mod form_entries;
+mod form_entry;
+mod form_remarks;
+mod form_tested;
 pub mod imo;
 pub mod interval;
 pub mod kind;
@@ -32,6 +41,7 @@ pub mod passage;
 pub mod prediction;
 pub mod replay;
 pub mod steady;
+mod steered;
 pub mod turn;
 
 pub use error::PredictError;

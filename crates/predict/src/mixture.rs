@@ -71,6 +71,8 @@ pub struct Mixture {
     /// Square roots of the covariances of the hull, or of speed and drift, of every file.
     motions: Vec<DMatrix<f64>>,
     timescale: f64,
+    /// Whether the draws are apart from those of any other mixture that is not.
+    apart: bool,
 }
 
 /// A ship for one trial.
@@ -155,7 +157,12 @@ impl Mixture {
         };
         let motions = files.iter().map(motion).collect::<Result<_, _>>()?;
         let timescale = files.first().and_then(|(known, _)| known.timescale()).ok_or(PredictError::Empty)?;
-        Ok(Self { parts, motions, files: files.into_iter().map(|(known, _)| known).collect(), timescale })
+        Ok(Self { parts, motions, files: files.into_iter().map(|(known, _)| known).collect(), timescale, apart: false })
+    }
+
+    /// The same ships drawn with other numbers, so that they have no chance in common with those of another mixture.
+    pub fn apart(self) -> Self {
+        Self { apart: true, ..self }
     }
 
     /// A time of the ship, s: about L/U.
@@ -181,7 +188,7 @@ impl Mixture {
     /// Ship number `number`; only the given sources of doubt are at work, all else is as in the most probable ship.
     pub fn draw(&self, number: u64, sources: &[Source]) -> Drawn {
         let has = |source: Source| sources.contains(&source);
-        let key = StreamKey { seed: 0, cell: 0, replicate: number };
+        let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
         let part = if has(Source::Structure) { self.chosen(number) } else { self.likeliest() };
         let known = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
@@ -248,10 +255,12 @@ impl Mixture {
         self.parts.iter().rev().max_by(most).expect("there is a structure")
     }
 
-    /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio).
+    /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
+    /// mixture that is apart follow √2, which has nothing in common with it.
     fn chosen(&self, number: u64) -> &Part {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let mut left = (0.5 + number as f64 * GOLDEN).fract();
+        let step = if self.apart { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
+        let mut left = (0.5 + number as f64 * step).fract();
         for part in &self.parts {
             if left < part.weight {
                 return part;

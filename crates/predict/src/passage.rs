@@ -101,6 +101,14 @@ impl Passage {
         Some(motion::turning_circle(&turn, execute))
     }
 
+    /// A series on the rows of the passage at a time, s.
+    pub(crate) fn at(&self, values: &[f64], time: f64) -> f64 {
+        let place = (time / self.period).clamp(0.0, (values.len() - 1) as f64);
+        let (low, share) = (place.floor() as usize, place.fract());
+        let high = (low + 1).min(values.len() - 1);
+        values[low] + share * (values[high] - values[low])
+    }
+
     /// Way through the water until `time` s, m; `None` where nothing is known of the speed.
     pub fn distance(&self, time: f64) -> Option<f64> {
         let Way { surge, sway, .. } = self.way.as_ref()?;

@@ -177,7 +177,8 @@ impl Mixture {
         }
     }
 
-    fn is_unseen(&self, rudder: f64, rate: f64) -> bool {
+    /// Whether a rudder (rad) or a yaw rate (rad/s) is beyond what the records have seen.
+    pub(crate) fn is_unseen(&self, rudder: f64, rate: f64) -> bool {
         let most = |value: fn(&crate::known::Seen) -> f64| {
             self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max)
         };

@@ -5,24 +5,20 @@ use rand::RngExt;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use ship::Polyline;
-use simulate::manoeuvre::{ZigZag, ZigZagEnd};
-use simulate::{Manoeuvre, Purpose, Side};
-use trial::{Trial, ZigZag as Measured};
+use simulate::{Manoeuvre, Purpose};
+use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
+use crate::figures::Figure;
 use crate::interval::{Interval, band};
-use crate::kind::{EXECUTES, Kind};
 use crate::mixture::{Mixture, Source};
 use crate::passage::Passage;
 use crate::prediction::{Bands, enough};
-use crate::turn;
+use crate::steered::{self, Steered};
+use crate::turn::{self, Turn};
 
 /// Beginning of a record from which its first heading and yaw rate are read, in times of the ship.
 const BEGINNING: f64 = 1.0;
-
-/// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
-const NOMINAL: f64 = 0.05;
 
 /// Fewest readings for it.
 const FEWEST: usize = 5;
@@ -34,6 +30,8 @@ pub struct Compared {
     pub name: &'static str,
     /// What the record shows.
     pub measured: f64,
+    /// Standard deviation of that, where the record tells it.
+    pub sd: Option<f64>,
     /// What was predicted.
     pub interval: Interval,
 }
@@ -61,7 +59,7 @@ fn beginning(trial: &Trial, at_rest: &Passage, timescale: f64) -> Option<[(f64, 
     let start = trial.time()[0];
     let read = |row: usize| {
         let time = trial.time()[row] - start;
-        (time, trial.heading()[row] - at(at_rest, &at_rest.heading, time))
+        (time, trial.heading()[row] - at_rest.at(&at_rest.heading, time))
     };
     let rows: Vec<(f64, f64)> = trial.observed_rows().map(read).collect();
     let count = rows.iter().take_while(|(time, _)| *time <= BEGINNING * timescale).count();
@@ -83,7 +81,7 @@ fn beginning(trial: &Trial, at_rest: &Passage, timescale: f64) -> Option<[(f64, 
 const STRAIGHT: f64 = 2e-4;
 
 /// The corners of a rudder (Douglas and Peucker 1973): a step of the solver ends at every one.
-fn thinned(signal: &Polyline) -> Polyline {
+pub(crate) fn thinned(signal: &Polyline) -> Polyline {
     let (times, values) = (signal.times(), signal.values());
     let last = times.len() - 1;
     let mut kept = vec![false; times.len()];
@@ -107,8 +105,8 @@ impl Mixture {
     ///
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
     /// of a helm that reverses the rudder where the record did, because a rudder that is replayed knows nothing of the
-    /// heading. The track of a turn is that without the current of another record where one is given, else without its
-    /// own where it goes on for two rounds. `None` where the record has too few headings at its beginning.
+    /// heading. `current` is the one that was taken out of the positions of the record
+    /// ([`without_current`](turn::without_current)). `None` where the record has too few headings at its beginning.
     pub fn replay(
         &self,
         trial: &Trial,
@@ -118,8 +116,7 @@ impl Mixture {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
-        let at_rest = Passage::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(|_| lost(0))?;
-        let Some([first, rate]) = beginning(trial, &at_rest, self.timescale()) else { return Ok(None) };
+        let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
         let sail = |number: usize, sources: &[Source]| {
             let mut ship = self.draw(number as u64, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
@@ -133,7 +130,7 @@ impl Mixture {
         };
         let rows: Vec<usize> = trial.observed_rows().collect();
         let at_rows = |passage: &Passage| -> Vec<f64> {
-            rows.iter().map(|&row| at(passage, &passage.heading, trial.time()[row] - start)).collect()
+            rows.iter().map(|&row| passage.at(&passage.heading, trial.time()[row] - start)).collect()
         };
         let made: Vec<(Passage, Vec<f64>)> = (0..draws)
             .into_par_iter()
@@ -163,9 +160,9 @@ impl Mixture {
         let inside = |(measured, band): (&f64, &[f64; 5])| (band[0]..=band[4]).contains(measured);
         let held = measured.iter().zip(&heading.quantiles).filter(|pair| inside(*pair)).count();
         let square: f64 = measured.iter().zip(&heading.most_probable).map(|(one, other)| (one - other).powi(2)).sum();
-        let (figures, current) = match Measured::of(trial) {
-            Ok(zigzag) if zigzag.executes.len() > 1 => (self.zig_zag(&zigzag, draws)?, None),
-            _ => turn::turns(trial, &made, self.timescale(), current),
+        let figures = match Measured::of(trial) {
+            Ok(zigzag) if zigzag.executes.len() > 1 => self.zig_zag(trial, &zigzag, draws)?,
+            _ => turns(trial, &made, self.timescale(), current),
         };
         Ok(Some(Replayed {
             band_coverage_90: held as f64 / rows.len() as f64,
@@ -178,88 +175,75 @@ impl Mixture {
     }
 
     /// Overshoots, times and period of a measured zig-zag, steered anew.
-    fn zig_zag(&self, measured: &Measured, draws: usize) -> Result<Vec<Compared>, PredictError> {
-        let Some(side) = measured.side else { return Ok(Vec::new()) };
-        let executes = &measured.executes;
-        let base = measured.base_course.heading.value;
-        let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
-        let rudder = mean(executes.iter().map(|execute| execute.rudder_after.abs()).collect());
-        let heading = mean(executes[1..].iter().map(|execute| (execute.heading.value - base).abs()).collect());
-        // Orders are whole numbers where readings are near to them.
-        let [rudder, heading] = match measured.pair {
-            Some(pair) => [(rudder, pair.rudder), (heading, pair.heading)]
-                .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
-            None => [rudder, heading],
-        };
-        let first = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
-        let kind = Kind::ZigZag { rudder, heading, first };
-        let end = ZigZagEnd::Executes(EXECUTES);
-        let manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first, end });
-        // An approach is nearly straight, and a slope that is read off a few headings is not known well.
-        let approach = self.first().approach_yaw_rate_rad_s;
-        let rate = executes[0].yaw_rate.map_or(0.0, |rate| {
-            let doubt = rate.sd.unwrap_or(0.0);
-            if approach + doubt > 0.0 {
-                rate.value * approach.powi(2) / (approach.powi(2) + doubt.powi(2))
-            } else {
-                0.0
-            }
-        });
-        let drawn: Vec<Vec<Figure>> = (0..draws)
-            .into_par_iter()
-            .filter_map(|number| {
-                let mut ship = self.draw(number as u64, &Source::ALL);
-                ship.yaw_rate = rate;
-                if let Some(rate) = measured.rudder_rate {
-                    ship.gear.rate = rate;
-                }
-                let passage = Passage::sail(&ship, &manoeuvre, self.timescale()).ok()?;
-                Some(figures::of(&kind, &passage, None))
-            })
-            .collect();
-        enough(kind, drawn.len(), draws)?;
-        let begin = executes[0].time.value;
-        let value = |name: &str| -> Option<f64> {
-            let overshoot = |n| measured.nth_overshoot(n).map(|overshoot| ship::angle::to_deg(overshoot.angle.value));
-            let execute = |n: usize| executes.get(n).map(|execute| execute.time.value - begin);
-            let place = |names: &[&str]| names.iter().position(|own| *own == name).map(|place| place + 1);
-            match (place(&OVERSHOOTS), place(&EXECUTE_TIMES), name) {
-                (Some(number), ..) => overshoot(number),
-                (_, Some(number), _) => execute(number),
-                (.., "initial_turning_time_s") => measured.initial_turning_time.map(|time| time.value),
-                (.., "period_s") => measured.period.map(|period| period.value),
-                _ => None,
-            }
-        };
-        Ok(compared(&drawn, value))
+    fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<Vec<Compared>, PredictError> {
+        let Some(steered) = Steered::of(measured, self.first().approach_yaw_rate_rad_s) else { return Ok(Vec::new()) };
+        let drawn: Vec<Vec<Figure>> =
+            steered.draws(self, draws).into_iter().flatten().map(|sailed| sailed.figures).collect();
+        enough(steered.kind, drawn.len(), draws)?;
+        Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
+    }
+
+    /// A figure of a measured zig-zag. V times the time of the initial turning is its way where the ship has no speed
+    /// of her own, because hers is told so, too.
+    pub(crate) fn shown(&self, trial: &Trial, measured: &Measured, name: &str) -> Option<Quantity> {
+        let own = self.particulars();
+        let has_way = self.first().motion.is_some() || self.first().hull.is_some();
+        let stand_in = trial.particulars().or(own).filter(|_| !has_way);
+        steered::shown(trial, measured, name, own.map(|own| own.length), stand_in)
+    }
+
+    /// First heading (rad) and yaw rate (rad/s) of a record, with standard deviations, as this ship explains them;
+    /// `None` where the record has too few headings at its beginning.
+    pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
+        let lost = |_| PredictError::Lost { kind: trial.name().to_owned(), made: 0, draws: 1 };
+        let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
+        let at_rest = Passage::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(lost)?;
+        Ok(beginning(trial, &at_rest, self.timescale()))
     }
 }
 
 /// Figures that were measured, beside their draws.
-pub(crate) fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<f64>) -> Vec<Compared> {
+fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<Quantity>) -> Vec<Compared> {
     let Some(names) = drawn.first() else { return Vec::new() };
     names
         .iter()
         .enumerate()
         .filter_map(|(place, &(name, _))| {
-            let measured = measured(name)?;
+            let Quantity { value, sd, .. } = measured(name)?;
             let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[place].1).collect();
-            Some(Compared { name, measured, interval: Interval::of(&mut values)? })
+            Some(Compared { name, measured: value, sd, interval: Interval::of(&mut values)? })
         })
         .collect()
 }
 
-/// A series on the rows of a passage at a time, s.
-pub(crate) fn at(passage: &Passage, values: &[f64], time: f64) -> f64 {
-    let place = (time / passage.period).clamp(0.0, (values.len() - 1) as f64);
-    let (low, share) = (place.floor() as usize, place.fract());
-    let high = (low + 1).min(values.len() - 1);
-    values[low] + share * (values[high] - values[low])
+/// Figures of a record that is a turn.
+///
+/// The doubt about a current that was taken out of its track is one of the prediction.
+fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64, current: Option<Current>) -> Vec<Compared> {
+    let Some(turn) = Turn::of(trial.rudder_signal()) else { return Vec::new() };
+    let Some((sample, _)) = made.first() else { return Vec::new() };
+    let length = sample.way.as_ref().map(|way| way.length);
+    let Some(record) = turn::recorded(trial, timescale, length) else { return Vec::new() };
+    let start = trial.time()[0];
+    let figures = |passage: &Passage| turn.figures(&passage.until(turn.until - start), start);
+    let measured = figures(&record);
+    let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
+    if !is_turn {
+        return Vec::new();
+    }
+    let doubtful = |(number, (passage, _)): (usize, &(Passage, Vec<f64>))| match current {
+        None => figures(passage),
+        Some(current) => figures(&turn::in_doubt(passage, &current, number as u64)),
+    };
+    let drawn: Vec<Vec<Figure>> = made.iter().enumerate().map(doubtful).collect();
+    let shown = |name: &str| measured.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value);
+    compared(&drawn, |name| shown(name).map(Quantity::bare))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kind::Kind;
     use crate::made_up;
     use ship::angle::from_deg;
     use simulate::{Simulation, StreamKey, Vessel};

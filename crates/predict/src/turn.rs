@@ -1,7 +1,7 @@
-//! Figures of a record that is a turn, held against what was predicted of its rudder.
+//! A rudder that is put over and held, as a record shows it: its figures, and those of drawn ships under the same
+//! rudder.
 
 pub use motion::Current;
-use motion::without_current;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::Polyline;
@@ -9,8 +9,13 @@ use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial};
 
 use crate::figures::{self, Figure};
-use crate::passage::{Passage, Way};
-use crate::replay::{Compared, at, compared};
+use crate::passage::{self, Passage, Way};
+
+/// Share of the largest angle above which a rudder is held.
+const HELD: f64 = 0.8;
+
+/// How much longer a rudder is held for ships that turn more slowly than that of the record, as a share of its time.
+const LONGER: f64 = 2.0;
 
 /// The uniform current that a circle of 720° or more shows; `None` for any other record, and without positions.
 pub fn current_of(trial: &Trial) -> Option<Current> {
@@ -24,109 +29,44 @@ pub fn current_of(trial: &Trial) -> Option<Current> {
     motion::current(&of(trial.time()), &of(trial.heading()), &track)
 }
 
-/// Figures of a record that is a turn, and the current that was taken out of its track: the one that is given, else its
-/// own where it shows one. The doubt about the current is one of the prediction.
-pub(crate) fn turns(
-    trial: &Trial,
-    made: &[(Passage, Vec<f64>)],
-    timescale: f64,
-    given: Option<Current>,
-) -> (Vec<Compared>, Option<Current>) {
-    let nothing = (Vec::new(), None);
-    let Some(Turn { execute, until, side }) = Turn::of(trial.rudder_signal()) else { return nothing };
-    let Some((sample, _)) = made.first() else { return nothing };
-    let [execute, until] = [execute, until].map(|time| time - trial.time()[0]);
-    let rows: Vec<usize> = trial.observed_rows().collect();
-    let on_rows = |rows: &[usize], values: &[f64]| -> Option<Vec<f64>> {
-        let rows: Vec<usize> = rows.iter().copied().filter(|&row| values[row].is_finite()).collect();
-        let times: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - trial.time()[0]).collect();
-        let signal = Polyline::new(times, rows.iter().map(|&row| values[row]).collect()).ok()?;
-        Some((0..sample.heading.len()).map(|row| signal.at(sample.time(row))).collect())
-    };
-    let Some(heading) = on_rows(&rows, trial.heading()) else { return nothing };
-    let all: Vec<usize> = (0..trial.len()).collect();
-    let channel = |channel: Channel| on_rows(&all, trial.channel(channel)?);
-    let way = || {
-        let length = sample.way.as_ref()?.length;
-        let [north, east] = [channel(Channel::North)?, channel(Channel::East)?];
-        let rest = |channel: Option<Vec<f64>>| channel.unwrap_or_else(|| vec![f64::NAN; heading.len()]);
-        let [surge, sway] = [Channel::Surge, Channel::Sway].map(|own| rest(channel(own)));
-        Some(Way { length, surge, sway, track: north.into_iter().zip(east).map(|(n, e)| [n, e]).collect() })
-    };
-    let slope = |row: usize| (heading[row + 1] - heading[row]) / sample.period;
-    let count = heading.len();
-    let mut record = Passage {
-        period: sample.period,
-        yaw_rate: (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect(),
-        rudder: sample.rudder.clone(),
-        executes: Vec::new(),
-        way: way(),
-        heading,
-    };
-    let current = given.or_else(|| current_of(trial));
-    if let Some(current) = current {
-        drift(&mut record, current.velocity, execute);
+/// A record whose positions no current has moved, and the current that was taken out: the one that is given, else the
+/// one that the record shows, where it shows one.
+pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
+    match given.or_else(|| current_of(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
+        Some(current) => (trial.without_current(current.velocity), Some(current)),
+        None => (trial, None),
     }
-    let figures = |passage: &Passage| -> Vec<Figure> {
-        let whole = passage.until(until);
-        let passage = &whole;
-        let first = (execute / passage.period).round() as usize;
-        let start = at(passage, &passage.heading, execute);
-        let after = Passage {
-            heading: passage.heading.iter().skip(first).map(|heading| heading - start).collect(),
-            yaw_rate: Vec::new(),
-            rudder: Vec::new(),
-            executes: Vec::new(),
-            way: None,
-            period: passage.period,
-        };
-        let mut figures = Vec::new();
-        figures::turn(&after, side, &mut figures);
-        figures::circle(&whole, execute, &mut figures);
-        figures
-    };
-    let measured = figures(&record);
-    let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
-    if !is_turn {
-        return nothing;
-    }
-    let doubtful = |(number, (passage, _)): (usize, &(Passage, Vec<f64>))| {
-        let Some(current) = current else { return figures(passage) };
-        let mut rng = StreamKey { seed: 0, cell: 0, replicate: number as u64 }.indexed(Purpose::Specification, 3);
-        let error = current.deviation.map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
-        let mut passage = passage.clone();
-        drift(&mut passage, error, execute);
-        figures(&passage)
-    };
-    let drawn: Vec<Vec<Figure>> = made.iter().enumerate().map(doubtful).collect();
-    let compared = compared(&drawn, |name| measured.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value));
-    (compared, current)
 }
 
-/// Takes a current (m/s), which began to act at `execute` s, out of the track of a passage.
-fn drift(passage: &mut Passage, velocity: [f64; 2], execute: f64) {
-    let time: Vec<f64> = (0..passage.heading.len()).map(|row| passage.time(row)).collect();
-    if let Some(way) = &mut passage.way {
-        way.track = without_current(&time, &way.track, velocity, execute);
+/// A drawn passage with what is not known of a current, from its execute on.
+pub(crate) fn in_doubt(passage: &Passage, current: &Current, number: u64) -> Passage {
+    let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
+    let error = current.deviation.map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
+    let mut passage = passage.clone();
+    let period = passage.period;
+    for (row, place) in passage.way.iter_mut().flat_map(|way| &mut way.track).enumerate() {
+        *place = [0, 1].map(|axis| place[axis] + error[axis] * row as f64 * period);
     }
+    passage
 }
 
 /// A rudder that is put over and held.
-struct Turn {
+pub(crate) struct Turn {
     /// Time at which it leaves its beginning, s.
-    execute: f64,
+    pub execute: f64,
     /// Time until which it is held, s.
-    until: f64,
+    pub until: f64,
     /// Side it is put to, ±1.
-    side: f64,
+    pub side: f64,
+    /// Largest rudder angle to that side, rad.
+    pub rudder: f64,
+    /// Rudder angle before, rad.
+    pub before: f64,
 }
-
-/// Share of the largest angle above which a rudder is held.
-const HELD: f64 = 0.8;
 
 impl Turn {
     /// The turn with the largest rudder; `None` for a rudder that never moves.
-    fn of(signal: &Polyline) -> Option<Self> {
+    pub fn of(signal: &Polyline) -> Option<Self> {
         let (times, values) = (signal.times(), signal.values());
         let away = |value: f64| value - values[0];
         let largest = values.iter().copied().map(away).max_by(|one, other| one.abs().total_cmp(&other.abs()))?;
@@ -138,6 +78,65 @@ impl Turn {
         while start > 0 && share(start - 1) > 0.01 {
             start -= 1;
         }
-        Some(Self { execute: times[start.saturating_sub(1)], until: times[until], side })
+        let rudder = (largest + values[0]) * side;
+        Some(Self { execute: times[start.saturating_sub(1)], until: times[until], side, rudder, before: values[0] })
     }
+
+    /// Figures of a turn of which a passage holds this much; its clock begins with that of the record at `start`, s.
+    pub fn figures(&self, passage: &Passage, start: f64) -> Vec<Figure> {
+        let execute = self.execute - start;
+        let first = (execute / passage.period).round() as usize;
+        let begin = passage.at(&passage.heading, execute);
+        let after = Passage {
+            heading: passage.heading.iter().skip(first).map(|heading| heading - begin).collect(),
+            yaw_rate: Vec::new(),
+            rudder: Vec::new(),
+            executes: Vec::new(),
+            way: None,
+            period: passage.period,
+        };
+        let mut figures = Vec::new();
+        figures::turn(&after, self.side, &mut figures);
+        figures::circle(passage, execute, &mut figures);
+        figures
+    }
+
+    /// The rudder of the record up to the end of the turn, and held on from there.
+    pub fn held_on(&self, signal: &Polyline) -> Option<Polyline> {
+        let mut times: Vec<f64> = signal.times().iter().copied().take_while(|time| *time <= self.until).collect();
+        let mut values: Vec<f64> = signal.values()[..times.len()].to_vec();
+        times.push(self.until + LONGER * (self.until - self.execute));
+        values.push(*values.last()?);
+        Polyline::new(times, values).ok()
+    }
+}
+
+/// The passage of a record on rows of a time of the ship, s; with its way where it has a track and the length is known,
+/// m. `None` without headings.
+pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<Passage> {
+    let period = passage::period(timescale);
+    let count = (trial.duration() / period) as usize + 1;
+    let rows: Vec<usize> = trial.observed_rows().collect();
+    let on_rows = |rows: &[usize], values: &[f64]| -> Option<Vec<f64>> {
+        let rows: Vec<usize> = rows.iter().copied().filter(|&row| values[row].is_finite()).collect();
+        let times: Vec<f64> = rows.iter().map(|&row| trial.time()[row] - trial.time()[0]).collect();
+        let signal = Polyline::new(times, rows.iter().map(|&row| values[row]).collect()).ok()?;
+        Some((0..count).map(|row| signal.at(row as f64 * period)).collect())
+    };
+    let heading = on_rows(&rows, trial.heading())?;
+    let all: Vec<usize> = (0..trial.len()).collect();
+    let channel = |channel: Channel| on_rows(&all, trial.channel(channel)?);
+    let way = || {
+        let length = length?;
+        let [north, east] = [channel(Channel::North)?, channel(Channel::East)?];
+        let rest = |channel: Option<Vec<f64>>| channel.unwrap_or_else(|| vec![f64::NAN; heading.len()]);
+        let [surge, sway] = [Channel::Surge, Channel::Sway].map(|own| rest(channel(own)));
+        Some(Way { length, surge, sway, track: north.into_iter().zip(east).map(|(n, e)| [n, e]).collect() })
+    };
+    let slope = |row: usize| match count {
+        0 | 1 => 0.0,
+        _ => (heading[row + 1] - heading[row]) / period,
+    };
+    let yaw_rate = (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect();
+    Some(Passage { period, yaw_rate, rudder: Vec::new(), executes: Vec::new(), way: way(), heading })
 }

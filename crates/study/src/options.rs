@@ -316,6 +316,14 @@ pub struct PredictRequest {
     /// own, where it turns that far]
     #[arg(long, value_name = "RECORD", requires = "replays")]
     pub current_from: Option<PathBuf>,
+    /// What is known of the same ship as she was loaded at the trial of --replay: corrects what it measured to the load
+    /// of MODEL.json, R = T F/B (MSC/Circ.1053, 3.4.1.2)
+    #[arg(long, value_name = "BALLAST.json")]
+    pub ballast: Vec<PathBuf>,
+    /// Also fill in the form of MSC/Circ.1053, appendix 6, as trial-form.md: its manoeuvres to both sides, measured
+    /// where a record of --replay is that trial
+    #[arg(long)]
+    pub form: bool,
     /// Method whose answer in fit.json is used [default: maximum-likelihood, or the next that has a covariance]
     #[arg(long, value_name = "ID")]
     pub method: Option<String>,

@@ -7,6 +7,7 @@
 //! | which files are opened, and how much of them is read | [`mod@file`] |
 //! | decoders that may panic | [`decoder`] |
 //! | stamps of date and time | [`clock`] |
+//! | particulars and conditions that are declared | [`conditions`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
@@ -17,6 +18,7 @@
 mod cells;
 pub mod channel;
 pub mod clock;
+pub mod conditions;
 pub mod decoder;
 mod encoding;
 pub mod file;
@@ -30,11 +32,14 @@ pub mod record;
 pub mod scale;
 pub mod sidecar;
 mod sidecar_error;
+mod sidecar_form;
+mod sidecar_keys;
 mod words;
 pub mod writer;
 pub mod zigzag;
 
 pub use channel::Channel;
+pub use conditions::{Conditions, Loading};
 pub use file::FileError;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, Reading, read, read_with};

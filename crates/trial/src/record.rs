@@ -8,6 +8,7 @@ use ship::{Particulars, Polyline};
 use thiserror::Error;
 
 use crate::channel::Channel;
+use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
 use crate::zigzag::median::upper_median;
 
 /// Where a record comes from.
@@ -152,6 +153,7 @@ pub struct Trial {
     heading_from_yaw_rate: bool,
     noise: Noise,
     particulars: Option<Particulars>,
+    conditions: Conditions,
     marks: Vec<Mark>,
 }
 
@@ -202,6 +204,7 @@ impl Trial {
             heading_from_yaw_rate,
             noise: Noise::default(),
             particulars: None,
+            conditions: Conditions::default(),
             marks: Vec::new(),
         })
     }
@@ -216,6 +219,11 @@ impl Trial {
         Self { particulars: Some(particulars), ..self }
     }
 
+    /// The same record with what is declared of ship and trial for the form of MSC/Circ.1053.
+    pub fn with_conditions(self, conditions: Conditions) -> Self {
+        Self { conditions, ..self }
+    }
+
     /// The same record with the readings that were taken as missing or told as doubtful.
     pub fn with_marks(self, marks: Vec<Mark>) -> Self {
         Self { marks, ..self }
@@ -224,6 +232,17 @@ impl Trial {
     /// The same record without some channels; heading and rudder cannot be left out.
     pub fn without(mut self, channels: &[Channel]) -> Self {
         self.channels.retain(|channel, _| *channel == Channel::Heading || !channels.contains(channel));
+        self
+    }
+
+    /// The same record with the positions it had without a uniform current (north and east, m/s), which are those of its
+    /// first row.
+    pub fn without_current(mut self, velocity: [f64; 2]) -> Self {
+        let since: Vec<f64> = self.time().iter().map(|time| time - self.time()[0]).collect();
+        for (channel, speed) in [Channel::North, Channel::East].into_iter().zip(velocity) {
+            let values = self.channels.get_mut(&channel).into_iter().flatten();
+            values.zip(&since).for_each(|(value, time)| *value -= speed * time);
+        }
         self
     }
 
@@ -358,6 +377,19 @@ impl Trial {
     /// Length and approach speed of the ship, where declared.
     pub fn particulars(&self) -> Option<Particulars> {
         self.particulars
+    }
+
+    /// What is declared of ship and trial for the form of MSC/Circ.1053.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
+
+    /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for.
+    pub fn shortcomings(&self) -> Vec<Shortcoming> {
+        let mut found = self.conditions.shortcomings();
+        let seconds = self.sampling_period();
+        found.extend((seconds > LONGEST_INTERVAL).then_some(Shortcoming::Interval { seconds }));
+        found
     }
 
     /// The recorded rudder alone, ready to be replayed through a model.

@@ -4,7 +4,6 @@
 //! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
 //! [`KEYS`] lists what it may say; none of it is required.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -14,67 +13,14 @@ use toml::Spanned;
 
 use crate::cells::Separator;
 use crate::channel::{Channel, Unit, column, time_column};
+use crate::conditions::Conditions;
 use crate::encoding::Encoding;
 use crate::file::{Kind, read_text};
 use crate::record::Noise;
+use crate::sidecar_error::Fault;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
-
-/// A key of a sidecar.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Key {
-    /// Table and key.
-    pub key: &'static str,
-    /// What it may be.
-    pub value: &'static str,
-    /// What it says, and what holds where it is absent.
-    pub meaning: &'static str,
-}
-
-const fn key(key: &'static str, value: &'static str, meaning: &'static str) -> Key {
-    Key { key, value, meaning }
-}
-
-/// All keys, in the order in which they are written.
-pub const KEYS: [Key; 21] = [
-    key(
-        "[table] skip-lines",
-        "number",
-        "Lines before the header, or before the rows when there is none; not even decoded.",
-    ),
-    key("[table] separator", "comma, semicolon, tab or blank", "What stands between cells; recognised when absent."),
-    key("[table] encoding", "utf-8 or windows-1252", "How bytes stand for letters; utf-8 when absent."),
-    key("[table] header", "true or false", "Whether a line with names comes before the rows; true when absent."),
-    key(
-        "[table] time-step-s",
-        "s",
-        "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not used. Rows that are missing \
-         shift all that follow: for tables without time only.",
-    ),
-    key("[part] from-s", "s", "First time that is used, on the clock of the record."),
-    key("[part] until-s", "s", "Last time that is used."),
-    key("[part] every", "number", "The first row of the part and every n-th after it."),
-    key("[[column]] index", "number", "Which column: counted from 1; this or its name."),
-    key("[[column]] name", "text", "Which column: its name in the header."),
-    key(
-        "[[column]] is",
-        "name such as heading_rad",
-        "What it holds: a name of `study list columns`; its own name when absent.",
-    ),
-    key("[[column]] flip", "true", "Change the sign."),
-    key("[[column]] ignore", "true", "Leave the column out."),
-    key("[ship] length-m", "m", "Length between perpendiculars; needs a speed beside it."),
-    key("[ship] speed-m-s", "m/s", "Approach speed."),
-    key("[ship] speed-kn", "kn", "The same in knots."),
-    key("[noise] heading-deg", "deg", "Standard deviation of the heading, where it is known."),
-    key("[noise] yaw-rate-deg-s", "deg/s", "The same of the yaw rate."),
-    key("[noise] rudder-deg", "deg", "The same of the rudder."),
-    key(
-        "[check] plausibility",
-        "true or false",
-        "With false nothing is mended, and what looks implausible is a warning in place of an error.",
-    ),
-    key("#", "text", "A remark, to the end of the line."),
-];
+use crate::sidecar_form::{self, WireForm};
+pub use crate::sidecar_keys::{KEYS, Key};
 
 /// A sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
@@ -93,6 +39,8 @@ struct Wire {
     noise: WireNoise,
     #[serde(default)]
     check: WireCheck,
+    #[serde(default)]
+    form: WireForm,
 }
 
 #[derive(Deserialize, Default)]
@@ -200,6 +148,7 @@ pub struct Sidecar {
     pub(crate) particulars: Option<Particulars>,
     pub(crate) noise: Noise,
     pub(crate) plausibility: bool,
+    pub(crate) conditions: Conditions,
 }
 
 impl Sidecar {
@@ -250,14 +199,17 @@ impl Sidecar {
     pub fn noise(&self) -> Noise {
         self.noise
     }
+
+    /// Particulars and conditions the sidecar declares for the form of MSC/Circ.1053.
+    pub fn conditions(&self) -> &Conditions {
+        &self.conditions
+    }
 }
 
 /// Line, from 1, of a byte of the text.
 fn line_of(text: &str, byte: usize) -> usize {
     1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }
-
-type Fault = (Option<Range<usize>>, SidecarProblem);
 
 fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     let wire: Wire = toml::from_str(text)
@@ -268,6 +220,7 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
     if let Some(every) = wire.part.every.as_ref().filter(|every| *every.get_ref() == 0) {
         return Err((Some(every.span()), SidecarProblem::NotPositive { key: "every", found: 0.0 }));
     }
+    let particulars = wire.ship.as_ref().map(particulars).transpose()?;
     let deviation = |value: &Option<Spanned<f64>>, key| Ok(positive(value.as_ref(), key)?.map(from_deg));
     Ok(Sidecar {
         file: file.to_path_buf(),
@@ -280,13 +233,14 @@ fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
         until,
         every: wire.part.every.map_or(1, Spanned::into_inner),
         columns,
-        particulars: wire.ship.as_ref().map(particulars).transpose()?,
+        particulars,
         noise: Noise {
             heading: deviation(&wire.noise.heading_deg, "heading-deg")?,
             yaw_rate: deviation(&wire.noise.yaw_rate_deg_s, "yaw-rate-deg-s")?,
             rudder: deviation(&wire.noise.rudder_deg, "rudder-deg")?,
         },
         plausibility: wire.check.plausibility.unwrap_or(true),
+        conditions: sidecar_form::conditions(&wire.form, particulars)?,
     })
 }
 
@@ -373,7 +327,7 @@ mod tests {
              time-step-s = 0.1\n[part]\nfrom-s = 20\nuntil-s = 110.0\nevery = 4\n[[column]]\nindex = 4\n\
              is = \"heading_rad\"\nflip = true\n[[column]]\nindex = 5\nignore = true\n[ship]\nlength-m = 320\n\
              speed-kn = 15.5\n[noise]\nheading-deg = 0.1\nyaw-rate-deg-s = 0.05\nrudder-deg = 0.2\n[check]\n\
-             plausibility = false\n",
+             plausibility = false\n[form]\nship-type = \"tanker\"\nbeam-m = 58\nloading = \"partial\"\n",
         )
         .expect("all keys are documented");
         assert_eq!((sidecar.skip_lines, sidecar.header, sidecar.every), (4, false, 4));
@@ -387,6 +341,10 @@ mod tests {
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
         approx::assert_relative_eq!(sidecar.noise().rudder.expect("declared"), from_deg(0.2));
         assert!(!sidecar.plausibility);
+        let form = sidecar.conditions();
+        assert_eq!((form.ship_type.as_deref(), form.beam), (Some("tanker"), Some(58.0)));
+        assert_eq!(form.particulars, sidecar.particulars());
+        assert_eq!(form.loading(), Some(crate::conditions::Loading::Partial));
         assert!(parse("").expect("no key is required").plausibility);
     }
 
@@ -409,6 +367,17 @@ mod tests {
             ("[ship]\nlength-m = 7.0\n", 1, "[ship] needs"),
             ("[ship]\nlength-m = 7.0\nspeed-kn = 1.0\nspeed-m-s = 1.0\n", 1, "[ship] needs"),
             ("[noise]\nheading-deg = 0\n", 2, "`heading-deg` is 0"),
+            ("[form]\nbeam = 58\n", 2, "unknown field `beam`"),
+            ("[form]\nbeam-m = \"wide\"\n", 2, "`beam-m` is \"wide\", expected a number of metres above 0"),
+            ("[form]\nbeam-m = -58\n", 2, "`beam-m` is -58"),
+            ("[form]\nblock-coefficient = 1.2\n", 2, "expected a number above 0, at most 1"),
+            ("[form]\nwind-beaufort = 13\n", 2, "from 0 to 12"),
+            ("[form]\nsea-state = 2.5\n", 2, "`sea-state` is 2.5, expected a whole number"),
+            ("[form]\nloading = \"ballast\"\n", 2, "expected \"full\" or \"partial\""),
+            ("[form]\nship-type = \"\"\n", 2, "a text of 1 to 100 characters"),
+            ("[form]\ntrim-m = nan\n", 2, "positive by the stern"),
+            ("[form]\nwater-depth-m = 5\ndraught-m = 8\n", 3, "a draught below water-depth-m"),
+            ("[ship]\nlength-m = 7\nspeed-kn = 1\n[form]\nbeam-m = 58\n", 5, "a breadth below the length of [ship]"),
         ];
         for (text, line, message) in cases {
             let error = parse(text).expect_err(text);

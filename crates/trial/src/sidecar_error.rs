@@ -1,5 +1,6 @@
 //! What is wrong with a sidecar, and where.
 
+use std::ops::Range;
 use std::path::PathBuf;
 
 use thiserror::Error;
@@ -110,4 +111,17 @@ pub enum SidecarProblem {
     /// Length or speed alone, or two speeds.
     #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
     Ship,
+    /// A value of the form that no ship or trial has.
+    #[error("`{key}` is {found}, expected {expected}")]
+    Form {
+        /// The key.
+        key: &'static str,
+        /// Value found.
+        found: String,
+        /// What it should be.
+        expected: &'static str,
+    },
 }
+
+/// What is wrong, and the bytes of the text where it is.
+pub(crate) type Fault = (Option<Range<usize>>, SidecarProblem);

@@ -11,6 +11,8 @@ use serde::Serialize;
 use ship::angle::to_deg;
 
 use super::picture::slug;
+use super::predict_correction::{self, CorrectedEntry};
+use super::predict_form::{self, FormEntry};
 use super::predict_report::Predicted;
 use crate::records::{file_of, names};
 
@@ -26,6 +28,12 @@ pub struct PredictFile {
     manoeuvres: Vec<ManoeuvreEntry>,
     replays: Vec<ReplayEntry>,
     imo: Vec<CriterionEntry>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    corrected: Vec<CorrectedEntry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    form: Option<Vec<FormEntry>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    form_remarks: Option<Vec<String>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -133,6 +141,9 @@ impl PredictFile {
                         .collect(),
                 })
                 .collect(),
+            corrected: predict_correction::entries(predicted),
+            form: predicted.form.as_ref().map(|form| predict_form::entries(form, predicted)),
+            form_remarks: predicted.form.as_ref().map(|form| form.remarks.clone()),
             imo: (predicted.criteria.iter())
                 .map(|criterion| CriterionEntry {
                     criterion: criterion.name,

@@ -7,7 +7,7 @@ use report::number::{fixed, with_uncertainty};
 use ship::angle::to_deg;
 
 use super::predict_report::Predicted;
-use super::predict_tables;
+use super::{predict_correction, predict_tables};
 
 /// What was predicted from what.
 pub fn words(predicted: &Predicted) -> String {
@@ -31,6 +31,12 @@ pub fn words(predicted: &Predicted) -> String {
     if turns.filter_map(|one| one.most_probable.as_ref()).any(|passage| passage.way.is_none()) {
         words += "no track: the length of the ship is not known, or its records do not tell speed loss and drift\n";
     }
+    if !predicted.ballast.is_empty() {
+        words += &format!(
+            "records are replayed with {}, manoeuvres are told of the ship above\n",
+            predicted.ballast.join(", ")
+        );
+    }
     for prediction in predicted.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
         words += &format!("{}: {} drawn ships do not come to its end\n", prediction.kind, prediction.lost);
     }
@@ -43,6 +49,7 @@ pub fn rest(predicted: &Predicted) -> String {
     for (trial, replayed) in &predicted.replays {
         rest += &format!("\n{}: {}\n", trial.name(), coverage(replayed));
     }
+    rest += &predict_correction::on_screen(predicted);
     if !predicted.criteria.is_empty() {
         rest += &format!("\nIMO MSC.137(76)\n{}", predict_tables::criteria(predicted).to_text());
     } else if predicted.particulars.is_none() && !predicted.manoeuvres.is_empty() {
@@ -88,6 +95,10 @@ pub fn page(predicted: &Predicted, drawn: &[(String, String)]) -> String {
         for (trial, replayed) in &predicted.replays {
             page += &format!("- {}: {}\n", text(trial.name()), coverage(replayed));
         }
+    }
+    page += &predict_correction::section(predicted);
+    if predicted.form.is_some() {
+        page += "\nThe form of MSC/Circ.1053 is in [trial-form.md](trial-form.md).\n";
     }
     for (stem, caption) in drawn {
         page += &format!("\n![{0}]({stem}.png)\n\n{0}\n", text(caption));

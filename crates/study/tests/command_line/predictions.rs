@@ -160,3 +160,169 @@ fn what_cannot_be_predicted_is_refused_with_the_cure() {
     desk.run(&["fit", "plain.csv", "--out", "g", "--quiet"]).is_done();
     refused(&["g/fit.json", "--length-m", "300"], &["length and speed", "give them to fit or trace"]);
 }
+
+/// The ship of a fit at another load: a share of her damping in yaw and of her gain; no chance in yaw.
+fn at_another_load(desk: &Desk, name: &str, [damping, gain]: [f64; 2]) {
+    let mut json = desk.json("f/fit.json");
+    for ship in json["ships"].as_object_mut().expect("ships").values_mut() {
+        let parameters = &mut ship["members"][0]["parameters"];
+        for (place, share) in [(0, damping), (1, gain)] {
+            parameters[place] = (share * parameters[place].as_f64().expect("a number")).into();
+        }
+    }
+    desk.file(name, json.to_string());
+}
+
+fn entry<'a>(json: &'a Value, field: &str, side: &str) -> &'a Value {
+    let form = json["form"].as_array().expect("a form");
+    let is_it = |one: &&Value| one["field"] == field && (side.is_empty() || one["side"] == side);
+    form.iter().find(is_it).unwrap_or_else(|| panic!("{field} {side}: {json}"))
+}
+
+/// What is declared of the ship of that record.
+const DECLARED: &str = "[ship]\nlength-m = 75.0\nspeed-m-s = 6.2\n[form]\nship-type = \"training | ship\"\nbeam-m = 12.5\n\
+                        draught-m = 5.0\nfull-load-draught-m = 5.0\nrudder-area-m2 = 7.5\nwater-depth-m = 15.0\n\
+                        wind-beaufort = 6\nsea-state = 3\n";
+
+/// A 10/10 to starboard is measured, the other side predicted; the 20/20 is beyond what the ship was seen at.
+#[test]
+fn the_form_of_the_circular_names_the_source_of_every_entry() {
+    let desk = with_fit();
+    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
+    desk.file("run.trial.toml", DECLARED);
+    let run = ["predict", "f/fit.json", "--form", "--replay", "run.csv", "--draws", "100", "--out", "p"];
+    let run = desk.run(&run);
+    assert!(run.is_done().out.contains("trial-form.md"), "{}", run.out);
+    let json = desk.json("p/predict.json");
+    keeps_the_contract(&json);
+    assert_eq!(json["manoeuvres"].as_array().map(Vec::len), Some(6));
+    let first = entry(&json, "1st overshoot angle", "starboard");
+    assert!((first["value"].as_f64().expect("measured") - 6.82).abs() < 0.1, "{first}");
+    assert!(first["source"].as_str().is_some_and(|source| source.starts_with("measured, run.csv ± ")), "{first}");
+    let told = entry(&json, "1st overshoot angle", "port");
+    // Her rudder is off amidships, so her sides differ.
+    let port = told["median"].as_f64().expect("predicted");
+    assert!((5.5..6.5).contains(&port), "{told}");
+    let source = told["source"].as_str().unwrap_or_default();
+    assert!(source.starts_with("predicted from f/fit.json, 90 % [") && !source.contains("extrapolated"), "{source}");
+    let twenty = json["form"].as_array().expect("a list").iter().find(|one| one["limit"] == 25.0).expect("20/20");
+    assert_eq!(twenty["extrapolated"], true);
+    // Ratios are of the scale of the sidecar.
+    assert_eq!(entry(&json, "L/B", "")["value"], 6.0);
+    assert_eq!(entry(&json, "total rudder area/LT", "")["value"], 0.02);
+    assert_eq!(entry(&json, "water depth/trial draught", "")["value"], 3.0);
+    assert_eq!(entry(&json, "engine type", "")["source"], "not in the records");
+    assert_eq!(entry(&json, "loading condition", "")["value"], "tested at full load");
+    assert!(entry(&json, "track reach", "")["source"].as_str().is_some_and(|why| why.contains("never predicted")));
+    let remarks = json["form_remarks"].to_string();
+    for part in ["3.0 mean draughts", "Beaufort 6", "tried to starboard only", "20/20 zig-zag: not tried"] {
+        assert!(remarks.contains(part), "{part}: {remarks}");
+    }
+    let page = String::from_utf8(desk.bytes("p/trial-form.md")).expect("text");
+    for part in
+        ["training \\| ship", "| track reach", "≤ 11.0", "measured, run.csv", "not in the records", "Beaufort 6"]
+    {
+        assert!(page.contains(part), "{part}\n{page}");
+    }
+    let widths = |line: &str| line.replace("\\|", "").matches('|').count();
+    assert!(page.lines().filter(|line| line.starts_with("| zig-zag")).all(|line| widths(line) == 8), "{page}");
+    // Without a record, words come with --columns; without these, nobody knows the ship.
+    desk.run(&["predict", "f/fit.json", "--form", "--draws", "50", "--columns", "run.trial.toml", "--out", "q"])
+        .is_done();
+    let json = desk.json("q/predict.json");
+    assert_eq!(entry(&json, "ship type", "")["source"], "declared with run.trial.toml");
+    assert!(entry(&json, "1st overshoot angle", "starboard")["median"].is_f64());
+    desk.run(&["predict", "f/fit.json", "--draws", "50", "--manoeuvre", "zig-zag:10/10", "--out", "r"]).is_done();
+    assert!(desk.json("r/predict.json").get("form").is_none() && !desk.path("r/trial-form.md").exists());
+}
+
+#[test]
+fn what_no_ship_has_is_refused_with_its_line() {
+    let desk = with_fit();
+    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
+    for (line, parts) in [
+        ("beam = 17.5", ["run.trial.toml: line 2:", "unknown field `beam`"]),
+        ("beam-m = \"wide\"", ["run.trial.toml: line 2: `beam-m` is \"wide\"", "metres above 0"]),
+        ("wind-beaufort = 13", ["line 2: `wind-beaufort` is 13", "from 0 to 12"]),
+        ("loading = \"ballast\"", ["line 2: `loading` is \"ballast\"", "\"full\" or \"partial\""]),
+        ("block-coefficient = 81", ["line 2: `block-coefficient` is 81", "at most 1"]),
+    ] {
+        desk.file("run.trial.toml", format!("[form]\n{line}\n"));
+        desk.run(&["predict", "f/fit.json", "--form", "--replay", "run.csv"]).is_refused(2, &parts);
+    }
+}
+
+/// The record is that of the ship in ballast; at full load she has less damping, and her overshoots are larger.
+#[test]
+fn a_trial_in_ballast_is_corrected_to_full_load() {
+    let desk = with_fit();
+    at_another_load(&desk, "full.json", [0.6, 0.9]);
+    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
+    desk.file("run.trial.toml", format!("{DECLARED}loading = \"partial\"\n"));
+    let ship = ["--draws", "200"];
+    let run = ["predict", "full.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--form", "--out", "p"];
+    let run = desk.run(&[&run[..], &ship].concat());
+    assert!(run.is_done().out.contains("Corrected to full load"), "{}", run.out);
+    let json = desk.json("p/predict.json");
+    let corrected = &json["corrected"][0];
+    assert_eq!((&corrected["full"][0], &corrected["ballast"][0]), (&"full.json".into(), &"f/fit.json".into()));
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("{corrected}"));
+    for (name, kind) in [("first_overshoot_deg", "zig-zag 10/10"), ("second_overshoot_deg", "zig-zag 10/10")] {
+        let own = &corrected["figures"][name];
+        let truth = number(&figure(&json, kind, name)["median"]);
+        assert!(number(&own["ci90"][0]) - 0.1 < truth && truth < number(&own["ci90"][1]) + 0.1, "{own} {truth}");
+        assert!(number(&own["factor"]["median"]) > 1.1 && number(&own["median"]) > number(&own["measured"]), "{own}");
+        assert!(own["sd"].is_f64() && own["warnings"].is_array());
+    }
+    let first = entry(&json, "1st overshoot angle", "starboard");
+    let source = first["source"].as_str().unwrap_or_default();
+    assert!(source.starts_with("measured at partial load, run.csv, and corrected by F/B = 1."), "{source}");
+    assert_eq!(entry(&json, "loading condition", "")["value"], "tested at partial load and corrected");
+    // The replay is that of the ship as she was tried.
+    assert!(json["replays"][0]["band_coverage_90"].as_f64().is_some_and(|share| share > 0.6), "{}", json["replays"]);
+    let page = String::from_utf8(desk.bytes("p/report.md")).expect("text");
+    assert!(page.contains("## Corrected to full load") && page.contains("trial-form.md"), "{page}");
+    // F = B corrects nothing.
+    let same = ["predict", "f/fit.json", "--ballast", "f/fit.json", "--replay", "run.csv", "--out", "s"];
+    desk.run(&[&same[..], &ship].concat()).is_done();
+    let same = &desk.json("s/predict.json")["corrected"][0]["figures"]["first_overshoot_deg"];
+    assert_eq!((&same["factor"]["median"], &same["factor"]["ci90"]), (&1.0.into(), &serde_json::json!([1.0, 1.0])));
+    let [measured, low, high] = [&same["measured"], &same["ci90"][0], &same["ci90"][1]].map(number);
+    assert!(low < measured && measured < high, "{same}");
+}
+
+#[test]
+fn a_correction_without_its_trial_is_refused_and_unlike_models_are_told() {
+    let desk = with_fit();
+    let alone = ["predict", "f/fit.json", "--ballast", "f/fit.json"];
+    desk.run(&alone).is_refused(2, &["--ballast", "--replay"]);
+    desk.run(&["predict", "f/fit.json", "--ballast", "no.json", "--replay", "x.csv"]).is_refused(2, &["no.json"]);
+    let damping = record("undeclared-damping");
+    desk.run(&["trace", &damping, "--out", "t", "--quiet"]).is_done();
+    let first = record("first-order");
+    let run = ["predict", "t/trace.json", "--ballast", "f/fit.json", "--replay", &first, "--draws", "50", "--out", "p"];
+    let run = desk.run(&run);
+    for part in ["different structure", "different methods: trace at full load", "different scale"] {
+        assert!(run.is_done().out.contains(part), "{part}: {}", run.out);
+    }
+}
+
+/// The limits are those of the ship, and what her model measured has no dimension.
+#[test]
+fn a_model_is_replayed_as_a_model_and_told_as_a_ship() {
+    let desk = with_fit();
+    desk.file("run.csv", std::fs::read(record("first-order")).expect("it is in the repository"));
+    desk.file("run.trial.toml", DECLARED);
+    let run = ["predict", "f/fit.json", "--form", "--replay", "run.csv", "--draws", "50"];
+    let ship = ["--length-m", "300", "--speed-m-s", "7.5", "--out", "p"];
+    let run = desk.run(&[&run[..], &ship].concat());
+    assert!(run.is_done().err.contains("replayed at that scale"), "{}", run.err);
+    let json = desk.json("p/predict.json");
+    assert!(json["replays"][0]["band_coverage_90"].as_f64().is_some_and(|share| share > 0.6), "{}", json["replays"]);
+    let first = entry(&json, "1st overshoot angle", "starboard");
+    assert_eq!(first["limit"], 20.0, "L/V = 40 s");
+    let turning = "distance to turn 10° with 10° rudder";
+    let [measured, told] = [("starboard", "value"), ("port", "median")]
+        .map(|(side, key)| entry(&json, turning, side)[key].as_f64().expect("a number"));
+    assert!((measured / told - 1.0).abs() < 0.15, "{measured} {told}");
+}

@@ -179,7 +179,8 @@ impl Log {
             Some(particulars) => trial.with_noise(noise).with_particulars(particulars),
             None => trial.with_noise(noise),
         };
-        let trial = trial.with_marks(marks);
+        let conditions = sidecar.as_ref().map(|sidecar| sidecar.conditions.clone()).unwrap_or_default();
+        let trial = trial.with_marks(marks).with_conditions(conditions);
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
             Err(implausible) if !checked => warnings.push(implausible.to_string()),

@@ -1,0 +1,120 @@
+//! Remarks of the form of MSC/Circ.1053: conditions that are not met or not known, sides that were not tried, records
+//! that are no manoeuvre of the form, and what is to be known of predicted entries.
+
+use ship::Particulars;
+use trial::{Conditions, Loading};
+
+use crate::form_entry::{Basis, Entry, Record};
+use crate::form_tested::{CIRCLE, TEN, TWENTY, Tested};
+
+/// Length from which the criteria hold, m. Source: MSC.137(76), 2.
+const SHORTEST_SHIP: f64 = 100.0;
+
+/// The remarks, in the order in which a reader asks.
+pub(crate) fn remarks(
+    entries: &[Entry],
+    records: &[Record],
+    tested: &[Tested],
+    declared: Option<(&str, &Conditions)>,
+    particulars: Option<Particulars>,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    if let Some(Particulars { length, speed }) = particulars.filter(|own| own.length < SHORTEST_SHIP) {
+        remarks.push(format!(
+            "the criteria are for ships of 100 m and above (chemical tankers and gas carriers of any length), and limits of \
+             the 10/10 zig-zag follow L/V, here {length:.2} m at {speed:.2} m/s; for a model give --length-m and \
+             --speed-kn of the ship"
+        ));
+    }
+    let mut of_files = OfFiles::default();
+    for (record, tested) in records.iter().zip(tested) {
+        for text in of_record(record, tested) {
+            of_files.add(record.file(), text);
+        }
+    }
+    if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
+        of_files.add(file, text);
+    }
+    remarks.extend(of_files.0.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
+    for (sort, name) in [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")] {
+        let has = |side: &str| tested.iter().any(|tested| tested.what == Some((sort, side_of(side))));
+        match [has("port"), has("starboard")] {
+            [true, true] => {}
+            [true, false] => remarks.push(format!("{name}: tried to port only; trials are asked for to both sides")),
+            [false, true] => {
+                remarks.push(format!("{name}: tried to starboard only; trials are asked for to both sides"));
+            }
+            [false, false] => remarks.push(format!("{name}: not tried")),
+        }
+    }
+    if tested.iter().any(Tested::is_used) {
+        remarks.push(String::from(
+            "not looked at: the test speed (at least 90 % of that at 85 % of the engine output), the engine, and current",
+        ));
+    }
+    let several = |sort: &str, side: &str| {
+        let own = tested.iter().filter(|tested| tested.what.is_some_and(|(it, to)| it == sort && to == side));
+        own.count() > 1
+    };
+    for (sort, side) in
+        [TEN, TWENTY, CIRCLE].into_iter().flat_map(|sort| ["port", "starboard"].map(|side| (sort, side)))
+    {
+        if several(sort, side) {
+            remarks.push(format!(
+                "{sort} to {side}: several records; the first that is at full load or corrected is used"
+            ));
+        }
+    }
+    if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { .. })) {
+        remarks.push(String::from(
+            "predicted entries hold for the loading, the water depth and the weather of the records that the models were \
+             fitted to, which a model does not say; they are no trial",
+        ));
+    }
+    if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { extrapolated: true, .. })) {
+        remarks.push(String::from("extrapolated entries are beyond the rudder or the yaw rate of those records"));
+    }
+    remarks
+}
+
+/// Remarks with the files they are of; what holds for several is said once.
+#[derive(Default)]
+struct OfFiles(Vec<(String, Vec<String>)>);
+
+impl OfFiles {
+    fn add(&mut self, file: &str, text: String) {
+        match self.0.iter_mut().find(|(own, _)| *own == text) {
+            Some((_, files)) => files.push(file.to_owned()),
+            None => self.0.push((text, vec![file.to_owned()])),
+        }
+    }
+}
+
+/// What is to be said of one record.
+fn of_record(record: &Record, tested: &Tested) -> Vec<String> {
+    let mut remarks: Vec<String> = tested.remark.iter().cloned().collect();
+    // A record that fills in nothing need not be by the book.
+    if tested.is_used() {
+        remarks.extend(record.trial.shortcomings().iter().map(ToString::to_string));
+        if record.loading() == Some(Loading::Partial) && record.correction.is_none() {
+            remarks.push(String::from(
+                "tested at partial load and not corrected, and the criteria are for full load; give --ballast with a model \
+                 of the ship as she was tried",
+            ));
+        }
+        if let Some(correction) = record.correction {
+            remarks.extend(correction.doubts.iter().map(|doubt| format!("correction to full load: {doubt}")));
+            let is_entry = |name: &str| tested.figures.iter().any(|(own, _)| *own == name);
+            for figure in correction.figures.iter().filter(|figure| is_entry(figure.name)) {
+                let name = figure.name.replace('_', " ");
+                remarks.extend(figure.doubts.iter().map(|doubt| format!("correction of {name}: {doubt}")));
+            }
+        }
+    }
+    remarks.extend(record.trial.conditions().remark.clone());
+    remarks
+}
+
+fn side_of(side: &str) -> &'static str {
+    if side == "port" { "port" } else { "starboard" }
+}

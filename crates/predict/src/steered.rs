@@ -1,0 +1,126 @@
+//! A measured zig-zag steered anew: a helm that reverses the rudder where the record did, because a rudder that is
+//! replayed knows nothing of the heading. What the record shows of it stands beside.
+
+use rayon::prelude::*;
+use ship::Particulars;
+use ship::angle::to_deg;
+use simulate::manoeuvre::{ZigZag, ZigZagEnd};
+use simulate::{Manoeuvre, Side};
+use trial::{Quantity, Trial, ZigZag as Measured};
+
+use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
+use crate::kind::{EXECUTES, Kind};
+use crate::mixture::{Mixture, Source};
+use crate::passage::Passage;
+
+/// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
+const NOMINAL: f64 = 0.05;
+
+/// What one drawn ship did.
+pub(crate) struct Sailed {
+    /// Figures of merit; their names are the same for every draw.
+    pub figures: Vec<Figure>,
+    /// Largest |yaw rate|, rad/s.
+    pub largest_rate: f64,
+}
+
+impl Sailed {
+    pub fn new(figures: Vec<Figure>, passage: &Passage) -> Self {
+        let largest_rate = passage.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
+        Self { figures, largest_rate }
+    }
+}
+
+/// A measured zig-zag as a helm steers it.
+pub(crate) struct Steered {
+    pub kind: Kind,
+    manoeuvre: Manoeuvre,
+    /// Yaw rate at the first execute, rad/s.
+    yaw_rate: f64,
+    /// Rate of the rudder where the record shows it, rad/s.
+    rudder_rate: Option<f64>,
+}
+
+impl Steered {
+    /// The zig-zag of a record; `approach` is the root mean square of the yaw rate with which records of the ship
+    /// begin, rad/s. `None` where the record begins within the trial, or has a single execute.
+    pub fn of(measured: &Measured, approach: f64) -> Option<Self> {
+        let side = measured.side?;
+        let executes = &measured.executes;
+        if executes.len() < 2 {
+            return None;
+        }
+        let base = measured.base_course.heading.value;
+        let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
+        let rudder = mean(executes.iter().map(|execute| execute.rudder_after.abs()).collect());
+        let heading = mean(executes[1..].iter().map(|execute| (execute.heading.value - base).abs()).collect());
+        // Orders are whole numbers where readings are near to them.
+        let [rudder, heading] = match measured.pair {
+            Some(pair) => [(rudder, pair.rudder), (heading, pair.heading)]
+                .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
+            None => [rudder, heading],
+        };
+        let first = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
+        let manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first, end: ZigZagEnd::Executes(EXECUTES) });
+        // An approach is nearly straight, and a slope that is read off a few headings is not known well.
+        let yaw_rate = executes[0].yaw_rate.map_or(0.0, |rate| {
+            let doubt = rate.sd.unwrap_or(0.0);
+            if approach + doubt > 0.0 {
+                rate.value * approach.powi(2) / (approach.powi(2) + doubt.powi(2))
+            } else {
+                0.0
+            }
+        });
+        let kind = Kind::ZigZag { rudder, heading, first };
+        Some(Self { kind, manoeuvre, yaw_rate, rudder_rate: measured.rudder_rate })
+    }
+
+    /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
+    pub fn draws(&self, mixture: &Mixture, draws: usize) -> Vec<Option<Sailed>> {
+        (0..draws)
+            .into_par_iter()
+            .map(|number| {
+                let mut ship = mixture.draw(number as u64, &Source::ALL);
+                ship.yaw_rate = self.yaw_rate;
+                if let Some(rate) = self.rudder_rate {
+                    ship.gear.rate = rate;
+                }
+                let passage = Passage::sail(&ship, &self.manoeuvre, mixture.timescale()).ok()?;
+                Some(Sailed::new(figures::of(&self.kind, &passage, mixture.particulars()), &passage))
+            })
+            .collect()
+    }
+}
+
+/// A figure that a measured zig-zag shows, by its name; angles in degrees, times in s from the first execute.
+///
+/// The way of the initial turning is that of the recorded speed; `particulars` are given where V times its time may
+/// stand for it.
+pub(crate) fn shown(
+    trial: &Trial,
+    measured: &Measured,
+    name: &str,
+    length: Option<f64>,
+    particulars: Option<Particulars>,
+) -> Option<Quantity> {
+    let place = |names: &[&str]| names.iter().position(|own| *own == name).map(|place| place + 1);
+    let begin = measured.executes.first()?.time;
+    let since = |time: Quantity| {
+        let sd = time.sd.zip(begin.sd).map(|(one, other)| one.hypot(other));
+        Quantity::new(time.value - begin.value, sd)
+    };
+    match (place(&OVERSHOOTS), place(&EXECUTE_TIMES), name) {
+        (Some(number), ..) => Some(measured.nth_overshoot(number)?.angle.scaled(to_deg(1.0))),
+        (_, Some(number), _) => Some(since(measured.executes.get(number)?.time)),
+        (.., "initial_turning_time_s") => measured.initial_turning_time,
+        (.., "initial_turning_lengths") => {
+            let length = trial.particulars().map(|own| own.length).or(length)?;
+            let time = measured.initial_turning_time?;
+            let speed = particulars.map(|particulars| particulars.speed);
+            let way = measured.initial_turning_distance.or_else(|| Some(speed? * time.value))?;
+            Some(Quantity::new(way / length, time.sd.map(|sd| sd * way / (time.value * length))))
+        }
+        (.., "period_s") => measured.period,
+        _ => None,
+    }
+}

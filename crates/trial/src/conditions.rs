@@ -1,0 +1,271 @@
+//! What a trial was made with and in, as the form of MSC/Circ.1053, appendix 6, asks for it: particulars of the ship
+//! that no record holds, and the conditions of the trial with what the circular demands of them.
+
+use std::fmt;
+
+use ship::Particulars;
+
+/// Water depth that a trial needs, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
+pub const FEWEST_DRAUGHTS: f64 = 4.0;
+/// Strongest wind of a trial, Beaufort number. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
+pub const MOST_BEAUFORT: u8 = 5;
+/// Highest sea state of a trial. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
+pub const MOST_SEA_STATE: u8 = 4;
+/// Deviation from the full-load draught that is still full load, as a share. Source: MSC/Circ.1053 (2002), 2.2.1.2.2.
+pub const DRAUGHT_TOLERANCE: f64 = 0.05;
+/// Longest interval between readings of a trial, s. Source: MSC/Circ.1053 (2002), 2.2.
+pub const LONGEST_INTERVAL: f64 = 20.0;
+
+/// How a ship was loaded at her trial.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loading {
+    /// To the summer load line draught, or within 5 % of it.
+    Full,
+    /// To less, as in ballast.
+    Partial,
+}
+
+impl Loading {
+    /// The word used in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Full => "full",
+            Self::Partial => "partial",
+        }
+    }
+}
+
+/// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` where nothing is declared.
+///
+/// Source of the entries: MSC/Circ.1053 (2002), appendix 6.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Conditions {
+    /// Container ship, tanker, gas carrier, ...
+    pub ship_type: Option<String>,
+    /// Length and approach speed of the same sidecar, so that ratios are of one scale.
+    pub particulars: Option<Particulars>,
+    /// Breadth, m.
+    pub beam: Option<f64>,
+    /// Mean draught at the trial, m.
+    pub draught: Option<f64>,
+    /// Mean draught at full load, m.
+    pub full_load_draught: Option<f64>,
+    /// Block coefficient at full load, 1.
+    pub block_coefficient: Option<f64>,
+    /// Full spade, semi-spade, high lift, ...
+    pub rudder_type: Option<String>,
+    /// Area of all rudders together, m².
+    pub rudder_area: Option<f64>,
+    /// Number of rudders.
+    pub rudders: Option<u8>,
+    /// Fixed pitch, controllable pitch, with nozzle, ...
+    pub propeller_type: Option<String>,
+    /// Number of propellers.
+    pub propellers: Option<u8>,
+    /// Diesel, steam turbine, diesel-electric, ...
+    pub engine_type: Option<String>,
+    /// Trim, m, positive by the stern.
+    pub trim: Option<f64>,
+    /// Ballast condition, in words.
+    pub ballast: Option<String>,
+    /// Depth of the water at the trial, m.
+    pub water_depth: Option<f64>,
+    /// Wind at the trial, Beaufort number.
+    pub wind_beaufort: Option<u8>,
+    /// Sea state at the trial.
+    pub sea_state: Option<u8>,
+    /// Loading at the trial as it is declared.
+    pub declared_loading: Option<Loading>,
+    /// Administration the form goes to.
+    pub administration: Option<String>,
+    /// A remark.
+    pub remark: Option<String>,
+}
+
+/// Where a trial is not, or not known to be, what MSC/Circ.1053 (2002), 2.2, asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shortcoming {
+    /// Something is not declared.
+    Unknown {
+        /// What, in words.
+        what: &'static str,
+        /// What is asked for.
+        asked: &'static str,
+    },
+    /// The water is too shallow.
+    Depth {
+        /// Depth in mean draughts.
+        draughts: f64,
+    },
+    /// The wind is too strong.
+    Wind {
+        /// Beaufort number.
+        beaufort: u8,
+    },
+    /// The sea is too rough.
+    Sea {
+        /// Sea state.
+        state: u8,
+    },
+    /// Readings are too far apart.
+    Interval {
+        /// Median time between rows, s.
+        seconds: f64,
+    },
+    /// The ship was not at full load.
+    Load {
+        /// Draught as a share of that at full load, where both are known.
+        draught: Option<f64>,
+    },
+    /// Full load is declared and the draughts say otherwise.
+    Contradiction {
+        /// Draught as a share of that at full load.
+        draught: f64,
+    },
+    /// The ship was not on an even keel.
+    Trim {
+        /// Trim, m, positive by the stern.
+        trim: f64,
+    },
+}
+
+impl fmt::Display for Shortcoming {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown { what, asked } => write!(f, "{what} is not known; {asked} is asked for"),
+            Self::Depth { draughts } => {
+                write!(f, "water of {draughts:.1} mean draughts; more than {FEWEST_DRAUGHTS} are asked for")
+            }
+            Self::Wind { beaufort } => write!(f, "wind of Beaufort {beaufort}; at most {MOST_BEAUFORT} is asked for"),
+            Self::Sea { state } => write!(f, "sea state {state}; at most {MOST_SEA_STATE} is asked for"),
+            Self::Interval { seconds } => {
+                write!(f, "a reading every {seconds:.0} s; at most {LONGEST_INTERVAL} s are asked for")
+            }
+            Self::Load { draught: None } => f.write_str("not at full load"),
+            Self::Load { draught: Some(share) } => {
+                write!(f, "not at full load: the draught is {:.0} % of that at full load", 100.0 * share)
+            }
+            Self::Contradiction { draught } => write!(
+                f,
+                "the loading is declared as \"full\", and the draught is {:.0} % of that at full load; 5 % are allowed",
+                100.0 * draught
+            ),
+            Self::Trim { trim } => {
+                let end = if *trim > 0.0 { "stern" } else { "bow" };
+                write!(f, "trim of {:.2} m by the {end}; an even keel is asked for", trim.abs())
+            }
+        }
+    }
+}
+
+impl Conditions {
+    /// Draught at the trial as a share of that at full load.
+    fn draught_share(&self) -> Option<f64> {
+        Some(self.draught? / self.full_load_draught?)
+    }
+
+    /// How the ship was loaded: as it is declared, else by the draughts with the 5 % that are allowed.
+    pub fn loading(&self) -> Option<Loading> {
+        let by_draught = |share: f64| match (share - 1.0).abs() <= DRAUGHT_TOLERANCE {
+            true => Loading::Full,
+            false => Loading::Partial,
+        };
+        self.declared_loading.or_else(|| self.draught_share().map(by_draught))
+    }
+
+    /// Mean draught at full load, m: as it is declared, or that of a trial at full load.
+    pub fn draught_at_full_load(&self) -> Option<f64> {
+        let at_trial = || self.draught.filter(|_| self.declared_loading == Some(Loading::Full));
+        self.full_load_draught.or_else(at_trial)
+    }
+
+    /// Depth of the water in mean draughts of the trial.
+    pub fn depth_in_draughts(&self) -> Option<f64> {
+        Some(self.water_depth? / self.draught?)
+    }
+
+    /// What is not, or not known to be, as MSC/Circ.1053 (2002), 2.2, asks for; current and speed are not looked at.
+    pub fn shortcomings(&self) -> Vec<Shortcoming> {
+        let mut found = Vec::new();
+        let unknown = |what, asked| Shortcoming::Unknown { what, asked };
+        match self.depth_in_draughts() {
+            None => found.push(unknown("the water depth in draughts", "more than 4 mean draughts")),
+            Some(draughts) if draughts <= FEWEST_DRAUGHTS => found.push(Shortcoming::Depth { draughts }),
+            Some(_) => {}
+        }
+        match self.wind_beaufort {
+            None => found.push(unknown("the wind", "at most Beaufort 5")),
+            Some(beaufort) if beaufort > MOST_BEAUFORT => found.push(Shortcoming::Wind { beaufort }),
+            Some(_) => {}
+        }
+        match self.sea_state {
+            None => found.push(unknown("the sea state", "at most sea state 4")),
+            Some(state) if state > MOST_SEA_STATE => found.push(Shortcoming::Sea { state }),
+            Some(_) => {}
+        }
+        let draught = self.draught_share();
+        match (self.loading(), draught) {
+            (None, _) => found.push(unknown("the loading", "full load with a tolerance of 5 % in draught")),
+            (Some(Loading::Partial), _) => found.push(Shortcoming::Load { draught }),
+            (Some(Loading::Full), Some(draught)) if (draught - 1.0).abs() > DRAUGHT_TOLERANCE => {
+                found.push(Shortcoming::Contradiction { draught });
+            }
+            (Some(Loading::Full), _) => {}
+        }
+        found.extend(self.trim.filter(|trim| *trim != 0.0).map(|trim| Shortcoming::Trim { trim }));
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn deep_and_calm() -> Conditions {
+        Conditions {
+            draught: Some(20.0),
+            full_load_draught: Some(20.8),
+            water_depth: Some(90.0),
+            wind_beaufort: Some(5),
+            sea_state: Some(4),
+            ..Conditions::default()
+        }
+    }
+
+    #[test]
+    fn a_trial_by_the_book_has_no_remark() {
+        let conditions = deep_and_calm();
+        assert_eq!(conditions.loading(), Some(Loading::Full), "4 % less draught");
+        assert_eq!(conditions.shortcomings(), []);
+    }
+
+    #[test]
+    fn what_is_not_by_the_book_is_said() {
+        let said = |change: fn(&mut Conditions)| {
+            let mut conditions = deep_and_calm();
+            change(&mut conditions);
+            let found = conditions.shortcomings();
+            assert_eq!(found.len(), 1, "{found:?}");
+            found[0].to_string()
+        };
+        assert!(said(|c| c.water_depth = Some(80.0)).contains("4.0 mean draughts"), "it should exceed four");
+        assert!(said(|c| c.water_depth = None).contains("is not known"));
+        assert!(said(|c| c.wind_beaufort = Some(6)).contains("Beaufort 6"));
+        assert!(said(|c| c.sea_state = Some(5)).contains("sea state 5"));
+        assert!(said(|c| c.full_load_draught = Some(25.0)).contains("80 %"));
+        assert!(said(|c| c.full_load_draught = None).contains("the loading is not known"));
+        assert!(said(|c| c.declared_loading = Some(Loading::Partial)).contains("not at full load"));
+        assert!(said(|c| c.trim = Some(-0.5)).contains("0.50 m by the bow"));
+        let said = said(|c| (c.declared_loading, c.full_load_draught) = (Some(Loading::Full), Some(25.0)));
+        assert!(said.contains("declared as \"full\""), "{said}");
+    }
+
+    #[test]
+    fn the_draught_of_a_trial_at_full_load_is_that_at_full_load() {
+        let mut conditions = deep_and_calm();
+        conditions.full_load_draught = None;
+        assert_eq!(conditions.draught_at_full_load(), None);
+        conditions.declared_loading = Some(Loading::Full);
+        assert_eq!(conditions.draught_at_full_load(), Some(20.0));
+    }
+}
