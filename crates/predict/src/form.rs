@@ -246,10 +246,11 @@ mod tests {
                 fill(&predictions(&ship), ship.particulars(), &[Record { trial: &trial, correction: None }], None);
             let measured = |entry: &Entry| matches!(entry.basis, Basis::Measured { .. });
             assert!(!form.entries.iter().any(measured), "{kind}");
-            form.remarks[0].clone()
+            form.remarks.join("\n")
         };
-        assert!(said("zig-zag:10/20").contains("10/20"));
-        assert!(said("turning-circle:15").contains("15.0° of rudder"));
+        let circle = said("turning-circle:15");
+        assert!(circle.contains("15.0° of rudder") && circle.contains("here 75.00 m at 6.00 m/s"), "{circle}");
+        assert!(said("zig-zag:10/20").contains("a zig-zag of 10/20"));
         let declared = Conditions { ship_type: Some("ferry".into()), ..Conditions::default() };
         let form = fill(&predictions(&ship), None, &[], Some(("ship.toml", &declared)));
         assert_eq!(entry(&form, "ship", "ship type", None).value, Some(Value::Text("ferry".into())));
