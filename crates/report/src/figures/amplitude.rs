@@ -61,6 +61,9 @@ pub struct Amplitude {
 /// A value farther from zero than so many times the middle one is shown by an arrow.
 const FAR: f64 = 3.0;
 
+/// Free space left and right of the data, as a share of their range: records of one amplitude stand side by side.
+const BESIDE: f64 = 0.14;
+
 /// Draws the panels.
 pub fn amplitude(data: &Amplitude, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
@@ -69,25 +72,29 @@ pub fn amplitude(data: &Amplitude, theme: &Theme) -> Figure {
     let column = |place: usize| {
         let points = all().flat_map(|panel| panel.points.iter().map(|point| point.amplitudes_deg[place]));
         let model = all().flat_map(|panel| panel.model[place].finite().map(|(x, _)| x));
-        Side::new(Axis::covering(points.chain(model), PAD, Steps::Angle), data.x_titles[place].clone())
+        Side::new(Axis::covering(points.chain(model), BESIDE, Steps::Angle), data.x_titles[place].clone())
     };
     let rows = all().map(|panel| (Side::new(up(panel), panel.title.clone()), theme.tall(0.3)));
     let panels = sheet.grid(Grid::new((0..COLUMNS).map(column).collect(), rows.collect()));
     let contents = all().flat_map(|content| (0..COLUMNS).map(move |place| (place, content)));
-    let mut beyond = false;
+    let (mut beyond, mut aside) = (false, false);
     for (panel, (place, content)) in panels.iter().zip(contents) {
         if let Some(joint) = &content.joint {
             joint.horizontal(panel, &mut sheet.scene, theme);
         }
         panel.line(&mut sheet.scene, content.model[place].pairs(), model(theme));
         let across = |point: &AmplitudePoint| panel.across(point.amplitudes_deg[place]).unwrap_or(f64::NAN);
-        let places = asides(&content.points.iter().map(across).collect::<Vec<f64>>(), 2.4 * theme.marker);
+        let own: Vec<f64> = content.points.iter().map(across).collect();
+        let places = asides(&own, 2.0 * theme.marker);
+        aside |= own.iter().zip(&places).any(|(own, moved)| (own - moved).abs() > theme.marker);
         for (point, x) in content.points.iter().zip(places) {
             beyond |= draw(panel, &mut sheet.scene, theme, (x, point), &look(data));
         }
     }
-    if beyond {
-        sheet.note("Arrows: beyond the axis.");
+    let remarks = [(aside, "Records of one amplitude stand side by side."), (beyond, "Arrows: beyond the axis.")];
+    let remarks: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
+    if !remarks.is_empty() {
+        sheet.note(&remarks.join(" "));
     }
     sheet.finish()
 }

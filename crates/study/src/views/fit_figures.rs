@@ -1,5 +1,6 @@
 //! Figures of `study fit`: the first record with its characteristic points, every record with the replays of all
-//! methods and with the best fit, over time and in the phase plane, and K and T of all methods and of every record alone.
+//! methods and with the best fit, over time and in the phase plane, and K and T of all methods and of every record
+//! alone.
 
 use identify::Estimate;
 use identify::replay::replay;
