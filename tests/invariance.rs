@@ -201,7 +201,7 @@ fn any_trial_can_be_made_alone_and_in_any_order() {
     let scenario = scenario(4);
     let heading = |cell: usize, replicate: u64| -> Vec<u64> {
         let simulated = engine::simulate(&scenario, Task { cell, replicate }).expect("a noisy zig-zag");
-        simulated.trial.heading().iter().map(|psi| psi.to_bits()).collect()
+        simulated[0].trial.heading().iter().map(|psi| psi.to_bits()).collect()
     };
     let places: Vec<(usize, u64)> = (0..2).flat_map(|cell| (0..4).map(move |replicate| (cell, replicate))).collect();
     let forth: Vec<Vec<u64>> = places.iter().map(|&(cell, replicate)| heading(cell, replicate)).collect();

@@ -26,6 +26,8 @@ pub struct Shown<'a> {
     speed: Option<f64>,
     motion: Option<Planar>,
     hull: Option<Hull>,
+    /// Why records with a speed or positions tell no speed loss and drift.
+    untold: Option<String>,
 }
 
 impl<'a> Shown<'a> {
@@ -42,7 +44,14 @@ impl<'a> Shown<'a> {
             speed: particular(|own| own.speed),
             motion: None,
             hull: None,
+            untold: None,
         }
+    }
+
+    /// Why no track can be predicted from records that have a speed or positions; `None` where one can, and for records
+    /// without.
+    pub fn untold(&self) -> Option<&str> {
+        self.untold.as_deref()
     }
 
     /// The same with speed and drift: a hull where the length is known and all records have surge and sway, else two
@@ -56,7 +65,11 @@ impl<'a> Shown<'a> {
         let tells = [Channel::Speed, Channel::Surge, Channel::Sway, Channel::North];
         let is_told = |trial: &Trial| tells.iter().any(|channel| trial.channel(*channel).is_some());
         if self.hull.is_none() && self.trials.iter().all(is_told) {
-            self.motion = motion::fit(self.trials, length).ok().filter(loses_speed);
+            match motion::fit(self.trials, length) {
+                Ok(planar) if loses_speed(&planar) => self.motion = Some(planar),
+                Ok(_) => self.untold = Some("the fitted ship loses no speed in a turn".to_owned()),
+                Err(error) => self.untold = Some(error.to_string()),
+            }
         }
         self
     }

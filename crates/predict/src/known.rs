@@ -236,8 +236,8 @@ impl KnownShip {
         Ok(calm)
     }
 
-    /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre that
-    /// was not made has the sway of an equation fitted beside it.
+    /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre
+    /// that was not made has the sway of an equation fitted beside it.
     pub fn leans_on_sway(&self) -> bool {
         let sway = ship::effects::Effect::id(&ship::effects::SwayCouplingMeasured);
         let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));

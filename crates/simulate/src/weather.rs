@@ -7,7 +7,8 @@ use rand::rngs::ChaCha8Rng;
 use crate::disturbance::{Disturbances, GaussMarkov, Squall};
 use crate::stream::{Purpose, StreamKey, normal};
 
-/// Width of a cell, s, unless a simulation asks for another: short against every correlation time of weather and every time constant of a ship.
+/// Width of a cell, s, unless a simulation asks for another: short against every correlation time of weather and every
+/// time constant of a ship.
 pub(crate) const GRID: f64 = 0.1;
 
 /// The weather within one cell, linear in time.

@@ -1,12 +1,9 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
-use ::trace::Analysis;
-use campaign::known::{self, Shown};
 use predict::known::Seen;
 use predict::steady::SteadyCurve;
-use predict::{Kind, Mixture};
+use predict::{Kind, KnownShip, Mixture};
 use ship::angle::from_deg;
-use trial::Trial;
 
 /// Ships that are drawn.
 const DRAWS: usize = 40;
@@ -15,10 +12,11 @@ const DRAWS: usize = 40;
 const BEYOND: f64 = 1.3;
 const RUDDER_DEG: [f64; 2] = [10.0, 35.0];
 
-/// Steady turns of the structures of an analysis in a calm, the most probable one first, and the range in which the
-/// records show the ship; `None` where no steady turn is found.
-pub fn of_analysis(analysis: &Analysis, trials: &[Trial]) -> Option<(Vec<SteadyCurve>, Seen)> {
-    let ship = known::of_analysis(analysis, &Shown::of(trials)).in_calm().ok()?;
+/// Steady turns of the responses that are known of a ship, in a calm, the most probable one first, and the range in which
+/// the records show her; `None` where no steady turn is found.
+pub fn of_ship(known: &KnownShip) -> Option<(Vec<SteadyCurve>, Seen)> {
+    // Those of the traced response, whatever a hull beside it would do.
+    let ship = KnownShip { hull: None, ..known.in_calm().ok()? };
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
     let kind = Kind::Spiral { rudder: (BEYOND * seen.rudder_rad).clamp(least, most) };

@@ -4,6 +4,7 @@
 use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
+use crate::commands::fit::no_track;
 use crate::commands::{alone, planned, steady};
 use crate::options::{Common, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read_all, read_others, warn_of_repetition};
@@ -13,6 +14,7 @@ use crate::views::trace_report::TraceReport;
 use crate::views::{missing_moment, trace_figures, trace_page, trace_scales, trace_tables};
 use crate::{progress, screen};
 use campaign::folder::ResultFolder;
+use campaign::known::{self, Shown};
 use scenario::failure::{Failure, OnPath};
 
 /// What other programs read.
@@ -50,12 +52,16 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     })?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(trials, "trace")))?;
     let planned = planned::trials(&analysis, trials);
+    let shown = Shown::of(trials).with_motion();
+    warnings.extend(shown.untold().map(no_track));
+    let known = known::of_analysis(&analysis, &shown);
     let report = TraceReport {
         names: names(trials.iter().chain(others).map(Trial::name)),
         ship: scales::particulars(trials),
         sailed_by,
         amplitudes: alone::of_analysis(&analysis, trials),
-        steady: steady::of_analysis(&analysis, trials),
+        steady: steady::of_ship(&known),
+        known,
         scaled: together.sentence(),
         scales: trace_scales::compared(&analysis, &together),
         prospects: analysis.prospects(&planned),

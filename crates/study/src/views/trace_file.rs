@@ -20,7 +20,6 @@ use super::trace_page;
 use super::trace_report::TraceReport;
 use crate::records::file_of;
 use campaign::answer::{Parameters, PrimeIndices};
-use campaign::known::{self, Shown};
 
 /// K and T that follow the measured speed.
 #[derive(Debug, Serialize)]
@@ -353,7 +352,7 @@ impl TraceFile {
                 .filter(|(_, times)| !times.is_empty())
                 .map(|(name, times)| OutliersEntry { file: name.clone(), times_s: times.clone() })
                 .collect(),
-            ship: known::of_analysis(analysis, &Shown::of(report.trials).with_motion()),
+            ship: report.known.clone(),
             scales: report.scales.clone(),
         }
     }

@@ -2,6 +2,7 @@
 
 use ::trace::Analysis;
 use ::trace::missing_moment::MissingMoment;
+use predict::KnownShip;
 use predict::known::Seen;
 use predict::steady::SteadyCurve;
 use ship::Particulars;
@@ -18,6 +19,8 @@ pub struct TraceReport<'a> {
     pub sailed_by: Vec<Option<Particulars>>,
     /// Every zig-zag alone, and zig-zags of the model, where there are several records.
     pub amplitudes: Option<Amplitudes>,
+    /// What is known of the ship, for a prediction.
+    pub known: KnownShip,
     /// Steady turns of the model, where it has any.
     pub steady: Option<(Vec<SteadyCurve>, Seen)>,
     /// What was done to records of several scales, in a sentence.

@@ -26,8 +26,8 @@ fn record(manoeuvre: Manoeuvre, duration: f64, current: [f64; 2]) -> String {
     let speed = truth.speed.as_ref().expect("a hull has a speed");
     let (mut place, mut sway) = ([0.0; 2], 0.0);
     let mut text = String::from("t_s,heading_deg,rudder_deg,north_m,east_m\n");
-    for row in 0..truth.time.len() {
-        let surge = (speed[row].powi(2) - sway * sway).max(0.0).sqrt();
+    for (row, speed) in speed.iter().enumerate() {
+        let surge = (speed.powi(2) - sway * sway).max(0.0).sqrt();
         let (sin, cos) = truth.heading[row].sin_cos();
         let over_ground = [surge * cos - sway * sin + current[0], surge * sin + sway * cos + current[1]];
         let [heading, rudder] = [truth.heading[row], truth.rudder[row]].map(to_deg);

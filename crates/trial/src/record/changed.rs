@@ -1,0 +1,62 @@
+//! Records made from another one: without some of it, without a current, at another scale.
+
+use ship::Particulars;
+
+use super::{Mark, Trial, signal};
+use crate::channel::Channel;
+
+impl Trial {
+    /// The same record without some channels; heading and rudder cannot be left out.
+    pub fn without(mut self, channels: &[Channel]) -> Self {
+        self.channels.retain(|channel, _| *channel == Channel::Heading || !channels.contains(channel));
+        self
+    }
+
+    /// The same record with the positions that it had without a uniform current (north and east, m/s): its first row is
+    /// where it was.
+    pub fn without_current(mut self, velocity: [f64; 2]) -> Self {
+        let since: Vec<f64> = self.time().iter().map(|time| time - self.time()[0]).collect();
+        for (channel, speed) in [Channel::North, Channel::East].into_iter().zip(velocity) {
+            let values = self.channels.get_mut(&channel).into_iter().flatten();
+            values.zip(&since).for_each(|(value, time)| *value -= speed * time);
+        }
+        self
+    }
+
+    /// The same record without the headings read at some times, s.
+    pub fn without_readings(mut self, times: &[f64]) -> Self {
+        let rows: Vec<usize> = (0..self.len()).filter(|&row| times.contains(&self.time()[row])).collect();
+        if let Some(heading) = self.channels.get_mut(&Channel::Heading) {
+            rows.into_iter().for_each(|row| heading[row] = f64::NAN);
+        }
+        self
+    }
+
+    /// The record that a similar ship of another length and approach speed would have made: every time is multiplied
+    /// with (L₂/V₂)/(L₁/V₁), a yaw rate and the rate of the propeller are divided by it, speeds are multiplied with
+    /// V₂/V₁ and lengths with L₂/L₁; angles stay, and so do columns that are not known.
+    ///
+    /// What has no dimension is the same in both (K', T'). `None` where length and speed of this ship are not declared
+    /// and where a factor is not a positive number. Source: Froude (1868) for V ~ √L; the prime system for any speed.
+    pub fn scaled_to(&self, particulars: Particulars) -> Option<Self> {
+        let own = self.particulars?;
+        let second = own.factor_to(particulars, [1, 0]);
+        let metre = own.factor_to(particulars, [0, 1]);
+        if ![second, metre].iter().all(|factor| factor.is_finite() && *factor > 0.0) {
+            return None;
+        }
+        let factor = |channel: Channel| own.factor_to(particulars, channel.dimension());
+        let times = self.time().iter().map(|time| time * second).collect();
+        let mut scaled = self.clone();
+        scaled.rudder = signal(times, self.rudder().to_vec()).ok()?;
+        for (channel, values) in &mut scaled.channels {
+            values.iter_mut().for_each(|value| *value *= factor(*channel));
+        }
+        for mark in &mut scaled.marks {
+            *mark = Mark { time: mark.time * second, value: mark.value * factor(mark.channel), ..*mark };
+        }
+        scaled.noise.yaw_rate = self.noise.yaw_rate.map(|sd| sd * factor(Channel::YawRate));
+        scaled.particulars = Some(particulars);
+        Some(scaled)
+    }
+}
