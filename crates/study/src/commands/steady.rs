@@ -12,8 +12,8 @@ const DRAWS: usize = 40;
 const BEYOND: f64 = 1.3;
 const RUDDER_DEG: [f64; 2] = [10.0, 35.0];
 
-/// Steady turns of the responses that are known of a ship, in a calm, the most probable one first, and the range in which
-/// the records show her; `None` where no steady turn is found.
+/// Steady turns of the responses that are known of a ship, in a calm, the most probable one first, and the range in
+/// which the records show her; `None` where no steady turn is found.
 pub fn of_ship(known: &KnownShip) -> Option<(Vec<SteadyCurve>, Seen)> {
     // Those of the traced response, whatever a hull beside it would do.
     let ship = KnownShip { hull: None, ..known.in_calm().ok()? };

@@ -4,7 +4,7 @@ use ship::angle::{from_deg, to_deg};
 use simulate::manoeuvre::{TurnEnd, TurningCircle, ZigZagEnd};
 use simulate::{Manoeuvre, Recording, Side, Simulation, SteeringGear, StreamKey, Vessel};
 
-use crate::desk::Desk;
+use crate::desk::{Desk, measured, of_repository};
 
 const SCALE: [&str; 4] = ["--length-m", "160.9", "--speed-kn", "15"];
 
@@ -108,4 +108,40 @@ fn a_current_is_found_and_taken_out() {
     let wrong = ["predict", "f/fit.json", "--replay", "still.csv", "--current-from", "drifting.csv"];
     desk.run(&wrong).is_refused(2, &["--current-from drifting.csv", "720°"]);
     desk.run(&["predict", "f/fit.json", "--current-from", "two-rounds.csv"]).is_refused(2, &["--replay"]);
+}
+
+/// Three circles of Esso Osaka on one pond go on for two rounds; the currents they show are nearly the same.
+#[test]
+fn the_current_of_one_circle_is_about_that_of_another() {
+    let Some(data) = measured() else { return };
+    let desk = Desk::new();
+    desk.file("zig.csv", zig_zag());
+    desk.run(&[&["fit", "zig.csv", "--method", "maximum-likelihood", "--out", "f", "--quiet"][..], &SCALE].concat())
+        .is_done();
+    let sidecars = of_repository("scenarios/measured").to_string_lossy().into_owned();
+    let path = |name: &str| data.join("esso_osaka").join(name).to_string_lossy().into_owned();
+    let names = ["oct14_15_06_53", "sep14_13_51_45", "sep14_14_50_41", "oct14_14_29_49"];
+    let records = names.map(|name| path(&format!("turning_{name}.csv")));
+    let replays = records.iter().flat_map(|record| ["--replay", record.as_str()]);
+    let run: Vec<&str> = ["predict", "f/fit.json", "--columns", &sidecars, "--draws", "50", "--out", "p"]
+        .into_iter()
+        .chain(replays)
+        .collect();
+    desk.run(&run).is_done();
+    let json = desk.json("p/predict.json");
+    let currents: Vec<Option<[f64; 2]>> = (0..4)
+        .map(|replay| {
+            let current = &json["replays"][replay]["current"];
+            Some([current["north_m_s"].as_f64()?, current["east_m_s"].as_f64()?])
+        })
+        .collect();
+    assert_eq!(currents[3], None, "671° tell no current");
+    let shown: Vec<[f64; 2]> = currents.into_iter().flatten().collect();
+    assert_eq!(shown.len(), 3);
+    for one in &shown {
+        for other in &shown {
+            let [size, between] = [one[0].hypot(one[1]), (one[0] - other[0]).hypot(one[1] - other[1])];
+            assert!((0.02..0.035).contains(&size) && between < 0.009, "{shown:?}");
+        }
+    }
 }
