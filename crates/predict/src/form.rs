@@ -183,7 +183,7 @@ mod tests {
     fn every_entry_names_its_source() {
         let ship = mixture();
         let trial = record(&ship, "zig-zag:-10/10", calm(Loading::Full));
-        let records = [Record { trial: &trial, correction: None }];
+        let records = [Record { trial: &trial, correction: None, current: None }];
         let form = fill(&predictions(&ship), ship.particulars(), &records, None);
         let port = entry(&form, "10°/10°", "1st overshoot angle", Some("port"));
         let starboard = entry(&form, "10°/10°", "1st overshoot angle", Some("starboard"));
@@ -224,7 +224,8 @@ mod tests {
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, 60).expect("both sail");
         let told = predictions(&full);
-        let with = |correction| fill(&told, full.particulars(), &[Record { trial: &trial, correction }], None);
+        let with =
+            |correction| fill(&told, full.particulars(), &[Record { trial: &trial, correction, current: None }], None);
         let of = |form: &Form| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
         let corrected = of(&with(Some(&correction)));
         assert!(matches!(corrected.basis, Basis::Corrected { .. }), "{corrected:?}");
@@ -242,8 +243,12 @@ mod tests {
         let ship = mixture();
         let said = |kind: &str| {
             let trial = record(&ship, kind, Conditions::default());
-            let form =
-                fill(&predictions(&ship), ship.particulars(), &[Record { trial: &trial, correction: None }], None);
+            let form = fill(
+                &predictions(&ship),
+                ship.particulars(),
+                &[Record { trial: &trial, correction: None, current: None }],
+                None,
+            );
             let measured = |entry: &Entry| matches!(entry.basis, Basis::Measured { .. });
             assert!(!form.entries.iter().any(measured), "{kind}");
             form.remarks.join("\n")

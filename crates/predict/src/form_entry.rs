@@ -4,6 +4,7 @@ use trial::{Loading, Origin, Trial};
 
 use crate::correction::Correction;
 use crate::interval::Interval;
+use crate::turn::Current;
 
 /// What an entry says.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,6 +103,8 @@ pub struct Record<'a> {
     pub trial: &'a Trial,
     /// Its correction, where a model of its condition was given.
     pub correction: Option<&'a Correction>,
+    /// The current that was taken out of its positions.
+    pub current: Option<Current>,
 }
 
 impl Record<'_> {

@@ -2,6 +2,7 @@
 //! that are no manoeuvre of the form, and what is to be known of predicted entries.
 
 use ship::Particulars;
+use ship::angle::to_deg;
 use trial::{Conditions, Loading};
 
 use crate::form_entry::{Basis, Entry, Record};
@@ -49,8 +50,24 @@ pub(crate) fn remarks(
     }
     if tested.iter().any(Tested::is_used) {
         remarks.push(String::from(
-            "not looked at: the test speed (at least 90 % of that at 85 % of the engine output), the engine, and current",
+            "not looked at: the test speed (at least 90 % of that at 85 % of the engine output) and the engine",
         ));
+    }
+    for (record, tested) in records.iter().zip(tested) {
+        let is_circle = tested.what.is_some_and(|(sort, _)| sort == CIRCLE);
+        match record.current {
+            Some(current) => remarks.push(format!(
+                "{}: a current of {:.2} m/s that sets to {:.0}° was taken out of the track",
+                record.file(),
+                current.speed(),
+                to_deg(current.set())
+            )),
+            None if is_circle => remarks.push(format!(
+                "{}: the turn is shorter than the 720° that show a current; what one did to the track is not known",
+                record.file()
+            )),
+            None => {}
+        }
     }
     let several = |sort: &str, side: &str| {
         let own = tested.iter().filter(|tested| tested.what.is_some_and(|(it, to)| it == sort && to == side));

@@ -116,7 +116,11 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let particulars = mixture.particulars();
     let form = request.form.then(|| {
         let records: Vec<Record> = (replays.iter().zip(&corrections))
-            .map(|((trial, _), correction)| Record { trial, correction: correction.as_ref() })
+            .map(|((trial, replayed), correction)| Record {
+                trial,
+                correction: correction.as_ref(),
+                current: replayed.current,
+            })
             .collect();
         let path = request.reading.columns.as_ref().map(|path| path.display().to_string());
         let words = path.as_deref().zip(declared.as_ref().map(Sidecar::conditions));
