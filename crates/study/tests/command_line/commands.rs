@@ -109,7 +109,7 @@ fn simulated_trials_are_records_with_the_truth_beside_them() {
     assert_eq!(desk.run(&one).is_done().out, "");
     assert_eq!(desk.bytes("one.csv"), desk.bytes(&format!("{name}.csv")));
     for (wrong, parts) in [
-        (&["--out", "two.csv"][..], &["one file", "2 trials", "--cell"][..]),
+        (&["--out", "two.csv"][..], &["one file", "2 records", "--cell"][..]),
         (&[], &["--out FILE.csv"]),
         (&["--cell", "0.3", "--out", "x"], &["no such cell", "`0.05`"]),
         (&["--replicate", "2", "--out", "x"], &["2 trials in a cell"]),
@@ -117,6 +117,25 @@ fn simulated_trials_are_records_with_the_truth_beside_them() {
     ] {
         desk.run(&[&["simulate", "small.toml"], wrong].concat()).is_refused(2, parts);
     }
+}
+
+/// The records of a trial that has several are written beside each other, and identified together they are the trial.
+#[test]
+fn further_records_of_a_trial_are_written_beside_the_first() {
+    let desk = Desk::new();
+    let both = format!("{GOOD}[[also]]\nmanoeuvre.zig-zag = {{ rudder-deg = 20.0, heading-deg = 20.0 }}\n");
+    desk.file("both.toml", &both);
+    let run = desk.run(&["simulate", "both.toml", "--replicate", "0", "--out", "records"]);
+    assert!(run.is_done().out.contains("2 records"), "{}", run.out);
+    let names = ["both-0", "both-0-also-1"].map(|name| format!("records/{name}.csv"));
+    desk.run(&["fit", &names[0], &names[1], "--method", "output-error", "--out", "fit", "--quiet"]).is_done();
+    let fit = desk.json("fit/fit.json");
+    let rows = fit["trials"].as_array().map(Vec::len);
+    let found = fit["methods"][0]["parameters"]["T_s"]["value"].as_f64().expect("an answer");
+    assert!(rows == Some(2) && (found / 16.3 - 1.0).abs() < 0.03, "{found}");
+    let wrong = both.replace("rudder-deg = 20.0, heading-deg", "rudder-deg = -20.0, heading-deg");
+    desk.file("wrong.toml", wrong);
+    desk.run(&["check", "wrong.toml"]).is_refused(2, &["further record 1", "-20"]);
 }
 
 /// The records that the README reads are what the scenario beside them makes today.
