@@ -1,6 +1,7 @@
 //! The tests of the whole workspace, one file a subject.
 
 mod architecture;
+mod claims;
 mod effects;
 mod golden;
 mod identifiers;
