@@ -38,6 +38,8 @@ struct Number {
     /// What is made of several rows.
     #[serde(default)]
     take: Take,
+    /// The column that says how much a row counts in a mean: each the same where there is none.
+    weight: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -99,16 +101,21 @@ impl Number {
         let wanted: Vec<(usize, &OneOrMore)> =
             self.rows.iter().map(|(name, value)| Ok((place(name)?, value))).collect::<Result<_, String>>()?;
         let rows: Vec<csv::StringRecord> = reader.records().collect::<Result<_, _>>().map_err(said)?;
-        let values: Vec<f64> = rows
+        let weight = self.weight.as_deref().map(place).transpose()?;
+        let counts = |row: &csv::StringRecord| weight.map_or(Some(1.0), |weight| row[weight].parse::<f64>().ok());
+        let (values, weights): (Vec<f64>, Vec<f64>) = rows
             .iter()
             .filter(|row| wanted.iter().all(|(place, value)| value.holds(&row[*place])))
-            .filter_map(|row| row[column].parse().ok())
-            .collect();
+            .filter_map(|row| Some((row[column].parse::<f64>().ok()?, counts(row)?)))
+            .unzip();
         match (self.take, values.len()) {
             (_, 0) => Err(format!("{table}: no row for {:?}", self.column)),
             (Take::Only, 1) => Ok(values[0]),
             (Take::Only, count) => Err(format!("{table}: {count} rows for {:?}, say what to take", self.column)),
-            (Take::Mean, count) => Ok(values.iter().sum::<f64>() / count as f64),
+            (Take::Mean, _) => {
+                let sum: f64 = values.iter().zip(&weights).map(|(value, weight)| value * weight).sum();
+                Ok(sum / weights.iter().sum::<f64>())
+            }
             (Take::Least, _) => Ok(values.iter().copied().fold(f64::INFINITY, f64::min)),
             (Take::Most, _) => Ok(values.iter().copied().fold(f64::NEG_INFINITY, f64::max)),
         }
