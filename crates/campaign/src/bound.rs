@@ -9,7 +9,7 @@ use ship::FirstOrder;
 use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderColumn;
-use simulate::{Simulated, Simulation, StreamKey};
+use simulate::{Simulated, Simulation};
 
 use crate::rows::Bound;
 use coloured::CompassError;
@@ -24,11 +24,11 @@ use coloured::CompassError;
 ///
 /// What several records tell of the ship adds up, each with an initial state of its own.
 pub fn of<'a>(
-    simulations: impl Iterator<Item = (&'a Simulation, StreamKey)>,
+    simulations: impl Iterator<Item = &'a Simulation>,
     simulated: &[Simulated],
     truth: &FirstOrder,
 ) -> Option<(Bound, Matrix2<f64>)> {
-    let mut records = simulations.zip(simulated).map(|((simulation, _), record)| of_record(simulation, record, truth));
+    let mut records = simulations.zip(simulated).map(|(simulation, record)| of_record(simulation, record, truth));
     let first = records.next()??;
     let covariance = records.try_fold(first, |so_far, next| {
         let information = so_far.cholesky()?.inverse() + next?.cholesky()?.inverse();

@@ -35,7 +35,8 @@ impl Yardstick {
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
         let own = base.filter(|_| truth.is_none());
         let sd = simulation.sensors.declared_noise().heading;
-        let bound = nearest.and_then(|nearest| bound::of(specimen.specification.records(key), simulated, &nearest));
+        let simulations = || specimen.specification.records(key).map(|(simulation, _)| simulation);
+        let bound = nearest.and_then(|nearest| bound::of(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
         // Of a likelihood with white heading noise: what has a colour is another one.
         let compass = simulation.sensors.heading;

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 const STEADY: f64 = PI;
 
 /// Heading change that a turn has to have, rad: 180° of pairs that are a round apart.
-pub const ENOUGH: f64 = 2.0 * TAU;
+const ENOUGH: f64 = 2.0 * TAU;
 
 /// Heading between two pairs, rad (10°).
 const BETWEEN: f64 = PI / 18.0;

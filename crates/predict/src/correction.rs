@@ -18,7 +18,7 @@ use trial::{Quantity, Trial, ZigZag as Measured};
 pub use crate::doubt::Doubt;
 use crate::error::PredictError;
 use crate::interval::{Interval, quantile};
-use crate::known::KnownShip;
+use crate::known::{KnownShip, is_same_length};
 use crate::mixture::{Mixture, Source};
 use crate::passage::Passage;
 use crate::prediction::enough;
@@ -31,9 +31,6 @@ const WIDE: f64 = 0.2;
 
 /// Lower end of the 90 % interval of B, as a share of its median, below which the ratio is ill-defined.
 const NEAR_ZERO: f64 = 0.2;
-
-/// Difference of two lengths, as a share, above which two models are of different scale.
-const SAME_LENGTH: f64 = 1e-3;
 
 /// Difference of two approach speeds, as a share, above which it is said.
 const SAME_SPEED: f64 = 0.05;
@@ -101,7 +98,7 @@ pub fn differences(full: &KnownShip, trial: &KnownShip) -> Vec<Doubt> {
         doubts.push(Doubt::Structure { full: of_full, trial: of_trial });
     }
     let is_same = match (full.length_m, trial.length_m) {
-        (Some(one), Some(other)) => (one / other - 1.0).abs() <= SAME_LENGTH,
+        (Some(one), Some(other)) => is_same_length(one, other),
         (one, other) => one == other,
     };
     if !is_same {

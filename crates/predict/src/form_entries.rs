@@ -125,11 +125,8 @@ impl Manoeuvre {
         let Some(figure) = prediction.figures.iter().find(|figure| figure.name == self.figure) else {
             return (None, Basis::NotTold { why: "the length of the ship, or her speed and drift, are not known" });
         };
-        let within = |limit: f64| {
-            let kept = figure.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
-            kept as f64 / figure.draws.len() as f64
-        };
-        let basis = Basis::Predicted { extrapolated: prediction.extrapolated, passing: self.limit.map(within) };
+        let passing = self.limit.map(|limit| figure.share_within(limit));
+        let basis = Basis::Predicted { extrapolated: prediction.extrapolated, passing };
         (Some(Value::Interval(figure.interval)), basis)
     }
 }

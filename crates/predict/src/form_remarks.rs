@@ -38,7 +38,7 @@ pub(crate) fn remarks(
     }
     remarks.extend(of_files.0.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
     for (sort, name) in [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")] {
-        let has = |side: &str| tested.iter().any(|tested| tested.what == Some((sort, side_of(side))));
+        let has = |side: &'static str| tested.iter().any(|tested| tested.what == Some((sort, side)));
         match [has("port"), has("starboard")] {
             [true, true] => {}
             [true, false] => remarks.push(format!("{name}: tried to port only; trials are asked for to both sides")),
@@ -69,14 +69,10 @@ pub(crate) fn remarks(
             None => {}
         }
     }
-    let several = |sort: &str, side: &str| {
-        let own = tested.iter().filter(|tested| tested.what.is_some_and(|(it, to)| it == sort && to == side));
-        own.count() > 1
-    };
     for (sort, side) in
         [TEN, TWENTY, CIRCLE].into_iter().flat_map(|sort| ["port", "starboard"].map(|side| (sort, side)))
     {
-        if several(sort, side) {
+        if tested.iter().filter(|tested| tested.what == Some((sort, side))).count() > 1 {
             remarks.push(format!(
                 "{sort} to {side}: several records; the first that is at full load or corrected is used"
             ));
@@ -130,8 +126,4 @@ fn of_record(record: &Record, tested: &Tested) -> Vec<String> {
     }
     remarks.extend(record.trial.conditions().remark.clone());
     remarks
-}
-
-fn side_of(side: &str) -> &'static str {
-    if side == "port" { "port" } else { "starboard" }
 }

@@ -139,7 +139,7 @@ fn circle(record: &Record) -> Tested {
         ));
     }
     let approach = ((turn.execute - start) / passage.period) as usize;
-    let largest = passage.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
+    let largest = passage.largest_rate();
     if approach >= FEWEST {
         let rate = (passage.heading[approach - 1] - passage.heading[0]) / ((approach - 1) as f64 * passage.period);
         if rate.abs() > STRAIGHT * largest {

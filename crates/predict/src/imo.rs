@@ -44,14 +44,13 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Cri
         let kind = &prediction.kind;
         let mut add = |name: &'static str, figure: &str, limit: f64, unit: imo::Unit| {
             let Some(figure) = prediction.figures.iter().find(|own| own.name == figure) else { return };
-            let passing = figure.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
             criteria.push(Criterion {
                 name,
                 manoeuvre: kind.to_string(),
                 limit,
                 unit,
                 interval: figure.interval,
-                probability: passing as f64 / figure.draws.len() as f64,
+                probability: figure.share_within(limit),
                 extrapolated: prediction.extrapolated,
             });
         };

@@ -151,6 +151,14 @@ impl Member {
     }
 }
 
+/// Difference of two lengths, as a share, below which they are of one ship.
+const SAME_LENGTH: f64 = 1e-3;
+
+/// Whether two lengths, m, are of one ship, as far as lengths tell.
+pub fn is_same_length(one: f64, other: f64) -> bool {
+    (one / other - 1.0).abs() < SAME_LENGTH
+}
+
 impl KnownShip {
     /// The same ship at another length and approach speed: every time grows by (L₂/U₂)/(L₁/U₁), every length by L₂/L₁,
     /// and what has no dimension stays (K′, T′ and all others). With U ~ √L this is the scaling of Froude (1868).

@@ -190,6 +190,11 @@ impl Passage {
         }
     }
 
+    /// Largest size of the yaw rate, rad/s.
+    pub fn largest_rate(&self) -> f64 {
+        self.yaw_rate.iter().fold(0.0, |largest, rate| largest.max(rate.abs()))
+    }
+
     /// Time of a row, s.
     pub fn time(&self, row: usize) -> f64 {
         row as f64 * self.period

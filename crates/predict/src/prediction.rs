@@ -36,6 +36,14 @@ pub struct Predicted {
     pub draws: Vec<Option<f64>>,
 }
 
+impl Predicted {
+    /// Share of the drawn ships that keep within a limit; one without the figure does not.
+    pub fn share_within(&self, limit: f64) -> f64 {
+        let kept = self.draws.iter().filter(|draw| draw.is_some_and(|value| value <= limit)).count();
+        kept as f64 / self.draws.len() as f64
+    }
+}
+
 /// A curve over time with its bands; angles in rad.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bands {
@@ -110,7 +118,7 @@ impl Mixture {
             .into_par_iter()
             .map(|number| {
                 let (figures, passage) = sail(number, &Source::ALL)?;
-                let largest_rate = passage.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
+                let largest_rate = passage.largest_rate();
                 let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
                 Some(Draw { figures, heading: passage.heading, largest_rate, track })
             })

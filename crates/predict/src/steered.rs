@@ -4,12 +4,11 @@
 use rayon::prelude::*;
 use ship::Particulars;
 use ship::angle::to_deg;
-use simulate::manoeuvre::{ZigZag, ZigZagEnd};
-use simulate::{Manoeuvre, Side};
+use simulate::Side;
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
-use crate::kind::{EXECUTES, Kind};
+use crate::kind::Kind;
 use crate::mixture::{Mixture, Source};
 use crate::passage::Passage;
 
@@ -26,7 +25,7 @@ pub(crate) struct Sailed {
 
 impl Sailed {
     pub fn new(figures: Vec<Figure>, passage: &Passage) -> Self {
-        let largest_rate = passage.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
+        let largest_rate = passage.largest_rate();
         Self { figures, largest_rate }
     }
 }
@@ -34,7 +33,6 @@ impl Sailed {
 /// A measured zig-zag as a helm steers it.
 pub(crate) struct Steered {
     pub kind: Kind,
-    manoeuvre: Manoeuvre,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
     /// Rate of the rudder where the record shows it, rad/s.
@@ -61,7 +59,6 @@ impl Steered {
             None => [rudder, heading],
         };
         let first = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
-        let manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first, end: ZigZagEnd::Executes(EXECUTES) });
         // An approach is nearly straight, and a slope that is read off a few headings is not known well.
         let yaw_rate = executes[0].yaw_rate.map_or(0.0, |rate| {
             let doubt = rate.sd.unwrap_or(0.0);
@@ -72,11 +69,12 @@ impl Steered {
             }
         });
         let kind = Kind::ZigZag { rudder, heading, first };
-        Some(Self { kind, manoeuvre, yaw_rate, rudder_rate: measured.rudder_rate })
+        Some(Self { kind, yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
     pub fn draws(&self, mixture: &Mixture, draws: usize) -> Vec<Option<Sailed>> {
+        let manoeuvre = self.kind.manoeuvre(mixture.timescale()).expect("a zig-zag is steered");
         (0..draws)
             .into_par_iter()
             .map(|number| {
@@ -85,7 +83,7 @@ impl Steered {
                 if let Some(rate) = self.rudder_rate {
                     ship.gear.rate = rate;
                 }
-                let passage = Passage::sail(&ship, &self.manoeuvre, mixture.timescale()).ok()?;
+                let passage = Passage::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
                 Some(Sailed::new(figures::of(&self.kind, &passage, mixture.particulars()), &passage))
             })
             .collect()

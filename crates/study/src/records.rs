@@ -9,6 +9,7 @@ use trial::zigzag::median::upper_median;
 use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};
+use campaign::known::Shown;
 use scenario::failure::{Failure, OnPath};
 use scenario::name;
 
@@ -250,6 +251,13 @@ fn ship(
         report::number::fixed(speed / KNOT, 2)
     ));
     Ok(Some(Particulars { length, speed }))
+}
+
+/// Says why records that have a speed or positions tell no track.
+pub fn warn_of_no_track(shown: &Shown, warnings: &mut Vec<String>) {
+    warnings.extend(shown.untold().map(|why| {
+        format!("speed loss and drift are not told by these records, and no track can be predicted: {why}")
+    }));
 }
 
 /// The same record counts only once: given twice for identification its errors come out too small, and on a record that

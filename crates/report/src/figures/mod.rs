@@ -12,6 +12,7 @@ mod heat_map;
 mod index_plane;
 mod intervals;
 mod missing_moment;
+mod named_rows;
 mod overshoot_replays;
 mod overshoots;
 mod phase_plane;

@@ -3,14 +3,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::named_rows::{NamedRows, limit_stroke};
 use crate::axis::{self, Axis};
-use crate::canvas::Anchor;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side, wrap};
+use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::palette::{INK, Origin, RECORD};
-use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 
@@ -45,21 +44,14 @@ const NAMES: f64 = 0.4;
 pub fn overshoot_replays(data: &OvershootReplays, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
-    let names: Vec<Vec<String>> =
-        data.rows.iter().map(|row| wrap(&row.label, theme.tick_font, false, NAMES * theme.width)).collect();
-    let lines = names.iter().map(Vec::len).max().unwrap_or(1).max(1);
-    let pitch = (0.95 + 1.15 * lines as f64) * theme.tick_font;
-    let widest = names.iter().flatten().map(|name| Text::new(name.as_str(), theme.tick_font).width());
-    let rows = Axis::names(vec![String::new(); data.rows.len()]);
-    let row = (Side::new(rows, ""), (data.rows.len().max(1) as f64 + 0.2) * pitch);
-    let mut grid = Grid::stack(Side::new(across(data), "overshoot [°]"), vec![row]);
-    grid.left = Some(sheet.left_margin(&grid) + widest.fold(0.0, f64::max));
-    let panels = sheet.grid(grid);
-    let [panel] = &panels[..] else { return sheet.finish() };
-    for (index, (row, name)) in data.rows.iter().zip(&names).enumerate() {
-        let Some(y) = panel.up(index as f64) else { continue };
-        label(panel, &mut sheet.scene, theme, y, name);
-        draw(panel, &mut sheet.scene, theme, (y, pitch), row);
+    let names = data.rows.iter().map(|row| row.label.as_str());
+    let Some(rows) = NamedRows::new(&mut sheet, theme, names, NAMES, Side::new(across(data), "overshoot [°]")) else {
+        return sheet.finish();
+    };
+    for (index, row) in data.rows.iter().enumerate() {
+        if let Some(y) = rows.label(&mut sheet.scene, theme, index, INK) {
+            draw(&rows, &mut sheet.scene, theme, y, row);
+        }
     }
     sheet.finish()
 }
@@ -80,10 +72,6 @@ fn bar(theme: &Theme) -> Stroke {
     Stroke { opacity: 0.45, ..Stroke::solid(RECORD, 0.75 * theme.tick_font) }
 }
 
-fn limit_stroke(theme: &Theme) -> Stroke {
-    Stroke::solid(INK, 1.6 * theme.line)
-}
-
 /// One of the angles of a row.
 type Part = fn(&ReplayedOvershoot) -> Option<f64>;
 
@@ -102,30 +90,17 @@ fn entries(data: &OvershootReplays, theme: &Theme) -> Vec<Entry> {
     entries
 }
 
-/// The name of a row left of the frame.
-fn label(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, lines: &[String]) {
-    let right = panel.rect.x - 0.62 * theme.tick_font;
-    let leading = 1.15 * theme.tick_font;
-    for (index, line) in lines.iter().enumerate() {
-        let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End);
-        let down = (index as f64 - (lines.len() - 1) as f64 / 2.0) * leading;
-        scene.text(Layer::Frame, (right, y + down + text.centring()), text);
-    }
-}
-
-fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (y, pitch): (f64, f64), row: &ReplayedOvershoot) {
+fn draw(rows: &NamedRows, scene: &mut Scene, theme: &Theme, y: f64, row: &ReplayedOvershoot) {
+    let panel = &rows.panel;
     let place = |value: f64| panel.across(value).map(|x| (x, y)).filter(|place| panel.rect.contains(*place));
     if let (Some(from), Some(to)) = (place(0.0), row.measured.and_then(place)) {
         scene.line(Layer::Data, [from, to], bar(theme));
     }
-    if let Some((x, _)) = row.limit.and_then(place) {
-        let half = 0.42 * pitch;
-        scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
-    }
+    rows.limit(scene, theme, y, row.limit);
     // One above the other, so that neither hides the other.
     for (origin, value, aside) in [(Origin::Before, row.before, -0.16), (Origin::After, row.after, 0.16)] {
         if let Some((x, y)) = value.and_then(place) {
-            scene.marker(Layer::Data, (x, y + aside * pitch), 0.85 * theme.marker, &origin.look());
+            scene.marker(Layer::Data, (x, y + aside * rows.pitch), 0.85 * theme.marker, &origin.look());
         }
     }
 }

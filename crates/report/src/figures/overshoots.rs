@@ -2,12 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::named_rows::{NamedRows, limit_stroke};
 use super::shared::widened;
 use crate::axis::{self, Axis};
 use crate::canvas::Anchor;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side, wrap};
+use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::palette::{BEFORE, HEADING, INK, Look, Marker, RECORD, SOLID};
 use crate::panel::Panel;
@@ -54,23 +55,16 @@ const NAMES: f64 = 0.42;
 pub fn overshoots(data: &Overshoots, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
     sheet.legend(&entries(data, theme));
-    let names: Vec<Vec<String>> =
-        data.rows.iter().map(|row| wrap(&row.label, theme.tick_font, false, NAMES * theme.width)).collect();
-    let lines = names.iter().map(Vec::len).max().unwrap_or(1).max(1);
-    let pitch = (0.95 + 1.15 * lines as f64) * theme.tick_font;
-    let widest = names.iter().flatten().map(|name| Text::new(name.as_str(), theme.tick_font).width());
-    let rows = Axis::names(vec![String::new(); data.rows.len()]);
-    let row = (Side::new(rows, ""), (data.rows.len().max(1) as f64 + 0.2) * pitch);
     let unit = if data.unit.is_empty() { String::new() } else { format!(" [{}]", data.unit) };
-    let mut grid = Grid::stack(Side::new(axis(data), format!("predicted value{unit}")), vec![row]);
-    grid.left = Some(sheet.left_margin(&grid) + widest.fold(0.0, f64::max));
-    let panels = sheet.grid(grid);
-    let [panel] = &panels[..] else { return sheet.finish() };
+    let names = data.rows.iter().map(|row| row.label.as_str());
+    let across = Side::new(axis(data), format!("predicted value{unit}"));
+    let Some(rows) = NamedRows::new(&mut sheet, theme, names, NAMES, across) else { return sheet.finish() };
     let mut beyond = false;
-    for (index, (row, name)) in data.rows.iter().zip(&names).enumerate() {
-        let Some(y) = panel.up(index as f64) else { continue };
-        label(panel, &mut sheet.scene, theme, y, name, row.extrapolated);
-        beyond |= draw(panel, &mut sheet.scene, theme, (y, pitch), row);
+    for (index, row) in data.rows.iter().enumerate() {
+        let colour = if row.extrapolated { RECORD } else { INK };
+        if let Some(y) = rows.label(&mut sheet.scene, theme, index, colour) {
+            beyond |= draw(&rows, &mut sheet.scene, theme, y, row);
+        }
     }
     if beyond {
         sheet.note("Arrows: beyond the axis.");
@@ -100,10 +94,6 @@ fn median_look(extrapolated: bool) -> Look {
 
 const MEASURED: Look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
 
-fn limit_stroke(theme: &Theme) -> Stroke {
-    Stroke::solid(INK, 1.6 * theme.line)
-}
-
 fn stroke90(theme: &Theme) -> Stroke {
     Stroke::solid(HEADING, theme.line)
 }
@@ -132,28 +122,13 @@ fn entries(data: &Overshoots, theme: &Theme) -> Vec<Entry> {
     entries
 }
 
-/// The name of a row left of the frame.
-fn label(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, lines: &[String], extrapolated: bool) {
-    let colour = if extrapolated { RECORD } else { INK };
-    let right = panel.rect.x - 0.62 * theme.tick_font;
-    let leading = 1.15 * theme.tick_font;
-    for (index, line) in lines.iter().enumerate() {
-        let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End).colour(colour);
-        let down = (index as f64 - (lines.len() - 1) as f64 / 2.0) * leading;
-        scene.text(Layer::Frame, (right, y + down + text.centring()), text);
-    }
-}
-
-/// Draws one row about its place and pitch; tells whether something lies beyond the axis.
-fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (y, pitch): (f64, f64), row: &OvershootRow) -> bool {
+/// Draws one row about its place; tells whether something lies beyond the axis.
+fn draw(rows: &NamedRows, scene: &mut Scene, theme: &Theme, y: f64, row: &OvershootRow) -> bool {
+    let panel = &rows.panel;
     let mut beyond = bar(panel, scene, theme, y, row.ci90, stroke90(theme));
     beyond |= bar(panel, scene, theme, y, row.ci50, stroke50(theme));
     let rect = panel.rect;
-    if let Some((x, _)) = row.limit.and_then(|limit| panel.across(limit)).map(|x| (x, y)).filter(|p| rect.contains(*p))
-    {
-        let half = 0.42 * pitch;
-        scene.line(Layer::Data, [(x, y - half), (x, y + half)], limit_stroke(theme));
-    }
+    rows.limit(scene, theme, y, row.limit);
     let mut mark = |value: f64, y: f64, size: f64, look: &Look| {
         if let Some(place) = panel.across(value).map(|x| (x, y)).filter(|place| rect.contains(*place)) {
             scene.marker(Layer::Data, place, size * theme.marker, look);
@@ -162,7 +137,7 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (y, pitch): (f64, f64),
     mark(row.median, y, 0.95, &median_look(row.extrapolated));
     if let Some(measured) = row.measured {
         // Under the bar, so that it does not hide a median nearby.
-        mark(measured, y + 0.34 * pitch, 1.1, &MEASURED);
+        mark(measured, y + 0.34 * rows.pitch, 1.1, &MEASURED);
     }
     if !row.median.is_finite() && row.measured.is_none() && row.limit.is_none() {
         let text = Text::new("no prediction", theme.small_font).anchor(Anchor::Middle).colour(RECORD);

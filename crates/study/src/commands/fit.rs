@@ -12,7 +12,7 @@ use trial::{Trial, ZigZag, ZigZagError};
 
 use crate::commands::alone;
 use crate::options::{Common, FitRequest};
-use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_repetition};
+use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_no_track, warn_of_repetition};
 use crate::scales::{self, Together};
 use crate::views::fit_figures::{self, Drawn, Whole};
 use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
@@ -62,7 +62,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
     let entries_of_trials: Vec<TrialEntry> =
         read.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
     let shown = Shown::of(trials).with_motion();
-    warnings.extend(shown.untold().map(no_track));
+    warn_of_no_track(&shown, &mut warnings);
     let file = FitFile {
         schema: "fit/1".into(),
         zigzag: entries_of_trials[0].zigzag.clone(),
@@ -117,11 +117,6 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         screen::warn(&format!("warning: {warning}"));
     }
     Ok(())
-}
-
-/// Why records that could tell a track do not.
-pub fn no_track(why: &str) -> String {
-    format!("speed loss and drift are not told by these records, and no track can be predicted: {why}")
 }
 
 fn methods(names: &[String], seed: Option<u64>) -> Result<Vec<Box<dyn Identifier>>, Failure> {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use predict::correction::{self, Correction, Doubt};
 use predict::form::{self, Record};
+use predict::known::is_same_length;
 use predict::replay::Replayed;
 use predict::turn::{self, Current};
 use predict::{KnownShip, Mixture, PredictError, Prediction, imo, kind};
@@ -33,9 +34,6 @@ const FORM: &str = "trial-form.md";
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
-
-/// Difference of two lengths, as a share, below which they are of one ship.
-const SAME_LENGTH: f64 = 1e-3;
 
 /// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
 const MODEL: Kind = Kind { name: "a model", largest: 1 << 26 };
@@ -179,7 +177,7 @@ fn manoeuvres(request: &PredictRequest) -> Vec<kind::Kind> {
 
 /// Whether a record is of a ship of this length, m, as far as is known.
 fn is_of(record: &Trial, length: f64) -> bool {
-    record.particulars().is_none_or(|own| (own.length / length - 1.0).abs() < SAME_LENGTH)
+    record.particulars().is_none_or(|own| is_same_length(own.length, length))
 }
 
 /// A record at the scale that its sidecar declares, where another one is asked for: a model is replayed as a model.
@@ -256,7 +254,7 @@ fn at_scale(known: &KnownShip, asked: Option<Particulars>) -> Result<KnownShip, 
     match (known.length_m, speed) {
         (None, Some(_)) => Ok(KnownShip { length_m: Some(length), speed_m_s: speed, ..known.clone() }),
         // The speed of a trial is read off its beginning and never quite that of another.
-        (Some(own), _) if (own / length - 1.0).abs() < SAME_LENGTH => Ok(known.clone()),
+        (Some(own), _) if is_same_length(own, length) => Ok(known.clone()),
         _ => known.scaled_to(length, speed),
     }
 }

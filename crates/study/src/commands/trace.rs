@@ -4,10 +4,9 @@
 use ::trace::{Settings, TraceError};
 use trial::{Channel, Trial};
 
-use crate::commands::fit::no_track;
 use crate::commands::{alone, planned, steady};
 use crate::options::{Common, TraceRequest, Withheld};
-use crate::records::{default_folder, names, read_all, read_others, warn_of_repetition};
+use crate::records::{default_folder, names, read_all, read_others, warn_of_no_track, warn_of_repetition};
 use crate::scales::{self, Together};
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
@@ -53,7 +52,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(trials, "trace")))?;
     let planned = planned::trials(&analysis, trials);
     let shown = Shown::of(trials).with_motion();
-    warnings.extend(shown.untold().map(no_track));
+    warn_of_no_track(&shown, &mut warnings);
     let known = known::of_analysis(&analysis, &shown);
     let report = TraceReport {
         names: names(trials.iter().chain(others).map(Trial::name)),

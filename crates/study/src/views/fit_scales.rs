@@ -8,7 +8,6 @@ use trial::{Quantity, Trial};
 
 use super::fit_file::FitFile;
 use super::scale_comparison::{ComparedModel, ComparedTerm, ScalesEntry, prime_table};
-use crate::records::file_of;
 use crate::scales::{Together, scale_name};
 use campaign::answer::MethodEntry;
 
@@ -22,27 +21,22 @@ pub fn compared(
     answers: &[(MethodEntry, Option<Estimate>)],
     together: &Together,
 ) -> Option<ScalesEntry> {
-    let scales = together.scales.as_ref()?;
-    let first = scales.particulars[0];
-    let groups = scales.groups(together.trials.len());
-    if groups.len() < 2 {
-        return None;
-    }
     let of_group =
         |records: &[usize]| -> Vec<Trial> { records.iter().map(|&record| together.trials[record].clone()).collect() };
-    let groups_of_trials: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
-    let comparisons: Vec<ComparedModel> = methods
-        .par_iter()
-        .zip(answers)
-        .filter_map(|(method, (entry, joint))| {
-            let joint = joint.as_ref()?;
-            let own: Vec<Option<Estimate>> =
-                groups_of_trials.par_iter().map(|trials| method.identify(trials).ok()).collect();
-            Some(ComparedModel { model: entry.method.clone(), terms: terms(joint, &own, first) })
-        })
-        .collect();
-    let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
-    Some(ScalesEntry::new(&groups, &files, first, comparisons))
+    ScalesEntry::compared(together, |groups, first| {
+        let groups: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
+        let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
+            groups.par_iter().map(|trials| method.identify(trials).ok()).collect()
+        };
+        methods
+            .par_iter()
+            .zip(answers)
+            .filter_map(|(method, (entry, joint))| {
+                let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
+                Some(ComparedModel { model: entry.method.clone(), terms })
+            })
+            .collect()
+    })
 }
 
 /// K', T', the regular 1/T' and K'/T', and δ_r.

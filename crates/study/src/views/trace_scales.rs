@@ -9,7 +9,6 @@ use ship::particulars::prime_unit;
 use trial::Quantity;
 
 use super::scale_comparison::{ComparedModel, ComparedTerm, ScalesEntry};
-use crate::records::file_of;
 use crate::scales::Together;
 
 /// A parameter without dimension, with its symbol and unit: a plain angle in degrees, all else with radians.
@@ -45,12 +44,13 @@ fn told(quantity: Quantity, at_bound: bool) -> Quantity {
 /// The final model on the records of every scale alone, against its parameters from all; `None` where the fitted
 /// records have one scale.
 pub fn compared(analysis: &Analysis, together: &Together) -> Option<ScalesEntry> {
-    let scales = together.scales.as_ref()?;
-    let first = scales.particulars[0];
-    let groups = scales.groups(together.trials.len());
-    if groups.len() < 2 {
-        return None;
-    }
+    ScalesEntry::compared(together, |groups, first| {
+        vec![ComparedModel { model: String::from("traced"), terms: terms(analysis, groups, first) }]
+    })
+}
+
+/// K', T' and every parameter that belongs to all records.
+fn terms(analysis: &Analysis, groups: &[(Particulars, Vec<usize>)], first: Particulars) -> Vec<ComparedTerm> {
     let own: Vec<Option<Apart>> = groups.par_iter().map(|(_, records)| analysis.apart(records)).collect();
     let mut terms = Vec::new();
     for (place, symbol, dimension) in [(0, "K′", [-1, 0]), (1, "T′", [1, 0])] {
@@ -71,9 +71,7 @@ pub fn compared(analysis: &Analysis, together: &Together) -> Option<ScalesEntry>
         let found = own.iter().map(|own| own.as_ref().and_then(counterpart)).collect();
         terms.push(ComparedTerm::new(symbol, &unit, joint, found));
     }
-    let files: Vec<&str> = together.trials.iter().map(|trial| file_of(trial).0).collect();
-    let traced = ComparedModel { model: String::from("traced"), terms };
-    Some(ScalesEntry::new(&groups, &files, first, vec![traced]))
+    terms
 }
 
 #[cfg(test)]
