@@ -121,6 +121,7 @@ fn design(scenario: &Scenario) -> Design {
         trials: 0..0,
         missing: cell.missing(),
         has_own_indices: cell.has_own_indices(),
+        is_nearest: !cell.is_first_order(),
         bound_percent2: None,
     };
     Design {

@@ -42,6 +42,10 @@ pub struct CellFacts {
     /// ship with effects.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub has_own_indices: bool,
+    /// Whether K and T are held against those of the first-order response nearest to the ship, which is not first order
+    /// itself.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub is_nearest: bool,
     /// Cramér–Rao covariance of the relative errors of K and T, in squared per cent; `None` where every trial has a
     /// bound of its own, and where there is none.
     pub bound_percent2: Option<[[f64; 2]; 2]>,

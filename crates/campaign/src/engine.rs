@@ -326,6 +326,7 @@ pub fn facts(scenario: &Scenario, cell: usize) -> CellFacts {
         trials: 0..0,
         missing: about.missing(),
         has_own_indices: about.has_own_indices(),
+        is_nearest: !about.is_first_order(),
         bound_percent2: bound
             .map(|(_, relative)| [[relative[(0, 0)], relative[(0, 1)]], [relative[(1, 0)], relative[(1, 1)]]]),
     }

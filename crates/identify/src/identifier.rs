@@ -74,8 +74,8 @@ pub struct Accuracy {
 /// Largest errors that the method itself makes in zig-zags of a ship with K = 0.1 1/s and T = 16.3 s, read every
 /// second.
 ///
-/// The default is that of a method without any error of its own: the corners of the rudder lie between rows, where a
-/// straight line takes their place, and no method can be better than 0.03 % in K.
+/// The default is that of a method without any error of its own, which takes the corners of the rudder from where the
+/// record has them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Promises {
     /// From every row.
@@ -87,7 +87,7 @@ pub struct Promises {
 impl Default for Promises {
     fn default() -> Self {
         Self {
-            whole: Accuracy { K: 4e-4, T: 1e-4, rudder_bias_deg: 4e-4 },
+            whole: Accuracy { K: 1e-6, T: 1e-6, rudder_bias_deg: 1e-6 },
             with_gaps: Accuracy { K: 0.001, T: 0.002, rudder_bias_deg: 0.012 },
         }
     }

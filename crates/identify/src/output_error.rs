@@ -256,6 +256,10 @@ impl OutputError {
         // Whichever valley it came from: a minimum may leave the range on the way, or stop where the range ends.
         let fastest = grid[grid.len() - 1];
         let at_bound = inverse_time.abs() >= fastest * (1.0 - AT_BOUND);
+        // A rudder of the wrong sign looks like a ship that is course-unstable with a T of no time at all.
+        if at_bound && let refused @ IdentifyError::NotAShip { .. } = refusal(&scan, &grid, f64::INFINITY) {
+            return Err(refused);
+        }
 
         let information = profile.information(inverse_time);
         let observations = profile.observations();

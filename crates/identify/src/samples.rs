@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use lanes::column::extremes;
 use likelihood::Track;
 use ship::angle::to_deg;
-use trial::Trial;
+use trial::{Corner, Trial};
 
 use crate::error::IdentifyError;
 
@@ -28,7 +28,7 @@ pub struct Samples {
     pub heading: Vec<f64>,
     /// Rudder δ, rad.
     pub rudder: Vec<f64>,
-    /// ∫δ from the first observed row, rad s, exact for a rudder that is linear between rows.
+    /// ∫δ from the first observed row, rad s, exact for a rudder that is linear between rows and corners.
     pub rudder_integral: Vec<f64>,
     /// ∫∫δ from the first observed row, rad s².
     pub rudder_double_integral: Vec<f64>,
@@ -55,12 +55,19 @@ impl Samples {
         };
         let (mut once, mut twice) = (0.0, 0.0);
         let mut place = 0;
+        let mut corners = trial.rudder_corners().iter().filter(|corner| corner.row >= first).peekable();
         for row in first..rows {
             // Integration starts at the first observed row.
             if row > first {
                 let h = t[row] - t[row - 1];
-                twice += h * once + h * h * (2.0 * delta[row - 1] + delta[row]) / 6.0;
-                once += 0.5 * h * (delta[row - 1] + delta[row]);
+                if let Some(Corner { time, before, after, .. }) = corners.next_if(|corner| corner.row + 1 == row) {
+                    let (start, rest, change) = (delta[row - 1], t[row] - time, after - before);
+                    twice += h * once + h * h * (3.0 * start + h * before) / 6.0 + rest.powi(3) * change / 6.0;
+                    once += h * start + 0.5 * (h * h * before + rest * rest * change);
+                } else {
+                    twice += h * once + h * h * (2.0 * delta[row - 1] + delta[row]) / 6.0;
+                    once += 0.5 * h * (delta[row - 1] + delta[row]);
+                }
             }
             if psi[row].is_finite() {
                 samples.time[place] = t[row] - t[first];

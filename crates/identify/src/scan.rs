@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 use ship::first_order::Transition;
 
 use crate::profile::solve2;
-use likelihood::track::{Track, differs, is_backward};
+use likelihood::track::{Step, Track, differs, is_backward};
 
 /// Values of 1/T side by side.
 const LANES: usize = 8;
@@ -140,7 +140,7 @@ impl lanes::Kernel for Sweep<'_> {
         let rudder = track.rudder();
         let backward = is_backward(inverse_time[0]);
         for k in 0..track.steps() {
-            let (from, to, step, rate) = track.step(k, backward);
+            let Step { from, to, length: step, rudder_rate: rate, bend } = track.step(k, backward);
             if differs(length, step) {
                 length = step;
                 for lane in 0..LANES {
@@ -157,6 +157,13 @@ impl lanes::Kernel for Sweep<'_> {
                 g_rate[lane] = decay[lane] * g_rate[lane] + (phi1[lane] * delta + phi2[lane] * rate);
                 h[lane] += phi1[lane] * h_rate[lane] + phi2[lane];
                 h_rate[lane] = decay[lane] * h_rate[lane] + phi1[lane];
+            }
+            if let Some(bend) = bend {
+                for lane in 0..LANES {
+                    let [heading, yaw_rate] = bend.response(inverse_time[lane]);
+                    g[lane] += heading;
+                    g_rate[lane] += yaw_rate;
+                }
             }
             for lane in 0..LANES {
                 sums.f[lane] += f[lane];

@@ -206,6 +206,24 @@ pub fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -
     Trial::new(name, origin, Columns { time, channels, unknown: Vec::new() }).expect("a test builds valid records")
 }
 
+/// Heading of `ship` from `start` under the rudder of these rows, exact for what a record of them takes it for: linear
+/// between rows and the corners between them.
+pub fn steered(ship: &FirstOrder, start: State, time: &[f64], rudder: &[f64]) -> Vec<f64> {
+    let blank = record("steering", time.to_vec(), vec![0.0; time.len()], rudder.to_vec());
+    let path = blank.rudder_signal();
+    let b = ship.K_over_T;
+    let (mut state, mut heading, mut at) = (start, vec![start.heading], 1);
+    for (t, delta) in path.times().windows(2).zip(path.values().windows(2)) {
+        let (h, slope) = (t[1] - t[0], (delta[1] - delta[0]) / (t[1] - t[0]));
+        state = Transition::new(ship.inverse_T, h).advance(state, b * (delta[0] + ship.rudder_bias), b * slope);
+        if t[1] == time[at] {
+            heading.push(state.heading);
+            at += 1;
+        }
+    }
+    heading
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

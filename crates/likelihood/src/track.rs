@@ -32,11 +32,46 @@ pub struct Track {
 
 /// What lies between two rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
+struct Interval {
     /// Length, s.
+    length: f64,
+    /// Rudder rate, rad/s; with a corner, that before it.
+    rudder_rate: f64,
+    /// Time from the row to a corner of the rudder, s, and the rudder rate after it, rad/s.
+    corner: Option<(f64, f64)>,
+}
+
+/// A step from one row to the next, in either direction of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// The row before.
+    pub from: usize,
+    /// The row after.
+    pub to: usize,
+    /// Signed length, s.
     pub length: f64,
-    /// Rudder rate, rad/s.
+    /// Rudder rate at the beginning of the step, rad/s.
     pub rudder_rate: f64,
+    /// The corner of the rudder in it.
+    pub bend: Option<Bend>,
+}
+
+/// A change of the rudder rate between two rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bend {
+    /// Signed time from it to the end of the step, s.
+    pub rest: f64,
+    /// The change, rad/s.
+    pub change: f64,
+}
+
+impl Bend {
+    /// What it adds to the heading (rad s²) and the yaw rate (rad s) at the end of the step, for b = 1/s².
+    #[inline]
+    pub fn response(&self, inverse_time: f64) -> [f64; 2] {
+        let step = Transition::new(inverse_time, self.rest);
+        [step.phi3 * self.change, step.phi2 * self.change]
+    }
 }
 
 /// The columns beside the constant one, at the observed rows.
@@ -94,13 +129,20 @@ impl Track {
         let heading = &trial.heading()[first..=last];
         let observed: Vec<usize> = (0..heading.len()).filter(|&row| heading[row].is_finite()).collect();
         let heading = observed.iter().map(|&row| heading[row]).collect();
-        Self::of(trial.time()[first..=last].to_vec(), trial.rudder()[first..=last].to_vec(), observed, heading)
+        let time = trial.time();
+        let mut track = Self::of(time[first..=last].to_vec(), trial.rudder()[first..=last].to_vec(), observed, heading);
+        for corner in trial.rudder_corners().iter().filter(|corner| (first..last).contains(&corner.row)) {
+            let interval = &mut track.intervals[corner.row - first];
+            interval.rudder_rate = corner.before;
+            interval.corner = Some((corner.time - time[corner.row], corner.after));
+        }
+        track
     }
 
     fn of(time: Vec<f64>, rudder: Vec<f64>, observed: Vec<usize>, heading: Vec<f64>) -> Self {
         let interval = |(t, delta): (&[f64], &[f64])| {
             let length = t[1] - t[0];
-            Interval { length, rudder_rate: (delta[1] - delta[0]) / length }
+            Interval { length, rudder_rate: (delta[1] - delta[0]) / length, corner: None }
         };
         let intervals = time.windows(2).zip(rudder.windows(2)).map(interval).collect();
         Self { time, rudder, intervals, observed, heading, observed_rates: Vec::new(), rates: Vec::new() }
@@ -170,16 +212,18 @@ impl Track {
         self.intervals.len()
     }
 
-    /// The `k`-th step from the anchor away: row before, row, signed length (s), rudder rate (rad/s).
+    /// The `k`-th step from the anchor away.
     #[inline(always)]
-    pub fn step(&self, k: usize, backward: bool) -> (usize, usize, f64, f64) {
+    pub fn step(&self, k: usize, backward: bool) -> Step {
+        let row = if backward { self.intervals.len() - 1 - k } else { k };
+        let Interval { length, rudder_rate, corner } = self.intervals[row];
         if backward {
-            let row = self.intervals.len() - 1 - k;
-            let Interval { length, rudder_rate } = self.intervals[row];
-            (row + 1, row, -length, rudder_rate)
+            let bend = corner.map(|(at, after)| Bend { rest: -at, change: rudder_rate - after });
+            let rudder_rate = corner.map_or(rudder_rate, |(_, after)| after);
+            Step { from: row + 1, to: row, length: -length, rudder_rate, bend }
         } else {
-            let Interval { length, rudder_rate } = self.intervals[k];
-            (k, k + 1, length, rudder_rate)
+            let bend = corner.map(|(at, after)| Bend { rest: length - at, change: after - rudder_rate });
+            Step { from: row, to: row + 1, length, rudder_rate, bend }
         }
     }
 
@@ -235,9 +279,9 @@ impl Track {
         let (mut heading, mut yaw_rate) = ([0.0; 4], [1.0, 0.0, 0.0, 0.0]);
         let mut step = Transition::new(inverse_time, 0.0);
         for k in 0..self.steps() {
-            let (from, to, h, rate) = self.step(k, backward);
-            if differs(step.h, h) {
-                step = Transition::new(inverse_time, h);
+            let Step { from, to, length, rudder_rate: rate, bend } = self.step(k, backward);
+            if differs(step.h, length) {
+                step = Transition::new(inverse_time, length);
             }
             let delta = self.rudder[from];
             let of_heading = [0.0, step.phi2 * delta + step.phi3 * rate, step.phi2, 0.0];
@@ -245,6 +289,11 @@ impl Track {
             for motion in 0..4 {
                 heading[motion] += step.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = step.decay * yaw_rate[motion] + of_rate[motion];
+            }
+            if let Some(bend) = bend {
+                let [more_heading, more_rate] = bend.response(inverse_time);
+                heading[1] += more_heading;
+                yaw_rate[1] += more_rate;
             }
             visit(to, heading, yaw_rate);
         }
@@ -284,9 +333,9 @@ impl Track {
         let (mut heading, mut yaw_rate) = ([0.0, anchor.heading], [0.0, anchor.yaw_rate]);
         let mut step = TangentTransition::new(inverse_time, 0.0);
         for k in 0..self.steps() {
-            let (from, to, h, rate) = self.step(k, backward);
-            if differs(step.value.h, h) {
-                step = TangentTransition::new(inverse_time, h);
+            let Step { from, to, length, rudder_rate: rate, bend } = self.step(k, backward);
+            if differs(step.value.h, length) {
+                step = TangentTransition::new(inverse_time, length);
             }
             let (f, d) = (&step.value, &step.by_inverse_T);
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
@@ -297,6 +346,16 @@ impl Track {
             for motion in 0..2 {
                 heading[motion] += f.phi1 * yaw_rate[motion] + of_heading[motion];
                 yaw_rate[motion] = f.decay * yaw_rate[motion] + of_rate[motion];
+            }
+            if let Some(Bend { rest, change }) = bend {
+                let TangentTransition { value, by_inverse_T } = TangentTransition::new(inverse_time, rest);
+                let change = coefficients.gain * change;
+                for (motion, part) in [by_inverse_T.phi3, value.phi3].into_iter().enumerate() {
+                    heading[motion] += part * change;
+                }
+                for (motion, part) in [by_inverse_T.phi2, value.phi2].into_iter().enumerate() {
+                    yaw_rate[motion] += part * change;
+                }
             }
             visit(to, heading[0], yaw_rate[0]);
         }
@@ -310,12 +369,13 @@ impl Track {
         states[self.anchor_row(backward)] = state;
         let mut step = Transition::new(inverse_time, 0.0);
         for k in 0..self.steps() {
-            let (from, to, h, rate) = self.step(k, backward);
-            if differs(step.h, h) {
-                step = Transition::new(inverse_time, h);
+            let Step { from, to, length, rudder_rate, bend } = self.step(k, backward);
+            if differs(step.h, length) {
+                step = Transition::new(inverse_time, length);
             }
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
-            state = step.advance(state, u0, coefficients.gain * rate);
+            state = step.advance(state, u0, coefficients.gain * rudder_rate);
+            bent(&mut state, bend, inverse_time, coefficients.gain);
             states[to] = state;
         }
         states
@@ -325,9 +385,10 @@ impl Track {
     pub fn last_state_from(&self, inverse_time: f64, coefficients: &Coefficients) -> State {
         let mut state = coefficients.anchor;
         for k in 0..self.steps() {
-            let (from, _, h, rate) = self.step(k, false);
+            let Step { from, length, rudder_rate, bend, .. } = self.step(k, false);
             let u0 = coefficients.gain * self.rudder[from] + coefficients.offset;
-            state = Transition::new(inverse_time, h).advance(state, u0, coefficients.gain * rate);
+            state = Transition::new(inverse_time, length).advance(state, u0, coefficients.gain * rudder_rate);
+            bent(&mut state, bend, inverse_time, coefficients.gain);
         }
         state
     }
@@ -340,6 +401,15 @@ impl Track {
     /// Row of the track for every yaw rate that is used.
     pub fn observed_rates(&self) -> &[usize] {
         &self.observed_rates
+    }
+}
+
+/// The state with what a corner of the rudder adds to it.
+fn bent(state: &mut State, bend: Option<Bend>, inverse_time: f64, gain: f64) {
+    if let Some(bend) = bend {
+        let [heading, yaw_rate] = bend.response(inverse_time);
+        state.heading += gain * heading;
+        state.yaw_rate += gain * yaw_rate;
     }
 }
 

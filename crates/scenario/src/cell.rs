@@ -80,6 +80,11 @@ impl Cell {
         self.specification.truth.is_none() && self.specification.base.is_some()
     }
 
+    /// Whether the ship is a first-order response, so that K and T of a method are held against its own.
+    pub fn is_first_order(&self) -> bool {
+        self.specification.truth.is_some()
+    }
+
     /// Whether its trials make an assumption: its place in `Assumption::ALL`.
     pub(crate) fn assumes(&self, index: usize) -> bool {
         self.specification.assumed[index]

@@ -43,7 +43,7 @@ pub use conditions::{Conditions, Loading};
 pub use file::FileError;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, Reading, read, read_with};
-pub use record::{Columns, Mark, Noise, Origin, Trial, TrialError};
+pub use record::{Columns, Corner, Mark, Noise, Origin, Trial, TrialError};
 pub use scale::{ScaleError, Scales, Scaling};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;

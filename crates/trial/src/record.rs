@@ -1,6 +1,7 @@
 //! The record of one trial: columns that belong together, checked once when the record is made.
 
 mod changed;
+mod corners;
 
 use std::collections::BTreeMap;
 
@@ -12,6 +13,9 @@ use thiserror::Error;
 use crate::channel::Channel;
 use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
 use crate::zigzag::median::upper_median;
+use corners::Rudder;
+
+pub use corners::Corner;
 
 /// Where a record comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -149,7 +153,7 @@ pub enum TrialError {
 pub struct Trial {
     name: String,
     origin: Origin,
-    rudder: Polyline,
+    rudder: Rudder,
     channels: BTreeMap<Channel, Vec<f64>>,
     unknown: Vec<(String, Vec<f64>)>,
     heading_from_yaw_rate: bool,
@@ -187,11 +191,11 @@ impl Trial {
             }
         }
         let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
-        let rudder = signal(time, rudder)?;
+        let rudder = Rudder::new(signal(time, rudder)?);
         let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
         if heading_from_yaw_rate {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;
-            channels.insert(Channel::Heading, integrate(rudder.times(), rate));
+            channels.insert(Channel::Heading, integrate(rudder.rows.times(), rate));
         }
         let found = channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
         if found < Self::FEWEST_ROWS {
@@ -253,7 +257,7 @@ impl Trial {
 
     /// Time of every row, s, strictly increasing; the clock of the record, not necessarily from 0.
     pub fn time(&self) -> &[f64] {
-        self.rudder.times()
+        self.rudder.rows.times()
     }
 
     /// Length of the record in time, s.
@@ -281,12 +285,18 @@ impl Trial {
 
     /// Rudder angle of every row, rad.
     pub fn rudder(&self) -> &[f64] {
-        self.rudder.values()
+        self.rudder.rows.values()
     }
 
-    /// The rudder as a signal, linear between rows.
+    /// The rudder as a signal: linear between rows and the [corners](Self::rudder_corners) between them.
     pub fn rudder_signal(&self) -> &Polyline {
-        &self.rudder
+        self.rudder.path()
+    }
+
+    /// Instants between rows at which the rudder begins or ends a stroke, in the order of time; none where it does not
+    /// rest or move at one rate.
+    pub fn rudder_corners(&self) -> &[Corner] {
+        &self.rudder.corners
     }
 
     /// Yaw rate of every row, rad/s, where the record has it; NaN where a row does not.
@@ -342,7 +352,7 @@ impl Trial {
 
     /// The recorded rudder alone, ready to be replayed through a model.
     pub fn recorded_rudder(&self) -> Recorded<'_> {
-        Recorded::rudder(&self.rudder)
+        Recorded::rudder(self.rudder.path())
     }
 
     /// Rows in which the heading was recorded.

@@ -99,6 +99,9 @@ const FAR: f64 = 3.0;
 /// A difference of this share of the value has to be visible before "scales" is said.
 const TELLING: f64 = 0.25;
 
+/// A number is not known better than this share of it.
+const ROUNDING: f64 = 1e-12;
+
 /// Whether a number that has no dimension is the same at every scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scaling {
@@ -133,9 +136,11 @@ impl Scaling {
         let mut is_telling = known.len() == found.len();
         for (number, one) in known.iter().enumerate() {
             for other in &known[number + 1..] {
-                let sd = one.1.hypot(other.1);
+                let size = one.0.abs().max(other.0.abs());
+                // Records without noise know a number to its rounding and no better.
+                let sd = one.1.hypot(other.1).max(ROUNDING * size);
                 let difference = (other.0 - one.0) / sd;
-                is_telling &= FAR * sd <= TELLING * one.0.abs().max(other.0.abs());
+                is_telling &= FAR * sd <= TELLING * size;
                 if difference.is_finite() && largest.is_none_or(|largest| difference.abs() > largest.abs()) {
                     largest = Some(difference);
                 }

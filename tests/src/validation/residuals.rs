@@ -160,7 +160,7 @@ pub fn section() -> Section {
             let digits = if value < 0.01 { 4 } else { 3 };
             [
                 check("rms of what the base leaves", line.rms, 3, rms, Tolerance::Relative(0.04), "deg"),
-                check("bias of K", line.bias[0], 1, 100.0 * (gain / 0.1 - 1.0), Tolerance::Absolute(0.4), "%"),
+                check("bias of K", line.bias[0], 1, 100.0 * (gain / 0.1 - 1.0), Tolerance::Absolute(0.5), "%"),
                 check("bias of T", line.bias[1], 1, 100.0 * (time / 16.3 - 1.0), Tolerance::Absolute(0.5), "%"),
                 check("rms with the effect added", 0.010, 3, after, Tolerance::Absolute(0.003), "deg"),
                 check("its parameter", value, digits, own[place] / unit, Tolerance::Relative(0.02), ""),

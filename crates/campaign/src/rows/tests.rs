@@ -15,6 +15,7 @@ fn design() -> Design {
         trials: 0..1,
         missing: Vec::new(),
         has_own_indices: false,
+        is_nearest: false,
         bound_percent2: None,
     };
     let method = |label: &str| MethodName { label: label.into(), id: label.into() };

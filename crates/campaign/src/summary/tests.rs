@@ -12,6 +12,7 @@ fn design(methods: &[&str], cells: usize) -> Design {
         trials: 0..0,
         missing: Vec::new(),
         has_own_indices: false,
+        is_nearest: false,
         bound_percent2: None,
     };
     Design {

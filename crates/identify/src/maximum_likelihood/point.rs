@@ -260,7 +260,9 @@ struct Weight {
 impl Weight {
     fn square(&self, b: f64, q: f64) -> f64 {
         let [[gg, gh, gy], [_, hh, hy], [.., yy]] = self.products;
-        (yy - 2.0 * (b * gy + q * hy) + b * b * gg + 2.0 * b * q * gh + q * q * hh).max(f64::MIN_POSITIVE)
+        // Products know no square below their rounding: a record without noise keeps that much.
+        let rounding = (f64::EPSILON * yy).max(f64::MIN_POSITIVE);
+        (yy - 2.0 * (b * gy + q * hy) + b * b * gg + 2.0 * b * q * gh + q * q * hh).max(rounding)
     }
 
     fn variance(&self, b: f64, q: f64) -> f64 {

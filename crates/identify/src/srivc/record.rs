@@ -19,8 +19,8 @@ pub(super) struct Row {
     pub observed: bool,
 }
 
-/// The rows of a trial between its first and last observed heading, those without a heading included: they hold
-/// corners of the rudder.
+/// The rows of a trial between its first and last observed heading, those without a heading included, and a row without
+/// a heading for every corner of the rudder between two of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Record {
     /// The rows, in the order in which the filters run.
@@ -34,27 +34,34 @@ impl Record {
     /// steers the iteration but carries no weight in the answer.
     pub fn new(trial: &Trial) -> Self {
         let (time, rudder, heading) = (trial.time(), trial.rudder(), trial.heading());
-        let mut rows: Vec<Row> = Vec::with_capacity(trial.len());
-        let (mut first, mut last) = (0, 0);
+        let mut rows: Vec<Row> = Vec::with_capacity(trial.len() + trial.rudder_corners().len());
+        let mut corners = trial.rudder_corners().iter().peekable();
+        let (mut first, mut last, mut next) = (0, 0, 0);
         let mut observed = 0;
-        let mut interval = 0.0;
+        let (mut interval, mut before) = (0.0, 0.0);
         for row in trial.observed_rows() {
             if observed == 0 {
-                (first, last) = (row, row);
+                (first, last, next, before) = (row, row, row, time[row]);
             }
             let (from, to) = (heading[last], heading[row]);
-            for next in rows.len() + first..=row {
-                let share = if row == last { 1.0 } else { (time[next] - time[last]) / (time[row] - time[last]) };
-                let elapsed = time[next] - time[next.saturating_sub(1).max(first)];
+            let mut push = |t: f64, share: f64, rudder: f64, observed: bool| {
+                let elapsed = t - before;
                 if (elapsed - interval).abs() > SAME_INTERVAL * interval {
                     interval = elapsed;
                 }
-                rows.push(Row {
-                    interval,
-                    rudder: rudder[next],
-                    heading: from + share * (to - from) - heading[first],
-                    observed: next == row,
-                });
+                before = t;
+                rows.push(Row { interval, rudder, heading: from + share * (to - from) - heading[first], observed });
+            };
+            let share = |t: f64| (t - time[last]) / (time[row] - time[last]);
+            while next <= row {
+                while let Some(corner) = corners.next_if(|corner| corner.row < next) {
+                    if corner.row >= first {
+                        let angle = rudder[corner.row] + corner.before * (corner.time - time[corner.row]);
+                        push(corner.time, share(corner.time), angle, false);
+                    }
+                }
+                push(time[next], if next == row { 1.0 } else { share(time[next]) }, rudder[next], next == row);
+                next += 1;
             }
             last = row;
             observed += 1;

@@ -6,36 +6,21 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use nalgebra::{Matrix5, SMatrix};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use ship::angle::from_deg;
-use ship::first_order::{State, Transition};
+use ship::first_order::State;
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::*;
-use crate::testing::{Case, Start, record};
+use crate::testing::{Case, Start, record, steered};
 
 fn srivc() -> Srivc {
     Settings::default().build().expect("the defaults are valid")
-}
-
-/// Heading of `ship` from `start` under a rudder that is linear between rows: exact, unlike a record that has its
-/// corners between rows.
-fn heading(ship: &FirstOrder, start: State, time: &[f64], rudder: &[f64]) -> Vec<f64> {
-    let b = ship.K_over_T;
-    let mut state = start;
-    let mut heading = vec![state.heading];
-    for row in 1..time.len() {
-        let h = time[row] - time[row - 1];
-        let slope = b * (rudder[row] - rudder[row - 1]) / h;
-        state = Transition::new(ship.inverse_T, h).advance(state, b * (rudder[row - 1] + ship.rudder_bias), slope);
-        heading.push(state.heading);
-    }
-    heading
 }
 
 /// The steering of `case`, repeated exactly by `ship` from a turning start.
 fn exact(case: &Case, ship: &FirstOrder) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let truth = case.truth();
     let start = State { heading: 0.3, yaw_rate: from_deg(0.4) };
-    let heading = heading(ship, start, &truth.time, &truth.rudder);
+    let heading = steered(ship, start, &truth.time, &truth.rudder);
     (truth.time, heading, truth.rudder)
 }
 
@@ -84,7 +69,7 @@ fn cramer_rao(case: &Case, sigma: f64) -> [f64; 2] {
         let ship =
             FirstOrder::from_indices(case.K * (1.0 + p[0]), case.T * (1.0 + p[1]), from_deg(case.bias_deg) + p[2]);
         let start = State { heading: truth.heading[0] + p[3], yaw_rate: truth.yaw_rate[0] + p[4] };
-        heading(&ship, start, &truth.time, &truth.rudder)
+        steered(&ship, start, &truth.time, &truth.rudder)
     };
     let step = 1e-5;
     let gradients: Vec<Vec<f64>> = (0..5)
@@ -296,7 +281,7 @@ fn gaps_and_uneven_sampling_do_not_bias() {
     let rows: Vec<usize> = (0..270).map(|row| 4 * row + [0, 2, 1, 0, 1][row % 5]).collect();
     let take = |column: &[f64]| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>();
     let (time, rudder) = (take(&truth.time), take(&truth.rudder));
-    let mut heading = heading(&case.ship(), State { heading: 0.1, yaw_rate: 0.01 }, &time, &rudder);
+    let mut heading = steered(&case.ship(), State { heading: 0.1, yaw_rate: 0.01 }, &time, &rudder);
     for (row, psi) in heading.iter_mut().enumerate() {
         if row < 3 || row % 7 == 2 || (80..120).contains(&row) || row > 266 {
             *psi = f64::NAN;
@@ -365,7 +350,7 @@ fn refuses_what_cannot_be_identified() {
     // In a steady turn K and δ_r act alike; only the last interval tells them apart.
     let mut rudder = vec![from_deg(10.0); 100];
     rudder[99] = from_deg(8.0);
-    let turn = heading(&Case::default().ship(), State::default(), &time, &rudder);
+    let turn = steered(&Case::default().ship(), State::default(), &time, &rudder);
     let strict = Settings { condition_limit: 1e3, ..Settings::default() }.build().expect("valid");
     let error = strict.identify(&[record("turn", time, turn, rudder)]).expect_err("nearly singular");
     assert!(matches!(error, IdentifyError::Singular { condition, limit: 1e3 } if condition > 1e3), "{error}");
