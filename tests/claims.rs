@@ -1,5 +1,6 @@
 //! Sentences with numbers, held against the stored summaries they are about: `claims.toml` says which number is which
-//! figure. A number is right when the stored one, rounded to as many digits, is it.
+//! figure. A number is right when the stored one, rounded to as many digits, is it. A word such as "smallest" or "at
+//! the bound" is a test on the ends of intervals.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,31 @@ struct Claim {
     /// The table of the numbers.
     table: String,
     /// The figure of every number, in their order.
+    #[serde(default)]
     numbers: Vec<Number>,
+    /// Figures that lie where a word puts them: "at the bound" is an interval that reaches to one.
+    #[serde(default)]
+    within: Vec<Within>,
+    /// Figures that stand in an order: "the smallest error" has an interval that ends below the other one.
+    #[serde(default)]
+    order: Vec<Order>,
+}
+
+/// A figure between two ends.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Within {
+    figure: Number,
+    least: Option<f64>,
+    most: Option<f64>,
+}
+
+/// Two figures, the smaller one first.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Order {
+    smaller: Number,
+    larger: Number,
 }
 
 /// A number of a table.
@@ -40,6 +65,13 @@ struct Number {
     take: Take,
     /// The column that says how much a row counts in a mean: each the same where there is none.
     weight: Option<String>,
+    /// What the stored figure is multiplied with: −1 for what is "too low".
+    #[serde(default = "one")]
+    factor: f64,
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 #[derive(Deserialize)]
@@ -88,8 +120,12 @@ fn numbers(says: &str) -> Vec<String> {
 }
 
 impl Number {
-    /// The stored value.
+    /// The stored value in the unit of the sentence.
     fn stored(&self, table: &str) -> Result<f64, String> {
+        self.taken(table).map(|value| self.factor * value)
+    }
+
+    fn taken(&self, table: &str) -> Result<f64, String> {
         let text = read(table)?;
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let said = |error: csv::Error| format!("{table}: {error}");
@@ -153,6 +189,23 @@ impl Claim {
                 Ok(stored) => faults.push(format!("{written} is {stored} in {}: {plain}", self.table)),
                 Err(error) => faults.push(format!("{error}: {plain}")),
             }
+        }
+        for Within { figure, least, most } in &self.within {
+            match figure.stored(&self.table) {
+                Ok(stored) if least.is_none_or(|end| end <= stored) && most.is_none_or(|end| stored <= end) => {}
+                Ok(stored) => faults.push(format!("{} is {stored} in {}: {plain}", figure.column, self.table)),
+                Err(error) => faults.push(format!("{error}: {plain}")),
+            }
+        }
+        for Order { smaller, larger } in &self.order {
+            match (smaller.stored(&self.table), larger.stored(&self.table)) {
+                (Ok(one), Ok(other)) if one < other => {}
+                (Ok(one), Ok(other)) => faults.push(format!("{one} is not below {other} in {}: {plain}", self.table)),
+                (Err(error), _) | (_, Err(error)) => faults.push(format!("{error}: {plain}")),
+            }
+        }
+        if self.numbers.is_empty() && self.within.is_empty() && self.order.is_empty() {
+            faults.push(format!("nothing is held against the tables: {plain}"));
         }
         faults
     }

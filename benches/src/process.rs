@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-use study::options::{Common, Format, Style};
+use study::options::{Common, FigureChoice, Format, StudyStyle, Style};
 
 /// What goes wrong is told to the user and ends the program.
 pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
@@ -22,7 +22,7 @@ pub fn end(done: Outcome<()>) -> ExitCode {
 }
 
 /// Figures as `study` draws them unless asked otherwise.
-pub const STYLE: Style = Style { paper: None, dpi: 600.0 };
+pub const STYLE: StudyStyle = StudyStyle { style: Style { paper: None, dpi: 600.0 }, figures: FigureChoice::Named };
 
 /// The options `--out OUT --quiet`.
 pub fn quiet(out: &str) -> Common {

@@ -245,17 +245,14 @@ fn error_figure(theme: &Theme, x_scale: Scale) -> Figure {
                 let floor = [3.0, 0.3, 2.0, 0.05, 0.03, 0.01, 0.01][i];
                 let slope = [4.0, 1.6, 9.0, 6.0, 1.9, 1.0, 1.2][i];
                 let y = (floor + slope * x) * (1.0 + row as f64) * (1.0 + 0.4 * column as f64);
-                ErrorPoint { x: *x, y, interval: Some([0.9 * y, 1.1 * y]) }
+                ErrorPoint::new(*x, y, Some([0.9 * y, 1.1 * y]))
             });
-            ErrorCurve { origin: Origin::Method(method.into()), points: points.collect() }
+            ErrorCurve::new(Origin::Method(method.into()), points.collect())
         };
-        let bound = noise_deg[1..].iter().map(|x| ErrorPoint {
-            x: *x,
-            y: 0.95 * x * (1.0 + row as f64) * (1.0 + 0.4 * column as f64),
-            interval: None,
-        });
+        let lowest = |x: &f64| 0.95 * x * (1.0 + row as f64) * (1.0 + 0.4 * column as f64);
+        let bound = noise_deg[1..].iter().map(|x| ErrorPoint::new(*x, lowest(x), None));
         let mut curves: Vec<ErrorCurve> = GUESSES.iter().enumerate().map(|(i, g)| curve(i, g.0)).collect();
-        curves.push(ErrorCurve { origin: Origin::Bound, points: bound.collect() });
+        curves.push(ErrorCurve::new(Origin::Bound, bound.collect()));
         ErrorCell { row, column, curves }
     };
     error_curves(
@@ -267,7 +264,7 @@ fn error_figure(theme: &Theme, x_scale: Scale) -> Figure {
             rows: ["K", "T"].map(|name| format!("rms error of {} [%]", symbol(name))).into(),
             columns: vec!["10°/10° zig-zag".into(), "20°/20° zig-zag".into()],
             cells: vec![cell(0, 0), cell(0, 1), cell(1, 0), cell(1, 1)],
-            reference: None,
+            ..ErrorCurves::default()
         },
         theme,
     )

@@ -82,6 +82,11 @@ impl Axis {
         Self { lo: lo / widen, hi: hi * widen, scale: Scale::Log { zero }, step: None }
     }
 
+    /// From `lo` to `hi`, both positive, on a logarithmic scale.
+    pub(crate) fn log_between(lo: f64, hi: f64) -> Self {
+        Self { lo, hi, scale: Scale::Log { zero: false }, step: None }
+    }
+
     /// A list of names, one unit each, the first at the top (of a vertical axis).
     pub(crate) fn names(names: Vec<String>) -> Self {
         Self { lo: -0.6, hi: names.len().max(1) as f64 - 0.4, scale: Scale::Names(names), step: None }

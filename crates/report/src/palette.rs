@@ -23,6 +23,13 @@ pub enum Origin {
     Before,
     /// The same model after.
     After,
+    /// One of several series that are no methods, in greys.
+    Series {
+        /// Name in the legend.
+        label: String,
+        /// Which of the series, from 0.
+        number: usize,
+    },
     /// An identification method with its usual settings, by its id.
     Method(String),
     /// The same method with other settings.
@@ -46,7 +53,7 @@ impl Origin {
             Self::Bound => "Cramér–Rao bound",
             Self::Before => "before",
             Self::After => "after",
-            Self::Method(label) | Self::Variant { label, .. } => label,
+            Self::Method(label) | Self::Variant { label, .. } | Self::Series { label, .. } => label,
         }
     }
 
@@ -61,6 +68,7 @@ impl Origin {
             Self::After => Look::new(HEADING, Marker::Circle, SOLID),
             Self::Method(id) => method_look(id),
             Self::Variant { method, number, .. } => variant_look(method, *number),
+            Self::Series { number, .. } => series_look(*number),
         }
     }
 }
@@ -86,6 +94,8 @@ const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 pub const INK: Colour = Colour(0x11, 0x11, 0x11);
 /// The record.
 pub const RECORD: Colour = Colour(0x77, 0x77, 0x77);
+/// What a figure shows and is not about.
+pub const QUIET: Colour = Colour(0xB0, 0xB0, 0xB0);
 /// Grid lines.
 pub const GRID: Colour = Colour(0xE2, 0xE2, 0xE2);
 /// Background.
@@ -167,6 +177,17 @@ fn variant_look(method: &str, number: usize) -> Look {
     }
 }
 
+/// Series differ in shade, shape and dash, so that they never look like a method.
+fn series_look(number: usize) -> Look {
+    const SHADES: [Colour; 3] = [INK, Colour(0x5A, 0x5A, 0x5A), Colour(0x96, 0x96, 0x96)];
+    const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
+    const DASHES: [Dash; 3] = [SOLID, SHORT_DASH, DOTTED];
+    Look {
+        hollow: number % 2 == 1,
+        ..Look::new(SHADES[number % SHADES.len()], MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()])
+    }
+}
+
 /// Filled shapes, the only ones that can be hollow.
 const OUTLINES: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Up, Marker::Down, Marker::Diamond];
 
@@ -179,6 +200,10 @@ const OTHERS: usize = LENT * OUTLINES.len() * LENT;
 /// A method outside the list keeps its look through all figures too: its name picks one of many, all with a hollow
 /// marker, which keeps them apart from the known methods.
 fn method_look(id: &str) -> Look {
+    // A trace is no method of the list, and stands beside them.
+    if id == "trace" {
+        return Look::new(INK, Marker::Square, SOLID);
+    }
     if let Some((_, look)) = METHODS.iter().find(|(known, _)| *known == id) {
         return *look;
     }

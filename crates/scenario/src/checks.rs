@@ -5,9 +5,11 @@ use std::collections::HashSet;
 use crate::cell::Cell;
 use crate::draw::DrawWire;
 use crate::limits;
-use crate::name::LONGEST_NAME;
-use crate::problem::{KeyPath, Problem, suggestion};
+use crate::method::Method;
+use crate::name::{self, LONGEST_NAME};
+use crate::problem::{KeyPath, Problem, of_text, suggestion};
 use crate::sweep::Axis;
+use crate::words::AxisMark;
 
 /// Largest number of trials; more is a slip of the pen.
 const MOST_TRIALS: u64 = 1_000_000_000;
@@ -94,4 +96,40 @@ pub fn detail(titles: &[String], cells: &[Cell]) -> Result<(), Problem> {
         "expected labels of points, joined by commas",
         advice,
     ))
+}
+
+/// Every mark is on an axis, at a number, and has a name.
+pub fn marks(marks: &[AxisMark], axes: &[Axis]) -> Result<(), Problem> {
+    let known: Vec<String> = axes.iter().map(|axis| axis.name.clone()).collect();
+    for (index, mark) in marks.iter().enumerate() {
+        let key = KeyPath::dotted("output.marks").child(index);
+        if !known.contains(&mark.axis) {
+            return Err(Problem::value(
+                key.child("axis"),
+                format!("no axis is called {:?}", mark.axis),
+                "expected the name of a sweep",
+                suggestion(&mark.axis, &known),
+            ));
+        }
+        if !mark.at.is_finite() {
+            let advice = "give the place of the mark on the axis";
+            return Err(Problem::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
+        }
+        name::label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
+    }
+    Ok(())
+}
+
+/// Every label is that of a method.
+pub fn about(labels: &[String], methods: &[Method]) -> Result<(), Problem> {
+    let known: Vec<String> = methods.iter().map(|method| method.label.clone()).collect();
+    let unknown = labels.iter().enumerate().find(|(_, label)| !known.contains(label));
+    unknown.map_or(Ok(()), |(index, label)| {
+        Err(Problem::value(
+            KeyPath::dotted("output.methods").child(index),
+            format!("no method is called {label:?}"),
+            "expected the id or the label of an [[identifier]]",
+            suggestion(label, &known),
+        ))
+    })
 }

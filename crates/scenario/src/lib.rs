@@ -44,4 +44,4 @@ pub use predictions::Predictions;
 pub use scenario::{Published, Scenario};
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
-pub use words::Words;
+pub use words::{AxisMark, Words};

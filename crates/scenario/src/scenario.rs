@@ -113,6 +113,13 @@ impl Scenario {
         if let Some(stem) = &wire.output.figure {
             name::file(stem).map_err(|unfit| fail(of_text(KeyPath::dotted("output.figure"), stem, unfit)))?;
         }
+        for (index, stem) in wire.output.figures.iter().flatten().enumerate() {
+            let key = KeyPath::dotted("output.figures").child(index);
+            name::file(stem).map_err(|unfit| fail(of_text(key, stem, unfit)))?;
+        }
+        if let Some(title) = &wire.output.title {
+            name::prose(title).map_err(|unfit| fail(of_text(KeyPath::dotted("output.title"), title, unfit)))?;
+        }
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
         resolve::specification(&wire, &folder).map_err(&fail)?;
         let methods = methods(&wire.identifier).map_err(&fail)?;
@@ -137,6 +144,8 @@ impl Scenario {
             .collect::<Result<_, _>>()
             .map_err(&fail)?;
         checks::detail(&wire.output.detail, &cells).map_err(&fail)?;
+        checks::marks(&wire.output.marks, &axes).map_err(&fail)?;
+        checks::about(&wire.output.methods, &methods).map_err(&fail)?;
         Ok(Self {
             name: name.to_owned(),
             seed: seed.unwrap_or(wire.seed),
@@ -151,6 +160,10 @@ impl Scenario {
                 analysis: wire.analysis,
                 finding: wire.finding,
                 figure: wire.output.figure,
+                title: wire.output.title,
+                methods: wire.output.methods,
+                figures: wire.output.figures,
+                marks: wire.output.marks,
                 detail: wire.output.detail,
             },
             stop,

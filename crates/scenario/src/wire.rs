@@ -16,6 +16,7 @@ use crate::method::IdentifierWire;
 use crate::predictions::PredictWire;
 use crate::stop::StopWire;
 use crate::sweep::AxisWire;
+use crate::words::AxisMark;
 
 /// A whole scenario file.
 #[derive(Debug, Clone, Deserialize, Serialize)]
@@ -234,6 +235,14 @@ pub struct OutputWire {
     pub showcase: bool,
     /// Stem of the figure that stands for the study on an overview.
     pub figure: Option<String>,
+    /// Title of that figure: what it shows, in a sentence.
+    pub title: Option<String>,
+    /// Labels of the methods that figure is about; the others are grey.
+    pub methods: Vec<String>,
+    /// Stems of the figures that are made beside it; all there are when left out.
+    pub figures: Option<Vec<String>>,
+    /// Values of an axis with a name of their own.
+    pub marks: Vec<AxisMark>,
     /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
     pub detail: Vec<String>,
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use crate::commands::{check, find, fit, list, merge, overview, predict, report, run, sidecar, simulate, trace};
 use crate::options::{
-    Common, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, Style, TraceRequest,
+    Common, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, StudyStyle, TraceRequest,
 };
 use crate::{screen, threads};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -98,7 +98,7 @@ enum Command {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         #[command(flatten)]
-        style: Style,
+        style: StudyStyle,
         #[command(flatten)]
         common: Common,
     },
@@ -116,7 +116,7 @@ enum Command {
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
         #[command(flatten)]
-        style: Style,
+        style: StudyStyle,
         #[command(flatten)]
         common: Common,
     },

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use crate::commands::{merge, report};
-use crate::options::{Common, Format, Style};
+use crate::options::{Common, FigureChoice, Format, StudyStyle, Style};
 use campaign::Unwatched;
 use campaign::collect::collect;
 use campaign::disk::faults;
@@ -40,7 +40,7 @@ fn quiet(out: Option<&Path>) -> Common {
 }
 
 /// Figures that take no time.
-const STYLE: Style = Style { paper: Some(60.0), dpi: 72.0 };
+const STYLE: StudyStyle = StudyStyle { style: Style { paper: Some(60.0), dpi: 72.0 }, figures: FigureChoice::Named };
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {

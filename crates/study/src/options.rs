@@ -23,9 +23,9 @@ pub struct RunRequest {
     /// Discard rows of an earlier run in the folder instead of going on with them
     #[arg(long)]
     pub restart: bool,
-    /// How figures are drawn
+    /// How figures are drawn, and which
     #[command(flatten)]
-    pub style: Style,
+    pub style: StudyStyle,
 }
 
 /// How figures are drawn.
@@ -37,6 +37,29 @@ pub struct Style {
     /// Resolution of figures for print
     #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
     pub dpi: f64,
+}
+
+/// How the figures of a study are drawn, and which.
+#[derive(Debug, Clone, Args)]
+pub struct StudyStyle {
+    /// How they are drawn
+    #[command(flatten)]
+    pub style: Style,
+    /// Which figures are made
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = FigureChoice::Named)]
+    pub figures: FigureChoice,
+}
+
+/// Which figures of a study are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum FigureChoice {
+    /// Those the scenario names in `output.figures`; all where it names none
+    #[default]
+    Named,
+    /// All there are
+    All,
+    /// The one that stands for the study, `output.figure`
+    Hero,
 }
 
 /// Reads a number from `least` to `most`.

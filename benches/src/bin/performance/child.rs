@@ -34,7 +34,7 @@ pub fn answer(arguments: &[&str]) -> Outcome<()> {
             let common = Common { threads: Some(threads), ..quiet(out) };
             study::commands::run::run(
                 Path::new(scenario),
-                &RunRequest { shard: None, restart: false, style: STYLE },
+                &RunRequest { shard: None, restart: false, style: STYLE.clone() },
                 &common,
             )
             .map_err(text)?;

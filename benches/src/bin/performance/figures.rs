@@ -50,6 +50,7 @@ fn identification(measured: &Measurements) -> DotPlot {
         title: None,
         names: lines.iter().map(|line| line.row.work.name.clone()).collect(),
         columns: vec![DotColumn {
+            limit: None,
             x_title: "time of a fit [ms]".to_owned(),
             scale: Scale::Log,
             reference: rival
@@ -57,6 +58,7 @@ fn identification(measured: &Measurements) -> DotPlot {
             rows: lines.iter().map(|line| vec![dot(&line.row.work.name, &line.time)]).collect(),
         }],
         rows_are_methods: true,
+        quiet: Vec::new(),
         note: Some(format!(
             "Record of 1201 samples, one core; median and its 95 % interval of up to {samples} samples. Hollow: \
              another library, or 200 triples; \
@@ -66,14 +68,11 @@ fn identification(measured: &Measurements) -> DotPlot {
 }
 
 fn curves<'a>(x_title: &str, growths: impl Iterator<Item = &'a Growth>) -> ErrorCurves {
-    let point = |(size, time): &(f64, Measured)| ErrorPoint {
-        x: *size,
-        y: time.value,
-        interval: (time.samples > 1).then_some(time.interval),
+    let point = |(size, time): &(f64, Measured)| {
+        ErrorPoint::new(*size, time.value, (time.samples > 1).then_some(time.interval))
     };
-    let curve = |growth: &Growth| ErrorCurve {
-        origin: Origin::Method(growth.name.clone()),
-        points: growth.points.iter().map(point).collect(),
+    let curve = |growth: &Growth| {
+        ErrorCurve::new(Origin::Method(growth.name.clone()), growth.points.iter().map(point).collect())
     };
     ErrorCurves {
         x_title: x_title.to_owned(),

@@ -9,6 +9,8 @@ use super::tracing::TraceSummary;
 /// Errors of one index over trials, relative to the truth. All but shares are in per cent.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Errors {
+    /// Mean of the answers themselves, SI, with its normal interval.
+    pub answer: Option<Statistic>,
     /// Mean error.
     pub mean: Option<Statistic>,
     /// Median error.

@@ -10,7 +10,7 @@ use super::record::{Comparison, Errors, MethodSummary, Overall, PairSummary, Rec
 use super::tracing::TraceTally;
 use crate::design::Design;
 use crate::rows::Row;
-use crate::statistics::{BATCHES, PairSums, Resamples, Sample, Statistic, Sums, share};
+use crate::statistics::{BATCHES, PairSums, Resamples, Sample, Statistic, Sums, Z95, share};
 
 /// The method that others are compared with, where a study has it.
 const REFERENCE: &str = "output-error";
@@ -305,6 +305,8 @@ fn holds(interval: Option<[f64; 2]>, truth: Option<f64>) -> Option<bool> {
 struct Index {
     sample: Sample,
     sums: Sums,
+    /// Sums of the answers less the first of them, and of their squares, after that first one.
+    answers: Option<(f64, [f64; 2])>,
     /// Sum of the squared bounds, per cent, and their number.
     bounds: (f64, f64),
     answered: u64,
@@ -322,9 +324,23 @@ impl Index {
             self.bounds.0 += bound * bound;
             self.bounds.1 += 1.0;
         }
-        self.answered += u64::from(value.is_some());
+        if let Some(value) = value {
+            let (first, [sum, square]) = self.answers.get_or_insert((value, [0.0; 2]));
+            let away = value - *first;
+            (*sum, *square) = (*sum + away, *square + away * away);
+            self.answered += 1;
+        }
         self.quoted += u64::from(held.is_some());
         self.held += u64::from(held == Some(true));
+    }
+
+    /// The mean of the answers; its interval from two of them on.
+    fn answer(&self) -> Option<Statistic> {
+        let (first, [sum, square]) = self.answers?;
+        let count = self.answered as f64;
+        let value = first + sum / count;
+        let half = Z95 * ((square - sum * sum / count).max(0.0) / (count - 1.0) / count).sqrt();
+        Some(Statistic { value, ci95: half.is_finite().then_some([value - half, value + half]) })
     }
 
     fn errors(&self, resamples: &Resamples) -> Errors {
@@ -337,6 +353,7 @@ impl Index {
         let bound = (count > 0.0 && squares > 0.0).then(|| (squares / count).sqrt());
         let over = |sd: Statistic, bound: f64| sd.times(1.0 / bound);
         Errors {
+            answer: self.answer(),
             mean,
             median: ordered.figure(0.5),
             sd,

@@ -28,6 +28,8 @@ pub struct TraceSummary {
     pub verdicts: [u64; 3],
     /// How often every identifier was named.
     pub named: BTreeMap<String, u64>,
+    /// Identifiers that were named for a missing effect which the trial could not tell from them.
+    pub aliases: BTreeSet<String>,
     /// Trials in which nothing was named.
     pub silent: u64,
     /// Trials in which every missing effect is in one of the groups named.
@@ -159,8 +161,12 @@ impl TraceTally {
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
         let is_missing = |effect: &NamedEffect| summary.missing.iter().any(|id| effect.holds(id));
+        let stands_for =
+            |effect: &&NamedEffect| is_missing(effect) && summary.missing.iter().all(|id| **id != *effect.id);
+        let aliases: Vec<String> = answer.named.iter().filter(stands_for).map(|effect| effect.id.to_string()).collect();
         let wrong = !answer.named.iter().all(is_missing);
         summary.wrong += u64::from(wrong);
+        summary.aliases.extend(aliases);
         let complete = summary.missing.iter().all(|id| answer.named.iter().any(|effect| effect.holds(id)));
         summary.complete += u64::from(complete && !summary.missing.is_empty());
         summary.exact += u64::from(complete && !wrong);

@@ -10,7 +10,7 @@ use crate::dimension::Dimensions;
 use crate::figure::Figure;
 use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample};
-use crate::palette::{Look, Origin};
+use crate::palette::{INK, Look, Origin, QUIET};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
@@ -37,6 +37,9 @@ pub struct DotColumn {
     pub scale: Scale,
     /// A value to compare with.
     pub reference: Option<Reference95>,
+    /// Values above it do not set the axis: an arrow at the edge stands for them.
+    #[serde(default)]
+    pub limit: Option<f64>,
     /// Per row, in the order of [`DotPlot::names`].
     pub rows: Vec<Vec<Dot>>,
 }
@@ -52,6 +55,9 @@ pub struct DotPlot {
     pub columns: Vec<DotColumn>,
     /// Whether rows are methods, so that no key is needed.
     pub rows_are_methods: bool,
+    /// Whom the figure is not about: grey, under one name in the key.
+    #[serde(default)]
+    pub quiet: Vec<Origin>,
     /// A remark under the figure.
     pub note: Option<String>,
 }
@@ -62,11 +68,18 @@ pub fn dots(data: &DotPlot, theme: &Theme) -> Figure {
     if !data.rows_are_methods {
         let dots = data.columns.iter().flat_map(|column| &column.rows).flatten();
         let origins = distinct(dots.map(|dot| &dot.origin));
-        let entries: Vec<Entry> =
-            origins.iter().map(|origin| Entry::new(Sample::Marker(origin.look()), origin.label())).collect();
+        let (quiet, loud): (Vec<_>, Vec<_>) = origins.into_iter().partition(|origin| data.quiet.contains(origin));
+        let sample = |origin: &Origin| match origin {
+            Origin::Bound => Sample::Upright(bound_stroke(theme)),
+            _ => Sample::Marker(origin.look()),
+        };
+        let mut entries: Vec<Entry> = loud.iter().map(|origin| Entry::new(sample(origin), origin.label())).collect();
+        let others = Look { colour: QUIET, ..Origin::Record.look() };
+        entries.extend((!quiet.is_empty()).then(|| Entry::new(Sample::Marker(others), "other methods")));
         sheet.legend(&entries);
     }
-    let most = data.columns.iter().flat_map(|column| &column.rows).map(Vec::len).max().unwrap_or(1);
+    let in_lines = |dots: &Vec<Dot>| dots.iter().filter(|dot| dot.origin != Origin::Bound).count();
+    let most = data.columns.iter().flat_map(|column| &column.rows).map(in_lines).max().unwrap_or(1);
     let lines = if data.rows_are_methods { 1.0 } else { most.max(1) as f64 };
     let row = (0.62 * lines + 1.1) * theme.tick_font;
     let names = Side::new(Axis::names(data.names.clone()), "");
@@ -78,7 +91,7 @@ pub fn dots(data: &DotPlot, theme: &Theme) -> Figure {
             reference.vertical(panel, &mut sheet.scene, theme);
         }
         for (row, dots) in column.rows.iter().enumerate() {
-            draw_row(panel, &mut sheet.scene, theme, row, dots, data.rows_are_methods);
+            draw_row(panel, &mut sheet.scene, theme, row, dots, data);
         }
     }
     if let Some(note) = &data.note {
@@ -88,18 +101,36 @@ pub fn dots(data: &DotPlot, theme: &Theme) -> Figure {
 }
 
 fn axis(column: &DotColumn) -> Axis {
-    let dots = || column.rows.iter().flatten();
+    let sets = |dot: &&Dot| column.limit.is_none_or(|limit| dot.x <= limit);
+    let dots = || column.rows.iter().flatten().filter(sets);
     column.scale.around(dots().map(|dot| dot.x), dots().filter_map(|dot| dot.interval), column.reference)
 }
 
-fn draw_row(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, dots: &[Dot], together: bool) {
+fn bound_stroke(theme: &Theme) -> Stroke {
+    Stroke::solid(INK, 1.3 * theme.line)
+}
+
+fn draw_row(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, dots: &[Dot], data: &DotPlot) {
+    let together = data.rows_are_methods;
+    let Some(middle) = panel.up(row as f64) else { return };
+    // A bound is a line over its row, as it is one in the other figures.
+    for x in dots.iter().filter(|dot| dot.origin == Origin::Bound).filter_map(|dot| panel.across(dot.x)) {
+        let half = 0.5 * (panel.up(0.0).unwrap_or(0.0) - panel.up(1.0).unwrap_or(0.0)).abs();
+        let (top, bottom) = ((middle - half).max(panel.rect.y), (middle + half).min(panel.rect.bottom()));
+        if panel.rect.contains((x, middle)) {
+            scene.line(Layer::Grid, [(x, top), (x, bottom)], bound_stroke(theme));
+        }
+    }
+    let dots: Vec<&Dot> = dots.iter().filter(|dot| dot.origin != Origin::Bound).collect();
     let lines = if together { 1 } else { dots.len() };
-    for (line, dot) in dots.iter().enumerate() {
+    for (line, dot) in dots.into_iter().enumerate() {
         // Methods of one row stand below each other, so that their bars do not hide each other.
         let aside = if together { 0.0 } else { (line as f64 - (lines - 1) as f64 / 2.0) * 0.62 * theme.tick_font };
-        let (Some(x), Some(y)) = (panel.across(dot.x), panel.up(row as f64)) else { continue };
-        let y = y + aside;
-        let look = Look { hollow: dot.hollow || dot.origin.look().hollow, ..dot.origin.look() };
+        let Some(x) = panel.across(dot.x) else { continue };
+        let y = middle + aside;
+        let own = dot.origin.look();
+        let colour = if data.quiet.contains(&dot.origin) { QUIET } else { own.colour };
+        let look = Look { colour, hollow: dot.hollow || own.hollow, ..own };
         if let Some([low, high]) = dot.interval {
             let end =
                 |value: f64, edge: f64| panel.across(value).unwrap_or(edge).clamp(panel.rect.x, panel.rect.right());
@@ -119,7 +150,7 @@ fn draw_row(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, dots: &
         && let (Some(above), Some(own)) = (panel.up(row as f64 - 1.0), panel.up(row as f64))
     {
         let y = 0.5 * (above + own);
-        let stroke = Stroke { opacity: 0.35, ..Stroke::solid(crate::palette::INK, 0.6 * theme.thin) };
+        let stroke = Stroke { opacity: 0.35, ..Stroke::solid(INK, 0.6 * theme.thin) };
         scene.line(Layer::Grid, [(panel.rect.x, y), (panel.rect.right(), y)], stroke);
     }
 }

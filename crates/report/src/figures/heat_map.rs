@@ -16,6 +16,7 @@ use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Text};
 use crate::theme::Theme;
+use crate::ticks::Steps;
 
 /// One panel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -79,12 +80,40 @@ pub fn heat_map(data: &HeatMap, theme: &Theme) -> Figure {
             }
         }
     }
-    let scale = if data.scale == Scale::Log { ", on a logarithmic scale" } else { "" };
-    sheet.note(&format!(
-        "Numbers in the cells: {}. Colours from dark (small) to light (large){scale}; – is not defined.",
-        data.value_title
-    ));
+    bar(&mut sheet, data, theme, &range);
+    if data.panels.iter().flat_map(|panel| &panel.values).flatten().any(Option::is_none) {
+        sheet.note("– is not defined.");
+    }
     sheet.finish()
+}
+
+/// Pieces of the bar of colours.
+const PIECES: usize = 64;
+
+/// The colours with their values, under the panels.
+fn bar(sheet: &mut Sheet, data: &HeatMap, theme: &Theme, colours: &Colours) {
+    // Also where there is no value at all.
+    if colours.high <= colours.low {
+        return;
+    }
+    let value = |along: f64| if data.scale == Scale::Log { 10f64.powf(along) } else { along };
+    let ends = [value(colours.low), value(colours.high)];
+    let axis = match data.scale {
+        Scale::Log => Axis::log_between(ends[0], ends[1]),
+        Scale::Linear => Axis::linear(ends[0], ends[1], Steps::Decimal),
+    };
+    let strip = (0.5 * theme.width, 0.4 * theme.width);
+    let row = (Side::new(Axis::names(Vec::new()), ""), 0.9 * theme.small_font);
+    let panels = sheet.grid_within(Grid::new(vec![Side::new(axis, data.value_title.clone())], vec![row]), strip);
+    let Some(panel) = panels.first() else { return };
+    let (top, bottom) = (panel.rect.y, panel.rect.bottom());
+    for piece in 0..PIECES {
+        let at = |share: f64| panel.rect.x + share * panel.rect.w;
+        let (left, right) = (at(piece as f64 / PIECES as f64), at((piece + 1) as f64 / PIECES as f64));
+        let along = colours.low + (piece as f64 + 0.5) / PIECES as f64 * (colours.high - colours.low);
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+        sheet.scene.fill(Layer::Data, corners, colours.colour(value(along)), 1.0);
+    }
 }
 
 /// Panels side by side: three, or as many as leave room for the numbers in the cells.

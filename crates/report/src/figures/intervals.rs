@@ -127,7 +127,7 @@ pub fn intervals(data: &Intervals, theme: &Theme) -> Figure {
 fn quantities(data: &Intervals) -> [Quantity; 2] {
     [
         Quantity {
-            title: format!("{} [s⁻¹]", symbol("K")),
+            title: format!("{} [1/s]", symbol("K")),
             estimates: data.estimates.iter().map(|e| e.k_per_s).collect(),
             truth: data.truth.map(|r| r.k_per_s),
             published: data.published.map(|r| r.k_per_s),

@@ -2,6 +2,7 @@
 //! What they share is in `shared`.
 
 mod amplitude;
+mod confusion;
 mod curve_fit;
 mod derivatives;
 mod dots;
@@ -30,11 +31,12 @@ mod violins;
 mod zigzag_trial;
 
 pub use amplitude::{Amplitude, AmplitudePanel, AmplitudePoint, COLUMNS as AMPLITUDES, amplitude};
+pub use confusion::{Confusion, ConfusionCell, ConfusionRow, confusion};
 pub use curve_fit::{CurveFit, curve_fit};
 pub use derivatives::{Derivatives, MotionCurves, derivatives};
 pub use dots::{Dot, DotColumn, DotPlot, dots};
 pub use ecdf::{Ecdf, EcdfCurve, EcdfPanel, ecdf};
-pub use error_curves::{ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
+pub use error_curves::{AxisMark, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
 pub use evidence::{Evidence, EvidenceBar, Fate, evidence};
 pub use heat_map::{HeatMap, HeatPanel, heat_map};
 pub use index_plane::{IndexAnswer, IndexPlane, index_plane};

@@ -25,6 +25,7 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         methods().enumerate().filter(|(method, _)| count(*method) > 0).map(dot).collect()
     };
     let dot_column = |scale, reference| DotColumn {
+        limit: None,
         x_title: "rms error of K [%]".into(),
         scale,
         reference,
@@ -73,12 +74,8 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         panels: methods().enumerate().map(heat).collect(),
         ..HeatMap::default()
     };
-    let curve = |(method, origin)| ErrorCurve {
-        origin,
-        points: (0..count(method))
-            .map(|k| ErrorPoint { x: k as f64, y: 90.0 + size(method, k), interval: None })
-            .collect(),
-    };
+    let point = |method, k: usize| ErrorPoint::new(k as f64, 90.0 + size(method, k), None);
+    let curve = |(method, origin)| ErrorCurve::new(origin, (0..count(method)).map(|k| point(method, k)).collect());
     let coverage = ErrorCurves {
         x_title: "noise [°]".into(),
         y_scale: Scale::Linear,

@@ -230,7 +230,7 @@ fn overshoot_angle(draw: &mut Dimensions<'_>, panel: &Panel, number: usize, over
     draw.extension(start, (foot.0 + 0.4 * draw.theme.small_font, foot.1));
     draw.between(foot, peak);
     draw.scene.marker(Layer::Data, peak, 0.85 * draw.theme.marker, &EXTREMUM);
-    let name = symbol(&format!("ψ{}", subscript(number)));
+    let name = format!("{}OS{}", symbol("ψ"), subscript(number));
     let text = format!("{name} = {}°", number::fixed(overshoot.angle_deg, 1));
     let size = draw.theme.small_font;
     let beyond = if peak.1 <= foot.1 { -0.65 * size } else { 1.4 * size };
@@ -256,7 +256,7 @@ fn time_line(draw: &mut Dimensions<'_>, panel: &Panel, data: &ZigzagTrial, span:
 fn explanation(data: &ZigzagTrial, values: Option<String>) -> Option<String> {
     let mut parts = Vec::new();
     if !data.overshoots.is_empty() {
-        parts.push(format!("{} overshoot angles", symbol(&format!("ψ{}…", subscript(1)))));
+        parts.push(format!("{}OS{}… overshoot angles, beyond the heading of the execute", symbol("ψ"), subscript(1)));
     }
     if data.initial_turning.is_some() {
         parts.push(format!("{} initial turning time", symbol("tₐ")));

@@ -8,6 +8,7 @@ use report::markdown;
 
 use crate::options::Common;
 use crate::screen;
+use crate::views::drawings::HERO;
 use campaign::disk;
 use campaign::files;
 use campaign::folder::ResultFolder;
@@ -84,10 +85,11 @@ fn study(folder: &Path) -> Result<Study, Failure> {
 
 /// File of the figure that a scenario names.
 fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
-    let file = format!("{stem}.png");
-    if folder.join(&file).is_file() {
+    let files = [HERO, stem].map(|stem| format!("{stem}.png"));
+    if let Some(file) = files.into_iter().find(|file| folder.join(file).is_file()) {
         return Ok(file);
     }
+    let file = format!("{stem}.png");
     let names = disk::names(folder).on("list", folder)?;
     let known: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(".png")).collect();
     Err(Failure::input(format!(

@@ -17,11 +17,11 @@ use crate::views::publish::publish;
 pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Failure> {
     let scenario = Scenario::read(path, common.seed)?;
     let shard = request.shard.unwrap_or(Shard::WHOLE);
-    let theme = request.style.theme()?;
+    let theme = request.style.style.theme()?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&scenario.name, shard)))?;
     let stored = collect(&scenario, shard, &folder, request.restart, &Terminal::new(common.quiet))?;
     if shard == Shard::WHOLE {
-        return publish(&stored, &folder, &theme, common);
+        return publish(&stored, &folder, (&theme, request.style.figures), common);
     }
     match common.quiet {
         true => Ok(()),

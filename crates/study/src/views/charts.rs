@@ -1,15 +1,16 @@
-//! From a summary to the data of figures: what goes along which axis, what into panels, and what is left out.
+//! From a summary to the data of figures over the axes of a study: what goes along which axis, what into panels, what
+//! is left out, and which of them stands for the study.
 
 use report::figures::{
-    self, Dot, DotColumn, DotPlot, Ecdf, EcdfCurve, EcdfPanel, Ellipse, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint,
-    HeatMap, HeatPanel, KtPanel, KtScatter, Reference95, Scale, Violin, ViolinPanel, Violins,
+    self, AxisMark, Dot, DotColumn, DotPlot, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Reference95, Scale,
 };
-use report::{Figure, Origin, Theme, number};
+use report::{Figure, Origin, Theme};
+use scenario::TRACE;
 
 use campaign::curves;
 use campaign::design::Design;
 use campaign::statistics::{Statistic, Z95};
-use campaign::summary::{self, Record, Summary};
+use campaign::summary::{Record, Summary};
 
 /// What a chart over the axes of a design shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,14 +39,8 @@ impl Quantity {
         }
     }
 
-    /// Titles of its panels.
-    fn titles(self) -> &'static [&'static str] {
-        match self {
-            Self::Rms => &["rms error of K [%]", "rms error of T [%]"],
-            Self::Coverage => &["coverage of K [%]", "coverage of T [%]"],
-            Self::Failures => &["trials without answer [%]"],
-            Self::Validation => &["validation error of the heading [°]"],
-        }
+    fn panels(self) -> usize {
+        if matches!(self, Self::Rms | Self::Coverage) { 2 } else { 1 }
     }
 
     fn scale(self) -> Scale {
@@ -56,20 +51,18 @@ impl Quantity {
     }
 
     /// The figure of one panel.
-    fn of(self, record: &Record, panel: usize) -> Option<Statistic> {
+    pub fn of(self, record: &Record, panel: usize) -> Option<Statistic> {
         let errors = if panel == 0 { &record.k } else { &record.t };
         match self {
             Self::Rms => errors.rms,
-            Self::Coverage => errors.coverage.map(|share| share.times(100.0)),
+            // What a few answers quote says nothing of a method.
+            Self::Coverage => {
+                let often = errors.quoting.is_some_and(|share| share.value >= OFTEN);
+                errors.coverage.filter(|_| often).map(|share| share.times(100.0))
+            }
             Self::Failures => record.failure_rate.map(|share| share.times(100.0)),
             Self::Validation => record.validation_rmse_deg,
         }
-    }
-
-    /// The bound of one panel in a cell, per cent.
-    fn bound(self, design: &Design, cell: usize, panel: usize) -> Option<f64> {
-        let covariance = design.cells[cell].bound_percent2.filter(|_| self == Self::Rms)?;
-        Some(covariance[panel][panel].sqrt())
     }
 
     /// What its values are held against; `trials` stand behind each of them.
@@ -81,13 +74,119 @@ impl Quantity {
     }
 }
 
+/// Smallest share of answers with an interval whose coverage is drawn.
+const OFTEN: f64 = 0.5;
+
+/// Error beyond which an answer is worth nothing, per cent: larger ones do not set an axis.
+const WORTHLESS: f64 = 100.0;
+
+/// Error below which an answer is exact, per cent.
+const EXACT: f64 = 1e-4;
+
+/// A quantity in the cells of one figure, as it can be compared there.
+struct Measure<'a> {
+    design: &'a Design,
+    summary: &'a Summary,
+    quantity: Quantity,
+    /// Whether errors are in units of the Cramér–Rao bound.
+    over_bound: bool,
+    /// Whether errors are differences from a first-order response that is nearest to the ship.
+    to_nearest: bool,
+    /// Methods that can be compared.
+    methods: Vec<usize>,
+}
+
+impl<'a> Measure<'a> {
+    /// `None` where nothing can be compared: intervals of a response that is only the nearest one hold no truth.
+    fn new(design: &'a Design, summary: &'a Summary, quantity: Quantity, groups: &[Group]) -> Option<Self> {
+        let cells = || groups.iter().flat_map(|group| &group.cells).map(|&cell| &design.cells[cell]);
+        let is_trace = |method: &usize| design.methods[*method].id == TRACE;
+        let of_indices = matches!(quantity, Quantity::Rms | Quantity::Coverage);
+        let mut methods: Vec<usize> = (0..design.methods.len()).collect();
+        let mut to_nearest = of_indices && cells().any(|cell| cell.is_nearest);
+        if to_nearest && !methods.iter().all(is_trace) {
+            // A trace is held against the ship's own K and T.
+            methods.retain(|method| !is_trace(method));
+        } else {
+            to_nearest = false;
+        }
+        if to_nearest && quantity == Quantity::Coverage {
+            return None;
+        }
+        let is_bounded = quantity == Quantity::Rms && cells().all(|cell| cell.bound_percent2.is_some());
+        let over_bound = is_bounded && !cells().any(|cell| cell.is_nearest);
+        if quantity == Quantity::Failures {
+            methods.retain(|&method| summary.overall[method].record.failed() > 0);
+        }
+        Some(Self { design, summary, quantity, over_bound, to_nearest, methods })
+    }
+
+    /// Titles of the panels.
+    fn titles(&self) -> Vec<String> {
+        let of_both = |words: &str| ["K", "T"].map(|symbol| words.replace('#', symbol)).to_vec();
+        match self.quantity {
+            Quantity::Rms if self.over_bound => of_both("rms error of # over the Cramér–Rao bound"),
+            Quantity::Rms if self.to_nearest => of_both("# less that of the nearest first-order response, rms [%]"),
+            Quantity::Rms => of_both("rms error of # [%]"),
+            Quantity::Coverage => of_both("95 % intervals that hold # [%]"),
+            Quantity::Failures => vec!["trials without answer [%]".to_owned()],
+            Quantity::Validation => vec!["median error of a heading not seen [°]".to_owned()],
+        }
+    }
+
+    fn bound(&self, cell: usize, panel: usize) -> Option<f64> {
+        let covariance = self.design.cells[cell].bound_percent2.filter(|_| self.quantity == Quantity::Rms)?;
+        Some(covariance[panel][panel].sqrt())
+    }
+
+    /// The figure, and whether it is too large to set an axis.
+    fn of(&self, cell: usize, method: usize, panel: usize) -> Option<(Statistic, bool)> {
+        let figure = self.quantity.of(self.summary.record(cell, method)?, panel)?;
+        let is_worthless = self.quantity == Quantity::Rms && figure.value > WORTHLESS;
+        let unit = if self.over_bound { self.bound(cell, panel)? } else { 1.0 };
+        let figure = figure.times(1.0 / unit);
+        match self.is_exact(&figure) {
+            // What is left is the rounding of the arithmetic.
+            true => Some((Statistic { value: EXACT, ci95: None }, false)),
+            false => Some((figure, is_worthless)),
+        }
+    }
+
+    fn is_exact(&self, figure: &Statistic) -> bool {
+        self.quantity == Quantity::Rms && !self.over_bound && figure.value > 0.0 && figure.value < EXACT
+    }
+
+    /// The bound in the unit of the panel; `None` where it is not shown.
+    fn shown_bound(&self, cell: usize, panel: usize) -> Option<f64> {
+        if self.over_bound { Some(1.0) } else { self.bound(cell, panel).filter(|_| !self.to_nearest) }
+    }
+
+    /// What is said under a figure some of whose values are drawn elsewhere.
+    fn note(&self, groups: &[Group]) -> Option<String> {
+        let mut figures = Vec::new();
+        for &cell in groups.iter().flat_map(|group| &group.cells) {
+            for &method in &self.methods {
+                figures.extend((0..self.quantity.panels()).filter_map(|panel| self.of(cell, method, panel)));
+            }
+        }
+        let is_cut = figures.iter().any(|(_, is_worthless)| *is_worthless);
+        let is_exact = self.quantity == Quantity::Rms && figures.iter().any(|(figure, _)| figure.value == EXACT);
+        let remarks =
+            [(is_cut, "Arrows: rms error above 100 %."), (is_exact, "Errors below 0.0001 % are drawn there.")];
+        let said: Vec<&str> = remarks.into_iter().filter(|(holds, _)| *holds).map(|(_, remark)| remark).collect();
+        (!said.is_empty()).then(|| said.join(" "))
+    }
+}
+
 /// A chart, and which points of the other axes it belongs to where there are several.
+#[derive(Clone)]
 pub struct Chart {
     /// Points of the other axes.
     pub group: Option<String>,
     data: Data,
 }
 
+#[derive(Clone)]
 enum Data {
     Curves(ErrorCurves),
     Dots(DotPlot),
@@ -99,6 +198,83 @@ impl Chart {
         match &self.data {
             Data::Curves(data) => figures::error_curves(data, theme),
             Data::Dots(data) => figures::dots(data, theme),
+        }
+    }
+
+    /// The same as the figure that stands for a study: its finding above it, the last of its rows of panels (T before
+    /// K), the methods it is about in colour and the others grey, methods with one line as one.
+    pub fn hero(&self, title: Option<&str>, about: &[Origin]) -> Self {
+        let mut hero = self.clone();
+        let is_quiet = |origin: &Origin| *origin != Origin::Bound && !about.is_empty() && !about.contains(origin);
+        match &mut hero.data {
+            Data::Curves(data) => {
+                data.title = title.map(str::to_owned);
+                let last = data.rows.len().saturating_sub(1);
+                data.rows.drain(..last);
+                data.cells.retain(|cell| cell.row == last);
+                data.cells.iter_mut().for_each(|cell| cell.row = 0);
+                data.names_at_lines = true;
+                merge(&mut data.cells, about);
+                data.cells
+                    .iter_mut()
+                    .flat_map(|cell| &mut cell.curves)
+                    .for_each(|curve| curve.is_quiet = is_quiet(&curve.origin));
+            }
+            Data::Dots(data) => {
+                data.title = title.map(str::to_owned);
+                data.columns.drain(..data.columns.len().saturating_sub(1));
+                let dots = data.columns.iter().flat_map(|column| &column.rows).flatten();
+                let mut quiet: Vec<Origin> = Vec::new();
+                for dot in dots.filter(|dot| is_quiet(&dot.origin)) {
+                    if !quiet.contains(&dot.origin) {
+                        quiet.push(dot.origin.clone());
+                    }
+                }
+                data.quiet = quiet;
+            }
+        }
+        hero
+    }
+}
+
+/// Lines nearer to each other than this share of their values are one.
+const SAME_LINE: f64 = 0.03;
+
+/// Joins methods whose lines lie on each other in all panels, under the names of all; one that the figure is about
+/// gives the line its look.
+fn merge(cells: &mut [ErrorCell], about: &[Origin]) {
+    let mut origins: Vec<Origin> = Vec::new();
+    for curve in cells.iter().flat_map(|cell| &cell.curves).filter(|curve| curve.origin != Origin::Bound) {
+        if !origins.contains(&curve.origin) {
+            origins.push(curve.origin.clone());
+        }
+    }
+    origins.sort_by_key(|origin| about.iter().position(|one| one == origin).unwrap_or(about.len()));
+    let points = |cell: &ErrorCell, origin: &Origin| -> Vec<ErrorPoint> {
+        let own = cell.curves.iter().find(|curve| curve.origin == *origin);
+        own.map_or_else(Vec::new, |curve| curve.points.clone())
+    };
+    let near = |one: &ErrorPoint, other: &ErrorPoint| {
+        one.x == other.x && one.beyond == other.beyond && (one.y - other.y).abs() <= SAME_LINE * one.y.abs()
+    };
+    let same = |one: &Origin, other: &Origin| {
+        cells.iter().all(|cell| {
+            let (one, other) = (points(cell, one), points(cell, other));
+            one.len() == other.len() && one.iter().zip(&other).all(|(one, other)| near(one, other))
+        })
+    };
+    let mut lines: Vec<Vec<Origin>> = Vec::new();
+    for origin in origins {
+        match lines.iter_mut().find(|line| same(&line[0], &origin)) {
+            Some(line) => line.push(origin),
+            None => lines.push(vec![origin]),
+        }
+    }
+    for cell in cells {
+        cell.curves.retain(|curve| curve.origin == Origin::Bound || lines.iter().any(|line| line[0] == curve.origin));
+        for curve in &mut cell.curves {
+            let line = lines.iter().find(|line| line[0] == curve.origin && line.len() > 1);
+            curve.label = line.map(|line| line.iter().map(Origin::label).collect::<Vec<_>>().join("\n"));
         }
     }
 }
@@ -119,12 +295,9 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
     let Some(x) = number.or_else(|| (0..design.axes.len()).rev().find(has_several)) else { return Vec::new() };
     // A chart without a value, or without a single failure, says nothing.
     let says_something = |record: &Record| {
-        let mut figures = (0..quantity.titles().len()).filter_map(|panel| quantity.of(record, panel));
+        let mut figures = (0..quantity.panels()).filter_map(|panel| quantity.of(record, panel));
         figures.any(|figure| quantity != Quantity::Failures || figure.value > 0.0)
     };
-    if !summary.methods.iter().any(|line| says_something(&line.record)) {
-        return Vec::new();
-    }
     let groups = groups(design, x);
     let is_crowded = groups.len() > MOST_COLUMNS;
     // A design over two numbers is shown as maps; of many groups only the errors are shown one by one.
@@ -132,30 +305,24 @@ pub fn over_axes(design: &Design, summary: &Summary, quantity: Quantity) -> Vec<
     if is_crowded && (is_map || !matches!(quantity, Quantity::Rms | Quantity::Validation)) {
         return Vec::new();
     }
-    let is_worth_it = |group: &&Group| {
+    let is_worth_it = |group: &Group| {
         let records = |&cell: &usize| (0..design.methods.len()).filter_map(move |method| summary.record(cell, method));
         group.cells.iter().flat_map(records).any(says_something)
     };
-    match number {
-        Some(_) if !is_crowded => {
-            vec![Chart { group: None, data: Data::Curves(curves(design, summary, quantity, x, &groups)) }]
-        }
-        Some(_) => groups
-            .iter()
-            .map(|group| Chart {
-                group: Some(group.name.clone()),
-                data: Data::Curves(curves(design, summary, quantity, x, std::slice::from_ref(group))),
-            })
-            .collect(),
-        None => groups
-            .iter()
-            .filter(is_worth_it)
-            .map(|group| Chart {
-                group: (groups.len() > 1).then(|| group.name.clone()),
-                data: Data::Dots(named(design, summary, quantity, x, group)),
-            })
-            .collect(),
-    }
+    let parts: Vec<&[Group]> = match number {
+        Some(_) if !is_crowded => vec![&groups],
+        _ => groups.iter().map(std::slice::from_ref).collect(),
+    };
+    let parts = parts.into_iter().filter(|part| part.iter().any(is_worth_it));
+    let chart = |part: &[Group]| {
+        let measure = Measure::new(design, summary, quantity, part)?;
+        let data = match (number, part) {
+            (None, [group]) => Data::Dots(named(&measure, x, group)),
+            _ => Data::Curves(curves(&measure, x, part)),
+        };
+        Some(Chart { group: (part.len() < groups.len()).then(|| part[0].name.clone()), data })
+    };
+    parts.filter_map(chart).collect()
 }
 
 /// Cells that differ in one axis only.
@@ -177,36 +344,30 @@ fn groups(design: &Design, x: usize) -> Vec<Group> {
     groups
 }
 
-fn origin(design: &Design, method: usize) -> Origin {
+/// How a method is drawn.
+pub fn origin(design: &Design, method: usize) -> Origin {
     curves::origin(&design.methods, &design.methods[method].label)
 }
 
-fn curves(design: &Design, summary: &Summary, quantity: Quantity, x: usize, groups: &[Group]) -> ErrorCurves {
-    let titles = quantity.titles();
+fn curves(measure: &Measure, x: usize, groups: &[Group]) -> ErrorCurves {
+    let Measure { design, summary, quantity, .. } = *measure;
+    let titles = measure.titles();
     let mut cells = Vec::new();
     for (column, group) in groups.iter().enumerate() {
         for row in 0..titles.len() {
             let at = |cell: usize| design.cells[cell].values[x];
-            let mut curves: Vec<ErrorCurve> = (0..design.methods.len())
-                .filter(|&method| quantity != Quantity::Failures || fails(summary, method))
-                .map(|method| ErrorCurve {
-                    origin: origin(design, method),
-                    points: group
-                        .cells
-                        .iter()
-                        .filter_map(|&cell| {
-                            let figure = quantity.of(summary.record(cell, method)?, row)?;
-                            Some(ErrorPoint { x: at(cell)?, y: figure.value, interval: figure.ci95 })
-                        })
-                        .collect(),
-                })
-                .collect();
-            let bound = |&cell: &usize| {
-                Some(ErrorPoint { x: at(cell)?, y: quantity.bound(design, cell, row)?, interval: None })
+            let of_method = |&method: &usize| {
+                let point = |&cell: &usize| {
+                    let (figure, beyond) = measure.of(cell, method, row)?;
+                    Some(ErrorPoint { beyond, ..ErrorPoint::new(at(cell)?, figure.value, figure.ci95) })
+                };
+                ErrorCurve::new(origin(design, method), group.cells.iter().filter_map(point).collect())
             };
+            let mut curves: Vec<ErrorCurve> = measure.methods.iter().map(of_method).collect();
+            let bound = |&cell: &usize| Some(ErrorPoint::new(at(cell)?, measure.shown_bound(cell, row)?, None));
             let bounds: Vec<ErrorPoint> = group.cells.iter().filter_map(bound).collect();
             if !bounds.is_empty() {
-                curves.push(ErrorCurve { origin: Origin::Bound, points: bounds });
+                curves.push(ErrorCurve::new(Origin::Bound, bounds));
             }
             cells.push(ErrorCell { row, column, curves });
         }
@@ -215,21 +376,20 @@ fn curves(design: &Design, summary: &Summary, quantity: Quantity, x: usize, grou
     let (least, most) =
         values.iter().filter(|v| **v > 0.0).fold((f64::INFINITY, 0.0), |(a, b), &v| (v.min(a), v.max(b)));
     let is_wide = values.iter().all(|value| *value >= 0.0) && most > WIDE * least;
+    let mark = |mark: &scenario::AxisMark| AxisMark { at: mark.at, label: mark.label.clone() };
+    let marks = design.words.marks.iter().filter(|mark| mark.axis == design.axes[x]);
     ErrorCurves {
-        title: None,
         x_title: design.axes[x].clone(),
         x_scale: if is_wide { Scale::Log } else { Scale::Linear },
         y_scale: quantity.scale(),
-        rows: titles.iter().map(|title| (*title).to_owned()).collect(),
+        rows: titles,
         columns: if groups.len() > 1 { groups.iter().map(|group| group.name.clone()).collect() } else { Vec::new() },
         cells,
         reference: quantity.reference(trials(summary, groups)),
+        marks: marks.map(mark).collect(),
+        note: measure.note(groups),
+        ..ErrorCurves::default()
     }
-}
-
-/// Whether a method has no answer to some trial of the study.
-fn fails(summary: &Summary, method: usize) -> bool {
-    summary.overall[method].record.failed() > 0
 }
 
 /// Usual number of trials behind a figure.
@@ -238,206 +398,37 @@ fn trials(summary: &Summary, groups: &[Group]) -> u64 {
     cells().filter_map(|&cell| summary.record(cell, 0)).map(|record| record.trials).min().unwrap_or(0)
 }
 
-fn named(design: &Design, summary: &Summary, quantity: Quantity, x: usize, group: &Group) -> DotPlot {
-    let column = |(panel, title): (usize, &&str)| {
-        let rows = group.cells.iter().map(|&cell| {
-            let dot = |method: usize| {
-                if quantity == Quantity::Failures && !fails(summary, method) {
-                    return None;
-                }
-                let figure = quantity.of(summary.record(cell, method)?, panel)?;
+fn named(measure: &Measure, x: usize, group: &Group) -> DotPlot {
+    let Measure { design, summary, quantity, .. } = *measure;
+    let part = std::slice::from_ref(group);
+    let column = |(panel, x_title): (usize, String)| {
+        let of = |&cell: &usize| {
+            let dot = |&method: &usize| {
+                let (figure, _) = measure.of(cell, method, panel)?;
                 Some(Dot { origin: origin(design, method), x: figure.value, interval: figure.ci95, hollow: false })
             };
-            let bound = quantity.bound(design, cell, panel);
+            let bound = measure.shown_bound(cell, panel);
             let bound = bound.map(|x| Dot { origin: Origin::Bound, x, interval: None, hollow: false });
-            (0..design.methods.len()).filter_map(dot).chain(bound).collect()
-        });
+            measure.methods.iter().filter_map(dot).chain(bound).collect::<Vec<Dot>>()
+        };
+        // The largest value that is worth something.
+        let useful = group.cells.iter().flat_map(|&cell| measure.methods.iter().map(move |&method| (cell, method)));
+        let useful = useful.filter_map(|(cell, method)| measure.of(cell, method, panel)).filter(|(_, cut)| !cut);
         DotColumn {
-            x_title: (*title).to_owned(),
+            x_title,
             scale: quantity.scale(),
-            reference: quantity.reference(trials(summary, std::slice::from_ref(group))),
-            rows: rows.collect(),
+            reference: quantity.reference(trials(summary, part)),
+            limit: useful.map(|(figure, _)| figure.value).reduce(f64::max),
+            rows: group.cells.iter().map(of).collect(),
         }
     };
+    let rows = format!("Rows: {}.", design.axes[x]);
     DotPlot {
         title: None,
         names: group.cells.iter().map(|&cell| design.cells[cell].labels[x].clone()).collect(),
-        columns: quantity.titles().iter().enumerate().map(column).collect(),
+        columns: measure.titles().into_iter().enumerate().map(column).collect(),
         rows_are_methods: false,
-        note: Some(format!("Rows: {}.", design.axes[x])),
+        quiet: Vec::new(),
+        note: Some(measure.note(part).map_or(rows.clone(), |note| format!("{rows} {note}"))),
     }
-}
-
-/// Fewest points of an axis that make a map.
-const MAP: usize = 3;
-
-/// Maps of the errors of K, of T and of the validation for a design of two axes.
-pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
-    let labels = |axis: usize| {
-        let mut labels: Vec<String> = Vec::new();
-        for cell in &design.cells {
-            if !labels.contains(&cell.labels[axis]) {
-                labels.push(cell.labels[axis].clone());
-            }
-        }
-        labels
-    };
-    if design.axes.len() != 2 {
-        return Vec::new();
-    }
-    let (y_labels, x_labels) = (labels(0), labels(1));
-    if y_labels.len() < MAP || x_labels.len() < MAP {
-        return Vec::new();
-    }
-    let of = |quantity: Quantity, panel: usize, stem: &str, value_title: &str| {
-        // Cells are the product of the axes, the first axis slowest.
-        let value = |x: usize, y: usize, method: usize| {
-            let record = summary.record(y * x_labels.len() + x, method)?;
-            Some(quantity.of(record, panel)?.value)
-        };
-        let map = HeatMap {
-            title: None,
-            x_title: design.axes[1].clone(),
-            y_title: design.axes[0].clone(),
-            x_labels: x_labels.clone(),
-            y_labels: y_labels.clone(),
-            value_title: value_title.to_owned(),
-            scale: Scale::Log,
-            panels: (0..design.methods.len())
-                .map(|method| HeatPanel {
-                    title: design.methods[method].label.clone(),
-                    values: (0..y_labels.len())
-                        .map(|y| (0..x_labels.len()).map(|x| value(x, y, method)).collect())
-                        .collect(),
-                })
-                .collect(),
-        };
-        (format!("heat-map-{stem}"), map)
-    };
-    let is_there =
-        |(_, map): &(String, HeatMap)| map.panels.iter().flat_map(|panel| &panel.values).flatten().any(Option::is_some);
-    let maps = [
-        of(Quantity::Rms, 0, "K", "rms error of K [%]"),
-        of(Quantity::Rms, 1, "T", "rms error of T [%]"),
-        of(Quantity::Validation, 0, "validation", "validation error of the heading [°]"),
-    ];
-    maps.into_iter().filter(is_there).collect()
-}
-
-/// Methods by the median size of their error of T, and the name of the first; nothing without errors.
-pub fn ranking(design: &Design, summary: &Summary) -> Option<(DotPlot, String)> {
-    let record = |method: usize| &summary.overall[method].record;
-    let size = |method: usize| record(method).t.median_size.map_or(f64::INFINITY, |figure| figure.value);
-    let mut order: Vec<usize> = (0..design.methods.len()).collect();
-    order.sort_by(|&one, &other| size(one).total_cmp(&size(other)));
-    let first = *order.first().filter(|&&method| order.len() > 1 && size(method).is_finite())?;
-    let column = |x_title: &str, errors: fn(&Record) -> &summary::Errors| DotColumn {
-        x_title: x_title.to_owned(),
-        scale: Scale::Log,
-        reference: None,
-        rows: order
-            .iter()
-            .map(|&method| {
-                let errors = errors(record(method));
-                let dot = |figure: Statistic, hollow: bool| Dot {
-                    origin: origin(design, method),
-                    x: figure.value,
-                    interval: figure.ci95,
-                    hollow,
-                };
-                let (median, high) = (errors.median_size, errors.high_size);
-                median
-                    .map(|figure| dot(figure, false))
-                    .into_iter()
-                    .chain(high.map(|figure| dot(figure, true)))
-                    .collect()
-            })
-            .collect(),
-    };
-    let name = |&method: &usize| {
-        let failed = record(method).failure_rate.map_or(0.0, |rate| rate.value);
-        let label = &design.methods[method].label;
-        match failed > 0.0 {
-            // A rare failure is not "0.0 %".
-            true => format!("{label} ({} % fail)", number::significant(100.0 * failed, 2)),
-            false => label.clone(),
-        }
-    };
-    let plot = DotPlot {
-        title: None,
-        names: order.iter().map(name).collect(),
-        columns: vec![
-            column("size of the error of K [%]", |record| &record.k),
-            column("size of the error of T [%]", |record| &record.t),
-        ],
-        rows_are_methods: true,
-        note: Some("Filled: median. Hollow: 90 % of the answers are within. Bars: 95 % intervals.".to_owned()),
-    };
-    Some((plot, design.methods[first].label.clone()))
-}
-
-/// Distributions of the sizes of all errors; nothing for fewer than ten trials.
-pub fn ecdf(design: &Design, summary: &Summary) -> Option<Ecdf> {
-    let panel = |x_title: &str, points: fn(&summary::MethodDetail) -> &Vec<(f64, f64)>| EcdfPanel {
-        x_title: x_title.to_owned(),
-        curves: (0..design.methods.len())
-            .map(|method| EcdfCurve {
-                origin: origin(design, method),
-                points: points(&summary.overall[method].detail).clone(),
-            })
-            .filter(|curve| !curve.points.is_empty())
-            .collect(),
-    };
-    let data = Ecdf {
-        title: None,
-        panels: vec![
-            panel("size of the error of K [%]", |detail| &detail.ecdf_k),
-            panel("size of the error of T [%]", |detail| &detail.ecdf_t),
-        ],
-    };
-    let enough = summary.overall.iter().any(|overall| overall.record.trials >= 10);
-    (enough && data.panels.iter().any(|panel| !panel.curves.is_empty())).then_some(data)
-}
-
-/// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.
-pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, Violins)> {
-    let panel = |detail: &summary::CellDetail,
-                 x_title: &str,
-                 violin: fn(&summary::MethodDetail) -> &Option<summary::Violin>| {
-        let of_method = |(method, own): (usize, &summary::MethodDetail)| Violin {
-            origin: origin(design, method),
-            density: violin(own).as_ref().map_or_else(Vec::new, |violin| violin.density.clone()),
-            quantiles: violin(own).as_ref().map(|violin| violin.quantiles),
-        };
-        let violins = detail.methods.iter().enumerate().map(of_method).collect();
-        ViolinPanel { x_title: x_title.to_owned(), violins }
-    };
-    let of_cell = |detail: &summary::CellDetail| {
-        let panels = vec![
-            panel(detail, "error of K [%]", |own| &own.violin_k),
-            panel(detail, "error of T [%]", |own| &own.violin_t),
-        ];
-        let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
-        let known = panels.iter().flat_map(|panel| &panel.violins).any(|violin| violin.quantiles.is_some());
-        (trials >= 10 && known).then_some((detail.cell, Violins { title: None, panels }))
-    };
-    summary.details.iter().filter_map(of_cell).collect()
-}
-
-/// Clouds of errors in the cells whose detail was asked for.
-pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, KtScatter)> {
-    let of_cell = |detail: &summary::CellDetail| {
-        let bound = design.cells[detail.cell].bound_percent2;
-        let bound = bound.map(|covariance| Ellipse { centre: (0.0, 0.0), covariance });
-        let panel = |(method, own): (usize, &summary::MethodDetail)| KtPanel {
-            origin: origin(design, method),
-            points: own.cloud.as_ref().map_or_else(Vec::new, |cloud| cloud.points.clone()),
-            ellipse: own.cloud.as_ref().map(|cloud| Ellipse { centre: cloud.centre, covariance: cloud.covariance }),
-            bound,
-        };
-        let panels: Vec<KtPanel> = detail.methods.iter().enumerate().map(panel).collect();
-        let known = panels.iter().any(|panel| panel.ellipse.is_some());
-        known.then_some((detail.cell, KtScatter { title: None, panels }))
-    };
-    summary.details.iter().filter_map(of_cell).collect()
 }

@@ -4,10 +4,11 @@ use std::collections::HashSet;
 
 use rayon::prelude::*;
 use report::figures;
-use report::{Figure, Theme};
+use report::{Figure, Origin, Theme};
 
 use super::charts::{self, Quantity};
 use super::picture::{first_failure, slug, write_figure};
+use super::pooled_charts;
 use super::trace_charts as traces;
 use super::tracing_table::has_several;
 use campaign::folder::ResultFolder;
@@ -15,6 +16,9 @@ use campaign::showcase::Showcase;
 use campaign::store::Stored;
 use campaign::summary::{Summary, TraceSummary};
 use scenario::failure::Failure;
+
+use crate::options::FigureChoice;
+use crate::screen;
 
 /// A figure that can be drawn.
 pub struct Drawing<'a> {
@@ -26,21 +30,87 @@ pub struct Drawing<'a> {
     pub showcase: Option<usize>,
     /// Whether it is about what traces named.
     pub of_traces: bool,
-    draw: Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>,
+    draw: Box<Draw<'a>>,
+}
+
+/// Draws a figure, plainly or as the one that stands for its study.
+type Draw<'a> = dyn Fn(&Theme, Option<&Hero>) -> Figure + Sync + Send + 'a;
+
+/// How the figure that stands for a study differs from others.
+#[derive(Debug, Clone)]
+struct Hero {
+    /// What it shows, in a sentence.
+    title: Option<String>,
+    /// The methods it is about; empty: all.
+    about: Vec<Origin>,
+}
+
+/// Stem of the figure that stands for a study.
+pub const HERO: &str = "hero";
+
+/// The title of a figure: that of a hero.
+fn title(hero: Option<&Hero>) -> Option<String> {
+    hero.and_then(|hero| hero.title.clone())
 }
 
 impl<'a> Drawing<'a> {
     fn new(
         stem: impl Into<String>,
         caption: impl Into<String>,
-        draw: impl Fn(&Theme) -> Figure + Sync + Send + 'a,
+        draw: impl Fn(&Theme, Option<&Hero>) -> Figure + Sync + Send + 'a,
     ) -> Self {
         Self { stem: stem.into(), caption: caption.into(), showcase: None, of_traces: false, draw: Box::new(draw) }
     }
 }
 
-/// All figures, in the order of the report.
-pub fn of<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
+/// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
+/// A name of a figure that there is not is warned of.
+pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) -> Vec<Drawing<'a>> {
+    let words = &stored.design.words;
+    let mut drawings = all(stored, summary);
+    let warn = |key: &str, name: &str| {
+        let known: Vec<&str> = drawings.iter().map(|drawing| drawing.stem.as_str()).collect();
+        screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; there are: {}", known.join(", ")));
+    };
+    let hero = words.figure.as_ref().and_then(|stem| {
+        let found = drawings.iter().position(|drawing| drawing.stem == *stem);
+        if found.is_none() {
+            warn("figure", stem);
+        }
+        found
+    });
+    let named = words.figures.as_deref().filter(|_| choice == FigureChoice::Named);
+    for name in named.into_iter().flatten().filter(|name| drawings.iter().all(|drawing| drawing.stem != **name)) {
+        warn("figures", name);
+    }
+    let is_kept = |drawing: &Drawing| match choice {
+        FigureChoice::All => true,
+        FigureChoice::Hero => false,
+        FigureChoice::Named => named.is_none_or(|named| named.contains(&drawing.stem)),
+    };
+    let kept: Vec<bool> = drawings.iter().map(is_kept).collect();
+    let mut chosen = Vec::new();
+    if let Some(place) = hero {
+        let labels = &words.methods;
+        let about = |label: &String| campaign::curves::origin(&stored.design.methods, label);
+        let look = Hero { title: words.title.clone(), about: labels.iter().map(about).collect() };
+        // Drawn for itself as well, the figure is needed twice.
+        let twin = all(stored, summary).swap_remove(place);
+        let draw = twin.draw;
+        chosen.push(Drawing {
+            stem: HERO.to_owned(),
+            showcase: None,
+            of_traces: false,
+            draw: Box::new(move |theme, _| draw(theme, Some(&look))),
+            ..twin
+        });
+    }
+    chosen.extend(drawings.drain(..).zip(kept).filter(|(_, kept)| *kept).map(|(drawing, _)| drawing));
+    chosen
+}
+
+/// All figures there are.
+fn all<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
     for (index, showcase) in stored.showcases.iter().enumerate() {
         drawings.extend(of_showcase(index, &slug(&showcase.title), showcase));
@@ -67,12 +137,14 @@ fn tell_apart(drawings: &mut [Drawing]) {
 fn reading(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Rms => {
-            "Root mean square error of K and T with 95 % bootstrap intervals, and the Cramér–Rao bound. A curve that is flat to \
-             the left is bias, one that follows the bound is noise."
+            "Root mean square error of K and T with 95 % bootstrap intervals, over the Cramér–Rao bound where all cells have \
+             one. Over the bound, a line that rises where there is less noise is bias. A difference from the nearest \
+             first-order response is no error: the ship has no K and T of its own."
         }
         Quantity::Coverage => {
             "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals. Inside the grey band a method is as \
-             honest as this number of trials can tell; below it, it is too sure. Methods that quote no interval are missing."
+             honest as this number of trials can tell; below it, it is too sure. Methods that quote an interval in fewer than \
+             half of the trials are missing."
         }
         Quantity::Failures => {
             "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The reasons are \
@@ -105,23 +177,31 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
         true => format!(" Here: {}.", design.methods[first].label),
         false => String::new(),
     };
-    for (number, (group, data)) in traces::confusion(design, &lines).into_iter().enumerate() {
+    for (number, (group, data)) in traces::confusions(design, &lines).into_iter().enumerate() {
         let stem = if number == 0 { "confusion".to_owned() } else { format!("confusion-{}", slug(&group)) };
-        let caption = "How often each effect was named, in per cent of the trials. A row is what the trials lack, a column what \
-                       was named, a dash is never; aliases count for their own name only.";
-        drawings.push(Drawing::new(stem, format!("{caption}{whose}"), move |theme| figures::heat_map(&data, theme)));
+        let caption = "How often each effect was named, in per cent of the trials, with 95 % intervals. A row is what the \
+                       trials lack, a column what was named; aliases count for their own name only.";
+        let place = if group.is_empty() { String::new() } else { format!(" Here: {group}.") };
+        let draw = move |theme: &Theme, hero: Option<&Hero>| {
+            figures::confusion(&figures::Confusion { title: title(hero), ..data.clone() }, theme)
+        };
+        drawings.push(Drawing::new(stem, format!("{caption}{place}{whose}"), draw));
     }
     if let Some(data) = traces::power(&lines) {
         let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
                        ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
                        likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
-        drawings.push(Drawing::new("power", format!("{caption}{whose}"), move |theme| figures::power(&data, theme)));
+        let draw = move |theme: &Theme, hero: Option<&Hero>| {
+            figures::power(&figures::Power { title: title(hero), ..data.clone() }, theme)
+        };
+        drawings.push(Drawing::new("power", format!("{caption}{whose}"), draw));
     }
     if let Some(data) = traces::reliability(&lines) {
         let caption = "How often an effect was there, over the probability that the trace gave it: every effect on the list \
                        counts once in every trial of a ship whose effects are known, with 95 % intervals.";
-        drawings
-            .push(Drawing::new("reliability", format!("{caption}{whose}"), move |theme| figures::power(&data, theme)));
+        drawings.push(Drawing::new("reliability", format!("{caption}{whose}"), move |theme, _| {
+            figures::power(&data, theme)
+        }));
     }
     drawings.iter_mut().for_each(|drawing| drawing.of_traces = true);
     drawings
@@ -140,27 +220,48 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
                 None => quantity.stem().to_owned(),
             };
             let caption = format!("{}{place}", reading(quantity));
-            drawings.push(Drawing::new(stem, caption, move |theme| chart.draw(theme)));
+            let draw = move |theme: &Theme, hero: Option<&Hero>| match hero {
+                Some(Hero { title, about }) => chart.hero(title.as_deref(), about).draw(theme),
+                None => chart.draw(theme),
+            };
+            drawings.push(Drawing::new(stem, caption, draw));
         }
     }
-    for (stem, data) in charts::heat_maps(design, summary) {
+    if let Some((data, method)) = pooled_charts::indices(design, summary) {
+        let caption = format!(
+            "Mean K and T that {method} finds, over those of the first row: where they change from row to row, K and T belong \
+             to the trial and not to the ship."
+        );
+        let draw = move |theme: &Theme, hero: Option<&Hero>| {
+            figures::dots(&figures::DotPlot { title: title(hero), ..data.clone() }, theme)
+        };
+        drawings.push(Drawing::new("indices", caption, draw));
+    }
+    for (stem, data) in pooled_charts::heat_maps(design, summary) {
         let caption = format!("{} of every method over both axes: dark is good.", data.value_title);
-        drawings.push(Drawing::new(stem, caption, move |theme| figures::heat_map(&data, theme)));
+        drawings.push(Drawing::new(stem, caption, move |theme, hero| {
+            figures::heat_map(&figures::HeatMap { title: title(hero), ..data.clone() }, theme)
+        }));
     }
     // A trace is held against the ship's own K and T, another method against the nearest first-order response: in one
     // pool their errors say nothing.
-    let is_one_pool = summary.tracing.is_empty();
-    if let Some((data, first)) = charts::ranking(design, summary).filter(|_| is_one_pool) {
+    // Over several cells the pool is a mixture that nobody asked for.
+    let is_one_pool = summary.tracing.is_empty() && matches!(&design.cells[..], [only] if !only.is_nearest);
+    if let Some((data, first)) = pooled_charts::ranking(design, summary).filter(|_| is_one_pool) {
         let caption = format!(
             "Methods by the size of their error of T over all trials: median (filled) and the size that 90 % of the answers do \
              not exceed (hollow), with 95 % intervals. Trials without an answer do not count here. First: {first}."
         );
-        drawings.push(Drawing::new("ranking", caption, move |theme| figures::dots(&data, theme)));
+        drawings.push(Drawing::new("ranking", caption, move |theme, hero| {
+            figures::dots(&figures::DotPlot { title: title(hero), ..data.clone() }, theme)
+        }));
     }
-    if let Some(data) = charts::ecdf(design, summary).filter(|_| is_one_pool) {
+    if let Some(data) = pooled_charts::ecdf(design, summary).filter(|_| is_one_pool) {
         let caption = "Share of all trials whose error is within a size. Further left is better; a line that levels off below one \
                        belongs to a method that fails.";
-        drawings.push(Drawing::new("ecdf", caption, move |theme| figures::ecdf(&data, theme)));
+        drawings.push(Drawing::new("ecdf", caption, move |theme, hero| {
+            figures::ecdf(&figures::Ecdf { title: title(hero), ..data.clone() }, theme)
+        }));
     }
     let of_cell = |name: &str, cell: usize| {
         let title = design.cells[cell].labels.join(", ");
@@ -169,12 +270,14 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
             _ => (format!("{name}-{}", slug(&title)), format!(" Here: {title}.")),
         }
     };
-    for (cell, data) in charts::violins(design, summary) {
+    for (cell, data) in pooled_charts::violins(design, summary) {
         let (stem, place) = of_cell("violins", cell);
         let caption = "Distribution of the errors. A violin beside zero is bias, a long one is scatter.";
-        drawings.push(Drawing::new(stem, format!("{caption}{place}"), move |theme| figures::violins(&data, theme)));
+        drawings.push(Drawing::new(stem, format!("{caption}{place}"), move |theme, hero| {
+            figures::violins(&figures::Violins { title: title(hero), ..data.clone() }, theme)
+        }));
     }
-    for (cell, data) in charts::scatters(design, summary) {
+    for (cell, data) in pooled_charts::scatters(design, summary) {
         let (stem, place) = of_cell("scatter", cell);
         let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust \
                        standard deviations drawn in)";
@@ -182,14 +285,16 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
         let is_bounded = data.panels.iter().any(|panel| panel.bound.is_some());
         let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
         let caption = format!("{caption}{bound}.{place}");
-        drawings.push(Drawing::new(stem, caption, move |theme| figures::scatter(&data, theme)));
+        drawings.push(Drawing::new(stem, caption, move |theme, hero| {
+            figures::scatter(&figures::KtScatter { title: title(hero), ..data.clone() }, theme)
+        }));
     }
     drawings
 }
 
 fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
-    let mut add = |name: &str, caption: &str, draw: Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>| {
+    let mut add = |name: &str, caption: &str, draw: Box<Draw<'a>>| {
         drawings.push(Drawing {
             stem: if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") },
             caption: caption.to_owned(),
@@ -202,14 +307,14 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
         add(
             "trial",
             "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
-            Box::new(|theme| figures::zigzag_trial(data, theme)),
+            Box::new(|theme, _| figures::zigzag_trial(data, theme)),
         );
     }
     if let Some(data) = &showcase.fourier_fit {
         add(
             "fourier-fit",
             "The Fourier series fitted to the heading, and what it leaves.",
-            Box::new(|theme| figures::curve_fit(data, theme)),
+            Box::new(|theme, _| figures::curve_fit(data, theme)),
         );
     }
     if let Some(data) = &showcase.derivatives {
@@ -217,25 +322,25 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
             "derivatives",
             "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a \
              good acceleration.",
-            Box::new(|theme| figures::derivatives(data, theme)),
+            Box::new(|theme, _| figures::derivatives(data, theme)),
         );
     }
     add(
         "replays",
         "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
-        Box::new(|theme| figures::replays(&showcase.replays, theme)),
+        Box::new(|theme, _| figures::replays(&showcase.replays, theme)),
     );
     add(
         "intervals",
         "K and T of every method with 95 % intervals, beside the truth and the published values.",
-        Box::new(|theme| figures::intervals(&showcase.intervals, theme)),
+        Box::new(|theme, _| figures::intervals(&showcase.intervals, theme)),
     );
     drawings
 }
 
 /// Draws and writes all of them, in parallel. Fails with the first in their order that cannot be written.
 pub fn write_all(drawings: &[Drawing], theme: &Theme, folder: &ResultFolder) -> Result<(), Failure> {
-    first_failure(drawings.par_iter().map(|drawing| write_figure(&(drawing.draw)(theme), folder, &drawing.stem)))
+    first_failure(drawings.par_iter().map(|drawing| write_figure(&(drawing.draw)(theme, None), folder, &drawing.stem)))
 }
 
 #[cfg(test)]
@@ -247,7 +352,7 @@ mod tests {
         let stems = ["errors", "errors-2", "errors", "errors"];
         let mut drawings: Vec<Drawing> = stems
             .iter()
-            .map(|stem| Drawing::new(*stem, "", |theme| figures::ecdf(&figures::Ecdf::default(), theme)))
+            .map(|stem| Drawing::new(*stem, "", |theme, _| figures::ecdf(&figures::Ecdf::default(), theme)))
             .collect();
         tell_apart(&mut drawings);
         let found: Vec<&str> = drawings.iter().map(|drawing| drawing.stem.as_str()).collect();

@@ -10,6 +10,7 @@ pub mod index_figures;
 pub mod method_table;
 pub mod missing_moment;
 pub mod picture;
+pub mod pooled_charts;
 pub mod predict_correction;
 pub mod predict_figures;
 pub mod predict_file;

@@ -13,11 +13,16 @@ use scenario::failure::{Failure, OnPath};
 use super::drawings::{self, write_all};
 use super::study_page::{on_screen, page};
 use super::{coverage_table, tables, tracing_table};
-use crate::options::{Common, Format};
+use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
 /// Makes the tables, the figures and `report.md` in a folder, and prints the tables.
-pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &Common) -> Result<(), Failure> {
+pub fn publish(
+    stored: &Stored,
+    folder: &ResultFolder,
+    (theme, figures): (&Theme, FigureChoice),
+    common: &Common,
+) -> Result<(), Failure> {
     let design = &stored.design;
     let mut tally = Tally::new(design);
     stored.rows(|row| {
@@ -44,7 +49,7 @@ pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &C
         folder.write("summary.md", brief.to_markdown())?;
         folder.write("summary.tex", brief.to_latex())?;
     }
-    let drawings = drawings::of(stored, &summary);
+    let drawings = drawings::of(stored, &summary, figures);
     write_all(&drawings, theme, folder)?;
     // Whatever a scenario or a label holds: no HTML.
     folder.write(REPORT, markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;

@@ -58,7 +58,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
 /// A figure of [`Errors`]: its name, unit, and how to get it.
 type ErrorFigure = (&'static str, &'static str, fn(&Errors) -> Option<Statistic>);
 
-const ERRORS: [ErrorFigure; 13] = [
+const ERRORS: [ErrorFigure; 14] = [
     ("mean error", "%", |errors| errors.mean),
     ("median error", "%", |errors| errors.median),
     ("sd", "%", |errors| errors.sd),
@@ -68,6 +68,7 @@ const ERRORS: [ErrorFigure; 13] = [
     ("25 % quantile", "%", |errors| errors.quantiles[1]),
     ("75 % quantile", "%", |errors| errors.quantiles[2]),
     ("97.5 % quantile", "%", |errors| errors.quantiles[3]),
+    ("median of sizes", "%", |errors| errors.median_size),
     ("90 % of sizes", "%", |errors| errors.high_size),
     ("coverage", "%", |errors| errors.coverage.map(|share| share.times(100.0))),
     ("quoting intervals", "%", |errors| errors.quoting.map(|share| share.times(100.0))),

@@ -1,67 +1,95 @@
 //! Data of the figures about traces: the confusion matrix, and power over the size of an effect.
 
+use std::collections::BTreeSet;
+
 use report::Curve;
-use report::figures::{HeatMap, HeatPanel, Power, PowerSeries, Scale};
+use report::figures::{Confusion, ConfusionCell, ConfusionRow, Power, PowerSeries};
+use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
 use campaign::design::Design;
 use campaign::statistics::share;
 use campaign::summary::{PROMISED, Promised, TraceSummary};
 
-/// Name of the column of trials in which nothing was named.
+/// Name of the row of ships that lack nothing, and of the column of trials in which nothing was named.
 const NOTHING: &str = "nothing";
 
-/// The confusion matrices: rows are points of the first axis, one matrix for every combination of the others, with its
-/// name.
-pub fn confusion(design: &Design, lines: &[TraceSummary]) -> Vec<(String, HeatMap)> {
-    let mut names: Vec<String> = vec![NOTHING.to_owned()];
-    for id in lines.iter().flat_map(|line| line.named.keys()) {
-        if !names.contains(id) {
-            names.push(id.clone());
-        }
-    }
-    names[1..].sort_unstable();
-    let label = |line: &TraceSummary| design.cells[line.cell].labels.first().cloned().unwrap_or_default();
+/// The confusion matrices with their names: a row is what the ships of one or more cells lack, one matrix for every
+/// combination of the other axes where the first decides what is missing, and one for ships that lack several effects.
+pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Confusion)> {
     let rest = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
-    let mut rows: Vec<String> = Vec::new();
-    let mut groups: Vec<String> = Vec::new();
+    let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
+    let mut groups: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
     for line in lines {
-        if !rows.contains(&label(line)) {
-            rows.push(label(line));
-        }
-        if !groups.contains(&rest(line)) {
-            groups.push(rest(line));
+        match groups.iter_mut().find(|(name, _)| *name == rest(line)) {
+            Some((_, group)) => group.push(line),
+            None => groups.push((rest(line), vec![line])),
         }
     }
-    if rows.len() < 2 {
-        return Vec::new();
+    if groups.iter().any(|(_, group)| kinds(group) < 2) {
+        groups = vec![(String::new(), lines.iter().collect())];
     }
-    let value = |line: &TraceSummary, name: &String| {
-        let count = if name == NOTHING { line.silent } else { line.named.get(name).copied().unwrap_or(0) };
-        (count > 0 && line.trials > 0).then(|| 100.0 * count as f64 / line.trials as f64)
+    let mut found = Vec::new();
+    for (name, group) in groups {
+        let (several, single): (Vec<_>, Vec<_>) = group.into_iter().partition(|line| line.missing.len() > 1);
+        for (kind, lines) in [("", single), ("several", several)] {
+            if lines.len() > 1 {
+                let words = [name.as_str(), kind].into_iter().filter(|word| !word.is_empty());
+                found.push((words.collect::<Vec<_>>().join(", "), confusion(design, &lines)));
+            }
+        }
+    }
+    found
+}
+
+fn confusion(design: &Design, lines: &[&TraceSummary]) -> Confusion {
+    let mut rows: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
+    for &line in lines {
+        let is_hull = line.missing.iter().any(|id| id == HULL);
+        let name = match &line.missing[..] {
+            [] => NOTHING.to_owned(),
+            // Nobody knows what a hull lacks.
+            _ if is_hull => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
+            missing => missing.join(" + ").replace('_', " "),
+        };
+        match rows.iter_mut().find(|(row, _)| *row == name) {
+            Some((_, lines)) => lines.push(line),
+            None => rows.push((name, vec![line])),
+        }
+    }
+    // Columns stand in the order of the rows, so that what is right runs down a diagonal.
+    let mut columns: Vec<&str> = vec![NOTHING];
+    let missing = rows.iter().flat_map(|(_, lines)| lines).flat_map(|line| &line.missing).filter(|id| *id != HULL);
+    for id in missing.chain(lines.iter().flat_map(|line| line.named.keys())) {
+        if !columns.contains(&id.as_str()) {
+            columns.push(id);
+        }
+    }
+    let cell = |lines: &[&TraceSummary], id: &str| {
+        let count = |line: &&TraceSummary| match id {
+            NOTHING => line.silent,
+            id => line.named.get(id).copied().unwrap_or(0),
+        };
+        let trials: u64 = lines.iter().map(|line| line.trials).sum();
+        let named = share(lines.iter().map(count).sum(), trials);
+        let is_right = lines[0].missing.iter().any(|own| own == id) || (id == NOTHING && lines[0].missing.is_empty());
+        ConfusionCell {
+            share: named.map_or(0.0, |share| 100.0 * share.value),
+            interval: named.and_then(|share| share.ci95).map(|ends| ends.map(|end| 100.0 * end)),
+            is_right,
+            is_alias: !is_right && lines.iter().any(|line| line.aliases.contains(id)),
+        }
     };
-    let other_axes = design.axes.get(1..).unwrap_or_default().join(", ");
-    let panel = |group: &String| HeatPanel {
-        title: if group.is_empty() { String::from("all trials") } else { format!("{other_axes}: {group}") },
-        values: rows
-            .iter()
-            .map(|row| {
-                let line = lines.iter().find(|line| label(line) == *row && rest(line) == *group);
-                names.iter().map(|name| line.and_then(|line| value(line, name))).collect()
-            })
-            .collect(),
+    let row = |(name, lines): &(String, Vec<&TraceSummary>)| ConfusionRow {
+        name: name.clone(),
+        trials: lines.iter().map(|line| line.trials).sum(),
+        cells: columns.iter().map(|id| cell(lines, id)).collect(),
     };
-    let map = |group: &String| HeatMap {
+    Confusion {
         title: None,
-        x_title: String::from("named"),
-        y_title: design.axes.first().cloned().unwrap_or_default(),
-        x_labels: names.iter().map(|name| name.replace('_', " ")).collect(),
-        y_labels: rows.clone(),
-        value_title: String::from("share of trials [%]"),
-        scale: Scale::Linear,
-        panels: vec![panel(group)],
-    };
-    groups.iter().map(|group| (group.clone(), map(group))).collect()
+        columns: columns.iter().map(|id| id.replace('_', " ")).collect(),
+        rows: rows.iter().map(row).collect(),
+    }
 }
 
 /// Smallest expected likelihood ratio that is drawn.
