@@ -45,6 +45,7 @@ mod canvas;
 mod clip;
 mod dimension;
 mod fonts;
+mod indexed;
 mod layout;
 mod legend;
 mod markup;
