@@ -27,8 +27,8 @@ pub(crate) struct Indexed {
 }
 
 /// An opaque image of `width` pixels a row, of 8-bit red, green, blue and opacity each, with a palette: without loss
-/// where it has no more than 256 colours, otherwise with the smallest deviation up to [`DEVIATION`] that leaves no more.
-/// `None` where that does not suffice.
+/// where it has no more than 256 colours, otherwise with the smallest deviation up to [`DEVIATION`] that leaves no
+/// more. `None` where that does not suffice.
 pub(crate) fn indexed(pixels: &[[u8; 4]], width: usize) -> Option<Indexed> {
     let mut counts: Vec<(Rgb, usize)> = Vec::new();
     let mut numbers: HashMap<[u8; 4], u16> = HashMap::new();

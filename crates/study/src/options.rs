@@ -93,7 +93,7 @@ pub enum Format {
     Markdown,
     /// Comma-separated values
     Csv,
-    /// LaTeX with booktabs
+    /// LaTeX with booktabs and siunitx
     Latex,
 }
 

@@ -42,8 +42,8 @@ pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &C
     let brief = is_readable(design).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {
         folder.write("summary.md", brief.to_markdown())?;
-        folder.write("summary.tex", brief.to_latex())?;
     }
+    folder.write("summary.tex", tables::for_paper(&summary, stored).to_latex())?;
     let drawings = drawings::of(stored, &summary);
     write_all(&drawings, theme, folder)?;
     // Whatever a scenario or a label holds: no HTML.
