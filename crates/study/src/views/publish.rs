@@ -12,7 +12,7 @@ use scenario::failure::{Failure, OnPath};
 
 use super::drawings::{self, write_all};
 use super::study_page::{on_screen, page};
-use super::{coverage_table, tables, tracing_table};
+use super::{coverage_table, curve_tables, tables, tracing_table};
 use crate::options::{Common, Format};
 use crate::screen;
 
@@ -46,6 +46,7 @@ pub fn publish(stored: &Stored, folder: &ResultFolder, theme: &Theme, common: &C
     folder.write("summary.tex", tables::for_paper(&summary, stored).to_latex())?;
     let drawings = drawings::of(stored, &summary);
     write_all(&drawings, theme, folder)?;
+    curve_tables::write_showcases(stored, &drawings, folder)?;
     // Whatever a scenario or a label holds: no HTML.
     folder.write(REPORT, markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
 

@@ -14,6 +14,7 @@ use report::{Curve, Figure, Origin, Theme};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
+use super::curve_tables;
 use super::index_figures;
 use super::missing_moment;
 use super::picture::{first_failure, slug, write_figure};
@@ -39,21 +40,34 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
     let analysis = report.analysis;
     let trials: Vec<&Trial> = report.trials.iter().chain(report.others).collect();
     let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
-    let mut drawings: Vec<Drawing> = Vec::new();
     // Two names may make one slug.
     let slugs = names(report.names.iter().map(|name| slug(name)));
+    let curves: Vec<(RecordFit, Option<ResidualPanels>)> = trials
+        .par_iter()
+        .zip(&judged)
+        .enumerate()
+        .map(|(number, (&trial, &judged))| {
+            let (name, held_out) = (&report.names[number], number >= report.trials.len());
+            // Held-out records are judged, not studied.
+            let residual = (!held_out).then(|| residual(trial, judged, name));
+            (record(trial, judged, trace_page::title(judged, name, held_out)), residual)
+        })
+        .collect();
+    let mut drawings: Vec<Drawing> = Vec::new();
+    let suffix = |number: usize| if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
+    for (number, (record, residual)) in curves.iter().enumerate() {
+        folder.write(&format!("replay{}.csv", suffix(number)), curve_tables::of_record(record))?;
+        for (stem, table) in residual.iter().flat_map(curve_tables::of_residual) {
+            folder.write(&format!("{stem}{}.csv", suffix(number)), table)?;
+        }
+    }
     for (number, (&trial, &judged)) in trials.iter().zip(&judged).enumerate() {
         let name = &report.names[number];
-        let held_out = number >= report.trials.len();
-        let suffix = if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
-        let title = trace_page::title(judged, name, held_out);
+        let suffix = suffix(number);
+        let (record, residual) = &curves[number];
+        let title = record.title.as_deref().unwrap_or_default();
         let caption = format!("{title}: heading, residual and rudder, with the 95 % band of the model after.");
-        let record_title = title.clone();
-        drawings.push((
-            format!("record{suffix}"),
-            caption,
-            Box::new(move || record(trial, judged, &record_title, theme)),
-        ));
+        drawings.push((format!("record{suffix}"), caption, Box::new(move || figures::record_fit(record, theme))));
         let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
         let of_record = name.clone();
         let draw = move || {
@@ -62,15 +76,15 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
             figures::phase_plane(&index_figures::phase_plane(of_record.clone(), trial, fits), theme)
         };
         drawings.push((format!("phase{suffix}"), caption, Box::new(draw)));
-        // Held-out records are judged, not studied.
-        if held_out {
-            continue;
-        }
+        let Some(residual) = residual else { continue };
         let caption = format!(
             "{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation."
         );
-        let name = name.clone();
-        drawings.push((format!("residual{suffix}"), caption, Box::new(move || residual(trial, judged, &name, theme))));
+        drawings.push((
+            format!("residual{suffix}"),
+            caption,
+            Box::new(move || figures::residual_panels(residual, theme)),
+        ));
     }
     for shown in missing_moment::shown(report) {
         let caption = missing_moment::sentence(report, &shown);
@@ -148,7 +162,8 @@ fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
     rows
 }
 
-fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {
+/// A record with the models before and after.
+fn record(trial: &Trial, judged: &Judged, title: String) -> RecordFit {
     let fit = |origin: Origin, on: &OnRecord| {
         let Replay { time, heading, residual, .. } = &on.replay;
         Fit {
@@ -170,16 +185,16 @@ fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure 
     let (before, after) = (&judged.before, &judged.after);
     let band = about(&|row| after.replay.heading[row]).zip(about(&|_| 0.0));
     let band = band.map(|(heading, residual)| FitBand { heading, residual });
-    let data = RecordFit {
-        title: Some(title.to_owned()),
+    RecordFit {
+        title: Some(title),
         heading: curve(trial.time(), trial.heading()),
         rudder: curve(trial.time(), trial.rudder()),
         fits: vec![fit(Origin::Before, before), Fit { band, ..fit(Origin::After, after) }],
-    };
-    figures::record_fit(&data, theme)
+    }
 }
 
-fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure {
+/// The residual before and after from all sides.
+fn residual(trial: &Trial, judged: &Judged, name: &str) -> ResidualPanels {
     let first = trial.time().partition_point(|&t| t < judged.before.replay.time[0]);
     let models = [(Origin::Before, &judged.before.replay), (Origin::After, &judged.after.replay)];
     let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
@@ -223,7 +238,7 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
             .collect(),
         band: Some([-band, band]),
     };
-    let data = ResidualPanels {
+    ResidualPanels {
         title: Some(name.to_owned()),
         panels: vec![
             against("time [s]", &|replayed| replayed.time.clone()),
@@ -233,8 +248,7 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
             lines,
             correlations,
         ],
-    };
-    figures::residual_panels(&data, theme)
+    }
 }
 
 /// Points of a cloud, not more than a figure can show.
