@@ -40,7 +40,7 @@ fn quiet(out: Option<&Path>) -> Common {
 }
 
 /// Figures that take no time.
-const STYLE: Style = Style { paper: Some(60.0), dpi: 72.0 };
+const STYLE: Style = Style { paper: Some(60.0), dpi: 72.0, style: None };
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
