@@ -144,13 +144,14 @@ fn steps(data: &Evidence, sheet: &mut Sheet, theme: &Theme) {
         entries.push(Entry::new(Sample::Marker(square(BEFORE, false)), "added by an effect"));
     }
     if data.steps.iter().any(|step| step.held_out_deg.is_some()) {
-        entries.push(Entry::new(Sample::Marker(HELD_OUT), "held-out records"));
+        entries.push(Entry::new(Sample::Marker(HELD_OUT), "(on held-out records)"));
     }
     sheet.legend(&entries);
     let errors = data.steps.iter().flat_map(|step| [Some(step.fitted_deg), step.held_out_deg]).flatten();
     let most = errors.filter(|error| error.is_finite()).fold(0.0, f64::max);
     // Room for the number beside the longest bar.
-    let x = Side::new(Axis::linear(0.0, 1.2 * most, Steps::Decimal), "rms error of the heading [°]");
+    let reach = if theme.is_narrow() { 1.4 } else { 1.2 };
+    let x = Side::new(Axis::linear(0.0, reach * most, Steps::Decimal), "rms error of the heading [°]");
     let names = data.steps.iter().map(|step| step.name.clone()).collect();
     for panel in &sheet.grid(Grid::stack(x, vec![rows(names, theme)])) {
         let mut before = 0.0;
@@ -170,19 +171,21 @@ fn steps(data: &Evidence, sheet: &mut Sheet, theme: &Theme) {
             if let Some(error) = step.held_out_deg {
                 panel.marker(&mut sheet.scene, (error, number as f64), 1.3 * theme.marker, &HELD_OUT);
             }
-            let held_out = step
-                .held_out_deg
-                .map_or_else(String::new, |error| format!(" ({}° held out)", number::significant(error, 3)));
-            let text = format!("{}°{held_out}", number::significant(step.fitted_deg, 3));
-            let text = Text::new(text, theme.small_font);
             let bar_end = before.max(step.fitted_deg);
-            let after = |value: f64| beside(panel, number, value, theme);
-            let needed = text.width() + 2.0 * theme.marker;
-            // Between the bar and the mark where there is room, else behind both.
             let mark = step.held_out_deg.filter(|error| *error > bar_end);
-            let is_free = |place: &Place| mark.and_then(|mark| panel.across(mark)).is_none_or(|x| place.0 + needed < x);
-            let place = after(bar_end).filter(is_free).or_else(|| after(mark.unwrap_or(bar_end)));
-            if let Some((x, y)) = place {
+            let [fitted, held_out] = [Some(step.fitted_deg), step.held_out_deg]
+                .map(|error| error.map(|error| format!("{}°", number::significant(error, 3))).unwrap_or_default());
+            // Between the bar and the mark where there is room, else both behind the mark.
+            let room = mark.and_then(|mark| Some(panel.across(mark)? - panel.across(bar_end)?));
+            let needed = Text::new(fitted.as_str(), theme.small_font).width() + 2.0 * theme.marker + theme.small_font;
+            let words = match (mark, step.held_out_deg) {
+                (Some(mark), _) if room.is_some_and(|room| room > needed) => vec![(bar_end, fitted), (mark, held_out)],
+                (_, Some(_)) => vec![(mark.unwrap_or(bar_end), format!("{fitted} ({held_out})"))],
+                (_, None) => vec![(bar_end, fitted)],
+            };
+            for (value, words) in words {
+                let text = Text::new(words, theme.small_font);
+                let Some((x, y)) = beside(panel, number, value, theme) else { continue };
                 let x = x.min(panel.rect.right() - text.width() - 0.3 * theme.small_font);
                 sheet.scene.text_on_ground(Layer::Note, (x, y), text);
             }
@@ -204,7 +207,7 @@ fn bars(data: &Evidence, sheet: &mut Sheet, theme: &Theme) {
     let gains = || data.bars.iter().flat_map(|bar| [bar.gain, bar.threshold]).filter(|gain| gain.is_finite());
     let (least, most) = (gains().fold(0.0, f64::min), gains().fold(0.0, f64::max));
     // Room for the numbers at the right.
-    let room = if theme.is_narrow() { 0.45 } else { 0.14 } * (most - least);
+    let room = if theme.is_narrow() { 0.6 } else { 0.14 } * (most - least);
     let least = if least < 0.0 { least - 0.04 * (most - least) } else { least };
     let title = format!("fall of {} when added to the final model", symbol("BIC"));
     let x = Side::new(Axis::linear(least, most + room, Steps::Decimal), title);
@@ -240,7 +243,8 @@ mod tests {
             ..Evidence::default()
         };
         let figure = evidence(&data, &Theme::paper(85.0, 300.0).unwrap());
-        for text in ["2.00° (2.50° held out)", "0.500°", "−5.50", "+ delay", "memory is not kept", "added by an effect"]
+        for text in
+            ["2.00° (2.50°)", "0.500°", "held-out", "−5.50", "+ delay", "memory is not kept", "added by an effect"]
         {
             assert!(figure.svg().contains(text), "{text}");
         }
