@@ -22,7 +22,8 @@ pub fn end(done: Outcome<()>) -> ExitCode {
 }
 
 /// Figures as `study` draws them unless asked otherwise.
-pub const STYLE: StudyStyle = StudyStyle { style: Style { paper: None, dpi: 600.0 }, figures: FigureChoice::Named };
+pub const STYLE: StudyStyle =
+    StudyStyle { style: Style { paper: None, dpi: 600.0, style: None }, figures: FigureChoice::Named };
 
 /// The options `--out OUT --quiet`.
 pub fn quiet(out: &str) -> Common {

@@ -107,6 +107,21 @@ impl Axis {
         fraction * (self.hi - self.lo)
     }
 
+    /// The same axis from `lo` to `hi`, which are in order.
+    pub(crate) fn between(self, lo: f64, hi: f64) -> Self {
+        Self { lo, hi, ..self }
+    }
+
+    /// Whether it has numbers and no names.
+    pub(crate) fn is_numeric(&self) -> bool {
+        matches!(self.scale, Scale::Linear(_) | Scale::Log { .. })
+    }
+
+    /// Whether it is logarithmic.
+    pub(crate) fn is_logarithmic(&self) -> bool {
+        matches!(self.scale, Scale::Log { .. })
+    }
+
     /// Whether it is a list of names from left to right.
     pub(crate) fn is_columns(&self) -> bool {
         matches!(self.scale, Scale::Columns(_))

@@ -188,6 +188,9 @@ impl Sheet {
     /// Draws the frames and returns the panels, row by row.
     pub(crate) fn grid(&mut self, grid: Grid) -> Vec<Panel> {
         let theme = self.theme;
+        let mut grid = grid;
+        let sides = grid.columns.iter_mut().chain(grid.rows.iter_mut().map(|(side, _)| side));
+        sides.for_each(|side| theme.changes.limit(&mut side.axis, &side.title));
         let count = grid.columns.len().max(1);
         let left = grid.left.unwrap_or_else(|| self.left_margin(&grid));
         let right = Self::right_margin(&theme);
@@ -342,7 +345,7 @@ impl Sheet {
     /// The finished figure.
     pub(crate) fn finish(self) -> Figure {
         let height = self.y + 0.3 * self.theme.small_font;
-        let svg = svg::render(&self.scene, self.theme.width, height);
+        let svg = self.theme.changes.recoloured(svg::render(&self.scene, self.theme.width, height));
         Figure::new(svg, self.theme.width, height, self.theme.dpi)
     }
 }

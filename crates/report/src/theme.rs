@@ -1,6 +1,7 @@
 //! Sizes of a figure: everything is in points (1/72 inch) on the finished page, so one theme decides whether a figure
 //! can be read. Colours are in [`crate::palette`]; where things go is decided in the layout.
 
+use crate::changes::Changes;
 use crate::error::ReportError;
 
 const POINTS_PER_MM: f64 = 72.0 / 25.4;
@@ -34,6 +35,8 @@ pub struct Theme {
     pub(crate) marker: f64,
     /// Radius of a measured point.
     pub(crate) dot: f64,
+    /// What a style changes besides sizes.
+    pub(crate) changes: Changes,
 }
 
 impl Theme {
@@ -50,6 +53,7 @@ impl Theme {
             thin: 0.75,
             marker: 3.0,
             dot: 1.4,
+            changes: Changes::default(),
         }
     }
 
@@ -76,6 +80,7 @@ impl Theme {
             thin: 0.5 + share * 0.1,
             marker: 1.9 + share * 0.4,
             dot: 0.9 + share * 0.2,
+            changes: Changes::default(),
         })
     }
 

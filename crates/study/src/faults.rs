@@ -40,7 +40,8 @@ fn quiet(out: Option<&Path>) -> Common {
 }
 
 /// Figures that take no time.
-const STYLE: StudyStyle = StudyStyle { style: Style { paper: Some(60.0), dpi: 72.0 }, figures: FigureChoice::Named };
+const STYLE: StudyStyle =
+    StudyStyle { style: Style { paper: Some(60.0), dpi: 72.0, style: None }, figures: FigureChoice::Named };
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {

@@ -1,6 +1,7 @@
 //! What a user may ask of a command: options and arguments, each declared once. Commands read them, nothing here acts.
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use ::trace::search::Rule;
@@ -10,7 +11,7 @@ use clap::{Args, ValueEnum};
 use predict::Kind;
 use report::theme::{DPI, WIDTH_MM};
 use report::{Table, Theme};
-use scenario::failure::Failure;
+use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 use trial::clock::Stamp;
 
@@ -29,7 +30,7 @@ pub struct RunRequest {
 }
 
 /// How figures are drawn.
-#[derive(Debug, Clone, Copy, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Style {
     /// Draw figures for print, MM millimetres wide [default: for a screen]
     #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
@@ -37,6 +38,9 @@ pub struct Style {
     /// Resolution of figures for print
     #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
     pub dpi: f64,
+    /// Sizes, colours and limits of axes of the figures; docs/style.toml has all keys
+    #[arg(long, value_name = "FILE.toml")]
+    pub style: Option<PathBuf>,
 }
 
 /// How the figures of a study are drawn, and which.
@@ -71,13 +75,31 @@ fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, String> + Clo
 }
 
 impl Style {
-    /// The theme of the figures. Fails when no page carries it.
+    /// The theme of the figures; what the command line says goes before the file. Fails when no page carries it, and
+    /// when the file cannot be read.
     pub fn theme(&self) -> Result<Theme, Failure> {
-        match self.paper {
-            None => Ok(Theme::screen()),
-            Some(width_mm) => Theme::paper(width_mm, self.dpi).map_err(Failure::input),
-        }
+        let file = self.style.as_deref();
+        let own = file.map(style_of).transpose()?.unwrap_or_default();
+        let named = |error: String| match file {
+            Some(file) => Failure::input(format!("{}: {error}", file.display())),
+            None => Failure::input(error),
+        };
+        let printed = self.paper.map(|width_mm| (width_mm, self.dpi));
+        let printed = printed.or_else(|| Some((own.width_mm?, own.dpi.unwrap_or(self.dpi))));
+        let theme = match printed {
+            None => Theme::screen(),
+            Some((width_mm, dpi)) => Theme::paper(width_mm, dpi).map_err(|error| named(error.to_string()))?,
+        };
+        let own = report::Style { dpi: own.dpi.filter(|_| self.paper.is_none()), ..own };
+        own.on(theme).map_err(|error| named(error.to_string()))
     }
+}
+
+/// A style from its file.
+fn style_of(path: &Path) -> Result<report::Style, Failure> {
+    let text = fs::read_to_string(path).on("read", path)?;
+    toml::from_str(&text)
+        .map_err(|error| Failure::input(format!("{}: {}", path.display(), error.to_string().trim_end())))
 }
 
 /// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
@@ -116,7 +138,7 @@ pub enum Format {
     Markdown,
     /// Comma-separated values
     Csv,
-    /// LaTeX with booktabs
+    /// LaTeX with booktabs and siunitx
     Latex,
 }
 
@@ -383,4 +405,34 @@ pub enum Listed {
     Columns,
     /// What a sidecar may say
     Sidecar,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn theme(file: &Path) -> Result<Theme, Failure> {
+        Style { paper: None, dpi: 600.0, style: Some(file.to_owned()) }.theme()
+    }
+
+    #[test]
+    fn the_sample_of_a_style_can_be_used() {
+        theme(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/style.toml"))).expect("a style");
+    }
+
+    #[test]
+    fn a_wrong_style_is_refused_with_its_file_and_key() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("own.toml");
+        for (text, said) in [
+            ("colour = 1", "unknown field `colour`, expected one of `width-mm`, `dpi`"),
+            ("width-mm = 3", "3 mm"),
+            ("dpi = 10", "dpi = 10: expected a number from 72 to 1200"),
+            ("[colours]\nink = \"black\"", "[colours] ink = \"black\": expected"),
+        ] {
+            fs::write(&path, text).expect("written");
+            let error = theme(&path).expect_err("refused").to_string();
+            assert!(error.contains("own.toml") && error.contains(said), "{error}");
+        }
+    }
 }

@@ -14,6 +14,7 @@ impl Table {
 fn render(table: &Table) -> String {
     // Escaping comes before padding, so that the columns of the source line up too.
     let escaped = Table {
+        label: None,
         title: None,
         columns: table
             .columns

@@ -5,6 +5,7 @@
 mod content;
 mod csv;
 mod latex;
+mod latex_text;
 mod markdown;
 mod text;
 mod width;
@@ -71,25 +72,40 @@ least_squares,-0.25,,12
 
     #[test]
     fn latex() {
-        let expected = r#"\begin{table}
+        let expected = r#"% Needs \usepackage{booktabs,siunitx,adjustbox}.
+\begin{table}
   \centering
-  \caption{Estimates \& errors}
-  \begin{tabular}{lrrr}
+  \caption{Estimates \& errors}\label{tab:sample}
+  \par\smallskip\small
+  \setlength{\tabcolsep}{4pt}
+  \begin{adjustbox}{max width=\linewidth}
+  \begin{tabular}{@{}l S[table-format=-2.4(1)] S[table-format=3.2] S[table-format=3]@{}}
     \toprule
-    method & K [1/s] & $\psi$ rms [$^\circ$] & n \\
+    {method} & {$K$ [1/s]} & {$\psi$ rms [$^{\circ}$]} & {n} \\
     \midrule
-    output-error & 0.1003 $\pm$ 0.0007 & 0.10 & 271 \\
-    least\_squares & $-$0.25 & -- & 12 \\
-    fourier$|$pub, "5" & 12.5 & 100.5 & -- \\
+    output-error & 0.1003(7) & 0.10 & 271 \\
+    least\_squares & -0.25 & {--} & 12 \\
+    fourier$|$pub, "5" & 12.5 & 100.5 & {--} \\
     \bottomrule
   \end{tabular}
+  \end{adjustbox}
 \end{table}
 "#;
-        assert_eq!(sample().to_latex(), expected);
-        let mut table = Table::new([Column::left("σ² 10⁻³ \\ x_1")]);
-        table.push(["r₁₂"]);
-        assert!(table.to_latex().contains("$\\sigma$$^{2}$ 10$^{-3}$ \\textbackslash{} x\\_1"));
-        assert!(table.to_latex().contains("r$_{12}$"));
+        assert_eq!(sample().labelled("sample").to_latex(), expected);
+    }
+
+    #[test]
+    fn latex_of_wide_tables_is_in_blocks_and_of_long_ones_over_pages() {
+        let names = (0..12).map(|i| Column::decimal(format!("quantity {i}")).unit("1/s"));
+        let mut table = Table::new([Column::left("method")].into_iter().chain(names).collect::<Vec<_>>());
+        (0..5).for_each(|_| table.push([&["one"][..], &["(1.234 ± 0.012)×10⁻⁵"; 12]].concat()));
+        let text = table.to_latex();
+        assert!(text.matches("\\begin{tabular}").count() > 2 && text.matches("\\begin{table}").count() == 1);
+        assert_eq!(text.matches("    {method} & ").count(), text.matches("\\begin{tabular}").count());
+        assert!(text.contains("S[table-format=1.3(2)e-1]") && text.contains(" 1.234(12)e-5 &"), "{text}");
+        (0..50).for_each(|_| table.push(["two", "1 ± 0.5", "n/a"]));
+        let text = table.to_latex();
+        assert!(text.contains("\\endhead") && text.contains("two & 1 $\\pm$ 0.5 & n/a"), "{text}");
     }
 
     #[test]
@@ -112,6 +128,6 @@ least_squares,-0.25,,12
     fn empty_tables_are_only_headings() {
         assert_eq!(Table::new([Column::left("a"), Column::decimal("b")]).to_text(), "a  b\n─  ─\n");
         assert_eq!(Table::default().to_csv(), "\n");
-        assert!(Table::default().to_latex().contains("\\begin{tabular}{}"));
+        assert!(Table::default().to_latex().starts_with('%'));
     }
 }

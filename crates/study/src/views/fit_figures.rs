@@ -10,8 +10,8 @@ use report::{Figure, Origin, Theme};
 use ship::Particulars;
 use trial::{Channel, Trial, ZigZag};
 
-use super::index_figures;
 use super::picture::{first_failure, write_figure};
+use super::{curve_tables, index_figures};
 use crate::views::index_figures::Amplitudes;
 use campaign::answer::MethodEntry;
 use campaign::curves::{curve, replay_curves, zigzag_figure};
@@ -43,7 +43,8 @@ pub struct Whole {
 
 /// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `raw` (where readings are left out or
 /// doubtful), `replays`, `fit` and `phase` of the first record, and the same with `-NAME` of the others; `indices`, K
-/// and T of all methods, and `amplitude`, those of every record alone.
+/// and T of all methods, and `amplitude`, those of every record alone. Beside them `replay.csv`, the curves of
+/// `replays`.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
@@ -71,6 +72,8 @@ pub fn draw(
         }
         let replays = replays(record, answers);
         write_figure(&figures::replays(&replays, theme), folder, &format!("replays{suffix}"))?;
+        let rudder = curve(record.trial.time(), record.trial.rudder());
+        folder.write(&format!("replay{suffix}.csv"), curve_tables::of_replays(&replays, Some(&rudder)))?;
         if let Some(phase) = phase(record, answers) {
             write_figure(&figures::phase_plane(&phase, theme), folder, &format!("phase{suffix}"))?;
         }

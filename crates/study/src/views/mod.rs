@@ -2,6 +2,7 @@
 
 pub mod charts;
 pub mod coverage_table;
+pub mod curve_tables;
 pub mod drawings;
 pub mod fit_figures;
 pub mod fit_file;

@@ -12,7 +12,7 @@ use scenario::failure::{Failure, OnPath};
 
 use super::drawings::{self, write_all};
 use super::study_page::{on_screen, page};
-use super::{coverage_table, tables, tracing_table};
+use super::{coverage_table, curve_tables, tables, tracing_table};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
@@ -47,10 +47,11 @@ pub fn publish(
     let brief = is_readable(design).then(|| tables::summary_in_brief(&summary, design));
     if let Some(brief) = &brief {
         folder.write("summary.md", brief.to_markdown())?;
-        folder.write("summary.tex", brief.to_latex())?;
     }
+    folder.write("summary.tex", tables::for_paper(&summary, stored).to_latex())?;
     let drawings = drawings::of(stored, &summary, figures);
     write_all(&drawings, theme, folder)?;
+    curve_tables::write_showcases(stored, &drawings, folder)?;
     // Whatever a scenario or a label holds: no HTML.
     folder.write(REPORT, markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
 

@@ -7,6 +7,7 @@ use report::{Column, Table};
 use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
+use campaign::store::Stored;
 use campaign::summary::{Errors, MethodSummary, PairSummary, Record, Summary};
 use scenario::MethodName;
 
@@ -168,6 +169,18 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
         table.push(cells);
     }
     table
+}
+
+/// [`overall`] with the caption and the label it has in a paper: `summary.tex`.
+pub fn for_paper(summary: &Summary, stored: &Stored) -> Table {
+    let (name, cells) = (&stored.manifest.name, stored.design.cells.len());
+    let of = if cells == 1 { name.clone() } else { format!("{name}, all {cells} cells together") };
+    let caption = format!(
+        "Errors of K and T in {of}: trials that failed, median of the size of the relative error with its 95 % \
+         bootstrap interval, 90 % quantile of this size, share of the quoted 95 % intervals that hold the truth, and \
+         median error of the heading on a manoeuvre no method has seen."
+    );
+    overall(summary, &stored.design).titled(caption).labelled(name.as_str())
 }
 
 /// Every method against the reference on the same trials: `pairs.csv`.

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use ::trace::analysis::{Considered, Fitted, Outcome, Traced};
+use ::trace::analysis::{Considered, Fitted, Outcome, Step, Traced};
 use ::trace::search::{Weighted, Weights};
 use ::trace::structure::TermName;
 use serde::Serialize;
 use ship::Particulars;
+use ship::angle::to_deg;
 use ship::particulars::prime_unit;
 use trial::Quantity;
 
@@ -41,6 +42,29 @@ pub struct PrimeEntry {
 /// Whether a flag is left out.
 pub fn is_false(flag: &bool) -> bool {
     !flag
+}
+
+/// A model on the way from the base to the final one.
+#[derive(Debug, Serialize)]
+pub struct StepEntry {
+    /// Identifier of the effect that was added; null for the base.
+    added: Option<&'static str>,
+    form: Option<&'static str>,
+    heading_rmse_deg: f64,
+    held_out_heading_rmse_deg: Option<f64>,
+    delta_bic: Option<f64>,
+}
+
+impl From<&Step> for StepEntry {
+    fn from(step: &Step) -> Self {
+        Self {
+            added: step.added.map(|(id, ..)| id),
+            form: step.added.map(|(_, form, _)| form),
+            heading_rmse_deg: to_deg(step.fitted),
+            held_out_heading_rmse_deg: step.held_out.map(to_deg),
+            delta_bic: step.gain,
+        }
+    }
 }
 
 /// An effect that was found.

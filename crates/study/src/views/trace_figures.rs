@@ -2,18 +2,19 @@
 //! that the base lacks, and the candidates with the threshold.
 
 use ::trace::analysis::{Judged, OnRecord, Outcome};
-use ::trace::diagnostics::{Series, autocorrelation, spectrum};
+use ::trace::diagnostics::{Line, Series, autocorrelation, spectrum};
 use ::trace::replay_errors::replayed_zigzag;
 use identify::replay::Replay;
 use rayon::prelude::*;
 use report::figures::{
-    self, Evidence, EvidenceBar, Fate, Fit, FitBand, OvershootReplays, RecordFit, ReplayedOvershoot, ResidualPanel,
-    ResidualPanels,
+    self, Evidence, EvidenceBar, EvidenceStep, Fate, Fit, FitBand, OvershootReplays, RecordFit, ReplayedOvershoot,
+    ResidualPanel, ResidualPanels,
 };
 use report::{Curve, Figure, Origin, Theme};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
+use super::curve_tables;
 use super::index_figures;
 use super::missing_moment;
 use super::picture::{first_failure, slug, write_figure};
@@ -25,11 +26,11 @@ use campaign::curves::curve;
 use campaign::folder::ResultFolder;
 use scenario::failure::Failure;
 
-/// Lags of the autocorrelation.
-const LAGS: usize = 60;
+/// Lags of the autocorrelation, at least where the record has them and at most.
+const LAGS: [usize; 2] = [60, 4000];
 
-/// Lines of a spectrum that are averaged into one, at most this many are drawn.
-const MOST_LINES: usize = 400;
+/// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
+const LINE: f64 = 1.06;
 
 /// Stem, caption and what is drawn.
 type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
@@ -39,21 +40,34 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
     let analysis = report.analysis;
     let trials: Vec<&Trial> = report.trials.iter().chain(report.others).collect();
     let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
-    let mut drawings: Vec<Drawing> = Vec::new();
     // Two names may make one slug.
     let slugs = names(report.names.iter().map(|name| slug(name)));
+    let curves: Vec<(RecordFit, Option<ResidualPanels>)> = trials
+        .par_iter()
+        .zip(&judged)
+        .enumerate()
+        .map(|(number, (&trial, &judged))| {
+            let (name, held_out) = (&report.names[number], number >= report.trials.len());
+            // Held-out records are judged, not studied.
+            let residual = (!held_out).then(|| residual(trial, judged, name));
+            (record(trial, judged, trace_page::title(judged, name, held_out)), residual)
+        })
+        .collect();
+    let mut drawings: Vec<Drawing> = Vec::new();
+    let suffix = |number: usize| if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
+    for (number, (record, residual)) in curves.iter().enumerate() {
+        folder.write(&format!("replay{}.csv", suffix(number)), curve_tables::of_record(record))?;
+        for (stem, table) in residual.iter().flat_map(curve_tables::of_residual) {
+            folder.write(&format!("{stem}{}.csv", suffix(number)), table)?;
+        }
+    }
     for (number, (&trial, &judged)) in trials.iter().zip(&judged).enumerate() {
         let name = &report.names[number];
-        let held_out = number >= report.trials.len();
-        let suffix = if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
-        let title = trace_page::title(judged, name, held_out);
+        let suffix = suffix(number);
+        let (record, residual) = &curves[number];
+        let title = record.title.as_deref().unwrap_or_default();
         let caption = format!("{title}: heading, residual and rudder, with the 95 % band of the model after.");
-        let record_title = title.clone();
-        drawings.push((
-            format!("record{suffix}"),
-            caption,
-            Box::new(move || record(trial, judged, &record_title, theme)),
-        ));
+        drawings.push((format!("record{suffix}"), caption, Box::new(move || figures::record_fit(record, theme))));
         let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
         let of_record = name.clone();
         let draw = move || {
@@ -62,15 +76,15 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
             figures::phase_plane(&index_figures::phase_plane(of_record.clone(), trial, fits), theme)
         };
         drawings.push((format!("phase{suffix}"), caption, Box::new(draw)));
-        // Held-out records are judged, not studied.
-        if held_out {
-            continue;
-        }
+        let Some(residual) = residual else { continue };
         let caption = format!(
             "{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation."
         );
-        let name = name.clone();
-        drawings.push((format!("residual{suffix}"), caption, Box::new(move || residual(trial, judged, &name, theme))));
+        drawings.push((
+            format!("residual{suffix}"),
+            caption,
+            Box::new(move || figures::residual_panels(residual, theme)),
+        ));
     }
     for shown in missing_moment::shown(report) {
         let caption = missing_moment::sentence(report, &shown);
@@ -79,8 +93,9 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
         drawings.push((stem, caption, Box::new(draw)));
     }
     drawings.extend(of_the_ship(report, theme));
-    let caption =
-        "Gain of every candidate when it is added to the base alone; colours say what became of it in the end.";
+    let caption = "Above: the error of the heading on the fitted records after every effect that was added, in the order \
+                   of discovery, and on held-out records. Below: what every other candidate would gain beside them; colours \
+                   say what became of it.";
     drawings.push((String::from("candidates"), caption.into(), Box::new(move || candidates(report, theme))));
     first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
     Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
@@ -148,7 +163,8 @@ fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
     rows
 }
 
-fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure {
+/// A record with the models before and after.
+fn record(trial: &Trial, judged: &Judged, title: String) -> RecordFit {
     let fit = |origin: Origin, on: &OnRecord| {
         let Replay { time, heading, residual, .. } = &on.replay;
         Fit {
@@ -170,16 +186,16 @@ fn record(trial: &Trial, judged: &Judged, title: &str, theme: &Theme) -> Figure 
     let (before, after) = (&judged.before, &judged.after);
     let band = about(&|row| after.replay.heading[row]).zip(about(&|_| 0.0));
     let band = band.map(|(heading, residual)| FitBand { heading, residual });
-    let data = RecordFit {
-        title: Some(title.to_owned()),
+    RecordFit {
+        title: Some(title),
         heading: curve(trial.time(), trial.heading()),
         rudder: curve(trial.time(), trial.rudder()),
         fits: vec![fit(Origin::Before, before), Fit { band, ..fit(Origin::After, after) }],
-    };
-    figures::record_fit(&data, theme)
+    }
 }
 
-fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure {
+/// The residual before and after from all sides.
+fn residual(trial: &Trial, judged: &Judged, name: &str) -> ResidualPanels {
     let first = trial.time().partition_point(|&t| t < judged.before.replay.time[0]);
     let models = [(Origin::Before, &judged.before.replay), (Origin::After, &judged.after.replay)];
     let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
@@ -188,6 +204,8 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
         y_title: String::from("residual [°]"),
         logarithmic: false,
         joined: false,
+        of_frequency: false,
+        mark: None,
         curves: models
             .iter()
             .map(|(origin, replayed)| (origin.clone(), thinned_pairs(x(replayed), degrees(&replayed.residual))))
@@ -196,11 +214,14 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
     };
     let rudder = |replayed: &Replay| degrees(&trial.rudder()[first..first + replayed.time.len()]);
     let series = |replayed: &Replay| Series::new(&replayed.time, &degrees(&replayed.residual), trial.sampling_period());
+    let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
     let lines = ResidualPanel {
         x_title: String::from("frequency [Hz]"),
         y_title: String::from("power [°²/Hz]"),
         logarithmic: true,
         joined: true,
+        of_frequency: true,
+        mark: period.map(f64::recip),
         curves: models.iter().map(|(origin, replayed)| (origin.clone(), power(&series(replayed)))).collect(),
         band: None,
     };
@@ -211,11 +232,15 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
         y_title: String::from("autocorrelation"),
         logarithmic: false,
         joined: true,
+        of_frequency: false,
+        mark: period,
         curves: models
             .iter()
             .map(|(origin, replayed)| {
                 let series = series(replayed);
-                let points = autocorrelation(&series, LAGS.min(rows / 3)).into_iter();
+                // A little more than a period, which shows at its lag what the manoeuvre repeats.
+                let wanted = period.map_or(rows / 3, |period| (1.1 * period / series.spacing) as usize);
+                let points = autocorrelation(&series, wanted.clamp(LAGS[0], LAGS[1]).min(rows / 2)).into_iter();
                 let (lags, values): (Vec<f64>, Vec<f64>) =
                     points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
                 (origin.clone(), Curve::new(lags, values))
@@ -223,7 +248,7 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
             .collect(),
         band: Some([-band, band]),
     };
-    let data = ResidualPanels {
+    ResidualPanels {
         title: Some(name.to_owned()),
         panels: vec![
             against("time [s]", &|replayed| replayed.time.clone()),
@@ -233,8 +258,7 @@ fn residual(trial: &Trial, judged: &Judged, name: &str, theme: &Theme) -> Figure
             lines,
             correlations,
         ],
-    };
-    figures::residual_panels(&data, theme)
+    }
 }
 
 /// Points of a cloud, not more than a figure can show.
@@ -250,8 +274,14 @@ fn power(residual: &Series) -> Curve {
     let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;
     let lines = spectrum(residual);
     let width = 1.0 / (count * residual.spacing);
-    let group = lines.len().div_ceil(MOST_LINES).max(3);
-    let points = lines.chunks(group).map(|lines| {
+    let mut groups: Vec<&[Line]> = Vec::new();
+    let mut rest = &lines[..];
+    while let Some(first) = rest.first() {
+        let (group, others) = rest.split_at(rest.partition_point(|line| line.frequency <= LINE * first.frequency));
+        groups.push(group);
+        rest = others;
+    }
+    let points = groups.into_iter().map(|lines| {
         let count = lines.len() as f64;
         let frequency = lines.iter().map(|line| line.frequency).sum::<f64>() / count;
         (frequency, lines.iter().map(|line| line.share).sum::<f64>() / count * square / width)
@@ -260,20 +290,29 @@ fn power(residual: &Series) -> Curve {
     Curve::new(x, y)
 }
 
+/// The way of the model and the candidates beside it.
 fn candidates(report: &TraceReport, theme: &Theme) -> Figure {
     let analysis = report.analysis;
+    let only = |name: Option<&String>| name.map_or_else(String::new, |name| format!(", {name}"));
+    let steps = analysis.steps.iter().map(|step| EvidenceStep {
+        name: step.added.map_or_else(
+            || String::from("base"),
+            |(id, form, record)| format!("+ {id} ({form}){}", only(record.map(|record| &report.names[record.0]))),
+        ),
+        fitted_deg: to_deg(step.fitted),
+        held_out_deg: step.held_out.map(to_deg),
+    });
     let mut bars: Vec<EvidenceBar> = analysis
         .candidates
         .iter()
         .filter_map(|one| {
-            let gain = one.gain_alone.or(one.evidence.map(|evidence| evidence.gain))?;
-            let only = one.only.as_ref().map_or_else(String::new, |name| format!(", {name}"));
+            let gain = one.evidence?.gain;
             Some(EvidenceBar {
-                name: format!("{} ({}){only}", one.id, one.form),
+                name: format!("{} ({}){}", one.id, one.form, only(one.only.as_ref())),
                 gain,
                 threshold: one.needed,
                 fate: match one.outcome {
-                    Outcome::Added => Fate::Added,
+                    Outcome::Added => return None,
                     Outcome::Alias => Fate::Alias,
                     Outcome::Rejected => Fate::Rejected,
                     Outcome::NotObservable => Fate::NotObservable,
@@ -282,10 +321,15 @@ fn candidates(report: &TraceReport, theme: &Theme) -> Figure {
         })
         .collect();
     bars.sort_by(|one, other| other.gain.total_cmp(&one.gain));
+    // What came back later is not gone.
+    let is_gone = |sentence: &str| {
+        !analysis.effects.iter().any(|effect| sentence.starts_with(&format!("{} ({}) ", effect.id, effect.form)))
+    };
     let data = Evidence {
         title: Some(report.names[..report.trials.len()].join(", ")),
-        x_title: String::from("fall of BIC when added to the base alone"),
+        steps: steps.collect(),
         bars,
+        dropped: analysis.refused.iter().filter(|sentence| is_gone(sentence)).cloned().collect(),
     };
     figures::evidence(&data, theme)
 }

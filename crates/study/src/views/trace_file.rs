@@ -14,7 +14,7 @@ use trial::{Quantity, Trial};
 use super::missing_moment::{self, MissingMomentEntry};
 use super::scale_comparison::ScalesEntry;
 use super::trace_entries::{
-    CandidateEntry, EffectEntry, ParameterEntry, PriorEntry, StructureEntry, candidates, is_false,
+    CandidateEntry, EffectEntry, ParameterEntry, PriorEntry, StepEntry, StructureEntry, candidates, is_false,
 };
 use super::trace_page;
 use super::trace_report::TraceReport;
@@ -43,6 +43,8 @@ pub struct TraceFile {
     pub speed_scaling: Option<SpeedScalingEntry>,
     /// What was found, in the order of discovery.
     pub effects: Vec<EffectEntry>,
+    /// The way from the base to the model, term by term, with the error after each.
+    pub steps: Vec<StepEntry>,
     /// Every effect of the list and what became of it.
     pub candidates: Vec<CandidateEntry>,
     /// The structures that the records cannot tell apart, the most probable first.
@@ -278,6 +280,7 @@ impl TraceFile {
                 .speed_scaling()
                 .map(|(speed, gain)| SpeedScalingEntry { speed_m_s: speed, delta_bic: -gain }),
             effects: analysis.effects.iter().map(|effect| EffectEntry::new(effect, report.ship)).collect(),
+            steps: analysis.steps.iter().map(StepEntry::from).collect(),
             candidates: candidates(&analysis.candidates, &analysis.weights),
             models: analysis.weights.alike().iter().map(|one| StructureEntry::new(one, &report.names)).collect(),
             prior: PriorEntry::new(&analysis.weights),

@@ -101,6 +101,26 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
     }
+    let steps = desk.json("run-trace/trace.json")["steps"].as_array().cloned().unwrap_or_default();
+    let errors: Vec<_> = steps.iter().filter_map(|step| step["heading_rmse_deg"].as_f64()).collect();
+    assert!(
+        errors.len() == steps.len() && errors.len() > 1 && errors.is_sorted_by(|one, next| one > next),
+        "{steps:?}"
+    );
+    assert!(steps[0]["added"].is_null() && steps[1]["delta_bic"].as_f64() > Some(10.0), "{steps:?}");
+    assert!(steps.iter().all(|step| step["held_out_heading_rmse_deg"].is_f64()), "{steps:?}");
+    let page = include_str!("../../../../docs/results.md");
+    for (file, rows) in
+        [("replay", 100), ("replay-other", 100), ("residual", 100), ("spectrum", 10), ("autocorrelation", 10)]
+    {
+        let table = String::from_utf8(desk.bytes(&format!("run-trace/{file}.csv"))).expect("UTF-8");
+        let head = table.lines().next().unwrap_or_default();
+        for column in head.split(',') {
+            let listed = column.replace("before_", "MODEL_").replace("after_", "MODEL_");
+            assert!([column, &listed].iter().any(|name| page.contains(&format!("`{name}`"))), "{file}.csv: {column}");
+        }
+        assert!(table.lines().count() > rows && head.contains("after_"), "{file}.csv: {head}");
+    }
 }
 
 /// The moment that the base lacks is a table and a figure for every fitted record, and none for those held out.

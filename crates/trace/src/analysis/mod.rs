@@ -14,6 +14,7 @@ mod reporter;
 mod result;
 mod settings;
 mod side;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod told;
@@ -50,6 +51,7 @@ pub use result::{
     Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, RunnerUp, Traced, Verdict,
 };
 pub use settings::{Settings, TraceError};
+pub use steps::Step;
 use told::Told;
 
 /// Times, s, of the readings of every record's compass that belong to no ship. A record that cannot be looked at has
@@ -195,12 +197,14 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let covariance = parameter_covariance(&problem, fitted, coloured);
     let parameters = parameters(&problem, fitted, covariance.as_ref(), &names);
     let (indices, rudder_bias) = indices(fitted, covariance.as_ref());
+    let way = steps::way(&search, &start, &model);
     let report = Reporter {
         search: &search,
         settings,
         names: &names,
         start: &start,
         model: &model,
+        way: &way,
         tried: &tried,
         predicted: &predicted,
     };
@@ -230,6 +234,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         parameters,
         verdict,
         effects,
+        steps: steps::steps(&way, &held_out),
         candidates,
         weights,
         unexplained,

@@ -11,11 +11,11 @@ use trial::{Quantity, Trial};
 use super::elsewhere::Predicted;
 use super::result::{ALIAS, Considered, Empirical, Fitted, OnRecord, Outcome, Traced};
 use super::settings::Settings;
+use super::steps::square;
 use super::told::Told;
 use crate::candidates::{Candidate, Sizes};
 use crate::change;
 use crate::diagnostics::{self, Signature};
-use crate::fit::Fit;
 use crate::index::{CandidatePlace, TermPlace};
 use crate::monomial::{self, LIBRARY};
 use crate::offset;
@@ -33,6 +33,8 @@ pub(super) struct Reporter<'a> {
     pub names: &'a [String],
     pub start: &'a Model,
     pub model: &'a Model,
+    /// The models from the base to the final one.
+    pub way: &'a [Model],
     /// All candidates on the base.
     pub tried: &'a [Tried],
     /// Terms that are believed for what they predict.
@@ -83,19 +85,9 @@ impl Reporter<'_> {
 
     /// Share of the mean square of the base that every term took away in its turn.
     fn shares(&self) -> Vec<f64> {
-        let square = |fit: &Fit| fit.residual.iter().flatten().map(|e| e * e).sum::<f64>();
         let all = square(&self.start.plain);
-        let mut model = self.model.clone();
-        let mut after = square(&model.plain);
-        let mut shares = Vec::new();
-        for place in self.model.structure.places().rev() {
-            model = self.search.dropped(&model, place, false);
-            let before = if place == TermPlace(0) { all } else { square(&model.plain) };
-            shares.push(((before - after) / all).max(0.0));
-            after = before;
-        }
-        shares.reverse();
-        shares
+        let squares: Vec<f64> = self.way.iter().map(|model| square(&model.plain)).collect();
+        squares.windows(2).map(|pair| ((pair[0] - pair[1]) / all).max(0.0)).collect()
     }
 
     /// Rivals that explain the records as well as the term at `place` does in its stead, under the same noise. A term

@@ -8,6 +8,7 @@ use ship::narrow_band::NarrowBand;
 use trial::Quantity;
 
 use super::side::Side;
+use super::steps::Step;
 use crate::candidates::Candidate;
 use crate::diagnostics::{Signature, Whiteness};
 use crate::fit::{Fit, Problem};
@@ -246,6 +247,8 @@ pub struct Analysis {
     pub verdict: Verdict,
     /// What was found, in the order of discovery.
     pub effects: Vec<Traced>,
+    /// The way from the base to the final model, term by term.
+    pub steps: Vec<Step>,
     /// All candidates.
     pub candidates: Vec<Considered>,
     /// All structures that were tried, with their probabilities from the fitted records alone.

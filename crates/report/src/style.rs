@@ -1,0 +1,223 @@
+//! A style of one's own over a theme: sizes, colours and limits of axes, as a program reads them from a file.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use thiserror::Error;
+
+use crate::changes::{COLOURS, Changes, colour};
+use crate::colour::Colour;
+use crate::palette::{BEFORE, DIMENSION, GRID, HEADING, INK, Origin, PAPER, RECORD, RUDDER, method_ids};
+use crate::theme::Theme;
+
+/// Sizes of type that can be asked for, points.
+const FONT: [f64; 2] = [4.0, 30.0];
+/// Widths of lines and radii of markers, points.
+const LINE: [f64; 2] = [0.1, 10.0];
+
+/// What may be said of the looks of figures; what is not said is as in the theme. All keys are kebab-case.
+///
+/// The family of the type is bundled, because labels are placed by its widths.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
+pub struct Style {
+    /// Width of the figures, mm; makes them figures for print.
+    pub width_mm: Option<f64>,
+    /// Resolution, dots per inch.
+    pub dpi: Option<f64>,
+    /// Size of the titles of axes, points; all other type keeps its proportion to it.
+    pub font_size_pt: Option<f64>,
+    /// Width of curves, points; all other lines keep their proportion to it.
+    pub line_width_pt: Option<f64>,
+    /// Radius of markers, points; measured points keep their proportion to it.
+    pub marker_radius_pt: Option<f64>,
+    /// Colours as `#0072B2` by the id of a method, or `ink`, `paper`, `grid`, `record`, `heading`, `rudder`, `before`
+    /// or `dimension`. Two that share one (as `heading` and `integral-least-squares` do) change together.
+    pub colours: BTreeMap<String, String>,
+    /// Ends of axes by the titles of the axes, in their units.
+    pub limits: BTreeMap<String, [f64; 2]>,
+}
+
+/// What is wrong with a style.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum StyleError {
+    /// A size is out of its range.
+    #[error("{key} = {found}: expected a number from {} to {}", range[0], range[1])]
+    Size {
+        /// The key.
+        key: &'static str,
+        /// The value found.
+        found: f64,
+        /// Least and largest value.
+        range: [f64; 2],
+    },
+    /// Something that has no colour.
+    #[error("[colours] {name}: nothing has this name; expected one of {known}")]
+    Name {
+        /// The name found.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// No colour.
+    #[error("[colours] {name} = \"{found}\": expected red, green and blue as in \"#0072B2\"")]
+    Colour {
+        /// Whose colour.
+        name: String,
+        /// The value found.
+        found: String,
+    },
+    /// Two colours for what has one.
+    #[error(
+        "[colours] {name} = \"{found}\": it shares its colour with {other}, which is set to another one; set one of them"
+    )]
+    Shared {
+        /// Whose colour.
+        name: String,
+        /// The value found.
+        found: String,
+        /// Who has the same.
+        other: String,
+    },
+    /// Limits in the wrong order.
+    #[error("[limits] \"{title}\" = [{}, {}]: expected two numbers, the smaller one first", found[0], found[1])]
+    Limits {
+        /// Title of the axis.
+        title: String,
+        /// The value found.
+        found: [f64; 2],
+    },
+}
+
+/// Everything that has a colour of its own.
+fn coloured() -> impl Iterator<Item = (&'static str, Colour)> {
+    let parts = [
+        ("ink", INK),
+        ("paper", PAPER),
+        ("grid", GRID),
+        ("record", RECORD),
+        ("heading", HEADING),
+        ("rudder", RUDDER),
+        ("before", BEFORE),
+        ("dimension", DIMENSION),
+    ];
+    parts.into_iter().chain(method_ids().map(|id| (id, Origin::Method(id.to_owned()).look().colour)))
+}
+
+impl Style {
+    /// A theme with this style. `width-mm` and `dpi` are for who makes the theme, except the resolution of a screen.
+    ///
+    /// Fails when a value is out of its range or names nothing.
+    pub fn on(&self, theme: Theme) -> Result<Theme, StyleError> {
+        let share = |key: &'static str, value: Option<f64>, own: f64, range: [f64; 2]| match value {
+            Some(found) if !(range[0]..=range[1]).contains(&found) => Err(StyleError::Size { key, found, range }),
+            value => Ok(value.map_or(1.0, |value| value / own)),
+        };
+        let font = share("font-size-pt", self.font_size_pt, theme.label_font, FONT)?;
+        let line = share("line-width-pt", self.line_width_pt, theme.line, LINE)?;
+        let marker = share("marker-radius-pt", self.marker_radius_pt, theme.marker, LINE)?;
+        let dpi = share("dpi", self.dpi, theme.dpi, crate::theme::DPI)?;
+        Ok(Theme {
+            dpi: theme.dpi * dpi,
+            tick_font: theme.tick_font * font,
+            label_font: theme.label_font * font,
+            small_font: theme.small_font * font,
+            title_font: theme.title_font * font,
+            line: theme.line * line,
+            thin: theme.thin * line,
+            marker: theme.marker * marker,
+            dot: theme.dot * marker,
+            changes: Changes { colours: self.colours()?, limits: self.limits()? },
+            ..theme
+        })
+    }
+
+    fn colours(&self) -> Result<[Option<(Colour, Colour)>; COLOURS], StyleError> {
+        let mut found: Vec<(&str, Colour, Colour)> = Vec::new();
+        for (name, text) in &self.colours {
+            let Some((_, old)) = coloured().find(|(known, _)| known == name) else {
+                let known: Vec<&str> = coloured().map(|(known, _)| known).collect();
+                return Err(StyleError::Name { name: name.clone(), known: known.join(", ") });
+            };
+            let wrong = || StyleError::Colour { name: name.clone(), found: text.clone() };
+            let new = colour(text).ok_or_else(wrong)?;
+            match found.iter().find(|(_, other, _)| *other == old) {
+                Some((other, _, another)) if *another != new => {
+                    let (name, found, other) = (name.clone(), text.clone(), (*other).to_owned());
+                    return Err(StyleError::Shared { name, found, other });
+                }
+                Some(_) => {}
+                None => found.push((name, old, new)),
+            }
+        }
+        let mut colours = [None; COLOURS];
+        colours.iter_mut().zip(&found).for_each(|(place, (_, old, new))| *place = Some((*old, *new)));
+        Ok(colours)
+    }
+
+    /// The limits, kept for as long as the program runs: a theme is copied into every figure.
+    fn limits(&self) -> Result<&'static [(String, [f64; 2])], StyleError> {
+        let wrong = self.limits.iter().find(|(_, [lo, hi])| !(lo.is_finite() && hi.is_finite() && lo < hi));
+        match wrong {
+            Some((title, found)) => Err(StyleError::Limits { title: title.clone(), found: *found }),
+            None if self.limits.is_empty() => Ok(&[]),
+            None => Ok(self.limits.clone().into_iter().collect::<Vec<_>>().leak()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::Curve;
+    use crate::figures::{RecordFit, record_fit};
+
+    fn drawn(style: &Style) -> String {
+        let curve = |y: [f64; 3]| Curve::new(vec![0.0, 50.0, 100.0], y.to_vec());
+        let data = RecordFit {
+            heading: curve([0.0, 3.0, -2.0]),
+            rudder: curve([0.0, 10.0, -10.0]),
+            title: Some(String::from("\"#D55E00\"")),
+            ..RecordFit::default()
+        };
+        record_fit(&data, &style.on(Theme::screen()).unwrap()).svg().to_owned()
+    }
+
+    #[test]
+    fn sizes_colours_and_limits_reach_the_figure() {
+        let plain = drawn(&Style::default());
+        assert!(plain.contains("=\"#D55E00\"") && plain.contains("font-size=\"240"));
+        let style = Style {
+            font_size_pt: Some(15.0),
+            line_width_pt: Some(2.7),
+            colours: [("rudder", "#0072B2"), ("ink", "#010203")].map(|(a, b)| (a.into(), b.into())).into(),
+            limits: [(String::from("rudder δ [°]"), [-90.0, 90.0])].into(),
+            ..Style::default()
+        };
+        let own = drawn(&style);
+        assert!(own.contains("font-size=\"300") && own.contains("stroke-width=\"54\""), "{own}");
+        assert!(own.contains("=\"#0072B2\"") && own.contains("=\"#010203\"") && !own.contains("=\"#D55E00\""));
+        assert!(own.contains("&quot;#D55E00&quot;"), "text is left alone");
+        assert!(own.contains("\n−60\n") || own.contains("\n−50\n") || own.contains("\n−80\n"), "{own}");
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let of =
+            |name: &str, colour: &str| Style { colours: [(name.into(), colour.into())].into(), ..Style::default() };
+        let said = |style: Style| style.on(Theme::screen()).unwrap_err().to_string();
+        assert!(
+            said(of("output-eror", "#000000")).contains("[colours] output-eror: nothing has this name; expected one")
+        );
+        for wrong in ["#00", "red", "#00000g", "#ééé"] {
+            assert!(said(of("ink", wrong)).contains(wrong), "{wrong}");
+        }
+        let mut two = of("heading", "#000000");
+        two.colours.insert("integral-least-squares".into(), "#FFFFFF".into());
+        assert!(said(two).contains("shares its colour with heading"));
+        let size = Style { font_size_pt: Some(100.0), ..Style::default() };
+        assert_eq!(said(size), "font-size-pt = 100: expected a number from 4 to 30");
+        let limits = Style { limits: [("x".into(), [2.0, 1.0])].into(), ..Style::default() };
+        assert_eq!(said(limits), "[limits] \"x\" = [2, 1]: expected two numbers, the smaller one first");
+    }
+}

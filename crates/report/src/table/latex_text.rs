@@ -1,0 +1,200 @@
+//! Text as LaTeX that any engine sets without further packages: what this program writes (Greek, signs, accents, sub-
+//! and superscripts) becomes mathematics, letters with accents stay, and any other character is named by its number.
+
+use crate::printable::escaped;
+
+/// Characters with what they are in mathematics.
+const SIGNS: [(char, &str); 65] = [
+    ('α', "\\alpha"),
+    ('β', "\\beta"),
+    ('γ', "\\gamma"),
+    ('δ', "\\delta"),
+    ('ε', "\\varepsilon"),
+    ('ζ', "\\zeta"),
+    ('η', "\\eta"),
+    ('θ', "\\theta"),
+    ('κ', "\\kappa"),
+    ('λ', "\\lambda"),
+    ('μ', "\\mu"),
+    ('µ', "\\mu"),
+    ('ν', "\\nu"),
+    ('ξ', "\\xi"),
+    ('π', "\\pi"),
+    ('ρ', "\\rho"),
+    ('σ', "\\sigma"),
+    ('τ', "\\tau"),
+    ('φ', "\\varphi"),
+    ('χ', "\\chi"),
+    ('ψ', "\\psi"),
+    ('ω', "\\omega"),
+    ('Γ', "\\Gamma"),
+    ('Δ', "\\Delta"),
+    ('Λ', "\\Lambda"),
+    ('Σ', "\\Sigma"),
+    ('Φ', "\\Phi"),
+    ('Ψ', "\\Psi"),
+    ('Ω', "\\Omega"),
+    ('ℓ', "\\ell"),
+    ('ṙ', "\\dot{r}"),
+    ('<', "<"),
+    ('>', ">"),
+    ('|', "|"),
+    ('−', "-"),
+    ('±', "\\pm"),
+    ('∓', "\\mp"),
+    ('×', "\\times"),
+    ('·', "\\cdot"),
+    ('√', "\\surd"),
+    ('∞', "\\infty"),
+    ('≈', "\\approx"),
+    ('≠', "\\neq"),
+    ('≤', "\\leq"),
+    ('≥', "\\geq"),
+    ('∝', "\\propto"),
+    ('∂', "\\partial"),
+    ('∫', "\\int"),
+    ('∇', "\\nabla"),
+    ('‖', "\\|"),
+    ('→', "\\rightarrow"),
+    ('←', "\\leftarrow"),
+    ('½', "\\frac{1}{2}"),
+    ('¼', "\\frac{1}{4}"),
+    ('°', "^{\\circ}"),
+    ('′', "'"),
+    ('″', "''"),
+    ('•', "\\bullet"),
+    ('†', "\\dagger"),
+    ('‡', "\\ddagger"),
+    ('●', "\\bullet"),
+    ('★', "\\star"),
+    ('◆', "\\diamond"),
+    ('▲', "\\triangle"),
+    ('■', "\\cdot"),
+];
+
+/// Characters with what they are in text.
+const PLAIN: [(char, &str); 23] = [
+    ('&', "\\&"),
+    ('%', "\\%"),
+    ('$', "\\$"),
+    ('#', "\\#"),
+    ('_', "\\_"),
+    ('{', "\\{"),
+    ('}', "\\}"),
+    ('\\', "\\textbackslash{}"),
+    ('~', "\\textasciitilde{}"),
+    ('^', "\\textasciicircum{}"),
+    ('–', "--"),
+    ('—', "---"),
+    ('…', "\\ldots{}"),
+    ('‰', "0.1\\,\\%"),
+    ('“', "``"),
+    ('”', "''"),
+    ('‘', "`"),
+    ('’', "'"),
+    ('\u{a0}', "~"),
+    ('\u{2009}', "\\,"),
+    ('\u{202f}', "\\,"),
+    ('ß', "\\ss{}"),
+    ('§', "\\S{}"),
+];
+
+/// Combining accents with their command in mathematics.
+const ACCENTS: [(char, &str); 7] = [
+    ('\u{300}', "grave"),
+    ('\u{301}', "acute"),
+    ('\u{302}', "hat"),
+    ('\u{303}', "tilde"),
+    ('\u{304}', "bar"),
+    ('\u{307}', "dot"),
+    ('\u{308}', "ddot"),
+];
+
+/// Letters that every LaTeX knows as they are.
+const LETTERS: &str =
+    "ÀÁÂÃÄÅÆÇÈÉÊËÌÍÎÏÑÒÓÔÕÖØÙÚÛÜÝàáâãäåæçèéêëìíîïñòóôõöøùúûüýÿĆćČčĎďĚěŁłŃńŇňŐőŒœŘřŚśŞşŠšŤťŮůŰűŸŹźŻżŽž";
+
+const SUPER: (&str, &str) = ("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ⁿᵏᵖᵀᵗʰ", "0123456789+-nkpTth");
+const SUB: (&str, &str) = ("₀₁₂₃₄₅₆₇₈₉₊₋ᵢⱼₖₘₙₒₚₐₑₛ", "0123456789+-ijkmnopaes");
+
+/// Symbols that a heading or a caption writes as words of their own.
+const SYMBOLS: [&str; 3] = ["K", "T", "K/T"];
+
+/// Text that stands for itself.
+pub(super) fn escape(text: &str) -> String {
+    let text = escaped(text);
+    let mut out = String::with_capacity(text.len() + 8);
+    let mut chars = text.chars().peekable();
+    while let Some(c) = chars.next() {
+        if let Some((kind, plain)) = script(c) {
+            // A run of scripts of one kind becomes one group: 10⁻³ is $10^{-3}$.
+            let mut run = String::from(plain);
+            while let Some((_, plain)) = chars.peek().copied().and_then(script).filter(|next| next.0 == kind) {
+                run.push(plain);
+                chars.next();
+            }
+            out.push_str(&format!("${kind}{{{run}}}$"));
+        } else if let Some(accent) = chars.peek().and_then(|next| found(&ACCENTS, *next)) {
+            chars.next();
+            let letter = c.is_ascii_alphanumeric().then(|| c.to_string());
+            match letter.or_else(|| found(&SIGNS, c).map(str::to_owned)) {
+                Some(letter) => out.push_str(&format!("$\\{accent}{{{letter}}}$")),
+                // An accent on what is no letter says nothing.
+                None => out.push_str(&alone(c)),
+            }
+        } else {
+            out.push_str(&alone(c));
+        }
+    }
+    out
+}
+
+/// Whether a word is a symbol.
+pub(super) fn is_symbol(word: &str) -> bool {
+    SYMBOLS.contains(&word)
+}
+
+/// A heading or a caption: as [`escape`], and symbols that are words in it are set as such.
+pub(super) fn worded(text: &str) -> String {
+    let word = |word: &str| match is_symbol(word) {
+        true => format!("${word}$"),
+        false => escape(word),
+    };
+    text.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// `^` or `_` with the plain character of a super- or subscript.
+pub(super) fn script(c: char) -> Option<(char, char)> {
+    let find = |(set, plain): (&str, &str)| set.chars().zip(plain.chars()).find(|(script, _)| *script == c);
+    find(SUPER).map(|(_, plain)| ('^', plain)).or_else(|| find(SUB).map(|(_, plain)| ('_', plain)))
+}
+
+fn alone(c: char) -> String {
+    match (found(&PLAIN, c), found(&SIGNS, c)) {
+        (Some(plain), _) => plain.to_owned(),
+        (_, Some(sign)) => format!("${sign}$"),
+        _ if c.is_ascii() || LETTERS.contains(c) => c.to_string(),
+        _ => format!("[U+{:04X}]", u32::from(c)),
+    }
+}
+
+fn found(list: &[(char, &'static str)], c: char) -> Option<&'static str> {
+    list.iter().find(|(known, _)| *known == c).map(|(_, tex)| *tex)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_the_program_writes_is_mathematics() {
+        assert_eq!(escape("σ² 10⁻³ \\ x_1"), "$\\sigma$$^{2}$ 10$^{-3}$ \\textbackslash{} x\\_1");
+        assert_eq!(escape("r₁₂ √T′ ψ̇ K̂"), "r$_{12}$ $\\surd$T$'$ $\\dot{\\psi}$ $\\hat{K}$");
+        assert_eq!(worded("K/T median of Kempf"), "$K/T$ median of Kempf");
+    }
+
+    #[test]
+    fn what_is_unknown_is_named() {
+        assert_eq!(escape("船 \u{302}ü\u{30a}"), "[U+8239] ü[U+030A]");
+    }
+}
