@@ -6,6 +6,7 @@ use std::path::Path;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
+use super::compact::compacted;
 use super::escape::escaped;
 
 /// Largest drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
@@ -42,8 +43,8 @@ impl Room {
 
     /// The figure with its caption; `file` is where its PNG is.
     pub(super) fn figure(&mut self, file: &str, caption: &str, images: &Images) -> String {
-        let drawn =
-            images.svg.as_deref().filter(|svg| svg.len() <= LARGEST_DRAWING).and_then(|svg| inline(svg, caption));
+        let drawn = images.svg.as_deref().and_then(|svg| inline(svg, caption));
+        let drawn = drawn.filter(|drawn| drawn.len() <= LARGEST_DRAWING);
         let pixels = || {
             let encoded = STANDARD.encode(images.png.as_deref()?);
             let caption = escaped(caption);
@@ -74,6 +75,6 @@ fn inline(svg: &str, caption: &str) -> Option<String> {
         "<svg viewBox=\"{view}\" stroke-linejoin=\"round\" style=\"max-width:{width}\" role=\"img\" \
          aria-label=\"{}\">{}",
         escaped(caption),
-        shapes.trim_end()
+        compacted(shapes.trim_start())
     ))
 }

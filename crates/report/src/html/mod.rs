@@ -2,6 +2,7 @@
 //! stand in it; nothing is fetched. The Markdown stays the one source: nothing is said here that is not said there.
 
 mod body;
+mod compact;
 mod escape;
 mod figures;
 

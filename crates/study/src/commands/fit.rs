@@ -6,6 +6,7 @@ use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
+use report::Table;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
@@ -108,14 +109,22 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
             (Ok(_), None) => {}
         }
     }
-    notes += &fit_scales::words(&file, ship);
+    let scales = fit_scales::words(&file, ship, &|table| format!("\n{}\n", table.to_markdown()));
     let table = method_table::table(&file.methods, &names[trials.len()..]);
     for entry in &file.methods {
         warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
     }
     let headline = headline(&together);
-    let page = FitPage { headline: &headline, methods: &table, notes: &notes, warnings: &warnings, figures: &drawn };
+    let page = FitPage {
+        headline: &headline,
+        methods: &table,
+        notes: &notes,
+        scales: &scales,
+        warnings: &warnings,
+        figures: &drawn,
+    };
     write_page(&folder, &fit_page::page(&page))?;
+    notes += &fit_scales::words(&file, ship, &Table::to_text);
     notes += &format!("\nresults: {}", path.display());
     screen::tell(common, [&format!("{headline}\n"), ""], &table, &notes)?;
     for warning in warnings {

@@ -9,8 +9,10 @@ pub struct FitPage<'a> {
     pub headline: &'a str,
     /// One row per method.
     pub methods: &'a Table,
-    /// Names of records, reasons of failures, characteristics, scales; as on the screen.
+    /// Names of records, reasons of failures, characteristics; as on the screen.
     pub notes: &'a str,
+    /// The same without dimension, and what of it scales; Markdown.
+    pub scales: &'a str,
     /// What a reader has to know.
     pub warnings: &'a [String],
     /// Stems and captions of what was drawn.
@@ -34,6 +36,9 @@ pub fn page(fit: &FitPage) -> String {
             page += &format!("{place}{}\n", text(line.trim()));
         }
         page += "\n";
+    }
+    if !fit.scales.is_empty() {
+        page += &format!("## Without dimension\n{}\n", fit.scales);
     }
     if !fit.warnings.is_empty() {
         page += "## Warnings\n\n";
@@ -60,7 +65,14 @@ mod tests {
     fn names_of_records_are_words_and_what_is_empty_is_left_out() {
         let table = Table::new(vec![Column::left("method")]);
         let figures = [("fit".to_owned(), "a*b*: the record".to_owned())];
-        let fit = FitPage { headline: "<b>: 3 rows", methods: &table, notes: "", warnings: &[], figures: &figures };
+        let fit = FitPage {
+            headline: "<b>: 3 rows",
+            methods: &table,
+            notes: "",
+            scales: "",
+            warnings: &[],
+            figures: &figures,
+        };
         let page = page(&fit);
         assert!(page.contains("\n\\<b>: 3 rows\n") && !page.contains("## Records") && !page.contains("## Warnings"));
         assert!(page.contains("![a\\*b\\*: the record](fit.png)"), "{page}");
