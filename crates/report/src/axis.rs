@@ -102,6 +102,16 @@ impl Axis {
         Self { step: Some(step), ..self }
     }
 
+    /// Kind, ends and where the scale begins as a fraction, or the names: what a value is found with from its place.
+    pub(crate) fn told(&self) -> String {
+        let Self { lo, hi, .. } = self;
+        match &self.scale {
+            Scale::Linear(_) => format!("linear|{lo}|{hi}"),
+            Scale::Log { zero } => format!("log|{lo}|{hi}|{}", if *zero { ZERO_SLOT } else { 0.0 }),
+            Scale::Names(names) | Scale::Columns(names) => format!("names|{lo}|{hi}|{}", names.join("|")),
+        }
+    }
+
     /// How much one step of `fraction` of the axis is worth on a linear scale.
     pub(crate) fn worth(&self, fraction: f64) -> f64 {
         fraction * (self.hi - self.lo)

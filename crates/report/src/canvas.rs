@@ -53,19 +53,35 @@ pub(crate) struct Type {
     pub turned: bool,
 }
 
-/// A page of `width` x `height` points on which `draw` draws, as an SVG document.
-pub(crate) fn document(width: f64, height: f64, paper: Colour, draw: impl FnOnce(&mut Canvas)) -> String {
-    let size = (units(width).max(1) as u32, units(height).max(1) as u32);
+/// What `draw` draws on a page of `width` x `height` points, as elements of an SVG document.
+pub(crate) fn elements(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> String {
     let mut svg = String::new();
     {
-        let mut canvas = Canvas { backend: SVGBackend::with_string(&mut svg, size) };
-        let (right, bottom) = (size.0 as i32, size.1 as i32);
-        let page = [(0, 0), (right, 0), (right, bottom), (0, bottom)];
-        canvas.backend.fill_polygon(page, &rgb(paper).filled()).expect(INFALLIBLE);
+        let mut canvas = Canvas { backend: SVGBackend::with_string(&mut svg, size(width, height)) };
         draw(&mut canvas);
         canvas.backend.present().expect(INFALLIBLE);
     }
-    finish(&svg, size, width, height)
+    let body = svg.split_once('>').map_or("", |(_, body)| body);
+    finish(body.rsplit_once("</svg>").map_or(body, |(body, _)| body).trim_start_matches('\n'))
+}
+
+/// An SVG document of these elements on `paper`.
+pub(crate) fn document(width: f64, height: f64, paper: Colour, elements: &str) -> String {
+    let (across, down) = size(width, height);
+    let (right, bottom) = (across as i32, down as i32);
+    let page = self::elements(width, height, |canvas| {
+        let page = [(0, 0), (right, 0), (right, bottom), (0, bottom)];
+        canvas.backend.fill_polygon(page, &rgb(paper).filled()).expect(INFALLIBLE);
+    });
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}pt\" height=\"{height:.3}pt\" \
+         viewBox=\"0 0 {across} {down}\" stroke-linejoin=\"round\">\n{page}{elements}</svg>\n"
+    )
+}
+
+/// Width and height in units of the canvas.
+fn size(width: f64, height: f64) -> (u32, u32) {
+    (units(width).max(1) as u32, units(height).max(1) as u32)
 }
 
 fn units(points: f64) -> i32 {
@@ -128,15 +144,10 @@ impl Canvas<'_> {
     }
 }
 
-/// Gives the document its size on the page and round joins, makes the opacity that of the ink, and turns the marks
-/// around italic type into markup.
-fn finish(drawn: &str, canvas: (u32, u32), width: f64, height: f64) -> String {
-    let body = drawn.split_once('>').map_or("", |(_, body)| body).replace(BACKEND_SHIFT, "");
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}pt\" height=\"{height:.3}pt\" \
-         viewBox=\"0 0 {} {}\" stroke-linejoin=\"round\">",
-        canvas.0, canvas.1
-    );
+/// Makes the opacity that of the ink, and turns the marks around italic type into markup.
+fn finish(drawn: &str) -> String {
+    let body = drawn.replace(BACKEND_SHIFT, "");
+    let mut svg = String::with_capacity(body.len());
     for line in body.split_inclusive('\n') {
         if line.chars().any(is_markup) {
             for (italic, run) in runs(line.trim_end_matches('\n')) {

@@ -42,6 +42,9 @@ pub enum ReportError {
     /// The pixels could not be packed into a PNG.
     #[error("failed to encode the PNG")]
     Png(#[from] png::EncodingError),
+    /// The frame of a page could not be filled in.
+    #[error("failed to make the page")]
+    Page(#[from] askama::Error),
     /// A file or folder could not be written.
     #[error("failed to write {}", path.display())]
     Write {

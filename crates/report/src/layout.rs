@@ -114,6 +114,9 @@ impl Sheet {
         for row in entries.chunks(starts.len()) {
             self.y += LEADING * theme.small_font;
             for (entry, start) in row.iter().zip(&starts) {
+                if let Some(ink) = entry.ink() {
+                    self.scene.key(ink, &entry.label);
+                }
                 entry.draw(&mut self.scene, (left + start, self.y), &theme);
             }
         }
@@ -222,6 +225,12 @@ impl Sheet {
                 if index + count >= total {
                     lowest = lowest.max(self.horizontal_labels(&rect, &marks, across));
                 }
+                let title = if side.title.is_empty() { grid.shared_title.as_ref() } else { Some(&side.title) };
+                self.scene.panel(svg::panel(
+                    &rect,
+                    (&across.axis, &across.title),
+                    (&side.axis, title.map_or("", String::as_str)),
+                ));
                 panels.push(Panel { rect, x: across.axis.clone(), y: side.axis.clone() });
             }
             self.y += height + 0.75 * theme.tick_font;

@@ -3,7 +3,7 @@
 use crate::clip::Place;
 use crate::colour::Colour;
 use crate::palette::{Look, Origin};
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Ink, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 
 /// What stands before a name.
@@ -35,6 +35,17 @@ impl Entry {
     /// The line of an origin under its own name.
     pub(crate) fn line_of(origin: &Origin, theme: &Theme) -> Self {
         Self::new(Sample::Line(stroke_of(origin, theme)), origin.label())
+    }
+
+    /// What is drawn in the figure like the sample.
+    pub(crate) fn ink(&self) -> Option<Ink> {
+        match self.sample {
+            Sample::Line(stroke) => Some(Ink { colour: stroke.colour, dash: Some(stroke.dash) }),
+            Sample::LineAndMarker(stroke, look) => Some(Ink { colour: look.colour, dash: Some(stroke.dash) }),
+            Sample::Dots(colour) => Some(Ink::of(colour)),
+            Sample::Marker(look) => Some(Ink::of(look.colour)),
+            Sample::Nothing | Sample::Upright(_) | Sample::Hull(_) => None,
+        }
     }
 
     fn sample_width(&self, theme: &Theme) -> f64 {

@@ -10,6 +10,7 @@
 //! | which method has which colour, marker and dash | [`palette`] |
 //! | SVG and PNG files | [`figure`] |
 //! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
+//! | a page for a browser, of the Markdown of a report and its figures | [`html`] |
 //! | values with uncertainty, intervals, missing values | [`number`] |
 //! | text of others on its way into a page or a file | [`markdown`], [`printable`] |
 //!
@@ -33,6 +34,7 @@ pub mod curve;
 pub mod error;
 pub mod figure;
 pub mod figures;
+pub mod html;
 pub mod markdown;
 pub mod number;
 pub mod palette;

@@ -91,10 +91,32 @@ pub(crate) enum Shape {
     Text { place: Place, text: Text },
 }
 
+/// What tells the shapes of one curve from those of another: the colour, and of a line its dash.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Ink {
+    pub colour: Colour,
+    pub dash: Option<Dash>,
+}
+
+impl Ink {
+    fn of_line(stroke: Stroke) -> Self {
+        Self { colour: stroke.colour, dash: Some(stroke.dash) }
+    }
+
+    /// Of what is no line.
+    pub(crate) fn of(colour: Colour) -> Self {
+        Self { colour, dash: None }
+    }
+}
+
 /// The shapes of one figure.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Scene {
-    shapes: Vec<(Layer, Shape)>,
+    shapes: Vec<(Layer, Ink, Shape)>,
+    /// Names of the key of the figure with what they are drawn with.
+    keys: Vec<(Ink, String)>,
+    /// A line about every panel, for a page in a browser.
+    frames: Vec<String>,
 }
 
 /// Corners of a star.
@@ -117,35 +139,65 @@ const HULL: [(f64, f64); 7] =
 
 impl Scene {
     /// The shapes from the bottom layer to the top, each layer in the order of drawing.
+    #[cfg(test)]
     pub(crate) fn shapes(&self) -> Vec<&Shape> {
-        let mut order: Vec<&(Layer, Shape)> = self.shapes.iter().collect();
-        order.sort_by_key(|(layer, _)| *layer);
-        order.into_iter().map(|(_, shape)| shape).collect()
+        self.told().into_iter().map(|(_, shape)| shape).collect()
+    }
+
+    /// The same with the name in the key of what is data; `None` where the key does not tell.
+    pub(crate) fn told(&self) -> Vec<(Option<&str>, &Shape)> {
+        let mut order: Vec<&(Layer, Ink, Shape)> = self.shapes.iter().collect();
+        order.sort_by_key(|(layer, ..)| *layer);
+        let name = |layer, ink| if layer == Layer::Data { self.name(ink) } else { None };
+        order.into_iter().map(|(layer, ink, shape)| (name(*layer, *ink), shape)).collect()
+    }
+
+    /// The one name that what is drawn like this has in the key, as a reader finds it there.
+    fn name(&self, ink: Ink) -> Option<&str> {
+        let fits = |key: &Ink| key.colour == ink.colour && (key.dash == ink.dash || ink.dash.is_none());
+        let mut names = self.keys.iter().filter(|(key, _)| fits(key)).map(|(_, name)| name.as_str());
+        let first = names.next()?;
+        names.all(|other| other == first).then_some(first)
+    }
+
+    /// Enters a name of the key.
+    pub(crate) fn key(&mut self, ink: Ink, name: &str) {
+        self.keys.push((ink, name.to_owned()));
+    }
+
+    /// Enters a line about a panel.
+    pub(crate) fn panel(&mut self, told: String) {
+        self.frames.push(told);
+    }
+
+    /// The lines about all panels.
+    pub(crate) fn panels(&self) -> &[String] {
+        &self.frames
     }
 
     pub(crate) fn line(&mut self, layer: Layer, points: impl Into<Vec<Place>>, stroke: Stroke) {
         let points = points.into();
         if points.len() > 1 && finite(&points) {
-            self.shapes.push((layer, Shape::Line { points, stroke }));
+            self.shapes.push((layer, Ink::of_line(stroke), Shape::Line { points, stroke }));
         }
     }
 
     pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: Colour, opacity: f64) {
         let points = points.into();
         if points.len() > 2 && finite(&points) {
-            self.shapes.push((layer, Shape::Fill { points, colour, opacity }));
+            self.shapes.push((layer, Ink::of(colour), Shape::Fill { points, colour, opacity }));
         }
     }
 
     pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: Colour, opacity: f64) {
         if finite(&[centre]) {
-            self.shapes.push((layer, Shape::Disc { centre, radius, colour, opacity }));
+            self.shapes.push((layer, Ink::of(colour), Shape::Disc { centre, radius, colour, opacity }));
         }
     }
 
     pub(crate) fn text(&mut self, layer: Layer, place: Place, text: Text) {
         if finite(&[place]) && !text.text.trim().is_empty() {
-            self.shapes.push((layer, Shape::Text { place, text }));
+            self.shapes.push((layer, Ink::of(text.colour), Shape::Text { place, text }));
         }
     }
 
@@ -174,6 +226,7 @@ impl Scene {
 
     /// A marker of `radius` points, with a white edge that keeps it apart from lines and neighbours.
     pub(crate) fn marker(&mut self, layer: Layer, (x, y): Place, radius: f64, look: &Look) {
+        let first = self.shapes.len();
         let edge = 0.25 * radius;
         let at = |scale: f64, corners: &[(f64, f64)]| -> Vec<Place> {
             corners.iter().map(|(dx, dy)| (x + dx * scale * radius, y + dy * scale * radius)).collect()
@@ -210,6 +263,8 @@ impl Scene {
                 self.fill(layer, at(0.5, corners), PAPER, 1.0);
             }
         }
+        // Its edge and its strokes belong to it.
+        self.shapes[first..].iter_mut().for_each(|(_, ink, _)| *ink = Ink::of(look.colour));
     }
 }
 
@@ -228,6 +283,19 @@ mod tests {
         scene.disc(Layer::Data, (f64::INFINITY, 0.0), 1.0, INK, 1.0);
         scene.text(Layer::Data, (0.0, f64::NAN), Text::new("a", 8.0));
         assert!(scene.shapes().is_empty());
+    }
+
+    #[test]
+    fn data_have_the_name_that_the_key_gives_them_alone() {
+        let mut scene = Scene::default();
+        let (one, other) = (Stroke::solid(INK, 1.0), Stroke::solid(INK, 1.0).dashed(crate::palette::DASHED));
+        scene.key(Ink::of_line(one), "one");
+        scene.key(Ink::of_line(other), "other");
+        scene.line(Layer::Data, [(0.0, 0.0), (1.0, 1.0)], other);
+        scene.disc(Layer::Data, (0.0, 0.0), 1.0, INK, 1.0);
+        scene.line(Layer::Frame, [(0.0, 0.0), (1.0, 1.0)], one);
+        let names: Vec<Option<&str>> = scene.told().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, [Some("other"), None, None]);
     }
 
     #[test]

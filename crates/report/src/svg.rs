@@ -1,27 +1,66 @@
 //! From a scene to SVG: shape by shape onto a [`canvas`], which knows no dashes, so a dashed line is cut here.
 
-use crate::canvas::{self, Type};
-use crate::clip;
+use crate::axis::Axis;
+use crate::canvas::{self, Canvas, Type, UNITS};
+use crate::clip::{self, Rect};
+use crate::markup::is_markup;
 use crate::palette::PAPER;
+use crate::printable::is_printable;
 use crate::scene::{Scene, Shape, Text};
 
-/// The scene as an SVG document of `width` x `height` points.
+/// The scene as an SVG document of `width` x `height` points. What the key names stands in groups of that name, and
+/// empty groups say where the panels are, for a page in a browser.
 pub(crate) fn render(scene: &Scene, width: f64, height: f64) -> String {
-    canvas::document(width, height, PAPER, |canvas| {
-        for shape in scene.shapes() {
-            match shape {
-                Shape::Line { points, stroke } => {
-                    let pattern: Vec<f64> = stroke.dash.iter().map(|l| l * stroke.width).collect();
-                    for part in clip::dashes(points, &pattern) {
-                        canvas.line(part, stroke.width, stroke.colour, stroke.opacity);
-                    }
-                }
-                Shape::Fill { points, colour, opacity } => canvas.fill(points, *colour, *opacity),
-                Shape::Disc { centre, radius, colour, opacity } => canvas.disc(*centre, *radius, *colour, *opacity),
-                Shape::Text { place, text } => canvas.text(*place, &text.text, &type_of(text)),
+    let mut body = String::new();
+    for run in scene.told().chunk_by(|one, other| one.0 == other.0) {
+        let drawn = canvas::elements(width, height, |canvas| run.iter().for_each(|(_, shape)| draw(canvas, shape)));
+        match run[0].0 {
+            Some(name) => body.extend(["<g data-series=\"", &attribute(name), "\">\n", &drawn, "</g>\n"]),
+            None => body.push_str(&drawn),
+        }
+    }
+    body.extend(scene.panels().iter().map(String::as_str));
+    canvas::document(width, height, PAPER, &body)
+}
+
+fn draw(canvas: &mut Canvas, shape: &Shape) {
+    match shape {
+        Shape::Line { points, stroke } => {
+            let pattern: Vec<f64> = stroke.dash.iter().map(|l| l * stroke.width).collect();
+            for part in clip::dashes(points, &pattern) {
+                canvas.line(part, stroke.width, stroke.colour, stroke.opacity);
             }
         }
-    })
+        Shape::Fill { points, colour, opacity } => canvas.fill(points, *colour, *opacity),
+        Shape::Disc { centre, radius, colour, opacity } => canvas.disc(*centre, *radius, *colour, *opacity),
+        Shape::Text { place, text } => canvas.text(*place, &text.text, &type_of(text)),
+    }
+}
+
+/// An empty group that says where a panel is, in units of the view box, and what its axes are: kind, ends, title.
+pub(crate) fn panel(rect: &Rect, x: (&Axis, &str), y: (&Axis, &str)) -> String {
+    let [left, top, width, height] = [rect.x, rect.y, rect.w, rect.h].map(|points| (points * UNITS).round());
+    let [x_axis, y_axis] = [x.0, y.0].map(|axis| attribute(&axis.told()));
+    let [x_title, y_title] = [x.1, y.1].map(attribute);
+    format!(
+        "<g data-panel=\"{left} {top} {width} {height}\" data-x=\"{x_axis}\" data-y=\"{y_axis}\" \
+         data-x-title=\"{x_title}\" data-y-title=\"{y_title}\"/>\n"
+    )
+}
+
+/// Words as the value of an attribute.
+fn attribute(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars().filter(|&c| !is_markup(c) && is_printable(c)) {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            c => out.push(c),
+        }
+    }
+    out
 }
 
 fn type_of(text: &Text) -> Type {

@@ -8,6 +8,7 @@ use kempf_benches::process::Outcome;
 use kempf_benches::verdict::{self, Line, Verdict, measured_time, plus_minus, table, time};
 use kempf_benches::work::{Cores, Reach};
 use kempf_benches::works::{CHECK_S, SHARE};
+use report::html::{self, Images};
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
 
@@ -30,7 +31,7 @@ struct Goal {
     verdict: Verdict,
 }
 
-/// Writes `report.md`, `performance.csv`, `growth.csv`, `trials.csv` and `machine.toml`.
+/// Writes `report.md`, `report.html`, `performance.csv`, `growth.csv`, `trials.csv` and `machine.toml`.
 pub fn write(
     folder: &Path,
     machine: &Machine,
@@ -47,6 +48,8 @@ pub fn write(
     put("trials.csv", trial_rows(&trials.studies, trials.methods).to_csv())?;
     let text = report(machine, measured, samples, trials)?;
     print!("{text}");
+    // The figures are in the folder by now.
+    put("report.html", html::page(&text, &|stem| Images::written(folder, stem))?)?;
     put("report.md", text)?;
     Ok(())
 }

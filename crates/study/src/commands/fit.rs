@@ -6,6 +6,7 @@ use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
+use report::Table;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
@@ -16,6 +17,8 @@ use crate::records::{default_folder, file_of, names, read_all, read_others, warn
 use crate::scales::{self, Together};
 use crate::views::fit_figures::{self, Drawn, Whole};
 use crate::views::fit_file::{FitFile, TrialEntry, ZigZagEntry, trial_entry};
+use crate::views::fit_page::{self, FitPage};
+use crate::views::page_files::write_page;
 use crate::views::{fit_scales, method_table};
 use crate::{progress, screen};
 use campaign::answer::{MethodEntry, Validation, entry};
@@ -26,7 +29,7 @@ use scenario::failure::{Failure, OnPath};
 /// What other programs read.
 const FIT: &str = "fit.json";
 
-/// Identifies the records, prints the table, writes figures and `fit.json`.
+/// Identifies the records, prints the table, writes figures, `fit.json`, `report.md` and `report.html`.
 ///
 /// Fails when a record cannot be read, and when no method can identify the records.
 pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
@@ -95,7 +98,7 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
         ship,
         amplitudes: alone::of_records(trials, &speakers(&methods, &file.methods)),
     };
-    fit_figures::draw(&records, &answers, &whole, &theme, &folder)?;
+    let drawn = fit_figures::draw(&records, &answers, &whole, &theme, &folder)?;
 
     let mut notes = renamed(&records) + &reasons(&file.methods);
     for ((zigzag, entry), name) in zigzags.iter().zip(&file.trials).zip(&names) {
@@ -106,13 +109,24 @@ pub fn run(request: &FitRequest, common: &Common) -> Result<(), Failure> {
             (Ok(_), None) => {}
         }
     }
-    notes += &fit_scales::words(&file, ship);
-    notes += &format!("\nresults: {}", path.display());
+    let scales = fit_scales::words(&file, ship, &|table| format!("\n{}\n", table.to_markdown()));
     let table = method_table::table(&file.methods, &names[trials.len()..]);
-    screen::tell(common, [&format!("{}\n", headline(&together)), ""], &table, &notes)?;
     for entry in &file.methods {
         warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
     }
+    let headline = headline(&together);
+    let page = FitPage {
+        headline: &headline,
+        methods: &table,
+        notes: &notes,
+        scales: &scales,
+        warnings: &warnings,
+        figures: &drawn,
+    };
+    write_page(&folder, &fit_page::page(&page))?;
+    notes += &fit_scales::words(&file, ship, &Table::to_text);
+    notes += &format!("\nresults: {}", path.display());
+    screen::tell(common, [&format!("{headline}\n"), ""], &table, &notes)?;
     for warning in warnings {
         screen::warn(&format!("warning: {warning}"));
     }

@@ -18,6 +18,7 @@ use trial::{Sidecar, Trial};
 
 use crate::options::{Common, PredictRequest, ReadingOptions};
 use crate::records::{file_of, read_others};
+use crate::views::page_files::write_page;
 use crate::views::predict_file::{self, PredictFile};
 use crate::views::predict_report::Predicted;
 use crate::views::{predict_figures, predict_form, predict_page, predict_tables};
@@ -53,7 +54,7 @@ fn mixture_of(models: &[Model], particulars: Option<Particulars>) -> Result<Mixt
     Mixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
 }
 
-/// Predicts, prints what was found, writes `predict.json`, `report.md`, tables and figures.
+/// Predicts, prints what was found, writes `predict.json`, `report.md`, `report.html`, tables and figures.
 ///
 /// Fails when a model or a record cannot be read, and when hardly any drawn ship comes to the end of a manoeuvre.
 pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
@@ -147,7 +148,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     for (stem, table) in predict_file::curves(&predicted) {
         folder.write(&format!("{stem}.csv"), table)?;
     }
-    folder.write("report.md", predict_page::page(&predicted, &drawn))?;
+    write_page(&folder, &predict_page::page(&predicted, &drawn))?;
     let mut notes = format!("\nresults: {}", path.display());
     if let Some(form) = &predicted.form {
         folder.write(FORM, predict_form::page(form, &predicted))?;

@@ -8,6 +8,7 @@ use crate::commands::{alone, planned, steady};
 use crate::options::{Common, TraceRequest, Withheld};
 use crate::records::{default_folder, names, read_all, read_others, warn_of_no_track, warn_of_repetition};
 use crate::scales::{self, Together};
+use crate::views::page_files::write_page;
 use crate::views::trace_file::TraceFile;
 use crate::views::trace_report::TraceReport;
 use crate::views::{missing_moment, trace_figures, trace_page, trace_scales, trace_tables};
@@ -19,7 +20,7 @@ use scenario::failure::{Failure, OnPath};
 /// What other programs read.
 const TRACE: &str = "trace.json";
 
-/// Analyses the records, prints what was found, writes `trace.json`, `report.md` and figures.
+/// Analyses the records, prints what was found, writes `trace.json`, `report.md`, `report.html` and figures.
 ///
 /// Fails when a record cannot be read, and when the base cannot be fitted.
 pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
@@ -76,7 +77,7 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
         folder.write(&format!("{}.csv", shown.stem), missing_moment::table(shown.missing))?;
     }
     let drawn = trace_figures::draw(&report, &theme, &folder)?;
-    folder.write("report.md", trace_page::page(&report, &drawn))?;
+    write_page(&folder, &trace_page::page(&report, &drawn))?;
     let notes = format!("\nresults: {}", path.display());
     let words = format!("{}\n", trace_page::words(&report));
     screen::tell(common, [&words, ""], &trace_tables::errors(&report), &notes)?;

@@ -10,7 +10,7 @@ use report::{Figure, Origin, Theme};
 use ship::Particulars;
 use trial::{Channel, Trial, ZigZag};
 
-use super::picture::{first_failure, write_figure};
+use super::picture::write_figure;
 use super::{curve_tables, index_figures};
 use crate::views::index_figures::Amplitudes;
 use campaign::answer::MethodEntry;
@@ -44,14 +44,15 @@ pub struct Whole {
 /// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `raw` (where readings are left out or
 /// doubtful), `replays`, `fit` and `phase` of the first record, and the same with `-NAME` of the others; `indices`, K
 /// and T of all methods, and `amplitude`, those of every record alone. Beside them `replay.csv`, the curves of
-/// `replays`.
+/// `replays`. Returns stems and captions.
 pub fn draw(
     records: &[Drawn],
     answers: &[(MethodEntry, Option<Estimate>)],
     whole: &Whole,
     theme: &Theme,
     folder: &ResultFolder,
-) -> Result<(), Failure> {
+) -> Result<Vec<(String, String)>, Failure> {
+    let mut drawn = vec![told("indices", "", &whole.title)];
     let indices = index_figures::index_plane(whole.title.clone(), answers, whole.ship);
     write_figure(&figures::index_plane(&indices, theme), folder, "indices")?;
     if let Some(all) = &whole.amplitudes {
@@ -59,26 +60,54 @@ pub fn draw(
         let joint = joint.and_then(|(_, estimate)| estimate.as_ref()).map(|estimate| [estimate.K(), estimate.T()]);
         let data = index_figures::amplitude(whole.title.clone(), all, joint, whole.ship);
         write_figure(&figures::amplitude(&data, theme), folder, "amplitude")?;
+        drawn.push(told("amplitude", "", &whole.title));
     }
-    first_failure(records.par_iter().enumerate().map(|(number, record)| {
+    let work = records.par_iter().enumerate().map(|(number, record)| {
         let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
+        let mut drawn = Vec::new();
+        let mut put = |figure: &Figure, kind: &str| {
+            drawn.push(told(kind, &suffix, record.name));
+            write_figure(figure, folder, &format!("{kind}{suffix}"))
+        };
         if let Some(zigzag) = ZigZag::of(record.trial).ok().filter(|_| !record.validation) {
             let data =
                 figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, &zigzag) };
-            write_figure(&figures::zigzag_trial(&data, theme), folder, &format!("trial{suffix}"))?;
+            put(&figures::zigzag_trial(&data, theme), "trial")?;
         }
         if !record.trial.marks().is_empty() {
-            write_figure(&raw(record, theme), folder, &format!("raw{suffix}"))?;
+            put(&raw(record, theme), "raw")?;
         }
         let replays = replays(record, answers);
-        write_figure(&figures::replays(&replays, theme), folder, &format!("replays{suffix}"))?;
+        put(&figures::replays(&replays, theme), "replays")?;
         let rudder = curve(record.trial.time(), record.trial.rudder());
         folder.write(&format!("replay{suffix}.csv"), curve_tables::of_replays(&replays, Some(&rudder)))?;
         if let Some(phase) = phase(record, answers) {
-            write_figure(&figures::phase_plane(&phase, theme), folder, &format!("phase{suffix}"))?;
+            put(&figures::phase_plane(&phase, theme), "phase")?;
         }
-        write_figure(&best_fit(record, &replays, theme), folder, &format!("fit{suffix}"))
-    }))
+        put(&best_fit(record, &replays, theme), "fit")?;
+        Ok::<Vec<(String, String)>, Failure>(drawn)
+    });
+    // The first failure in order, whichever came first in time.
+    for of_record in work.collect::<Vec<_>>() {
+        drawn.extend(of_record?);
+    }
+    Ok(drawn)
+}
+
+/// Stem and caption of a kind of figure.
+fn told(kind: &str, suffix: &str, name: &str) -> (String, String) {
+    let what = match kind {
+        "indices" => "K and T of every method with the intervals and regions it quotes.",
+        "amplitude" => {
+            "K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
+        }
+        "trial" => "heading and rudder, with the characteristics of the zig-zag.",
+        "raw" => "the record as it was read, with marks at the readings that are left out or doubtful.",
+        "replays" => "the recorded rudder replayed with the answer of every method, and what is left of the heading.",
+        "phase" => "yaw rate against heading, of the record and of the replay of one method.",
+        _ => "heading, residual and rudder with the replay of one method.",
+    };
+    (format!("{kind}{suffix}"), format!("{name}: {what}"))
 }
 
 fn title(record: &Drawn) -> Option<String> {

@@ -2,6 +2,7 @@
 
 use identify::{Estimate, Identifier, Uncertainty};
 use rayon::prelude::*;
+use report::Table;
 use ship::Particulars;
 use ship::angle::to_deg;
 use trial::{Quantity, Trial};
@@ -66,8 +67,8 @@ fn parameter(estimate: &Estimate, place: usize) -> Quantity {
     Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
 }
 
-/// What is said on the screen: K' and T' of every method, and which terms scale.
-pub fn words(file: &FitFile, ship: Option<Particulars>) -> String {
+/// What is said on the screen and on the page, which render tables in their own way: K' and T' of every method, and which terms scale.
+pub fn words(file: &FitFile, ship: Option<Particulars>, render: &dyn Fn(&Table) -> String) -> String {
     let mut text = String::new();
     let rows: Vec<(String, Quantity, Quantity)> = file
         .methods
@@ -76,7 +77,7 @@ pub fn words(file: &FitFile, ship: Option<Particulars>) -> String {
         .collect();
     if let Some(ship) = ship.filter(|_| !rows.is_empty()) {
         text += &format!("\nprime indices K′ = K L/V, T′ = T V/L with {}\n", scale_name(ship));
-        text += &prime_table(&rows).to_text();
+        text += &render(&prime_table(&rows));
     }
     let Some(scales) = &file.scales else { return text };
     let speaker = SPEAKERS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
@@ -85,7 +86,7 @@ pub fn words(file: &FitFile, ship: Option<Particulars>) -> String {
             "\nevery scale alone, {}: {}\n{}",
             model.model,
             ScalesEntry::sentence(model),
-            scales.table(model).to_text()
+            render(&scales.table(model))
         );
         text += "a first-order response that lacks something differs between manoeuvres, too; `study trace` tells the two apart\n";
     }

@@ -11,12 +11,13 @@ use report::{Table, Theme, markdown};
 use scenario::failure::{Failure, OnPath};
 
 use super::drawings::{self, write_all};
+use super::page_files::{REPORT, write_page};
 use super::study_page::{on_screen, page};
 use super::{coverage_table, curve_tables, tables, tracing_table};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
-/// Makes the tables, the figures and `report.md` in a folder, and prints the tables.
+/// Makes the tables, the figures and `report.md` and `report.html` in a folder, and prints the tables.
 pub fn publish(
     stored: &Stored,
     folder: &ResultFolder,
@@ -53,7 +54,7 @@ pub fn publish(
     write_all(&drawings, theme, folder)?;
     curve_tables::write_showcases(stored, &drawings, folder)?;
     // Whatever a scenario or a label holds: no HTML.
-    folder.write(REPORT, markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
+    write_page(folder, &markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
 
     match common.format {
         _ if common.quiet => Ok(()),
@@ -71,7 +72,6 @@ pub fn publish(
 }
 
 const SUMMARY: &str = "summary.csv";
-const REPORT: &str = "report.md";
 
 /// Cells that are listed one by one for a person to read; more are in `summary.csv`.
 const LISTED_CELLS: usize = 500;

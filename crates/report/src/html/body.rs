@@ -1,0 +1,195 @@
+//! From Markdown to the body of a page: headings with names to link to, tables that can be read row by row, figures in
+//! the place of images.
+
+use std::collections::HashSet;
+
+use pulldown_cmark::{Alignment, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
+
+use super::escape::escaped;
+use super::figures::{Images, Room};
+
+/// A heading that can be linked to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Heading {
+    pub level: u8,
+    pub id: String,
+    pub text: String,
+}
+
+/// The body and its headings in their order.
+pub(super) struct Body {
+    pub html: String,
+    pub headings: Vec<Heading>,
+}
+
+/// What a link may lead to; anything else is only its words.
+const LINKS: [&str; 3] = ["https://", "http://", "mailto:"];
+
+/// What is known while a page is read from top to bottom.
+struct Reader<'a, 'm> {
+    images: &'a dyn Fn(&str) -> Images,
+    room: Room,
+    out: Vec<Event<'m>>,
+    headings: Vec<Heading>,
+    ids: HashSet<String>,
+    /// Name of the heading that was passed last.
+    section: String,
+    alignments: Vec<Alignment>,
+    /// Number of the cell that is next, and whether it is one of a head.
+    cell: (usize, bool),
+}
+
+/// The body of a page.
+pub(super) fn of(markdown: &str, images: &dyn Fn(&str) -> Images) -> Body {
+    let events: Vec<Event> =
+        Parser::new_ext(markdown, Options::ENABLE_TABLES | Options::ENABLE_STRIKETHROUGH).collect();
+    let mut reader = Reader {
+        images,
+        room: Room::new(),
+        out: Vec::with_capacity(events.len()),
+        headings: Vec::new(),
+        ids: HashSet::from(["report".to_owned(), "contents".to_owned()]),
+        section: String::from("Table"),
+        alignments: Vec::new(),
+        cell: (0, false),
+    };
+    reader.read(events);
+    let mut text = String::new();
+    html::push_html(&mut text, reader.out.into_iter());
+    Body { html: text, headings: reader.headings }
+}
+
+/// The words from a place to the end of what is begun there, and the place behind it.
+fn words(events: &[Event], start: usize) -> (String, usize) {
+    let (mut depth, mut text) = (0_usize, String::new());
+    for (place, event) in events.iter().enumerate().skip(start) {
+        match event {
+            Event::Start(_) => depth += 1,
+            Event::End(_) => depth -= 1,
+            Event::Text(words) | Event::Code(words) | Event::InlineHtml(words) => text += words,
+            Event::SoftBreak | Event::HardBreak => text.push(' '),
+            _ => {}
+        }
+        if depth == 0 {
+            return (text, place + 1);
+        }
+    }
+    (text, events.len())
+}
+
+impl<'m> Reader<'_, 'm> {
+    fn read(&mut self, events: Vec<Event<'m>>) {
+        let mut place = 0;
+        while place < events.len() {
+            if let Some(behind) = self.figure(&events, place) {
+                place = behind;
+                continue;
+            }
+            match &events[place] {
+                Event::Start(Tag::Heading { level, .. }) => self.heading(*level, words(&events, place).0),
+                event => self.event(event.clone()),
+            }
+            place += 1;
+        }
+    }
+
+    fn html(&mut self, html: impl Into<CowStr<'m>>) {
+        self.out.push(Event::Html(html.into()));
+    }
+
+    /// A paragraph that is an image and nothing else, and the paragraph after it that repeats its caption.
+    fn figure(&mut self, events: &[Event], place: usize) -> Option<usize> {
+        let (Event::Start(Tag::Paragraph), Event::Start(Tag::Image { dest_url, .. })) =
+            (&events[place], events.get(place + 1)?)
+        else {
+            return None;
+        };
+        let stem = dest_url.strip_suffix(".png").filter(|stem| !stem.contains(['/', '\\', ':']))?;
+        let (caption, behind) = words(events, place + 1);
+        if !matches!(events.get(behind)?, Event::End(TagEnd::Paragraph)) {
+            return None;
+        }
+        let images = (self.images)(stem);
+        let figure = self.room.figure(dest_url, &caption, &images);
+        self.html(figure);
+        let next = behind + 1;
+        let is_image = matches!(events.get(next + 1), Some(Event::Start(Tag::Image { .. })));
+        let repeats = matches!(events.get(next), Some(Event::Start(Tag::Paragraph))) && !is_image;
+        let (text, end) = if repeats { words(events, next) } else { (String::new(), next) };
+        Some(if repeats && text.trim() == caption.trim() { end } else { next })
+    }
+
+    fn heading(&mut self, level: HeadingLevel, text: String) {
+        let slug: String = text.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect();
+        let slug = match slug.trim_matches('-') {
+            "" => "section",
+            slug => slug,
+        };
+        let mut id = slug.to_owned();
+        let mut number = 2;
+        while !self.ids.insert(id.clone()) {
+            id = format!("{slug}-{number}");
+            number += 1;
+        }
+        let level = level as u8;
+        self.html(format!("<h{level} id=\"{}\">", escaped(&id)));
+        self.section = text.clone();
+        self.headings.push(Heading { level, id, text });
+    }
+
+    fn event(&mut self, event: Event<'m>) {
+        match event {
+            Event::End(TagEnd::Heading(level)) => self.html(format!("</h{}>\n", level as u8)),
+            Event::Start(Tag::Table(alignments)) => {
+                self.alignments = alignments;
+                let section = escaped(&self.section);
+                self.html(format!(
+                    "<div class=\"table\" role=\"group\" tabindex=\"0\" aria-label=\"Table: {section}\">\n<table>\n"
+                ));
+            }
+            Event::End(TagEnd::Table) => self.html("</tbody>\n</table>\n</div>\n"),
+            Event::Start(Tag::TableHead) => {
+                self.cell = (0, true);
+                self.html("<thead>\n<tr>");
+            }
+            Event::End(TagEnd::TableHead) => self.html("</tr>\n</thead>\n<tbody>\n"),
+            Event::Start(Tag::TableRow) => {
+                self.cell = (0, false);
+                self.html("<tr>");
+            }
+            Event::End(TagEnd::TableRow) => self.html("</tr>\n"),
+            Event::Start(Tag::TableCell) => {
+                let class = match self.alignments.get(self.cell.0) {
+                    Some(Alignment::Right) => " class=\"right\"",
+                    Some(Alignment::Center) => " class=\"centre\"",
+                    _ => "",
+                };
+                let tag = match self.cell {
+                    (_, true) => "th scope=\"col\"",
+                    (0, false) => "th scope=\"row\"",
+                    _ => "td",
+                };
+                self.html(format!("<{tag}{class}>"));
+            }
+            Event::End(TagEnd::TableCell) => {
+                let tag = if self.cell.1 || self.cell.0 == 0 { "</th>" } else { "</td>" };
+                self.cell.0 += 1;
+                self.html(tag);
+            }
+            // Shown, not obeyed.
+            Event::Html(text) | Event::InlineHtml(text) => self.out.push(Event::Text(text)),
+            // An image in a line of words: nothing is fetched for it.
+            Event::Start(Tag::Image { dest_url, .. }) => self.html(format!("<a href=\"{}\">", target(&dest_url))),
+            Event::End(TagEnd::Image) => self.html("</a>"),
+            Event::Start(Tag::Link { dest_url, .. }) => self.html(format!("<a href=\"{}\">", target(&dest_url))),
+            Event::End(TagEnd::Link) => self.html("</a>"),
+            event => self.out.push(event),
+        }
+    }
+}
+
+/// Where a link leads: a place in the net, or a file beside the page; never a script.
+fn target(url: &str) -> String {
+    let known = LINKS.iter().any(|link| url.starts_with(link));
+    if known || !url.contains(':') { escaped(url) } else { String::from("#") }
+}

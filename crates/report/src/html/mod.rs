@@ -1,0 +1,45 @@
+//! A report for a browser: the page that is written as Markdown, in one file that needs no other. Figures and tables
+//! stand in it; nothing is fetched. The Markdown stays the one source: nothing is said here that is not said there.
+
+mod body;
+mod compact;
+mod escape;
+mod figures;
+
+use askama::Template;
+
+use crate::error::ReportError;
+use body::Heading;
+
+pub use figures::Images;
+
+/// What the page looks like, and what its tables and figures answer to.
+const STYLE: &str = include_str!("../../templates/report.css");
+const SCRIPT: &str = include_str!("../../templates/report.js");
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page<'a> {
+    title: &'a str,
+    style: &'a str,
+    script: &'a str,
+    contents: &'a [Heading],
+    body: &'a str,
+}
+
+/// The page of a report in Markdown (the GitHub flavour, tables included).
+///
+/// `images` finds the drawing of a figure `![caption](stem.png)` by its stem; where it has none, or where the page would
+/// grow beyond what can be mailed, a link to the file stands in its place. HTML in the Markdown is shown, not obeyed.
+///
+/// Fails with [`ReportError::Page`] when the page cannot be filled in.
+pub fn page(markdown: &str, images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {
+    let body = body::of(markdown, images);
+    let contents: Vec<Heading> = body.headings.iter().filter(|one| matches!(one.level, 2 | 3)).cloned().collect();
+    let title = body.headings.first().map_or("Report", |first| &first.text);
+    let page = Page { title, style: STYLE, script: SCRIPT, contents: &contents, body: &body.html };
+    Ok(page.render()?)
+}
+
+#[cfg(test)]
+mod tests;
