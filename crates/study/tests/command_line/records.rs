@@ -309,7 +309,8 @@ fn options_of_fit_do_what_they_say() {
     assert!(lines[0].starts_with("method,K [1/s],") && lines.len() == 1 + method_ids().len(), "{}", csv.out);
     let latex = desk.run(&["fit", "a/run.csv", "--format", "latex", "--out", "latex"]);
     assert!(
-        latex.is_done().out.starts_with("\\begin{table}") && latex.out.ends_with("\\end{table}\n"),
+        latex.is_done().out.starts_with("% Needs \\usepackage{booktabs,siunitx")
+            && latex.out.ends_with("\\end{table}\n"),
         "{}",
         latex.out
     );
