@@ -84,6 +84,36 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         reference: band,
         ..ErrorCurves::default()
     };
+    let quiet = |mut curve: ErrorCurve| {
+        curve.is_quiet = curve.origin != Origin::Method("output-error".into());
+        curve.points.iter_mut().for_each(|point| point.beyond = point.y > 1e6);
+        curve
+    };
+    let hero = ErrorCurves {
+        title: Some("Output error is best".into()),
+        cells: vec![ErrorCell { row: 0, column: 0, curves: methods().enumerate().map(curve).map(quiet).collect() }],
+        marks: vec![AxisMark { at: 2.0, label: "IMO circular".into() }],
+        names_at_lines: true,
+        note: Some("Arrows: too large.".into()),
+        ..coverage.clone()
+    };
+    let share = |row: usize, column: usize| ConfusionCell {
+        share: if row == column { 90.0 } else { size(row, column) },
+        interval: Some([80.0, 95.0]),
+        is_right: row == column,
+        is_alias: column == row + 1,
+    };
+    let confused = Confusion {
+        columns: names.clone(),
+        rows: (0..names.len())
+            .map(|row| ConfusionRow {
+                name: names[row].clone(),
+                trials: 50,
+                cells: (0..names.len()).map(|column| share(row, column)).collect(),
+            })
+            .collect(),
+        ..Confusion::default()
+    };
     let line = |scale: f64| {
         Curve::new(
             (0..n).map(|k| k as f64).collect::<Vec<_>>(),
@@ -111,6 +141,8 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         ("scatter", scatter(&KtScatter { title: None, panels: methods().enumerate().map(cloud).collect() }, theme)),
         ("heat map", heat_map(&map, theme)),
         ("coverage", error_curves(&coverage, theme)),
+        ("hero", error_curves(&hero, theme)),
+        ("confusion", confusion(&confused, theme)),
     ]
 }
 
@@ -141,7 +173,7 @@ fn nothing_is_nothing() {
 #[test]
 fn methods_keep_their_colours() {
     for (name, figure) in all(40, 0.3, &Theme::screen()) {
-        let coloured = ["heat map", "missing moment"].contains(&name) || figure.svg().contains("#009E73");
+        let coloured = ["heat map", "missing moment", "confusion"].contains(&name) || figure.svg().contains("#009E73");
         assert!(coloured, "output-error in {name}");
     }
 }
@@ -153,4 +185,32 @@ fn what_lies_outside_is_said() {
     assert!(svg("violins").contains("Arrows: beyond the axis."));
     assert!(svg("scatter").contains("2 of 40 outside") && svg("scatter").contains("no estimate"));
     assert!(svg("heat map").contains("\n–\n"), "a method without values");
+}
+
+#[test]
+fn what_sets_no_axis_is_an_arrow_at_its_edge() {
+    let theme = Theme::screen();
+    let point = |x: f64, y: f64, beyond: bool| ErrorPoint { beyond, ..ErrorPoint::new(x, y, None) };
+    let of = |method: &str, points| ErrorCurve::new(Origin::Method(method.into()), points);
+    let curves = vec![
+        of("output-error", vec![point(1.0, 0.1, false), point(2.0, 0.2, false)]),
+        of("least-squares", vec![point(1.0, 1.0, false), point(2.0, 1e6, true)]),
+    ];
+    let data = ErrorCurves {
+        rows: vec!["rms error of T [%]".into()],
+        cells: vec![ErrorCell { row: 0, column: 0, curves }],
+        ..ErrorCurves::default()
+    };
+    let svg = error_curves(&data, &theme);
+    assert!(!svg.svg().contains("10⁶") && svg.svg().contains(">\n1\n"), "the axis ends with what is worth something");
+}
+
+#[test]
+fn names_stand_at_the_lines_once_each() {
+    let theme = Theme::screen();
+    let figures = all(5, 0.3, &theme);
+    let svg = figures.iter().find(|(name, _)| *name == "hero").expect("it is drawn").1.svg();
+    for name in ["output-error", "srivc", "IMO circular", "Output error is best"] {
+        assert_eq!(svg.matches(&format!(">\n{name}\n")).count(), 1, "{name}");
+    }
 }

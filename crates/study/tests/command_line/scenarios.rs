@@ -268,7 +268,11 @@ fn a_faulty_rule_or_validation_is_shown_at_its_place() {
         18,
         &["assumed-rudder-rate-deg-s` is 0", "above 0"],
     );
-    refused(&format!("{GOOD}[output]\ndetail = [\"20/20\"]\n"), 28, &["20/20", "cell"]);
+    let output = |text: &str| format!("{GOOD}[output]\n{text}\n");
+    refused(&output("detail = [\"20/20\"]"), 28, &["20/20", "cell"]);
+    refused(&output("methods = [\"output-eror\"]"), 28, &["output-eror", "output-error"]);
+    refused(&output("marks = [{ axis = \"noise\", at = 1, label = \"a\" }]"), 28, &["no axis", "noise", "a sweep"]);
+    refused(&output("figures = [\"../errors\"]"), 28, &["output.figures", "/"]);
 }
 
 /// The scenario with a ship of one's own.

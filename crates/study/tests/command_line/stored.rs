@@ -230,3 +230,32 @@ fn two_reruns_and_a_report_at_once_leave_a_whole_study() {
         desk.run(&["report", "whole", "--quiet"]).is_done();
     }
 }
+
+/// A scenario says which of its figures are made, and which stands for it; all there are can be asked for.
+#[test]
+fn figures_are_chosen() {
+    let desk = Desk::new();
+    let output = "[output]\nfigure = \"errors\"\ntitle = \"It does\"\nmethods = [\"least-squares\"]\nfigures = [\"coverage\", \"eror\"]\n";
+    desk.file("study.toml", format!("{STUDY}{output}"));
+    let figures = |folder: &str| -> Vec<String> {
+        let entries = fs::read_dir(desk.path(folder)).expect("a folder").flatten();
+        let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let mut names: Vec<String> = names.filter(|name| name.ends_with(".png")).collect();
+        names.sort();
+        names
+    };
+    let run = desk.run(&["study.toml", "--out", "named", "--quiet"]);
+    assert!(run.is_done().err.contains("there is no figure \"eror\"; there are: errors"), "{}", run.err);
+    assert_eq!(figures("named"), ["coverage.png", "hero.png"]);
+    let page = String::from_utf8(desk.bytes("named/report.md")).expect("UTF-8");
+    assert!(
+        page.contains("](hero.png)") && page.contains("](coverage.png)") && !page.contains("](errors.png)"),
+        "{page}"
+    );
+    let hero = String::from_utf8(desk.bytes("named/hero.svg")).expect("UTF-8");
+    assert!(hero.contains("It does") && hero.contains("rms error of T over the"), "{hero}");
+    desk.run(&["report", "named", "--figures", "hero", "--out", "one", "--quiet"]).is_done();
+    assert_eq!(figures("one"), ["hero.png"]);
+    desk.run(&["report", "named", "--figures", "all", "--out", "all", "--quiet"]).is_done();
+    assert!(figures("all").len() > 3 && figures("all").contains(&"errors.png".to_owned()), "{:?}", figures("all"));
+}
