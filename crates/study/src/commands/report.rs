@@ -11,8 +11,8 @@ use crate::options::{Common, Style};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
-/// Makes tables, figures and the pages of a finished study where its rows are, or in `--out`; with `open` shows the page
-/// in a browser, which is all that can be done for a folder without rows.
+/// Makes tables, figures and the pages of a finished study where its rows are, or in `--out`; with `open` shows the
+/// page in a browser, which is all that can be done for a folder without rows.
 pub fn run(rows: &Path, open: bool, style: &Style, common: &Common) -> Result<(), Failure> {
     let folder = common.out.as_deref().unwrap_or(rows);
     let is_analysis = ["fit.json", "trace.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
