@@ -1,13 +1,18 @@
 "use strict";
 // Tables: a click on a heading sorts by the first number of a cell, or by its words.
+const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 const number = text => {
-  const found = text.replace(/−/g, "-").replace(/[\s\u00a0\u202f](?=\d{3})/g, "").match(/-?\d+(\.\d+)?(e-?\d+)?/i);
+  const plain = text.replace(/×10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/, (_, power) =>
+    "e" + [...power].map(c => (c === "⁻" ? "-" : raised.indexOf(c))).join(""));
+  const found = plain.replace(/−/g, "-").replace(/[\s\u00a0\u202f](?=\d{3})/g, "").match(/-?\d+(\.\d+)?(e-?\d+)?/i);
   return found ? parseFloat(found[0]) : NaN;
 };
 const looksLikeNumber = text => /^[^\p{L}]*[\d∞]/u.test(text);
 for (const table of document.querySelectorAll("table")) {
   const body = table.tBodies[0];
   if (!body || body.rows.length < 2) continue;
+  // A row that takes its name from the one above has to stay below it.
+  if ([...body.rows].some(row => !row.cells[0].textContent.trim())) continue;
   [...table.tHead.rows[0].cells].forEach((head, column) => {
     if (!head.textContent.trim()) return;
     const button = document.createElement("button");
@@ -107,9 +112,9 @@ for (const svg of document.querySelectorAll(".plot svg")) {
         points = null;
       });
       made.setAttribute("aria-pressed", "true");
-      const ink = own.map(group => group.querySelector("[stroke^='#'],[fill^='#']")).find(Boolean);
+      const inks = own.flatMap(group => [...group.children].flatMap(one => ["stroke", "fill"].map(k => one.getAttribute(k))));
       const swatch = document.createElement("i");
-      swatch.style.background = ink ? (ink.getAttribute("stroke") || ink.getAttribute("fill")) : "none";
+      swatch.style.background = inks.find(ink => /^#/.test(ink) && ink !== "#FFFFFF") || "none";
       made.prepend(swatch);
     }
   }

@@ -94,9 +94,12 @@ enum Command {
     },
     /// Rebuild tables and plots from the stored rows, no simulation
     Report {
-        /// Folder of a finished study
+        /// Folder of a finished study; with --open also that of a fit, a trace or a prediction
         #[arg(value_name = "DIR")]
         folder: PathBuf,
+        /// Show report.html in a browser; of a fit, a trace or a prediction as it is
+        #[arg(long)]
+        open: bool,
         #[command(flatten)]
         style: StudyStyle,
         #[command(flatten)]
@@ -184,9 +187,9 @@ fn answer(cli: Cli) -> Result<(), Failure> {
         }
         (Some(Command::Check { scenarios, resolved, common }), _) => check::run(&scenarios, resolved, &common),
         (Some(Command::List { what, common }), _) => list::run(what, &common),
-        (Some(Command::Report { folder, style, common }), _) => {
+        (Some(Command::Report { folder, open, style, common }), _) => {
             threads::start(&common)?;
-            report::run(&folder, &style, &common)
+            report::run(&folder, open, &style, &common)
         }
         (Some(Command::Overview { folder, common }), _) => overview::run(&folder, &common),
         (Some(Command::Merge { folders, style, common }), _) => {

@@ -137,7 +137,7 @@ fn no_fault_of_the_disk_loses_anything_of_a_report() {
     let desk = tempfile::tempdir().expect("a temporary folder");
     let whole = desk.path().join("whole");
     run(&scenario(""), Shard::WHOLE, &whole).unwrap_or_else(|failure| panic!("{failure}"));
-    assert!(fail_each(Some(&whole), |folder| report::run(folder, &STYLE, &quiet(None))) > 50);
+    assert!(fail_each(Some(&whole), |folder| report::run(folder, false, &STYLE, &quiet(None))) > 50);
 }
 
 #[test]

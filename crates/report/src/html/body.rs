@@ -37,6 +37,8 @@ struct Reader<'a, 'm> {
     alignments: Vec<Alignment>,
     /// Number of the cell that is next, and whether it is one of a head.
     cell: (usize, bool),
+    /// What ends the cell.
+    cell_end: &'static str,
 }
 
 /// The body of a page.
@@ -52,6 +54,7 @@ pub(super) fn of(markdown: &str, images: &dyn Fn(&str) -> Images) -> Body {
         section: String::from("Table"),
         alignments: Vec::new(),
         cell: (0, false),
+        cell_end: "",
     };
     reader.read(events);
     let mut text = String::new();
@@ -87,6 +90,10 @@ impl<'m> Reader<'_, 'm> {
             }
             match &events[place] {
                 Event::Start(Tag::Heading { level, .. }) => self.heading(*level, words(&events, place).0),
+                // Words over several rows are written once: below them nothing is a head.
+                Event::Start(Tag::TableCell) => {
+                    self.begin_cell(matches!(events.get(place + 1), Some(Event::End(TagEnd::TableCell))));
+                }
                 event => self.event(event.clone()),
             }
             place += 1;
@@ -137,6 +144,22 @@ impl<'m> Reader<'_, 'm> {
         self.headings.push(Heading { level, id, text });
     }
 
+    fn begin_cell(&mut self, is_empty: bool) {
+        let class = match self.alignments.get(self.cell.0) {
+            Some(Alignment::Right) => " class=\"right\"",
+            Some(Alignment::Center) => " class=\"centre\"",
+            _ => "",
+        };
+        let (tag, end) = match self.cell {
+            _ if is_empty => ("td", "</td>"),
+            (_, true) => ("th scope=\"col\"", "</th>"),
+            (0, false) => ("th scope=\"row\"", "</th>"),
+            _ => ("td", "</td>"),
+        };
+        self.cell_end = end;
+        self.html(format!("<{tag}{class}>"));
+    }
+
     fn event(&mut self, event: Event<'m>) {
         match event {
             Event::End(TagEnd::Heading(level)) => self.html(format!("</h{}>\n", level as u8)),
@@ -158,23 +181,9 @@ impl<'m> Reader<'_, 'm> {
                 self.html("<tr>");
             }
             Event::End(TagEnd::TableRow) => self.html("</tr>\n"),
-            Event::Start(Tag::TableCell) => {
-                let class = match self.alignments.get(self.cell.0) {
-                    Some(Alignment::Right) => " class=\"right\"",
-                    Some(Alignment::Center) => " class=\"centre\"",
-                    _ => "",
-                };
-                let tag = match self.cell {
-                    (_, true) => "th scope=\"col\"",
-                    (0, false) => "th scope=\"row\"",
-                    _ => "td",
-                };
-                self.html(format!("<{tag}{class}>"));
-            }
             Event::End(TagEnd::TableCell) => {
-                let tag = if self.cell.1 || self.cell.0 == 0 { "</th>" } else { "</td>" };
                 self.cell.0 += 1;
-                self.html(tag);
+                self.html(self.cell_end);
             }
             // Shown, not obeyed.
             Event::Html(text) | Event::InlineHtml(text) => self.out.push(Event::Text(text)),

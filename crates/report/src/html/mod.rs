@@ -29,8 +29,9 @@ struct Page<'a> {
 
 /// The page of a report in Markdown (the GitHub flavour, tables included).
 ///
-/// `images` finds the drawing of a figure `![caption](stem.png)` by its stem; where it has none, or where the page would
-/// grow beyond what can be mailed, a link to the file stands in its place. HTML in the Markdown is shown, not obeyed.
+/// `images` finds the drawing of a figure `![caption](stem.png)` by its stem; where it has none, or where the page
+/// would grow beyond what can be mailed, a link to the file stands in its place. HTML in the Markdown is shown, not
+/// obeyed.
 ///
 /// Fails with [`ReportError::Page`] when the page cannot be filled in.
 pub fn page(markdown: &str, images: &dyn Fn(&str) -> Images) -> Result<String, ReportError> {

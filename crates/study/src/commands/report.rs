@@ -1,16 +1,28 @@
 //! `study report DIR`: tables and figures of a finished study, from what is stored and nothing else.
 
 use std::path::Path;
+use std::process::{Command, Stdio};
 
 use campaign::folder::ResultFolder;
 use campaign::store::{self, Stored};
 use scenario::failure::Failure;
 
 use crate::options::{Common, StudyStyle};
+use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
-/// Makes tables, figures and `report.md` of a finished study where its rows are, or in `--out`.
-pub fn run(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+/// Makes tables, figures and the pages of a finished study where its rows are, or in `--out`; with `open` shows the
+/// page in a browser, which is all that can be done for a folder without rows.
+pub fn run(rows: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+    let folder = common.out.as_deref().unwrap_or(rows);
+    let is_analysis = ["fit.json", "trace.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
+    if !(open && is_analysis) {
+        rebuild(rows, style, common)?;
+    }
+    if open { show(&(if is_analysis { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
+}
+
+fn rebuild(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
     let theme = style.style.theme()?;
     let is_same =
         |out: &Path| out.canonicalize().ok().zip(rows.canonicalize().ok()).is_some_and(|(out, rows)| out == rows);
@@ -24,5 +36,30 @@ pub fn run(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failu
             let folder = ResultFolder::hold(rows)?;
             publish(&Stored::held(&folder)?, &folder, (&theme, style.figures), common)
         }
+    }
+}
+
+/// What opens a file with the program of the user's choice.
+#[cfg(target_os = "macos")]
+const OPENER: (&str, &[&str]) = ("open", &[]);
+#[cfg(windows)]
+const OPENER: (&str, &[&str]) = ("cmd", &["/C", "start", ""]);
+#[cfg(not(any(target_os = "macos", windows)))]
+const OPENER: (&str, &[&str]) = ("xdg-open", &[]);
+
+/// Shows a page in a browser. Fails when there is no page, and when nothing can open it.
+fn show(page: &Path) -> Result<(), Failure> {
+    let shown = page.display();
+    if !page.is_file() {
+        return Err(Failure::input(format!(
+            "{shown}: there is no such page; run the command that made the folder again, it writes the page"
+        )));
+    }
+    let (program, options) = OPENER;
+    let opened = Command::new(program).args(options).arg(page).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    match opened {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(Failure::work(format!("{program} did not open {shown} ({status}); open it by hand"))),
+        Err(error) => Err(Failure::work(format!("failed to run {program}: {error}; open {shown} by hand"))),
     }
 }

@@ -67,7 +67,8 @@ fn parameter(estimate: &Estimate, place: usize) -> Quantity {
     Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
 }
 
-/// What is said on the screen and on the page, which render tables in their own way: K' and T' of every method, and which terms scale.
+/// What is said on the screen and on the page, which render tables in their own way: K' and T' of every method, and
+/// which terms scale.
 pub fn words(file: &FitFile, ship: Option<Particulars>, render: &dyn Fn(&Table) -> String) -> String {
     let mut text = String::new();
     let rows: Vec<(String, Quantity, Quantity)> = file

@@ -6,7 +6,7 @@ use campaign::store::Stored;
 use campaign::summary::Summary;
 use report::{Table, number};
 
-use super::drawings::Drawing;
+use super::drawings::{Drawing, HERO};
 use super::{coverage_table, tables, tracing_table};
 
 /// Cells whose lines go on the screen; more are in the files.
@@ -52,11 +52,14 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings:
     let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
     let figure = |drawing: &Drawing| format!("![{0}]({1}.png)\n\n*{0}*\n", drawing.caption, drawing.stem);
     line(&format!("# {}\n\n**{}**\n", manifest.name, design.words.question.trim()));
-    for prose in [&design.words.finding, &design.words.analysis] {
+    let mut say = |prose: &str| {
         if !prose.trim().is_empty() {
             line(&format!("{}\n", prose.trim()));
         }
-    }
+    };
+    say(&design.words.finding);
+    drawings.iter().filter(|drawing| drawing.stem == HERO).for_each(|drawing| say(&figure(drawing)));
+    say(&design.words.analysis);
     for (index, showcase) in showcases.iter().enumerate() {
         let title = if showcase.title.is_empty() { "The first trial" } else { &showcase.title };
         line(&format!("## {title}\n\n{}", tables::showcase(showcase).to_markdown()));
@@ -92,7 +95,7 @@ pub fn page(stored: &Stored, summary: &Summary, brief: Option<&Table>, drawings:
     line("## Over all trials\n");
     drawings
         .iter()
-        .filter(|drawing| drawing.showcase.is_none() && !drawing.of_traces)
+        .filter(|drawing| drawing.showcase.is_none() && !drawing.of_traces && drawing.stem != HERO)
         .for_each(|drawing| line(&figure(drawing)));
     if design.cells.len() > 1 {
         line("### All cells together\n");

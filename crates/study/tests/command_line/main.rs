@@ -6,6 +6,7 @@ mod desk;
 mod logs;
 mod monte_carlo;
 mod names;
+mod pages;
 mod predictions;
 mod records;
 mod scales;

@@ -1,0 +1,45 @@
+//! Pages for a browser: beside every report.md, in one file that needs no other, with all of its figures.
+
+use crate::desk::{Desk, zig_zag_csv};
+use crate::scenarios::GOOD;
+
+/// The page of a folder, which has every figure of the Markdown beside it.
+fn page(desk: &Desk, folder: &str) -> String {
+    let read = |name: &str| String::from_utf8(desk.bytes(&format!("{folder}/{name}"))).expect("UTF-8");
+    let (markdown, page) = (read("report.md"), read("report.html"));
+    assert!(page.len() < 2_000_000, "{folder}: {} bytes", page.len());
+    assert_eq!(page.matches("<figure>").count(), markdown.matches("![").count(), "{folder}");
+    for resource in ["src=\"http", "src=\"/", "@import", "url(", "<link", "<iframe", "xlink"] {
+        assert!(!page.contains(resource), "{folder}: {resource}");
+    }
+    page
+}
+
+#[test]
+fn every_report_has_a_page_for_a_browser() {
+    let desk = Desk::new();
+    desk.file("small.toml", GOOD);
+    desk.file("run.csv", zig_zag_csv());
+    desk.run(&["small.toml", "--out", "s", "--quiet"]).is_done();
+    desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
+    desk.run(&["trace", "run.csv", "--out", "t", "--quiet"]).is_done();
+    desk.run(&["predict", "t/trace.json", "--out", "p", "--quiet"]).is_done();
+    for folder in ["s", "f", "t", "p"] {
+        page(&desk, folder);
+    }
+    let fit = page(&desk, "f");
+    assert!(fit.contains("data-series=\"output-error, rms") && fit.contains("<th scope=\"row\">output-error</th>"));
+    let traced = page(&desk, "t");
+    assert!(traced.contains("data-series=\"before") && traced.contains("data-series=\"after"));
+    desk.run(&["fit", "run.csv", "--out", "f", "--quiet"]).is_done();
+    assert_eq!(page(&desk, "f"), fit, "the same bytes");
+}
+
+#[test]
+fn a_page_that_is_not_there_is_not_opened() {
+    let desk = Desk::new();
+    desk.file("old/fit.json", "{}");
+    desk.run(&["report", "old", "--open"]).is_refused(2, &["report.html", "no such page"]);
+    desk.file("other/x", "");
+    desk.run(&["report", "other", "--open"]).is_refused(2, &["other", "finished study"]);
+}
