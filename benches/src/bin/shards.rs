@@ -227,7 +227,7 @@ fn joined(arguments: &[String]) -> Outcome<()> {
 /// `study report OUT --quiet`.
 fn published(arguments: &[String]) -> Outcome<()> {
     let [out] = arguments else { return Err("this is not a command".into()) };
-    text_of(republish::run(Path::new(out), &STYLE, &quiet(out)))?;
+    text_of(republish::run(Path::new(out), false, &STYLE, &quiet(out)))?;
     process::tell();
     Ok(())
 }
