@@ -50,6 +50,9 @@ pub struct Confusion {
     pub rows: Vec<ConfusionRow>,
 }
 
+/// Smallest type that can be read, points.
+const SMALLEST: f64 = 6.5;
+
 /// Shade of a cell with 100 %.
 const FULL: Colour = Colour(0x00, 0x72, 0xB2);
 
@@ -111,8 +114,10 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (x, y): (usize, usize),
     let ink = if share > 0.55 { PAPER } else { INK };
     let middle = (0.5 * (left + right), 0.5 * (top + bottom));
     let number = |text: String, size: f64| Text::new(text, size).colour(ink).anchor(Anchor::Middle);
-    let value = number(crate::number::fixed(cell.share, 0), theme.small_font);
-    let interval = bracket(cell).map(|text| number(text, 0.8 * theme.small_font));
+    // A rare one is not none.
+    let value = if cell.share < 0.5 { "<1".to_owned() } else { crate::number::fixed(cell.share, 0) };
+    let value = number(value, theme.small_font);
+    let interval = bracket(cell).map(|text| number(text, (0.8 * theme.small_font).max(SMALLEST)));
     match interval.filter(|text| text.width() < 0.96 * (right - left)) {
         Some(interval) => {
             scene.text(Layer::Note, (middle.0, middle.1 - 0.1 * theme.small_font), value);

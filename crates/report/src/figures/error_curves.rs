@@ -226,7 +226,7 @@ fn entry(curve: &ErrorCurve, theme: &Theme) -> Entry {
 fn draw_mark(panel: &Panel, scene: &mut Scene, theme: &Theme, mark: &AxisMark) {
     panel.vertical(scene, Layer::Grid, mark.at, Stroke::solid(INK, theme.thin).dashed(SHORT_DASH));
     let text = Text::new(mark.label.as_str(), theme.small_font);
-    let Some(x) = panel.across(mark.at) else { return };
+    let Some(x) = panel.across(mark.at).filter(|x| panel.rect.contains((*x, panel.rect.y))) else { return };
     let gap = 0.4 * theme.small_font;
     let is_right = x + gap + text.width() < panel.rect.right();
     let (place, anchor) = if is_right { (x + gap, Anchor::Start) } else { (x - gap, Anchor::End) };
@@ -286,7 +286,8 @@ fn points(data: &ErrorCurves, wanted: impl Fn(&ErrorCell) -> bool) -> Vec<ErrorP
 }
 
 fn x_axis(data: &ErrorCurves, column: usize) -> Axis {
-    data.x_scale.covering(points(data, |cell| cell.column == column).iter().map(|p| p.x).collect())
+    let marks = data.marks.iter().map(|mark| mark.at);
+    data.x_scale.covering(points(data, |cell| cell.column == column).iter().map(|p| p.x).chain(marks).collect())
 }
 
 fn y_axis(data: &ErrorCurves, row: usize) -> Axis {

@@ -210,7 +210,7 @@ fn names_stand_at_the_lines_once_each() {
     let theme = Theme::screen();
     let figures = all(5, 0.3, &theme);
     let svg = figures.iter().find(|(name, _)| *name == "hero").expect("it is drawn").1.svg();
-    for name in ["output-error", "srivc", "IMO circular", "Output error is best"] {
+    for name in ["output-error", "least-squares", "IMO circular", "Output error is best"] {
         assert_eq!(svg.matches(&format!(">\n{name}\n")).count(), 1, "{name}");
     }
 }

@@ -227,6 +227,14 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
             drawings.push(Drawing::new(stem, caption, draw));
         }
     }
+    if let Some(data) = pooled_charts::predictions(design, summary) {
+        let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does. Left \
+                       of the line a method is too sure.";
+        let draw = move |theme: &Theme, hero: Option<&Hero>| {
+            figures::dots(&figures::DotPlot { title: title(hero), ..data.clone() }, theme)
+        };
+        drawings.push(Drawing::new("predictions", caption, draw));
+    }
     if let Some((data, method)) = pooled_charts::indices(design, summary) {
         let caption = format!(
             "Mean K and T that {method} finds, over those of the first row: where they change from row to row, K and T belong \

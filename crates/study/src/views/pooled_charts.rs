@@ -3,10 +3,10 @@
 
 use campaign::design::Design;
 use campaign::statistics::Statistic;
-use campaign::summary::{self, Record, Summary};
+use campaign::summary::{self, PredictionSummary, Record, Summary};
 use report::figures::{
-    Dot, DotColumn, DotPlot, Ecdf, EcdfCurve, EcdfPanel, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Scale,
-    Violin, ViolinPanel, Violins,
+    Dot, DotColumn, DotPlot, Ecdf, EcdfCurve, EcdfPanel, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Reference95,
+    Scale, Violin, ViolinPanel, Violins,
 };
 use report::{Origin, number};
 
@@ -242,4 +242,32 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(DotPlot, String)> 
         note: Some(format!("Rows: {}. Bars: 95 % intervals of the mean.", design.axes[last])),
     };
     Some((plot, design.methods[summary.reference].label.clone()))
+}
+
+/// How often 90 % intervals of predictions hold, cell by cell and method by method: the mean over the figures of the
+/// shares of trials, and as a bar the lowest and the highest of them; nothing without predictions.
+pub fn predictions(design: &Design, summary: &Summary) -> Option<DotPlot> {
+    let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
+    let dot = |cell: usize, method: usize| {
+        let lines = || summary.predictions.iter().filter(move |line| (line.cell, line.method) == (cell, method));
+        let shares: Vec<f64> = lines().map(of).collect();
+        let ends = [shares.iter().copied().reduce(f64::min)?, shares.iter().copied().reduce(f64::max)?];
+        let x = shares.iter().sum::<f64>() / shares.len() as f64;
+        Some(Dot { origin: origin(design, method), x, interval: Some(ends), hollow: false })
+    };
+    let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(cell, method)).collect();
+    (!summary.predictions.is_empty()).then(|| DotPlot {
+        title: None,
+        names: design.cells.iter().map(|cell| cell.labels.join(", ")).collect(),
+        columns: vec![DotColumn {
+            x_title: "trials in which a 90 % interval holds [%]".to_owned(),
+            scale: Scale::Linear,
+            reference: Some(Reference95 { value: 90.0, band: [90.0; 2] }),
+            limit: None,
+            rows: (0..design.cells.len()).map(row).collect(),
+        }],
+        rows_are_methods: false,
+        quiet: Vec::new(),
+        note: Some("Markers: mean over the figures. Bars: from the lowest to the highest of them.".to_owned()),
+    })
 }
