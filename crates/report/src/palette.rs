@@ -181,7 +181,7 @@ fn variant_look(method: &str, number: usize) -> Look {
 fn series_look(number: usize) -> Look {
     const SHADES: [Colour; 3] = [INK, Colour(0x5A, 0x5A, 0x5A), Colour(0x96, 0x96, 0x96)];
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
-    const DASHES: [Dash; 3] = [SOLID, SHORT_DASH, DOTTED];
+    const DASHES: [Dash; 4] = [SOLID, SHORT_DASH, DOTTED, DASH_DOT];
     Look {
         hollow: number % 2 == 1,
         ..Look::new(SHADES[number % SHADES.len()], MARKERS[number % MARKERS.len()], DASHES[number % DASHES.len()])

@@ -3,6 +3,7 @@
 use std::io::Write as _;
 
 use campaign::design::Design;
+use campaign::disk;
 use campaign::folder::ResultFolder;
 use campaign::store::Stored;
 use campaign::summary::Tally;
@@ -52,6 +53,13 @@ pub fn publish(
     folder.write("summary.tex", tables::for_paper(&summary, stored).to_latex())?;
     let drawings = drawings::of(stored, &summary, figures);
     write_all(&drawings, theme, folder)?;
+    // The figure of an earlier scenario must not stand for this one.
+    if drawings.iter().all(|drawing| drawing.stem != drawings::HERO) {
+        for kind in ["svg", "png"] {
+            let path = folder.path().join(format!("{}.{kind}", drawings::HERO));
+            disk::remove_if_there(&path).on("remove", &path)?;
+        }
+    }
     curve_tables::write_showcases(stored, &drawings, folder)?;
     // Whatever a scenario or a label holds: no HTML.
     write_page(folder, &markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;

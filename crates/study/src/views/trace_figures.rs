@@ -1,14 +1,14 @@
 //! Figures of an analysis: every record with the model before and after, the residuals from several sides, the moment
 //! that the base lacks, and the candidates with the threshold.
 
-use ::trace::analysis::{Judged, OnRecord, Outcome};
+use ::trace::analysis::{Analysis, Judged, OnRecord, Outcome, Step, StepOnRecord};
 use ::trace::diagnostics::{Line, Series, autocorrelation, spectrum};
 use ::trace::replay_errors::replayed_zigzag;
 use identify::replay::Replay;
 use rayon::prelude::*;
 use report::figures::{
     self, Evidence, EvidenceBar, EvidenceStep, Fate, Fit, FitBand, OvershootReplays, RecordFit, ReplayedOvershoot,
-    ResidualPanel, ResidualPanels,
+    Replays, ResidualPanel, ResidualPanels,
 };
 use report::{Curve, Figure, Origin, Theme};
 use ship::angle::to_deg;
@@ -76,6 +76,13 @@ pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Resul
             figures::phase_plane(&index_figures::phase_plane(of_record.clone(), trial, fits), theme)
         };
         drawings.push((format!("phase{suffix}"), caption, Box::new(draw)));
+        if let Some(steps) = steps(analysis, number, trial, name) {
+            let caption = format!(
+                "{name}: the recorded rudder replayed with the base and after every effect that was added; in `report.html` each \
+                 can be switched off and on."
+            );
+            drawings.push((format!("steps{suffix}"), caption, Box::new(move || figures::replays(&steps, theme))));
+        }
         let Some(residual) = residual else { continue };
         let caption = format!(
             "{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation."
@@ -192,6 +199,24 @@ fn record(trial: &Trial, judged: &Judged, title: String) -> RecordFit {
         rudder: curve(trial.time(), trial.rudder()),
         fits: vec![fit(Origin::Before, before), Fit { band, ..fit(Origin::After, after) }],
     }
+}
+
+/// A fitted record with the replays of all steps; `None` for a held-out record, and where nothing was added.
+fn steps(analysis: &Analysis, place: usize, trial: &Trial, name: &str) -> Option<Replays> {
+    let replay = |(number, step): (usize, &Step)| {
+        let StepOnRecord { time, heading, residual } = step.records.get(place)?;
+        let label = step.added.map_or_else(|| String::from("base"), |(id, ..)| format!("+ {id}"));
+        let square: f64 = residual.iter().map(|left| left * left).sum();
+        Some(figures::Replay {
+            origin: Origin::Series { label, number },
+            heading: curve(time, heading),
+            residual: curve(time, residual),
+            rms_deg: Some(to_deg((square / residual.len() as f64).sqrt())),
+        })
+    };
+    let replays: Vec<figures::Replay> = analysis.steps.iter().enumerate().filter_map(replay).collect();
+    let record = curve(trial.time(), trial.heading());
+    (replays.len() > 1).then(|| Replays { title: Some(name.to_owned()), record, truth: None, replays })
 }
 
 /// The residual before and after from all sides.

@@ -315,14 +315,12 @@ fn studies_are_gathered_on_one_page() {
     }
     assert!(desk.run(&["overview", "results"]).is_done().out.contains("2 studies"));
     let page = String::from_utf8(desk.bytes("results/README.md")).expect("UTF-8");
-    for part in
-        ["## [one](one/report.md)", "Precise to 0.1 %.", "](one/errors.png)", "So is this.", "](two/coverage.png)"]
-    {
+    for part in ["## [one](one/report.md)", "Precise to 0.1 %.", "](one/hero.png)", "So is this.", "](two/hero.png)"] {
         assert!(page.contains(part), "{part} is missing in\n{page}");
     }
     desk.file("two.toml", told("So is this.", "nothing"));
     desk.run(&["two.toml", "--quiet"]).is_done();
-    desk.run(&["overview", "results"]).is_refused(2, &["results/two", "no nothing.png", "coverage, ecdf, errors"]);
+    desk.run(&["overview", "results"]).is_refused(2, &["results/two", "no nothing.png", "coverage, errors"]);
     desk.run(&["overview", "results/one"]).is_refused(2, &["results/one", "run a scenario first"]);
     desk.run(&["overview", "nowhere"]).is_refused(2, &["nowhere", "folders of studies"]);
 }

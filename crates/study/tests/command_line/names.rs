@@ -22,8 +22,7 @@ fn a_study_is_called_by_a_name_and_not_by_a_path() {
         desk.run(&["a/b/manifest.toml"]).is_refused(2, &parts);
     }
     desk.file("figure.toml", yukun().replace("figure = \"", "figure = \"../"));
-    desk.run(&["check", "figure.toml"])
-        .is_refused(2, &["`output.figure` is \"../10-20-mid-trial-intervals\"", "no `/`"]);
+    desk.run(&["check", "figure.toml"]).is_refused(2, &["`output.figure` is \"../violins-10-20-mid-trial\"", "no `/`"]);
     desk.file("...csv", zig_zag_csv());
     desk.run(&["fit", "...csv"]).is_refused(2, &["its results cannot be called \"..\""]);
     desk.run(&["trace", "...csv"]).is_refused(2, &["its results cannot be called \"..\""]);

@@ -97,10 +97,13 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     for part in ["Error before and after", "Overshoots", "What was added", "Candidates", "Next trial", "Figures"] {
         assert!(report.contains(&format!("## {part}")), "{part}");
     }
-    for figure in ["record", "residual", "candidates", "record-other"] {
+    for figure in ["record", "residual", "candidates", "record-other", "steps"] {
         assert!(desk.path(&format!("run-trace/{figure}.png")).exists(), "{figure}");
         assert!(report.contains(&format!("({figure}.png)")), "{figure}");
     }
+    let drawn = String::from_utf8(desk.bytes("run-trace/steps.svg")).expect("UTF-8");
+    assert!(drawn.contains("base") && drawn.contains("+ second_order"), "a replay for every step");
+    assert!(!desk.path("run-trace/steps-other.png").exists(), "the steps are those of fitted records");
     let steps = desk.json("run-trace/trace.json")["steps"].as_array().cloned().unwrap_or_default();
     let errors: Vec<_> = steps.iter().filter_map(|step| step["heading_rmse_deg"].as_f64()).collect();
     assert!(

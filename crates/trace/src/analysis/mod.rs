@@ -51,7 +51,7 @@ pub use result::{
     Analysis, Considered, Empirical, Fitted, Judged, OnRecord, Outcome, Randomness, RunnerUp, Traced, Verdict,
 };
 pub use settings::{Settings, TraceError};
-pub use steps::Step;
+pub use steps::{Step, StepOnRecord};
 use told::Told;
 
 /// Times, s, of the readings of every record's compass that belong to no ship. A record that cannot be looked at has
@@ -234,7 +234,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         parameters,
         verdict,
         effects,
-        steps: steps::steps(&way, &held_out),
+        steps: steps::steps(&way, &problem.records, &held_out),
         candidates,
         weights,
         unexplained,

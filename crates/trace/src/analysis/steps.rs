@@ -3,6 +3,7 @@
 
 use crate::fit::Fit;
 use crate::held_out::{self, HeldOut};
+use crate::record::Record;
 use crate::replay_errors::Errors;
 use crate::search::{Model, Search};
 use crate::structure::TermName;
@@ -18,6 +19,27 @@ pub struct Step {
     pub held_out: Option<f64>,
     /// Fall of BIC in this step under white noise, and waves; `None` for the base.
     pub gain: Option<f64>,
+    /// Every fitted record with the model of this step.
+    pub records: Vec<StepOnRecord>,
+}
+
+/// A fitted record with the model of a step, at its averaged rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepOnRecord {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Replayed heading, rad.
+    pub heading: Vec<f64>,
+    /// Measured less replayed heading, rad.
+    pub residual: Vec<f64>,
+}
+
+impl StepOnRecord {
+    fn new(record: &Record, residual: &[f64]) -> Self {
+        let of = |values: &[f64]| -> Vec<f64> { record.observed.iter().map(|&row| values[row]).collect() };
+        let heading = of(&record.heading).iter().zip(residual).map(|(measured, left)| measured - left).collect();
+        Self { time: of(&record.time), heading, residual: residual.to_vec() }
+    }
 }
 
 /// Sum of the squares of what a fit leaves.
@@ -41,7 +63,7 @@ pub(super) fn way(search: &Search, base: &Model, model: &Model) -> Vec<Model> {
 }
 
 /// What the models on the way leave.
-pub(super) fn steps(way: &[Model], held_out: &[HeldOut]) -> Vec<Step> {
+pub(super) fn steps(way: &[Model], records: &[Record], held_out: &[HeldOut]) -> Vec<Step> {
     let step = |number: usize, model: &Model| {
         let before = number.checked_sub(1).map(|before| &way[before]);
         let count = model.plain.residual.iter().map(Vec::len).sum::<usize>();
@@ -50,6 +72,11 @@ pub(super) fn steps(way: &[Model], held_out: &[HeldOut]) -> Vec<Step> {
             fitted: (square(&model.plain) / count as f64).sqrt(),
             held_out: held_out::errors(held_out, &model.structure, &model.plain).and_then(|errors| together(&errors)),
             gain: before.map(|before| before.plain.bic - model.plain.bic),
+            records: records
+                .iter()
+                .zip(&model.plain.residual)
+                .map(|(own, left)| StepOnRecord::new(own, left))
+                .collect(),
         }
     };
     way.iter().enumerate().map(|(number, model)| step(number, model)).collect()
