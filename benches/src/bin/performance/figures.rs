@@ -26,7 +26,9 @@ pub fn write(folder: &Path, measured: &[Measurements], samples: &[Growth], trial
     }
     // The rival is in the table; its line runs among ours.
     let own = samples.iter().filter(|growth| growth.name != works::RIVAL);
-    let with_samples = curves("samples of the record", own);
+    let remark = "A line ends where a method has no answer. It may fall where the answer is worth nothing: the report names \
+                  those that are off by more than half.";
+    let with_samples = ErrorCurves { note: Some(remark.to_owned()), ..curves("samples of the record", own) };
     error_curves(&with_samples, &theme).write(folder, "growth-samples")?;
     error_curves(&curves("trials of the study", trials.growth.iter()), &theme).write(folder, "growth-trials")?;
     Ok(())

@@ -1,6 +1,7 @@
 //! The figures of a finished study: which there are, what they say, and their files.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 use report::figures;
@@ -30,7 +31,7 @@ pub struct Drawing<'a> {
     pub showcase: Option<usize>,
     /// Whether it is about what traces named.
     pub of_traces: bool,
-    draw: Box<Draw<'a>>,
+    draw: Arc<Draw<'a>>,
 }
 
 /// Draws a figure, plainly or as the one that stands for its study.
@@ -59,7 +60,7 @@ impl<'a> Drawing<'a> {
         caption: impl Into<String>,
         draw: impl Fn(&Theme, Option<&Hero>) -> Figure + Sync + Send + 'a,
     ) -> Self {
-        Self { stem: stem.into(), caption: caption.into(), showcase: None, of_traces: false, draw: Box::new(draw) }
+        Self { stem: stem.into(), caption: caption.into(), showcase: None, of_traces: false, draw: Arc::new(draw) }
     }
 }
 
@@ -67,7 +68,7 @@ impl<'a> Drawing<'a> {
 /// A name of a figure that there is not is warned of.
 pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) -> Vec<Drawing<'a>> {
     let words = &stored.design.words;
-    let mut drawings = all(stored, summary);
+    let drawings = all(stored, summary);
     let warn = |key: &str, name: &str| {
         let known: Vec<&str> = drawings.iter().map(|drawing| drawing.stem.as_str()).collect();
         screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; there are: {}", known.join(", ")));
@@ -94,18 +95,11 @@ pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) ->
         let labels = &words.methods;
         let about = |label: &String| campaign::curves::origin(&stored.design.methods, label);
         let look = Hero { title: words.title.clone(), about: labels.iter().map(about).collect() };
-        // Drawn for itself as well, the figure is needed twice.
-        let twin = all(stored, summary).swap_remove(place);
-        let draw = twin.draw;
-        chosen.push(Drawing {
-            stem: HERO.to_owned(),
-            showcase: None,
-            of_traces: false,
-            draw: Box::new(move |theme, _| draw(theme, Some(&look))),
-            ..twin
-        });
+        let draw = Arc::clone(&drawings[place].draw);
+        let caption = drawings[place].caption.clone();
+        chosen.push(Drawing::new(HERO, caption, move |theme, _| draw(theme, Some(&look))));
     }
-    chosen.extend(drawings.drain(..).zip(kept).filter(|(_, kept)| *kept).map(|(drawing, _)| drawing));
+    chosen.extend(drawings.into_iter().zip(kept).filter(|(_, kept)| *kept).map(|(drawing, _)| drawing));
     chosen
 }
 
@@ -302,7 +296,7 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
 
 fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
-    let mut add = |name: &str, caption: &str, draw: Box<Draw<'a>>| {
+    let mut add = |name: &str, caption: &str, draw: Arc<Draw<'a>>| {
         drawings.push(Drawing {
             stem: if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") },
             caption: caption.to_owned(),
@@ -315,14 +309,14 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
         add(
             "trial",
             "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
-            Box::new(|theme, _| figures::zigzag_trial(data, theme)),
+            Arc::new(|theme, _| figures::zigzag_trial(data, theme)),
         );
     }
     if let Some(data) = &showcase.fourier_fit {
         add(
             "fourier-fit",
             "The Fourier series fitted to the heading, and what it leaves.",
-            Box::new(|theme, _| figures::curve_fit(data, theme)),
+            Arc::new(|theme, _| figures::curve_fit(data, theme)),
         );
     }
     if let Some(data) = &showcase.derivatives {
@@ -330,18 +324,18 @@ fn of_showcase<'a>(index: usize, prefix: &str, showcase: &'a Showcase) -> Vec<Dr
             "derivatives",
             "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a \
              good acceleration.",
-            Box::new(|theme, _| figures::derivatives(data, theme)),
+            Arc::new(|theme, _| figures::derivatives(data, theme)),
         );
     }
     add(
         "replays",
         "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
-        Box::new(|theme, _| figures::replays(&showcase.replays, theme)),
+        Arc::new(|theme, _| figures::replays(&showcase.replays, theme)),
     );
     add(
         "intervals",
         "K and T of every method with 95 % intervals, beside the truth and the published values.",
-        Box::new(|theme, _| figures::intervals(&showcase.intervals, theme)),
+        Arc::new(|theme, _| figures::intervals(&showcase.intervals, theme)),
     );
     drawings
 }
