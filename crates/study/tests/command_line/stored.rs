@@ -259,3 +259,33 @@ fn figures_are_chosen() {
     desk.run(&["report", "named", "--figures", "all", "--out", "all", "--quiet"]).is_done();
     assert_eq!(figures("all"), ["coverage.png", "errors.png", "hero.png"]);
 }
+
+/// A ship that is not first order has no K and T: what is found is held against the nearest response and called so,
+/// intervals hold no truth, and K and T from trial to trial show why.
+#[test]
+fn figures_of_ships_that_are_not_first_order_say_so() {
+    let sweeps = r#"
+[[sweep]]
+name = "ship"
+points = [
+  { label = "first order", set = {} },
+  { label = "cubic", set = { effect = [{ nonlinear_damping = { n3-s2-per-deg2 = 0.4 } }] } },
+]
+[[sweep]]
+name = "angles"
+points = [
+  { label = "5/5", set = { "manoeuvre.zig-zag.rudder-deg" = 5.0, "manoeuvre.zig-zag.heading-deg" = 5.0 } },
+  { label = "10/10", set = {} },
+]
+"#;
+    let desk = Desk::new();
+    let (head, _) = STUDY.split_once("[[sweep]]").expect("a sweep");
+    let noisy = head.replace("recording =", "sensor = { heading-noise-deg = 0.1 }\nrecording =");
+    desk.file("study.toml", format!("{noisy}{sweeps}"));
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
+    let drawn = |stem: &str| String::from_utf8(desk.bytes(&format!("out/{stem}.svg"))).expect("UTF-8");
+    assert!(drawn("errors-cubic").contains("that of the nearest first-order"));
+    assert!(drawn("errors-first-order").contains("over the Cramér–Rao bound"));
+    assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
+    assert!(drawn("indices").contains("over that of a 5/5") && !desk.path("out/ranking.png").exists());
+}
