@@ -289,3 +289,18 @@ points = [
     assert!(desk.path("out/coverage-first-order.png").exists() && !desk.path("out/coverage-cubic.png").exists());
     assert!(drawn("indices").contains("over that of a 5/5") && !desk.path("out/ranking.png").exists());
 }
+
+/// Where manoeuvres are predicted, how often the intervals hold is a table and a figure.
+#[test]
+fn coverage_of_predictions_is_drawn() {
+    let desk = Desk::new();
+    let predict = "[predict]\nmanoeuvres = [\"zig-zag:20/20\"]\ndraws = 50\n";
+    let study =
+        STUDY.replace("method.least-squares", "method.output-error").replace("replicates = 4", "replicates = 2");
+    desk.file("study.toml", format!("{study}{predict}"));
+    desk.run(&["study.toml", "--out", "out", "--quiet"]).is_done();
+    let drawn = String::from_utf8(desk.bytes("out/predictions.svg")).expect("UTF-8");
+    assert!(drawn.contains("90 % interval holds") && drawn.contains("output-error"), "{drawn}");
+    let table = String::from_utf8(desk.bytes("out/predictions.csv")).expect("UTF-8");
+    assert!(table.lines().count() > 4, "{table}");
+}
