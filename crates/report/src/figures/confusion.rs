@@ -66,9 +66,18 @@ pub fn confusion(data: &Confusion, theme: &Theme) -> Figure {
     entries.extend(is_known.then(|| Entry::new(box_of(SOLID), "what is missing")));
     entries.extend(aliases.then(|| Entry::new(box_of(DOTTED), "cannot be told from it")));
     sheet.legend(&entries);
-    let lines = if data.rows.iter().flat_map(|row| &row.cells).any(|cell| bracket(cell).is_some()) { 2.0 } else { 1.0 };
+    // In a narrow figure there is no room for intervals.
+    let lines = if !theme.is_narrow() && data.rows.iter().flat_map(|row| &row.cells).any(|cell| bracket(cell).is_some())
+    {
+        2.0
+    } else {
+        1.0
+    };
     let height = (data.rows.len().max(1) as f64 + 0.2) * (lines * 1.15 + 0.5) * theme.small_font;
-    let name = |row: &ConfusionRow| format!("{} (n = {})", row.name, row.trials);
+    let name = |row: &ConfusionRow| match theme.is_narrow() {
+        true => format!("{}, {}", row.name, row.trials),
+        false => format!("{} (n = {})", row.name, row.trials),
+    };
     let rows = (Side::new(Axis::names(data.rows.iter().map(name).collect()), ""), height);
     let columns = Side::new(Axis::columns(data.columns.clone()), "named by the trace");
     let panels = sheet.grid(Grid::new(vec![columns], vec![rows]));
@@ -79,7 +88,10 @@ pub fn confusion(data: &Confusion, theme: &Theme) -> Figure {
             }
         }
     }
-    sheet.note("Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named.");
+    sheet.note(match theme.is_narrow() {
+        true => "Shares of the trials in per cent; empty: never named. Behind the names: trials.",
+        false => "Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named.",
+    });
     sheet.finish()
 }
 
