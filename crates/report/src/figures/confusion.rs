@@ -89,7 +89,7 @@ pub fn confusion(data: &Confusion, theme: &Theme) -> Figure {
         }
     }
     sheet.note(match theme.is_narrow() {
-        true => "Shares of the trials in per cent; empty: never named. Behind the names: trials.",
+        true => "Shares of the trials in per cent; white: never named, full without a number: 100. Behind the names: trials.",
         false => "Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named.",
     });
     sheet.finish()
@@ -129,6 +129,10 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (x, y): (usize, usize),
     // A rare one is not none.
     let value = if cell.share < 0.5 { "<1".to_owned() } else { crate::number::fixed(cell.share, 0) };
     let value = number(value, theme.small_font);
+    // Three digits in a narrow cell would be cut by its outline.
+    if theme.is_narrow() && cell.share >= 99.5 && value.width() > right - left - 2.8 * theme.line {
+        return;
+    }
     let interval = bracket(cell).map(|text| number(text, (0.8 * theme.small_font).max(SMALLEST)));
     match interval.filter(|text| text.width() < 0.96 * (right - left)) {
         Some(interval) => {
