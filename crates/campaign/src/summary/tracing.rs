@@ -102,7 +102,8 @@ impl TraceSummary {
         share(self.clear[1], self.clear[0])
     }
 
-    fn is_hull(&self) -> bool {
+    /// Whether the ship is a hull: nobody knows what it lacks.
+    pub fn is_hull(&self) -> bool {
         self.missing.iter().any(|id| id == HULL)
     }
 }

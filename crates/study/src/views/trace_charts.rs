@@ -45,11 +45,9 @@ pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Confu
 fn confusion(design: &Design, lines: &[&TraceSummary]) -> Confusion {
     let mut rows: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
     for &line in lines {
-        let is_hull = line.missing.iter().any(|id| id == HULL);
         let name = match &line.missing[..] {
             [] => NOTHING.to_owned(),
-            // Nobody knows what a hull lacks.
-            _ if is_hull => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
+            _ if line.is_hull() => design.cells[line.cell].labels.first().cloned().unwrap_or_default(),
             missing => missing.join(" + ").replace('_', " "),
         };
         match rows.iter_mut().find(|(row, _)| *row == name) {
