@@ -1,0 +1,58 @@
+"""Kempf: zig-zag trials of ships, simulated, identified, traced and predicted.
+
+T r' + r = K (δ + δ_r): yaw rate r, rudder δ, rudder bias δ_r. The numbers are those of the program ``study``.
+
+=====================  ==============================================================================
+``kempf.read``         a record from a file; ``kempf.Record`` one from arrays or a table
+``kempf.simulate``     trials of a scenario, with what is true of them
+``kempf.fit``          K, T and δ_r by every method, with intervals
+``kempf.trace``        the effect that a first-order ship lacks, and what it is worth
+``kempf.predict``      what an identified ship will do in other manoeuvres
+``kempf.run``          a whole study: many trials, every method, tables and figures in a folder
+=====================  ==============================================================================
+
+Angles are in degrees and lengths in metres; every name ends in its unit.
+"""
+
+from ._fit import FitResult, Method, RecordEntry, ZigZag, fit
+from ._kempf import KempfError, KempfWarning, WorkError, __version__
+from ._predict import Criterion, Figure, Manoeuvre, PredictResult, Replay, predict
+from ._quantity import Quantity
+from ._record import Record, read
+from ._simulate import Indices, Motion, Simulated, Truth, simulate
+from ._study import StudyResult, run
+from ._trace import Candidate, Effect, Errors, Parameter, TraceResult, trace
+
+__all__ = [
+    "Candidate",
+    "Criterion",
+    "Effect",
+    "Errors",
+    "Figure",
+    "FitResult",
+    "Indices",
+    "KempfError",
+    "KempfWarning",
+    "Manoeuvre",
+    "Method",
+    "Motion",
+    "Parameter",
+    "PredictResult",
+    "Quantity",
+    "Record",
+    "RecordEntry",
+    "Replay",
+    "Simulated",
+    "StudyResult",
+    "TraceResult",
+    "Truth",
+    "WorkError",
+    "ZigZag",
+    "__version__",
+    "fit",
+    "predict",
+    "read",
+    "run",
+    "simulate",
+    "trace",
+]

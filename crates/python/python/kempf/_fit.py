@@ -1,0 +1,247 @@
+"""Identification: K, T and δ_r of records by every method."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
+
+from . import _kempf, _table
+from ._kempf import KempfError
+from ._options import strings, warn, whole
+from ._quantity import Quantity, number
+from ._record import Record, natives
+from ._result import Result
+
+
+@dataclass(frozen=True)
+class Method:
+    """The answer of one method."""
+
+    #: Identifier, such as ``"output-error"``.
+    method: str
+    #: Whether it gave an answer.
+    ok: bool
+    #: Why it gave none.
+    reason: Optional[str]
+    #: Gain K, 1/s.
+    K_per_s: Optional[Quantity]
+    #: Time constant T, s; negative for a ship that is unstable on her course.
+    T_s: Optional[Quantity]
+    #: Rudder bias δ_r, deg.
+    delta_r_deg: Optional[Quantity]
+    #: K' = K L/V, where length and speed of the ship are known.
+    K_prime: Optional[Quantity]
+    #: T' = T V/L, where length and speed of the ship are known.
+    T_prime: Optional[Quantity]
+    #: Whether T is negative.
+    course_unstable: Optional[bool]
+    #: Root mean square of measured less replayed heading on the fitted records, deg.
+    heading_rmse_deg: Optional[float]
+    #: The same on every record of the validation; only its initial state is fitted.
+    validation_rmse_deg: tuple[Optional[float], ...]
+    #: What the method says of itself.
+    diagnostics: Mapping[str, float]
+
+    @classmethod
+    def _of(cls, entry: Mapping[str, Any]) -> Method:
+        parameters, prime = entry.get("parameters") or {}, entry.get("prime") or {}
+
+        def one(entries: Mapping[str, Any], name: str) -> Optional[Quantity]:
+            return Quantity.of(entries[name]) if name in entries else None
+
+        return cls(
+            method=entry["method"],
+            ok=entry["status"] == "ok",
+            reason=entry["reason"],
+            K_per_s=one(parameters, "K_per_s"),
+            T_s=one(parameters, "T_s"),
+            delta_r_deg=one(parameters, "delta_r_deg"),
+            K_prime=one(prime, "K"),
+            T_prime=one(prime, "T"),
+            course_unstable=entry["course_unstable"],
+            heading_rmse_deg=entry["heading_rmse_deg"],
+            validation_rmse_deg=tuple(on["heading_rmse_deg"] for on in entry["validation"]),
+            diagnostics=entry["diagnostics"],
+        )
+
+
+@dataclass(frozen=True)
+class ZigZag:
+    """Characteristics of a zig-zag."""
+
+    #: Time from the first execute until the heading has changed by the angle of the manoeuvre, s.
+    initial_turning_time_s: Optional[float]
+    #: Overshoot angles in their order, deg; ``None`` for a peak that was not seen.
+    overshoots_deg: tuple[Optional[float], ...]
+    #: Their standard deviations, deg.
+    overshoots_sd_deg: tuple[Optional[float], ...]
+    #: Period, s.
+    period_s: Optional[float]
+    #: Criteria of IMO MSC.137(76), where length and speed are known: each as in the document.
+    imo: tuple[Mapping[str, Any], ...]
+
+
+@dataclass(frozen=True)
+class RecordEntry:
+    """A record that was fitted."""
+
+    file: str
+    sha256: str
+    #: Rows with a rudder.
+    samples: int
+    duration_s: float
+    #: ``None`` where it is no zig-zag.
+    zigzag: Optional[ZigZag]
+
+    @classmethod
+    def _of(cls, entry: Mapping[str, Any]) -> RecordEntry:
+        found = entry["zigzag"]
+        zigzag = None
+        if found is not None:
+            zigzag = ZigZag(
+                initial_turning_time_s=found["initial_turning_time_s"],
+                overshoots_deg=tuple(found["overshoots_deg"]),
+                overshoots_sd_deg=tuple(found["overshoots_sd_deg"]),
+                period_s=found["period_s"],
+                imo=tuple(found["imo"]),
+            )
+        return cls(entry["file"], entry["sha256"], entry["samples"], entry["duration_s"], zigzag)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class FitResult(Result):
+    """Answers of the methods to the same records; ``result["output-error"]`` is one of them."""
+
+    #: Answers in the order of the methods.
+    methods: tuple[Method, ...]
+    #: Records that were fitted.
+    records: tuple[RecordEntry, ...]
+    _text: str = field(repr=False)
+    _native: _kempf.Fit = field(repr=False)
+
+    def __getitem__(self, method: str) -> Method:
+        for one in self.methods:
+            if one.method == method:
+                return one
+        raise KeyError(f"{method}: there are {', '.join(one.method for one in self.methods)}")
+
+    def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
+        def row(one: Method) -> list[str]:
+            if not one.ok:
+                return [one.method, f"failed: {one.reason}", "", "", ""]
+            return [one.method, str(one.K_per_s), str(one.T_s), str(one.delta_r_deg), number(one.heading_rmse_deg)]
+
+        header = ["method", "K [1/s]", "T [s]", "δ_r [deg]", "rms ψ [deg]"]
+        notes = []
+        for record in self.records:
+            if record.zigzag is not None:
+                angles = ", ".join(number(one, 0.1) for one in record.zigzag.overshoots_deg)
+                notes.append(
+                    f"{Path(record.file).name}: overshoots {angles} deg, period {number(record.zigzag.period_s, 1.0)} s"
+                )
+        return (
+            f"Fit of {_names(self.records)}, values and 95 % intervals",
+            header,
+            [row(one) for one in self.methods],
+            notes,
+        )
+
+    def to_frame(self, kind: str = "pandas") -> Any:
+        """One row a method, as a table of ``"pandas"`` or ``"polars"``."""
+
+        def row(one: Method) -> dict[str, Any]:
+            cells: dict[str, Any] = {"method": one.method, "ok": one.ok, "reason": one.reason}
+            for name in ("K_per_s", "T_s", "delta_r_deg"):
+                quantity = getattr(one, name) or Quantity(None, None, None)
+                low, high = quantity.ci95 or (None, None)
+                cells.update({name: quantity.value, f"{name}_sd": quantity.sd})
+                cells.update({f"{name}_low95": low, f"{name}_high95": high})
+            return {**cells, "course_unstable": one.course_unstable, "heading_rmse_deg": one.heading_rmse_deg}
+
+        return _table.frame_of([row(one) for one in self.methods], kind)
+
+    def replay(self, method: str, record: int = 0) -> Optional[dict[str, Any]]:
+        """The recorded rudder sent through the answer of a method: ``t_s``, ``heading_deg``, ``residual_deg``.
+
+        The residual is measured less replayed heading. Records of the validation follow those that were fitted.
+        ``None`` where the method has no answer.
+        """
+        curve = self._native.replay(record, self[method].method)
+        return None if curve is None else dict(zip(("t_s", "heading_deg", "residual_deg"), curve))
+
+    def plot(self, kind: str = "record", *, methods: Union[str, Iterable[str], None] = None, record: int = 0) -> Any:
+        """A figure of Matplotlib.
+
+        ``"record"``: rudder, measured and replayed heading and what is left between them, by output error unless
+        ``methods`` names others. ``"estimates"``: K, T and δ_r of every method with their 95 % intervals.
+        """
+        from . import _plot
+
+        if kind == "estimates":
+            return _plot.estimates([one for one in self.methods if one.ok])
+        if kind != "record":
+            raise KempfError(f'kind = {kind!r}: expected "record" or "estimates"')
+        answered = [one.method for one in self.methods if one.ok]
+        named = strings(methods) or [name for name in ("output-error", *answered) if name in answered][:1]
+        native = self._native.record(record)
+        if native is None:
+            raise KempfError(f"record = {record}: expected a number below that of all records, from 0")
+        replays = {name: replay for name in named if (replay := self.replay(name, record)) is not None}
+        return _plot.replays(Record._of(native), replays)
+
+
+def _names(records: Sequence[RecordEntry]) -> str:
+    first = Path(records[0].file).name
+    return first if len(records) == 1 else f"{first} and {len(records) - 1} more"
+
+
+def fit(
+    records: Any,
+    *,
+    validate: Any = (),
+    methods: Union[str, Iterable[str], None] = None,
+    seed: Optional[int] = None,
+) -> FitResult:
+    """Identifies K (1/s), T (s) and δ_r (deg) of T r' + r = K (δ + δ_r), as ``study fit`` does.
+
+    :param records: one record or several of the same ship, which are identified together: of :func:`kempf.read`, of
+        :func:`kempf.simulate`, tables with columns such as ``heading_deg``, or paths of files
+    :param validate: records on which the answers are replayed; only their initial state is fitted
+    :param methods: identifiers of the methods; all where it is left out
+    :param seed: seed of the methods that draw at random
+
+    Raises :class:`kempf.KempfError` where a record cannot be read, and where no method can identify the records; a
+    method that fails alone says why in its ``reason``. Ctrl-C returns at once, and the computation it leaves behind
+    ends by itself.
+
+    >>> import kempf
+    >>> trial = kempf.simulate(
+    ...     '''
+    ...     question = "What are K and T?"
+    ...     seed = 1
+    ...     ship.first-order = { K-per-s = 0.1, T-s = 16.3 }
+    ...     manoeuvre.zig-zag = { rudder-deg = 10.0, heading-deg = 10.0 }
+    ...     steering-gear.rate-deg-s = 2.5
+    ...     recording = { sampling-s = 1.0, duration-s = 200.0 }
+    ...     sensor.heading-noise-deg = 0.1
+    ...     identifier = [{ method.output-error = {} }]
+    ...     '''
+    ... )
+    >>> print(kempf.fit(trial, methods="output-error")["output-error"].K_per_s)
+    0.10010 [0.09991, 0.10028]
+    """
+    native = _kempf.fit(natives(records), natives(validate), strings(methods), whole("seed", seed))
+    warn(native.warnings)
+    return _result(native)
+
+
+def _result(native: _kempf.Fit) -> FitResult:
+    document = json.loads(native.text)
+    return FitResult(
+        methods=tuple(Method._of(entry) for entry in document["methods"]),
+        records=tuple(RecordEntry._of(entry) for entry in document["trials"]),
+        _text=native.text,
+        _native=native,
+    )

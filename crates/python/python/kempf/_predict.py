@@ -1,0 +1,236 @@
+"""Prediction: what an identified ship will do in manoeuvres that were not made."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
+
+from . import _kempf, _table
+from ._fit import FitResult
+from ._kempf import KempfError
+from ._options import strings, warn, words
+from ._quantity import number
+from ._record import natives
+from ._result import Result
+from ._trace import TraceResult
+
+#: Endings of the names of figures, with their units.
+UNITS = {"_deg_s": "deg/s", "_deg": "deg", "_m_s": "m/s", "_lengths": "L", "_s": "s", "_m": "m", "_kn": "kn"}
+
+
+def spoken(name: str) -> tuple[str, str]:
+    """The name of a figure in words, and its unit."""
+    for ending, unit in UNITS.items():
+        if name.endswith(ending):
+            return name[: -len(ending)].replace("_", " "), unit
+    return name.replace("_", " "), ""
+
+
+#: Words that say which of several is meant.
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+
+
+def _place(name: str) -> tuple[str, int]:
+    """Where a figure stands in a table: overshoots together, in their order."""
+    first, _, rest = name.partition("_")
+    return (rest, ORDINALS.index(first)) if first in ORDINALS else (name, 0)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of merit of a manoeuvre, such as ``first_overshoot_deg``, in the unit of its name."""
+
+    median: float
+    #: Interval that holds half of the drawn ships.
+    ci50: tuple[float, float]
+    #: Interval that holds nine in ten of them.
+    ci90: tuple[float, float]
+    #: Whether the manoeuvre leaves the range in which the ship was seen.
+    extrapolated: Optional[bool] = None
+    #: What was measured, for a record that is replayed.
+    measured: Optional[float] = None
+    #: Share of every source of doubt in the spread.
+    shares: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def _of(cls, entry: Mapping[str, Any]) -> Figure:
+        return cls(
+            median=entry["median"],
+            ci50=tuple(entry["ci50"]),
+            ci90=tuple(entry["ci90"]),
+            extrapolated=entry.get("extrapolated"),
+            measured=entry.get("measured"),
+            shares=entry.get("shares", {}),
+        )
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """A manoeuvre that was predicted."""
+
+    kind: str
+    figures: Mapping[str, Figure]
+    #: Drawn ships that did not come to its end.
+    lost: int
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A record held against its prediction; nothing is fitted to it but how the ship began."""
+
+    file: str
+    #: Share of the measured headings inside the 90 % band.
+    band_coverage_90: float
+    heading_rmse_deg: float
+    figures: Mapping[str, Figure]
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """A criterion of IMO MSC.137(76)."""
+
+    criterion: str
+    manoeuvre: str
+    limit: float
+    unit: str
+    median: float
+    probability_of_passing: float
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PredictResult(Result):
+    """What a ship will do, with intervals."""
+
+    manoeuvres: tuple[Manoeuvre, ...]
+    replays: tuple[Replay, ...]
+    #: Criteria of IMO, where length and speed of the ship are known.
+    imo: tuple[Criterion, ...]
+    _text: str = field(repr=False)
+
+    def __getitem__(self, kind: str) -> Manoeuvre:
+        for one in self.manoeuvres:
+            if one.kind == kind:
+                return one
+        raise KeyError(f"{kind}: there are {', '.join(one.kind for one in self.manoeuvres) or 'none'}")
+
+    def _rows(self) -> list[tuple[str, str, Figure]]:
+        parts: list[tuple[str, Mapping[str, Figure]]] = [(one.kind, one.figures) for one in self.manoeuvres]
+        parts.extend((Path(one.file).name, one.figures) for one in self.replays)
+        return [(what, name, figures[name]) for what, figures in parts for name in sorted(figures, key=_place)]
+
+    def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
+        def row(what: str, name: str, figure: Figure) -> list[str]:
+            said, unit = spoken(name)
+            spread = (figure.ci90[1] - figure.ci90[0]) / 3.3
+            ends = [f"[{number(low, spread)}, {number(high, spread)}]" for low, high in (figure.ci50, figure.ci90)]
+            remark = "extrapolated" if figure.extrapolated else ""
+            if figure.measured is not None:
+                remark = f"measured {number(figure.measured, spread)}"
+            return [what, said, unit, number(figure.median, spread), *ends, remark]
+
+        header = ["manoeuvre", "figure", "unit", "median", "50 %", "90 %", "remark"]
+        notes = [
+            f"IMO {one.criterion}: {number(one.median)} {one.unit}, limit {number(one.limit)}, "
+            f"passes with {100 * one.probability_of_passing:.1f} %"
+            for one in self.imo
+        ]
+        return f"Prediction, {self.document['draws']} ships drawn", header, [row(*one) for one in self._rows()], notes
+
+    def to_frame(self, kind: str = "pandas") -> Any:
+        """One row a figure, as a table of ``"pandas"`` or ``"polars"``."""
+
+        def row(what: str, name: str, figure: Figure) -> dict[str, Any]:
+            ends = {
+                "low50": figure.ci50[0],
+                "high50": figure.ci50[1],
+                "low90": figure.ci90[0],
+                "high90": figure.ci90[1],
+            }
+            rest = {"measured": figure.measured, "extrapolated": figure.extrapolated}
+            return {"manoeuvre": what, "figure": name, "median": figure.median, **ends, **rest}
+
+        return _table.frame_of([row(*one) for one in self._rows()], kind)
+
+    def plot(self) -> Any:
+        """Medians with their 50 and 90 % intervals, and what was measured, as a figure of Matplotlib."""
+        from . import _plot
+
+        return _plot.intervals([(what, *spoken(name), figure) for what, name, figure in self._rows()])
+
+
+Model = Union[FitResult, TraceResult, str, "os.PathLike[str]"]
+
+
+def predict(
+    model: Union[Model, Iterable[Model]],
+    manoeuvres: Union[str, Iterable[str], None] = None,
+    *,
+    replay: Any = (),
+    method: Optional[str] = None,
+    calm: bool = False,
+    draws: int = 1000,
+    length_m: Optional[float] = None,
+    speed_m_s: Optional[float] = None,
+    speed_kn: Optional[float] = None,
+) -> PredictResult:
+    """Predicts what an identified ship will do, with intervals, as ``study predict`` does.
+
+    :param model: a result of :func:`kempf.fit` or :func:`kempf.trace`, the path of a ``fit.json`` or ``trace.json``, or
+        several of them, which are a mixture
+    :param manoeuvres: such as ``"zig-zag:10/10"``, ``"turning-circle:35"``, ``"initial-turning:10"``,
+        ``"pull-out:20"``, ``"spiral:15"``, ``"williamson"``; a negative rudder begins to port. Those of the IMO
+        criteria where it is left out, unless a record is replayed
+    :param replay: records that are held against their prediction
+    :param method: the method whose answer is used; maximum likelihood where it is left out
+    :param calm: whether the weather of the records is left out
+    :param draws: ships that are drawn
+    :param length_m: length that is predicted for, m: another one than that of the records scales the ship by Froude
+    :param speed_m_s: its approach speed, m/s
+    :param speed_kn: the same in knots
+
+    Raises :class:`kempf.KempfError` for a model that cannot be read, and where hardly any drawn ship comes to the end
+    of a manoeuvre. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
+    """
+    models = [model] if isinstance(model, (Result, str, os.PathLike)) else list(model)
+    asked = words(
+        manoeuvre=strings(manoeuvres),
+        method=method,
+        calm=calm,
+        draws=draws,
+        length_m=length_m,
+        speed_m_s=speed_m_s,
+        speed_kn=speed_kn,
+    )
+    text, warnings = _kempf.predict([_model(one) for one in models], natives(replay), asked)
+    warn(warnings)
+    document = json.loads(text)
+
+    def figures(entry: Mapping[str, Any]) -> dict[str, Figure]:
+        return {name: Figure._of(figure) for name, figure in entry["figures"].items()}
+
+    criteria = ("criterion", "manoeuvre", "limit", "unit", "median", "probability_of_passing")
+    return PredictResult(
+        manoeuvres=tuple(Manoeuvre(one["kind"], figures(one), one["lost"]) for one in document["manoeuvres"]),
+        replays=tuple(
+            Replay(one["file"], one["band_coverage_90"], one["heading_rmse_deg"], figures(one))
+            for one in document["replays"]
+        ),
+        imo=tuple(Criterion(**{name: one[name] for name in criteria}) for one in document["imo"]),
+        _text=text,
+    )
+
+
+def _model(model: Model) -> tuple[str, Optional[str]]:
+    """The name of a model, and its text where it is no file."""
+    if isinstance(model, FitResult):
+        return "fit.json", model._text
+    if isinstance(model, TraceResult):
+        return "trace.json", model._text
+    if isinstance(model, (str, os.PathLike)):
+        return os.fspath(model), None
+    raise KempfError(
+        f"{type(model).__name__}: expected a result of kempf.fit or kempf.trace, or the path of their file"
+    )

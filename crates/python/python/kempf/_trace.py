@@ -1,0 +1,221 @@
+"""Tracing: the effect that a first-order ship lacks."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
+
+from . import _kempf, _table
+from ._kempf import KempfError
+from ._options import strings, warn, words
+from ._quantity import Quantity, number
+from ._record import Record, natives
+from ._result import Result
+
+Ids = Union[str, Iterable[str]]
+
+
+@dataclass(frozen=True)
+class Parameter(Quantity):
+    """A parameter of an effect."""
+
+    unit: str
+
+    @classmethod
+    def of(cls, entry: Mapping[str, Any]) -> Parameter:
+        plain = Quantity.of(entry)
+        return cls(plain.value, plain.sd, plain.ci95, entry["unit"])
+
+    def __str__(self) -> str:
+        return f"{super().__str__()} {self.unit}"
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect that was found."""
+
+    #: Identifier, such as ``"nonlinear_damping"``.
+    id: str
+    #: Form of its term, such as ``"r|r|"``.
+    form: str
+    #: The equation with it.
+    equation: str
+    #: Parameters by their symbols.
+    parameters: Mapping[str, Parameter]
+    #: Effects that these records cannot tell from it.
+    aliases: tuple[str, ...]
+    #: Probability that the ship has it.
+    probability: float
+    #: Change of BIC against the best model without it and its aliases; less is better.
+    delta_bic: float
+    p_value: float
+    #: The evidence in a sentence.
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect that was looked for."""
+
+    id: str
+    #: ``"added"``, ``"alias"``, ``"rejected"`` or ``"not_observable"``.
+    outcome: str
+    probability: float
+    delta_bic: Optional[float]
+    p_value: Optional[float]
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Heading errors of a record before and after, deg; only the initial state is fitted to a held-out one."""
+
+    file: str
+    #: Whether the record was kept from the fit.
+    held_out: bool
+    #: Root mean square of the whole replay with the base.
+    before_deg: float
+    #: The same with the final model.
+    after_deg: float
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class TraceResult(Result):
+    """What a first-order ship lacks in these records, and what it is worth."""
+
+    #: ``"clean"``, ``"traced"`` or ``"unexplained"``.
+    verdict: str
+    #: K of the final model, 1/s.
+    K_per_s: Quantity
+    #: T of the final model, s.
+    T_s: Quantity
+    #: Rudder bias of the final model, deg.
+    delta_r_deg: Quantity
+    #: Effects in the order in which they were found.
+    effects: tuple[Effect, ...]
+    #: Every effect that was looked for.
+    candidates: tuple[Candidate, ...]
+    #: Errors of every record, first of those that were fitted.
+    errors: tuple[Errors, ...]
+    #: The manoeuvre that would tell most.
+    next_trial: Optional[str]
+    _text: str = field(repr=False)
+    _native: _kempf.Trace = field(repr=False)
+
+    def _table(self) -> tuple[str, Sequence[str], Sequence[Sequence[str]], Sequence[str]]:
+        found = ", ".join(f"{one.id} ({one.form}), probability {one.probability:.3f}" for one in self.effects)
+        title = f"Trace: {self.verdict}" + (f", {found}" if found else "")
+        rows = [
+            [
+                Path(one.file).name,
+                "held out" if one.held_out else "fitted",
+                number(one.before_deg),
+                number(one.after_deg),
+            ]
+            for one in self.errors
+        ]
+        notes = [f"{one.id}: {symbol} = {value}" for one in self.effects for symbol, value in one.parameters.items()]
+        notes.append(f"K = {self.K_per_s} 1/s, T = {self.T_s} s, δ_r = {self.delta_r_deg} deg")
+        notes.extend(f"{one.id} cannot be told from {', '.join(one.aliases)}" for one in self.effects if one.aliases)
+        if self.next_trial:
+            notes.append(f"next trial: {self.next_trial}")
+        return title, ["record", "use", "rms ψ before [deg]", "after [deg]"], rows, notes
+
+    def to_frame(self, kind: str = "pandas") -> Any:
+        """The effects that were looked for, one row each, as a table of ``"pandas"`` or ``"polars"``."""
+        return _table.frame_of([vars(one) for one in self.candidates], kind)
+
+    def replay(self, record: int = 0) -> dict[str, dict[str, Any]]:
+        """The recorded rudder sent through the model ``"before"`` and ``"after"``.
+
+        Each has ``t_s``, ``heading_deg`` and ``residual_deg``, measured less replayed heading. Records of the
+        validation follow those that were fitted.
+        """
+        curves = self._native.replays(record)
+        if curves is None:
+            raise KempfError(f"record = {record}: expected a number below {len(self.errors)}, from 0")
+        names = ("t_s", "heading_deg", "residual_deg")
+        return {name: dict(zip(names, curve)) for name, curve in zip(("before", "after"), curves)}
+
+    def plot(self, *, record: int = 0) -> Any:
+        """Rudder, measured heading, its replays before and after, and what is left, as a figure of Matplotlib."""
+        from . import _plot
+
+        replays = self.replay(record)
+        native = self._native.record(record)
+        assert native is not None, "a record that was replayed is there"
+        return _plot.replays(Record._of(native), replays)
+
+
+def trace(
+    records: Any,
+    *,
+    validate: Any = (),
+    with_: Ids = (),
+    only: Ids = (),
+    without_effect: Ids = (),
+    without: Ids = (),
+    own_bias: bool = False,
+    rule: str = "bic",
+) -> TraceResult:
+    """Closes the loop on records, as ``study trace`` does: fits a first-order ship, looks at what is left, names the
+    effect that is missing, adds it, and says what it is worth.
+
+    :param records: one record or several of the same ship, as in :func:`kempf.fit`
+    :param validate: records that are kept from the fit
+    :param with_: effects that are in the model whatever the evidence says, by their ids in ``study list effects``
+    :param only: exactly these effects and no search
+    :param without_effect: effects that are no candidates
+    :param without: columns to leave aside: ``"wind"``, ``"speed"``, ``"propeller"``, ``"sway"``
+    :param own_bias: whether every record has a rudder bias of its own
+    :param rule: which of the structures that were tried is believed: ``"bic"``, ``"pastis"``, ``"held-out"``,
+        ``"bagged"``, ``"probability"``, ``"probability-0.9"``
+
+    Raises :class:`kempf.KempfError` where a record cannot be read, where no first-order ship fits it, and for an effect
+    that there is not. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
+    """
+    asked = words(
+        with_=strings(with_),
+        only=strings(only),
+        without_effect=strings(without_effect),
+        without=strings(without),
+        own_bias=own_bias,
+        rule=rule,
+    )
+    native = _kempf.trace(natives(records), natives(validate), asked)
+    warn(native.warnings)
+    return _result(native)
+
+
+def _result(native: _kempf.Trace) -> TraceResult:
+    document = json.loads(native.text)
+    model = document["model"]
+
+    def effect(entry: Mapping[str, Any]) -> Effect:
+        names = ("id", "form", "equation", "probability", "delta_bic", "p_value", "evidence")
+        parameters = {symbol: Parameter.of(value) for symbol, value in entry["parameters"].items()}
+        return Effect(
+            parameters=parameters, aliases=tuple(entry["alias_forms"]), **{name: entry[name] for name in names}
+        )
+
+    def errors(use: str) -> list[Errors]:
+        rmse = "heading_rmse_deg"
+        return [
+            Errors(one["file"], use == "validation", one["before"][rmse], one["after"][rmse])
+            for one in document["error"][use]
+        ]
+
+    names = ("id", "outcome", "probability", "delta_bic", "p_value")
+    return TraceResult(
+        verdict=document["verdict"],
+        K_per_s=Quantity.of(model["K_per_s"]),
+        T_s=Quantity.of(model["T_s"]),
+        delta_r_deg=Quantity.of(model["delta_r_deg"]),
+        effects=tuple(effect(entry) for entry in document["effects"]),
+        candidates=tuple(Candidate(**{name: entry[name] for name in names}) for entry in document["candidates"]),
+        errors=(*errors("identification"), *errors("validation")),
+        next_trial=document["next_trial"],
+        _text=native.text,
+        _native=native,
+    )

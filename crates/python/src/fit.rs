@@ -1,0 +1,67 @@
+//! `fit`: every method on the records together.
+
+use identify::Estimate;
+use identify::replay::replay;
+use pyo3::prelude::*;
+use scenario::failure::Failure;
+use study::records::warn_of_repetition;
+use study::views::document;
+use study::work;
+use trial::Trial;
+
+use crate::curve::{Curve, curve};
+use crate::record::{Record, trials};
+use crate::wait::patiently;
+
+/// What came out, with what its figures are made from.
+#[pyclass(frozen, module = "kempf._kempf")]
+pub struct Fit {
+    #[pyo3(get)]
+    text: String,
+    #[pyo3(get)]
+    warnings: Vec<String>,
+    /// Fitted records, then those of the validation, at one scale.
+    trials: Vec<Trial>,
+    answers: Vec<(String, Option<Estimate>)>,
+}
+
+#[pymethods]
+impl Fit {
+    /// A record as it was fitted: at the scale of the first.
+    fn record(&self, place: usize) -> Option<Record> {
+        self.trials.get(place).cloned().map(Record::plain)
+    }
+
+    /// The rudder of a record replayed through the answer of a method; `None` where it has none.
+    fn replay<'py>(&self, py: Python<'py>, place: usize, method: &str) -> Option<Curve<'py>> {
+        let (_, estimate) = self.answers.iter().find(|(id, _)| id == method)?;
+        Some(curve(py, &replay(self.trials.get(place)?, &estimate.as_ref()?.response)?))
+    }
+}
+
+/// Identifies records by the named methods, or by all.
+#[pyfunction]
+pub fn fit(
+    py: Python<'_>,
+    records: Vec<Py<Record>>,
+    validate: Vec<Py<Record>>,
+    methods: Vec<String>,
+    seed: Option<u64>,
+) -> PyResult<Fit> {
+    let (records, others) = (trials(&records), trials(&validate));
+    patiently(py, move || {
+        let methods = work::fit::methods(&methods, &[], seed)?;
+        let mut warnings = Vec::new();
+        warn_of_repetition(&records, &others, &mut warnings);
+        let done = work::fit::fit(&records, &others, &methods, true, &mut warnings)?;
+        for entry in &done.file.methods {
+            warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
+        }
+        Ok(Fit {
+            text: document::text(&done.file).map_err(Failure::work)?,
+            warnings,
+            trials: [done.together.trials, done.together.others].concat(),
+            answers: done.answers.into_iter().map(|(entry, estimate)| (entry.method, estimate)).collect(),
+        })
+    })
+}

@@ -1,0 +1,54 @@
+//! `predict`: what an identified ship will do.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use scenario::failure::Failure;
+use study::options::PredictRequest;
+use study::views::document;
+use study::views::predict_file::PredictFile;
+use study::work::predict::{Asked, Model, asked_scale, manoeuvres};
+
+use crate::asked::request;
+use crate::record::{Record, trials};
+use crate::wait::patiently;
+
+/// The document of a prediction and the warnings. `models` are names of files, with the text of those that are none;
+/// `words` are options of the command line.
+#[pyfunction]
+pub fn predict(
+    py: Python<'_>,
+    models: Vec<(String, Option<String>)>,
+    replay: Vec<Py<Record>>,
+    words: Vec<String>,
+) -> PyResult<(String, Vec<String>)> {
+    let records = trials(&replay);
+    patiently(py, move || {
+        let names = models.iter().map(|(name, _)| name.clone());
+        let mut asked: PredictRequest = request(words.into_iter().chain([String::from("--")]).chain(names).collect())?;
+        asked.replays = records.iter().map(|record| PathBuf::from(record.name())).collect();
+        let mut warnings = Vec::new();
+        let read = |(name, text): &(String, Option<String>)| match text {
+            Some(text) => Model::of_document(name, text, asked.method.as_deref(), asked.calm, &mut warnings),
+            None => Model::of_file(Path::new(name), &asked, &mut warnings),
+        };
+        let models: Vec<Model> = models.iter().map(read).collect::<Result<_, _>>()?;
+        let predicted = study::work::predict::predict(
+            Asked {
+                models: &models,
+                ballast: &[],
+                records,
+                current: None,
+                manoeuvres: manoeuvres(&asked),
+                draws: asked.draws as usize,
+                calm: asked.calm,
+                scale: asked_scale(&asked.reading),
+                form: false,
+                declared: None,
+            },
+            true,
+            &mut warnings,
+        )?;
+        Ok((document::text(&PredictFile::of(&predicted)).map_err(Failure::work)?, warnings))
+    })
+}

@@ -1,0 +1,29 @@
+//! Failures as exceptions, with the message that the command line would show.
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyRuntimeError, PyUserWarning, PyValueError};
+use pyo3::prelude::*;
+use scenario::failure::{Blame, Failure};
+
+create_exception!(
+    kempf,
+    KempfError,
+    PyValueError,
+    "The input is wrong: a record, a scenario, a model or an option. The message says where, what was found, what was \
+     expected and what to do."
+);
+create_exception!(kempf, WorkError, PyRuntimeError, "The work could not be done, as when a disk is full.");
+create_exception!(
+    kempf,
+    KempfWarning,
+    PyUserWarning,
+    "Something a person should know of a record or a result; what came out stands all the same."
+);
+
+/// The exception of a failure.
+pub fn raised(failure: Failure) -> PyErr {
+    match failure.blame {
+        Blame::Input => KempfError::new_err(failure.message),
+        Blame::Work => WorkError::new_err(failure.message),
+    }
+}

@@ -1,0 +1,199 @@
+//! Records: read from files or made of columns, and their columns as arrays.
+
+use std::path::PathBuf;
+
+use numpy::{PyArray1, PyReadonlyArray1};
+use pyo3::prelude::*;
+use scenario::failure::Failure;
+use scenario::name;
+use study::options::ReadingOptions;
+use study::records::{expand, file_of, of_log, read_all};
+use trial::channel::TIME_COLUMN;
+use trial::{Channel, Log, Sidecar, Trial};
+
+use crate::asked::request;
+use crate::raise::raised;
+use crate::wait::patiently;
+
+/// A record as the methods see it.
+#[pyclass(frozen, module = "kempf._kempf")]
+pub struct Record {
+    /// The record.
+    pub trial: Trial,
+    #[pyo3(get)]
+    warnings: Vec<String>,
+}
+
+impl Record {
+    /// A record of which there is nothing to say.
+    pub fn plain(trial: Trial) -> Self {
+        Self { trial, warnings: Vec::new() }
+    }
+}
+
+/// The records that Python handed in.
+pub fn trials(records: &[Py<Record>]) -> Vec<Trial> {
+    records.iter().map(|record| record.get().trial.clone()).collect()
+}
+
+#[pymethods]
+impl Record {
+    fn __len__(&self) -> usize {
+        self.trial.len()
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        self.trial.name()
+    }
+
+    #[getter]
+    fn file(&self) -> &str {
+        file_of(&self.trial).0
+    }
+
+    #[getter]
+    fn sha256(&self) -> &str {
+        file_of(&self.trial).1
+    }
+
+    #[getter]
+    fn length_m(&self) -> Option<f64> {
+        self.trial.particulars().map(|ship| ship.length)
+    }
+
+    #[getter]
+    fn speed_m_s(&self) -> Option<f64> {
+        self.trial.particulars().map(|ship| ship.speed)
+    }
+
+    #[getter]
+    fn heading_from_yaw_rate(&self) -> bool {
+        self.trial.heading_from_yaw_rate()
+    }
+
+    /// Names of the columns, as they are written to a file.
+    fn columns(&self) -> Vec<String> {
+        let channels = Channel::ALL.into_iter().filter(|channel| self.trial.channel(*channel).is_some());
+        let unknown = self.trial.unknown().iter().map(|(name, _)| name.clone());
+        std::iter::once(TIME_COLUMN.to_owned()).chain(channels.map(Channel::column_name)).chain(unknown).collect()
+    }
+
+    /// A column in the unit of its name; `None` where there is none.
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> Option<Bound<'py, PyArray1<f64>>> {
+        if name == TIME_COLUMN {
+            return Some(PyArray1::from_slice(py, self.trial.time()));
+        }
+        let channel = Channel::ALL.into_iter().find(|channel| channel.column_name() == name);
+        match channel {
+            Some(channel) => {
+                let factor = channel.written_unit().to_si();
+                let values = self.trial.channel(channel)?.iter().map(|value| value / factor);
+                Some(PyArray1::from_vec(py, values.collect()))
+            }
+            None => {
+                let (_, values) = self.trial.unknown().iter().find(|(known, _)| known == name)?;
+                Some(PyArray1::from_slice(py, values))
+            }
+        }
+    }
+
+    /// The record as the text of a table.
+    fn csv(&self) -> PyResult<String> {
+        let mut table = Vec::new();
+        trial::write_csv(&self.trial, &mut table).map_err(|error| raised(Failure::work(error)))?;
+        String::from_utf8(table).map_err(|error| raised(Failure::work(error)))
+    }
+}
+
+/// Reads a record, or all records of a folder; `words` are options of the command line.
+#[pyfunction]
+pub fn read(py: Python<'_>, path: PathBuf, words: Vec<String>) -> PyResult<Vec<Record>> {
+    patiently(py, move || {
+        let options: ReadingOptions = request(words)?;
+        let one = |file: PathBuf| {
+            let mut warnings = Vec::new();
+            let mut trials = read_all(std::slice::from_ref(&file), &options, &mut warnings)?;
+            Ok(Record { trial: trials.remove(0), warnings })
+        };
+        expand(std::slice::from_ref(&path))?.into_iter().map(one).collect()
+    })
+}
+
+/// A column of a table that is no file.
+#[derive(FromPyObject)]
+pub enum Column<'py> {
+    /// Numbers; NaN where there is none.
+    Numbers(PyReadonlyArray1<'py, f64>),
+    /// Anything else, such as stamps of date and time.
+    Words(Vec<String>),
+}
+
+/// The record that columns make: it is read as a file of them would be.
+#[pyfunction]
+pub fn record_of(
+    py: Python<'_>,
+    name: String,
+    columns: Vec<(String, Column<'_>)>,
+    words: Vec<String>,
+) -> PyResult<Record> {
+    let table = table(&columns).map_err(raised)?;
+    patiently(py, move || of_table(&name, &table, &request(words)?, None))
+}
+
+/// The record that the text of a table holds, called `name`, as that of its sidecar describes it.
+pub fn of_table(name: &str, table: &[u8], options: &ReadingOptions, sidecar: Option<&str>) -> Result<Record, Failure> {
+    let path = PathBuf::from(format!("{name}.csv"));
+    name::of_file(&path)?;
+    let sidecar = sidecar.map(|text| Sidecar::parse(text, &Sidecar::beside(&path))).transpose();
+    let sidecar = sidecar.map_err(Failure::input)?;
+    let mut log = Log::of_bytes(&path, table, None, sidecar.as_ref()).map_err(Failure::input)?;
+    let shown = |warning: String| format!("{}: {warning}", path.display());
+    let mut warnings: Vec<String> = std::mem::take(&mut log.warnings).into_iter().map(shown).collect();
+    let trial = of_log(log, &path, options, &mut warnings)?;
+    Ok(Record { trial, warnings })
+}
+
+/// Columns as the text of a table, with as many digits as a number needs.
+fn table(columns: &[(String, Column)]) -> Result<Vec<u8>, Failure> {
+    let lengths: Vec<usize> = columns.iter().map(|(_, column)| column.len()).collect();
+    let rows = lengths.first().copied().unwrap_or_default();
+    if let Some(other) = lengths.iter().position(|length| *length != rows) {
+        return Err(Failure::input(format!(
+            "{} has {} values and {} has {rows}; give one value a row, NaN where nothing was read",
+            columns[other].0, lengths[other], columns[0].0
+        )));
+    }
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let written = (|| {
+        table.write_record(columns.iter().map(|(name, _)| name))?;
+        for row in 0..rows {
+            for (_, column) in columns {
+                table.write_field(column.cell(row))?;
+            }
+            table.write_record(None::<&[u8]>)?;
+        }
+        Ok::<(), csv::Error>(())
+    })();
+    written.map_err(Failure::work)?;
+    table.into_inner().map_err(Failure::work)
+}
+
+impl Column<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Numbers(values) => values.as_array().len(),
+            Self::Words(words) => words.len(),
+        }
+    }
+
+    fn cell(&self, row: usize) -> String {
+        match self {
+            Self::Numbers(values) => {
+                let value = values.as_array()[row];
+                if value.is_nan() { String::new() } else { value.to_string() }
+            }
+            Self::Words(words) => words[row].clone(),
+        }
+    }
+}

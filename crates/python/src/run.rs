@@ -1,0 +1,157 @@
+//! `run`: a whole scenario, as the command line runs it.
+
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, PoisonError};
+
+use campaign::Observer;
+use campaign::collect::collect;
+use campaign::folder::ResultFolder;
+use campaign::task::{Shard, default_folder};
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use scenario::failure::Failure;
+use study::options::{FigureChoice, MOST_THREADS, Style};
+use study::views::publish;
+
+use crate::raise::raised;
+use crate::scene::Scene;
+use crate::wait::Underway;
+
+/// Who watches a study that Python waits for.
+#[derive(Default)]
+struct Watch {
+    is_asked: AtomicBool,
+    most: AtomicU64,
+    done: AtomicU64,
+    said: Mutex<Said>,
+    threads: Option<ThreadPool>,
+}
+
+/// What a study had to say.
+#[derive(Default)]
+struct Said {
+    notes: Vec<String>,
+    warnings: Vec<String>,
+}
+
+impl Watch {
+    fn said(&self, add: impl FnOnce(&mut Said)) {
+        add(&mut self.said.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Observer for Watch {
+    fn begin(&self, most: u64, done: u64) {
+        self.most.store(most, Ordering::Relaxed);
+        self.done.store(done, Ordering::Relaxed);
+    }
+
+    fn advance(&self) {
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn note(&self, line: &str) {
+        self.said(|said| said.notes.push(line.to_owned()));
+    }
+
+    fn warn(&self, line: &str) {
+        self.said(|said| said.warnings.push(line.to_owned()));
+    }
+
+    fn is_asked_to_stop(&self) -> bool {
+        self.is_asked.load(Ordering::Relaxed)
+    }
+
+    fn threads(&self) -> Option<&ThreadPool> {
+        self.threads.as_ref()
+    }
+}
+
+/// Threads of a study alone.
+fn pool(count: i64) -> Result<ThreadPool, Failure> {
+    if !(1..=MOST_THREADS).contains(&count) {
+        return Err(Failure::input(format!("threads = {count}: expected a whole number from 1 to {MOST_THREADS}")));
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(count as usize).build();
+    pool.map_err(|error| Failure::work(format!("failed to start {count} threads: {error}")))
+}
+
+/// Runs what is missing and publishes what is stored; returns the document of the study.
+fn study(
+    scene: &Scene,
+    out: Option<PathBuf>,
+    seed: Option<u64>,
+    restart: bool,
+    watch: &Watch,
+) -> Result<String, Failure> {
+    let scenario = scene.read(seed)?;
+    let theme = Style { paper: None, dpi: 600.0, style: None }.theme()?;
+    let folder = ResultFolder::hold(&out.unwrap_or_else(|| default_folder(&scenario.name, Shard::WHOLE)))?;
+    let stored = collect(&scenario, Shard::WHOLE, &folder, restart, watch)?;
+    let publish = || publish::put(&stored, &folder, (&theme, FigureChoice::Named));
+    let summary = match &watch.threads {
+        Some(threads) => threads.install(publish),
+        None => publish(),
+    }?;
+    publish::document(&stored, &summary, &folder)
+}
+
+/// Runs a scenario: its document, what was noted, and the warnings. `progress` is called with the trials that are done
+/// and that there are at most.
+#[pyfunction]
+#[pyo3(signature = (scene, out, threads, seed, restart, progress))]
+pub fn run(
+    py: Python<'_>,
+    scene: Scene,
+    out: Option<PathBuf>,
+    threads: Option<i64>,
+    seed: Option<u64>,
+    restart: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, Vec<String>, Vec<String>)> {
+    let threads = threads.map(pool).transpose().map_err(raised)?;
+    let watch = Arc::new(Watch { threads, ..Watch::default() });
+    let own = Arc::clone(&watch);
+    let mut underway = Underway::start(move || study(&scene, out, seed, restart, &own))?;
+    let mut told = None;
+    let text = loop {
+        let done = underway.wait(py);
+        let now = (watch.done.load(Ordering::Relaxed), watch.most.load(Ordering::Relaxed));
+        if let Some(progress) = progress.as_ref().filter(|_| now.1 > 0 && told.replace(now) != Some(now))
+            && let Err(raised) = progress.call1(py, now)
+        {
+            return Err(stopped(py, &watch, underway, raised));
+        }
+        if let Some(done) = done {
+            break done?;
+        }
+        if let Err(raised) = py.check_signals() {
+            return Err(stopped(py, &watch, underway, raised));
+        }
+    };
+    let mut notes = Vec::new();
+    let mut warnings = Vec::new();
+    watch.said(|said| {
+        notes = std::mem::take(&mut said.notes);
+        warnings = std::mem::take(&mut said.warnings);
+    });
+    Ok((text, notes, warnings))
+}
+
+/// Asks a study to stop and waits until its rows are kept, unless there is another signal. An interruption says what
+/// was kept.
+fn stopped(py: Python<'_>, watch: &Watch, mut underway: Underway<String>, raised: PyErr) -> PyErr {
+    watch.is_asked.store(true, Ordering::Relaxed);
+    loop {
+        if let Some(done) = underway.wait(py) {
+            let kept = done.err().filter(|_| raised.is_instance_of::<PyKeyboardInterrupt>(py));
+            return kept.map_or(raised, |kept| PyKeyboardInterrupt::new_err(kept.value(py).to_string()));
+        }
+        if let Err(again) = py.check_signals() {
+            return again;
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Scenarios: files, texts and dictionaries.
+
+use std::path::{Path, PathBuf};
+
+use pyo3::prelude::*;
+use scenario::Scenario;
+use scenario::failure::Failure;
+use serde_json::Value;
+
+use crate::raise::raised;
+
+/// A scenario as Python hands it in.
+#[derive(FromPyObject)]
+pub struct Scene {
+    /// The file, or what messages call the text.
+    #[pyo3(item)]
+    path: PathBuf,
+    /// Its text; `None` where it is to be read from the file.
+    #[pyo3(item)]
+    text: Option<String>,
+}
+
+impl Scene {
+    /// Reads it. Fails as the command line does.
+    pub fn read(&self, seed: Option<u64>) -> Result<Scenario, Failure> {
+        let Some(text) = &self.text else { return Scenario::read(&self.path, seed) };
+        let name = self.path.file_stem().unwrap_or(Path::new("scenario").as_os_str());
+        Scenario::parse(&self.path, &name.to_string_lossy(), text.clone(), seed)
+    }
+
+    /// The file, or what messages call the text.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// The TOML of a document, which is given as JSON.
+#[pyfunction]
+pub fn toml_of(json: &str) -> PyResult<String> {
+    let value: Value = serde_json::from_str(json).map_err(|error| raised(Failure::input(error)))?;
+    toml::to_string(&value).map_err(|error| {
+        raised(Failure::input(format!("the scenario cannot be written as TOML: {error}; leave out keys that are None")))
+    })
+}
