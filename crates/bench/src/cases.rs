@@ -1,0 +1,152 @@
+//! What was asked and what was answered: one case for every question on every trial, with the answers of all methods.
+
+use campaign::statistics::Moments;
+use serde::{Deserialize, Serialize};
+
+use crate::task::Task;
+
+/// The field of all measured records.
+pub const MEASURED: &str = "measured";
+
+/// One question with all answers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// What was asked.
+    pub task: Task,
+    /// What the case is counted with: [`MEASURED`], or what the definition calls the simulated set.
+    pub field: String,
+    /// Name of the set.
+    pub set: String,
+    /// Number of a simulated trial in its set.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trial: Option<u64>,
+    /// Names of the records that were fitted together.
+    pub fitted: Vec<String>,
+    /// Name of the record that was scored; none where the ship was asked about.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scored: Option<String>,
+    /// The effect that the ship lacks, where it was asked for; none where it lacks nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing: Option<String>,
+    /// The answers, in the order of methods.
+    pub answers: Vec<Answer>,
+}
+
+/// The answer of one method.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Answer {
+    /// Label of the method.
+    pub method: String,
+    /// Heading error, deg, or the larger error of K and T, %; none where there is none, or where the answer is right or
+    /// wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub score: Option<f64>,
+    /// K and T found over the true ones, less one, %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub errors_percent: Option<[f64; 2]>,
+    /// Whether the 95 % intervals of K and T hold the truth, where there are intervals.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub holds: Option<[bool; 2]>,
+    /// What was made of the effect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub naming: Option<Naming>,
+    /// Effects that were named, each followed by those the records cannot tell from it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub named: Vec<Vec<String>>,
+    /// Why there is no answer, in a word.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+    /// The same in a sentence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// What a method that names effects said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Naming {
+    /// What is missing, and nothing else; of a ship that lacks nothing, nothing.
+    Right,
+    /// A group that holds what is missing, under the name of another, and nothing else.
+    Alias,
+    /// What is missing or a group that holds it, and something else.
+    More,
+    /// Something else.
+    Wrong,
+    /// Nothing, though something is missing.
+    Nothing,
+}
+
+impl Naming {
+    /// What the groups that were named are worth where one effect is missing, or none.
+    pub fn of(missing: Option<&str>, named: &[Vec<String>]) -> Self {
+        let Some(missing) = missing else { return if named.is_empty() { Self::Right } else { Self::Wrong } };
+        let holder = named.iter().find(|group| group.iter().any(|id| id == missing));
+        match (holder, named.len()) {
+            (_, 0) => Self::Nothing,
+            (None, _) => Self::Wrong,
+            (Some(group), 1) if group[0] == missing => Self::Right,
+            (Some(_), 1) => Self::Alias,
+            (Some(_), _) => Self::More,
+        }
+    }
+}
+
+impl Case {
+    /// What is drawn together when intervals are made: all cases of one simulated trial, or all in which one measured
+    /// record is scored.
+    pub fn cluster(&self) -> (&str, String) {
+        let own = self.trial.map_or_else(|| self.scored.clone().unwrap_or_default(), |trial| trial.to_string());
+        (&self.set, own)
+    }
+
+    /// The score of a method: worse than any where it has no answer, `None` where it was not asked.
+    pub fn score_of(&self, method: &str) -> Option<f64> {
+        let answer = self.answers.iter().find(|answer| answer.method == method)?;
+        Some(answer.score.unwrap_or(f64::INFINITY))
+    }
+}
+
+/// A number as it is stored: six digits. Boards are made of stored numbers, so that anybody finds the same.
+pub fn stored(value: f64) -> f64 {
+    format!("{value:.5e}").parse().expect("it was written as a number")
+}
+
+/// Mean of some ranks; `None` of none.
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut moments = Moments::default();
+    values.for_each(|value| moments.add(value));
+    (moments.count > 0.0).then_some(moments.mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_right_wrong_or_missing() {
+        let groups = |named: &[&[&str]]| -> Vec<Vec<String>> {
+            named.iter().map(|group| group.iter().map(|id| (*id).to_owned()).collect()).collect()
+        };
+        for (missing, named, said) in [
+            (Some("a"), groups(&[&["a"]]), Naming::Right),
+            (Some("a"), groups(&[&["a", "b"]]), Naming::Right),
+            (Some("a"), groups(&[&["b", "a"]]), Naming::Alias),
+            (Some("a"), groups(&[&["b", "a"], &["c"]]), Naming::More),
+            (Some("a"), groups(&[&["b"], &["a"]]), Naming::More),
+            (Some("a"), groups(&[&["b"]]), Naming::Wrong),
+            (Some("a"), groups(&[]), Naming::Nothing),
+            (None, groups(&[]), Naming::Right),
+            (None, groups(&[&["a"]]), Naming::Wrong),
+        ] {
+            assert_eq!(Naming::of(missing, &named), said, "{missing:?} {named:?}");
+        }
+    }
+
+    #[test]
+    fn stored_numbers_have_six_digits() {
+        assert_eq!([1.234_567_89, -0.0123456789, 0.0].map(stored), [1.23457, -0.0123457, 0.0]);
+    }
+}

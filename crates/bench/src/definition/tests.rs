@@ -1,0 +1,88 @@
+use super::*;
+
+#[test]
+fn the_published_benchmark_is_whole() {
+    let published = Definition::published(None).unwrap_or_else(|failure| panic!("{failure}"));
+    let of = |task: Task| published.sets.iter().flat_map(|set| &set.questions).filter(|q| q.task == task).count();
+    // 8 + 3 + 5 measured records, 3 + 3 simulated cells; pairs of 8, of 2 and of 2.
+    assert_eq!(Task::ALL.map(of), [22, 3, 8, 66, 10, 12]);
+    assert_eq!(published.sets.len(), 3 + 3 + 3 + 12);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(embedded::PLACE);
+    let read = Definition::read(&file, None).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(read.sha256, published.sha256, "the files on the disk are those in the program");
+}
+
+const GOOD: &str = r#"
+name = "own"
+reference = "output-error"
+[[measured]]
+name = "tanker"
+title = "A tanker"
+download = "nowhere"
+licence = "none"
+cite = "nobody"
+tasks.identify = ["a"]
+tasks.other-side = [{ fit = ["a"], score = ["b"] }]
+[[measured.record]]
+name = "a"
+manoeuvre = { zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, first = "starboard" } }
+copies = [{ file = "a.csv", sha256 = "0123456789012345678901234567890123456789012345678901234567890123" }]
+[[measured.record]]
+name = "b"
+manoeuvre = { zig-zag = { rudder-deg = 20.0, heading-deg = 20.0, first = "port" } }
+copies = [{ file = "b.csv", sha256 = "0123456789012345678901234567890123456789012345678901234567890123" }]
+"#;
+
+fn parse(text: &str) -> Result<Definition, Failure> {
+    Definition::parse(Path::new("own.toml"), text, None, &|_, name| Err(format!("there is no {name}")))
+}
+
+#[test]
+fn what_is_wrong_is_told_with_line_and_place() {
+    let good = parse(GOOD).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(good.sets[0].questions.len(), 2);
+    for (right, wrong, line, said) in [
+        ("title =", "titel =", "own.toml:6:1", "unknown field `titel`"),
+        ("score = [\"b\"]", "score = [\"c\"]", "own.toml:11:45", "there is no record \"c\""),
+        ("score = [\"b\"]", "score = [\"a\"]", "own.toml:11:45", "the same angles to the other side first"),
+        ("{ fit = [\"a\"], score", "{ score", "own.toml:11:", "is not whole"),
+        ("name = \"b\"", "name = \"a\"", "own.toml:17:8", "two records are called \"a\""),
+        ("name = \"tanker\"", "name = \"\"", "own.toml:5:8", "a set is called"),
+        ("tasks.identify", "tasks.indices", "own.toml:10:", "only simulated ships have it"),
+        ("sha256 = \"0123", "sha256 = \"z123", "own.toml:15:", "expected 64 hexadecimal digits"),
+        ("first = \"port\"", "first = \"aft\"", "own.toml:18:", "unknown variant `aft`"),
+        ("file = \"a.csv\"", "file = \"a.csv\", sidecar = \"x\"", "own.toml:15:", "there is no x"),
+        ("\nname = \"own\"", "\nname = \"o/n\"", "own.toml:2:8", "the name of a file"),
+    ] {
+        assert!(GOOD.contains(right), "{right}");
+        let error = parse(&GOOD.replacen(right, wrong, 1)).err().expect(wrong).to_string();
+        assert!(error.contains(line) && error.contains(said), "{wrong}:\n{error}");
+    }
+    let nothing = parse("name = \"own\"\nreference = \"a\"").err().expect("no set").to_string();
+    assert!(nothing.contains("own.toml") && nothing.contains("no set is defined"), "{nothing}");
+}
+
+#[test]
+fn tasks_are_what_they_say() {
+    let zig_zag = |rudder_deg, first| Deed::ZigZag { rudder_deg, heading_deg: 20.0, first };
+    let (starboard, port) = (simulate::manoeuvre::Side::Starboard, simulate::manoeuvre::Side::Port);
+    let [one, mirrored, small] = [zig_zag(20.0, starboard), zig_zag(20.0, port), zig_zag(10.0, starboard)];
+    let circle = Deed::TurningCircle { rudder_deg: 35.0, side: starboard };
+    assert!(is_that(Task::OtherSide, &[one], mirrored).is_ok() && is_that(Task::OtherSide, &[one], small).is_err());
+    assert!(is_that(Task::OtherAmplitude, &[one, mirrored], small).is_ok());
+    assert!(is_that(Task::OtherAmplitude, &[one, small], mirrored).is_err());
+    assert!(is_that(Task::Circle, &[one], circle).is_ok() && is_that(Task::Circle, &[circle], circle).is_err());
+}
+
+#[test]
+fn sets_and_tasks_can_be_left_out() {
+    let some = |sets: &[&str], tasks: &[Task]| {
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        Definition::published(None).unwrap_or_else(|failure| panic!("{failure}")).only(&sets, tasks)
+    };
+    let hulls = some(&["hulls"], &[Task::Circle]).unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(hulls.sets.iter().map(|set| set.questions.len()).collect::<Vec<_>>(), [1, 1, 1]);
+    let unknown = some(&["hull"], &[]).err().expect("no such set").to_string();
+    assert!(unknown.contains("--set hull") && unknown.contains("did you mean `hulls`"), "{unknown}");
+    assert!(some(&["missing"], &[Task::Circle]).is_err());
+}

@@ -1,0 +1,81 @@
+//! How often methods name the effect that a ship lacks.
+
+use serde::{Deserialize, Serialize};
+
+use crate::board::Share;
+use crate::cases::{Case, Naming};
+use crate::task::Task;
+
+/// What a method said of the ships of one set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NamingLine {
+    /// Label of the method.
+    pub method: String,
+    /// Name of the set.
+    pub set: String,
+    /// The effect that its ships lack; none where they lack nothing.
+    pub missing: Option<String>,
+    /// How often each was said, in the order of [`Naming::ALL`].
+    pub counts: [usize; Naming::ALL.len()],
+    /// Trials without an answer.
+    pub failed: usize,
+    /// Share of trials in which the answer is right or holds what is missing among aliases, and nothing else.
+    pub named: Share,
+}
+
+impl Naming {
+    /// All of them, the best first.
+    pub const ALL: [Self; 5] = [Self::Right, Self::Alias, Self::More, Self::Wrong, Self::Nothing];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Alias => "among aliases",
+            Self::More => "and more",
+            Self::Wrong => "wrong",
+            Self::Nothing => "nothing",
+        }
+    }
+}
+
+/// The lines of all methods, set by set.
+pub fn lines(cases: &[Case], methods: &[String]) -> Vec<NamingLine> {
+    let own: Vec<&Case> = cases.iter().filter(|case| case.task == Task::Name).collect();
+    let mut sets: Vec<&str> = own.iter().map(|case| case.set.as_str()).collect();
+    sets.dedup();
+    let mut lines = Vec::new();
+    for method in methods {
+        for set in &sets {
+            let of_set: Vec<&&Case> = own.iter().filter(|case| case.set == *set).collect();
+            lines.extend(line(method, set, &of_set));
+        }
+    }
+    lines
+}
+
+fn line(method: &str, set: &str, cases: &[&&Case]) -> Option<NamingLine> {
+    let answers = || cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
+    let counts = Naming::ALL.map(|one| answers().filter(|answer| answer.naming == Some(one)).count());
+    Some(NamingLine {
+        method: method.to_owned(),
+        set: set.to_owned(),
+        missing: cases.first()?.missing.clone(),
+        failed: answers().filter(|answer| answer.naming.is_none()).count(),
+        named: Share::new(counts[0] + counts[1], answers().count())?,
+        counts,
+    })
+}
+
+/// All ships of a method that lack an effect, or all that lack nothing, together.
+pub fn total(lines: &[NamingLine], method: &str, is_missing: bool) -> Option<NamingLine> {
+    let own = lines.iter().filter(|line| line.method == method && line.missing.is_some() == is_missing);
+    let joined = own.cloned().reduce(|one, other| NamingLine {
+        counts: std::array::from_fn(|place| one.counts[place] + other.counts[place]),
+        failed: one.failed + other.failed,
+        ..one
+    })?;
+    let of = joined.counts.iter().sum::<usize>() + joined.failed;
+    Some(NamingLine { named: Share::new(joined.counts[0] + joined.counts[1], of)?, ..joined })
+}

@@ -1,0 +1,177 @@
+//! Where measured records are: files are known by name and checksum, wherever they lie below some folders. Nothing of
+//! where they lie goes into a result.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use campaign::disk;
+use scenario::failure::Failure;
+use scenario::hex;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use trial::Trial;
+use trial::reader::{RECORD, read_bytes};
+
+use crate::definition::{Definition, RecordFile, Source};
+
+/// Folders below one another that are searched: a link that leads back is not followed, and nobody has as many.
+const DEEPEST: usize = 32;
+
+/// The files below some folders that a definition knows by name.
+#[derive(Debug, Default)]
+pub struct Shelf {
+    places: BTreeMap<String, Vec<PathBuf>>,
+}
+
+/// A record that was found.
+#[derive(Debug)]
+pub struct Found {
+    /// The record.
+    pub trial: Trial,
+    /// What it was read from.
+    pub file: UsedFile,
+}
+
+/// A file that was used.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UsedFile {
+    /// Its name, without its place.
+    pub name: String,
+    /// Its SHA-256, hexadecimal.
+    pub sha256: String,
+}
+
+impl Shelf {
+    /// Looks through folders for the files that a definition names, in the order of the folders and of names.
+    ///
+    /// Fails when a folder cannot be listed; one below it that cannot be listed is passed by.
+    pub fn search(folders: &[PathBuf], definition: &Definition) -> Result<Self, Failure> {
+        let mut wanted = BTreeSet::new();
+        for set in &definition.sets {
+            if let Source::Measured { copies, .. } = &set.source {
+                wanted.extend(copies.iter().flatten().map(|copy| copy.file.as_str()));
+            }
+        }
+        let mut shelf = Self::default();
+        for folder in folders {
+            let names = disk::names(folder).map_err(|error| {
+                let advice = "give the folder of the measured records with --data, or in KEMPF_DATA";
+                Failure::input(format!("{}: {error}; {advice}", folder.display()))
+            })?;
+            shelf.look_through(folder, names, &wanted, 0);
+        }
+        Ok(shelf)
+    }
+
+    fn look_through(&mut self, folder: &Path, names: Vec<String>, wanted: &BTreeSet<&str>, depth: usize) {
+        for name in names {
+            let path = folder.join(&name);
+            let is_folder = fs::symlink_metadata(&path).is_ok_and(|about| about.is_dir());
+            match is_folder {
+                true if depth < DEEPEST => {
+                    if let Ok(names) = disk::names(&path) {
+                        self.look_through(&path, names, wanted, depth + 1);
+                    }
+                }
+                false if wanted.contains(name.as_str()) => self.places.entry(name).or_default().push(path),
+                _ => {}
+            }
+        }
+    }
+
+    /// The first of some files that is there as it should be. Fails with the reason in words.
+    pub fn take(&self, copies: &[RecordFile]) -> Result<Found, String> {
+        let mut others = Vec::new();
+        for copy in copies {
+            for path in self.places.get(&copy.file).into_iter().flatten() {
+                let bytes = match disk::read(path, RECORD.largest) {
+                    Ok(Some(bytes)) => bytes,
+                    Ok(None) => continue,
+                    Err(error) => {
+                        others.push(format!("{} cannot be read: {error}", copy.file));
+                        continue;
+                    }
+                };
+                let sha256 = hex(&Sha256::digest(&bytes));
+                if sha256 != copy.sha256 {
+                    let begin = |hash: &str| hash[..12].to_owned();
+                    others.push(format!(
+                        "{} is another file: its SHA-256 begins with {}, expected {}",
+                        copy.file,
+                        begin(&sha256),
+                        begin(&copy.sha256)
+                    ));
+                    continue;
+                }
+                return read(copy, bytes, sha256);
+            }
+        }
+        if others.is_empty() {
+            let names: Vec<&str> = copies.iter().map(|copy| copy.file.as_str()).collect();
+            return Err(format!("no file {}", names.join(" or ")));
+        }
+        others.dedup();
+        Err(others.join("; "))
+    }
+}
+
+fn read(copy: &RecordFile, bytes: Vec<u8>, sha256: String) -> Result<Found, String> {
+    let size = Some(bytes.len() as u64);
+    let reading = read_bytes(Path::new(&copy.file), Cursor::new(bytes), size, copy.sidecar.as_ref());
+    let reading = reading.map_err(|error| error.to_string())?;
+    Ok(Found { trial: reading.trial, file: UsedFile { name: copy.file.clone(), sha256 } })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RECORD_TEXT: &str = "t_s,heading_deg,rudder_deg\n0,0,0\n1,0,10\n2,1,10\n3,2,10\n4,4,-10\n5,5,-10\n6,5,-10\n\
+                               7,4,-10\n8,2,-10\n9,0,10\n10,-2,10\n11,-3,10\n";
+
+    fn copy(file: &str, text: &str) -> RecordFile {
+        RecordFile { file: file.into(), sha256: hex(&Sha256::digest(text)), sidecar: None }
+    }
+
+    fn shelf(folder: &Path) -> Shelf {
+        let mut shelf = Shelf::default();
+        shelf.look_through(folder, disk::names(folder).expect("a folder"), &BTreeSet::from(["a.csv", "b.csv"]), 0);
+        shelf
+    }
+
+    #[test]
+    fn a_record_is_known_by_its_checksum_wherever_it_lies() {
+        let desk = tempfile::tempdir().expect("a folder");
+        fs::create_dir_all(desk.path().join("x/y")).expect("folders");
+        // Another file of the same name comes first; the right one is there twice.
+        fs::write(desk.path().join("a.csv"), "another").expect("written");
+        fs::write(desk.path().join("x/a.csv"), RECORD_TEXT).expect("written");
+        fs::write(desk.path().join("x/y/a.csv"), RECORD_TEXT).expect("written");
+        let found = shelf(desk.path()).take(&[copy("b.csv", RECORD_TEXT), copy("a.csv", RECORD_TEXT)]);
+        let found = found.expect("it is there");
+        assert_eq!((found.file.name.as_str(), found.trial.len()), ("a.csv", 12));
+    }
+
+    #[test]
+    fn what_is_absent_or_another_file_is_told_without_its_place() {
+        let desk = tempfile::tempdir().expect("a folder");
+        let absent = shelf(desk.path()).take(&[copy("a.csv", RECORD_TEXT), copy("b.csv", "")]).expect_err("absent");
+        assert_eq!(absent, "no file a.csv or b.csv");
+        fs::write(desk.path().join("a.csv"), format!("{RECORD_TEXT} ")).expect("written");
+        let another = shelf(desk.path()).take(&[copy("a.csv", RECORD_TEXT)]).expect_err("another file");
+        assert!(another.starts_with("a.csv is another file: its SHA-256 begins with "), "{another}");
+        assert!(!another.contains(&*desk.path().to_string_lossy()), "{another}");
+    }
+
+    /// A file with the right checksum that is no record says so.
+    #[test]
+    fn what_cannot_be_read_is_told() {
+        let desk = tempfile::tempdir().expect("a folder");
+        fs::write(desk.path().join("a.csv"), "no,record\n1,2\n").expect("written");
+        let error = shelf(desk.path()).take(&[copy("a.csv", "no,record\n1,2\n")]).expect_err("no record");
+        assert!(error.starts_with("a.csv"), "{error}");
+    }
+}

@@ -1,0 +1,160 @@
+//! Quantiles of scores among which some are infinite, and their intervals by drawing clusters with replacement (Efron
+//! 1979; Field and Welsh 2007 for clusters).
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+/// Times that clusters are drawn: enough for the 2.5 and 97.5 % points to two digits.
+const RESAMPLES: usize = 1000;
+
+/// A fixed seed: the same cases give the same interval.
+const SEED: u64 = 1979;
+
+/// Fewest clusters of which an interval is given: no pair of order statistics of fewer covers the median in 95 %.
+pub const FEWEST: usize = 6;
+
+/// A figure with its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Figure {
+    /// The figure; none where an answer that failed stands there.
+    pub value: Option<f64>,
+    /// Its interval, where there are six clusters or more; an end is none where an answer that failed stands there.
+    pub ci95: Option<[Option<f64>; 2]>,
+}
+
+impl Figure {
+    /// A figure of some clusters; of several of its values, in any order, the ends of the interval.
+    pub fn new(value: f64, clusters: usize, mut resampled: Vec<f64>) -> Self {
+        let finite = |value: f64| value.is_finite().then_some(value);
+        resampled.sort_by(f64::total_cmp);
+        let end = |p: f64| resampled[((resampled.len() - 1) as f64 * p).round() as usize];
+        let ci95 = (clusters >= FEWEST && !resampled.is_empty()).then(|| [finite(end(0.025)), finite(end(0.975))]);
+        Self { value: finite(value), ci95 }
+    }
+}
+
+/// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of which some may be
+/// infinite. NaN of nothing.
+pub fn quantile(sorted: &[f64], p: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = p * last as f64;
+    let below = place.floor() as usize;
+    let (low, high) = (sorted[below], sorted[(below + 1).min(last)]);
+    let share = place - below as f64;
+    if share == 0.0 || low == high { low } else { low + share * (high - low) }
+}
+
+/// The median and the 90 % point of some scores.
+pub fn middle_and_high(mut scores: Vec<f64>) -> [f64; 2] {
+    scores.sort_by(f64::total_cmp);
+    [0.5, 0.9].map(|p| quantile(&scores, p))
+}
+
+/// What is computed from the cases of many draws of clusters, in the order of the draws.
+pub fn resampled<T>(clusters: &[Vec<usize>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut cases = Vec::new();
+    let draw = |_| {
+        cases.clear();
+        for _ in 0..clusters.len() {
+            cases.extend(&clusters[rng.random_range(0..clusters.len())]);
+        }
+        compute(&cases)
+    };
+    (0..RESAMPLES).map(draw).collect()
+}
+
+/// The same where sets are drawn, and from every set that was drawn its clusters.
+pub fn resampled_by_set<T>(sets: &[Vec<Vec<usize>>], compute: impl Fn(&[usize]) -> T) -> Vec<T> {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut cases = Vec::new();
+    let draw = |_| {
+        cases.clear();
+        for _ in 0..sets.len() {
+            let clusters = &sets[rng.random_range(0..sets.len())];
+            for _ in 0..clusters.len() {
+                cases.extend(&clusters[rng.random_range(0..clusters.len())]);
+            }
+        }
+        compute(&cases)
+    };
+    (0..RESAMPLES).map(draw).collect()
+}
+
+/// One score over another of the same case: two that failed are alike, and one that failed is endlessly worse.
+pub fn ratio(one: f64, other: f64) -> f64 {
+    if one == other { 1.0 } else { one / other }
+}
+
+/// Ranks of some scores from 1, the smallest first; equal ones share the mean of their ranks.
+pub fn ranks(scores: &[f64]) -> Vec<f64> {
+    let rank = |score: &f64| {
+        let smaller = scores.iter().filter(|other| *other < score).count();
+        let equal = scores.iter().filter(|other| *other == score).count();
+        smaller as f64 + 0.5 * (equal as f64 + 1.0)
+    };
+    scores.iter().map(rank).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::LN_2;
+
+    const WORST: f64 = f64::INFINITY;
+
+    #[test]
+    fn quantiles_know_answers_that_failed() {
+        assert_eq!(middle_and_high(vec![3.0, 1.0, 2.0]), [2.0, 2.8]);
+        assert_eq!(middle_and_high(vec![1.0, WORST, 2.0, 3.0]), [2.5, WORST]);
+        assert_eq!(middle_and_high(vec![1.0, WORST]), [WORST, WORST]);
+        assert_eq!(middle_and_high(vec![WORST; 4]), [WORST, WORST]);
+        assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn equal_scores_share_a_rank() {
+        assert_eq!(ranks(&[2.0, 1.0, WORST, 2.0, WORST]), [2.5, 1.0, 4.5, 2.5, 4.5]);
+        assert_eq!(
+            [ratio(WORST, WORST), ratio(WORST, 1.0), ratio(1.0, WORST), ratio(0.0, 0.0)],
+            [1.0, WORST, 0.0, 1.0]
+        );
+    }
+
+    /// Intervals of the median of exponential numbers, whose median is ln 2: they repeat and cover 95 % within the
+    /// error of 300 samples; pairs that are the same count as one.
+    #[test]
+    fn intervals_cover_what_they_say() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let samples = 300;
+        let covered = (0..samples).filter(|_| {
+            let own: Vec<f64> = (0..40).map(|_| -rng.random::<f64>().ln()).collect();
+            // Every number twice, in a cluster of its own.
+            let clusters: Vec<Vec<usize>> = (0..40).map(|place| vec![place, place]).collect();
+            let of = |cases: &[usize]| middle_and_high(cases.iter().map(|&case| own[case]).collect())[0];
+            let figure = Figure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
+            let again = Figure::new(of(&clusters.concat()), clusters.len(), resampled(&clusters, of));
+            assert_eq!(figure, again);
+            let [Some(low), Some(high)] = figure.ci95.expect("enough clusters") else { panic!("finite") };
+            low <= LN_2 && LN_2 <= high
+        });
+        let share = covered.count() as f64 / f64::from(samples);
+        assert!((0.91..0.985).contains(&share), "{share}");
+    }
+
+    #[test]
+    fn few_clusters_have_no_interval() {
+        assert_eq!(Figure::new(1.0, 5, vec![1.0; 10]), Figure { value: Some(1.0), ci95: None });
+        assert_eq!(Figure::new(WORST, 6, vec![1.0, WORST]), Figure { value: None, ci95: Some([Some(1.0), None]) });
+    }
+
+    /// Sets of very different size: where one is drawn, all its clusters are.
+    #[test]
+    fn sets_are_drawn_whole() {
+        let sets = vec![vec![vec![0]; 30], vec![vec![1]; 2]];
+        let sizes = resampled_by_set(&sets, <[usize]>::len);
+        assert!(sizes.iter().all(|size| [4, 32, 60].contains(size)), "{sizes:?}");
+    }
+}

@@ -1,0 +1,129 @@
+//! `study bench`: the benchmark on measured and simulated trials. The numbers are made in the crate `bench`; here its
+//! tables, figures and files.
+
+use std::env;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use ::bench::{Definition, Entry, Method, Results, Shelf};
+use campaign::folder::ResultFolder;
+use scenario::failure::{Failure, OnPath};
+use scenario::problem::suggestion;
+
+use crate::bench_options::BenchRequest;
+use crate::options::Common;
+use crate::screen::{self, Told};
+use crate::terminal::Terminal;
+use crate::views::page_files::{REPORT, write_page};
+use crate::views::{bench_figures, bench_page, bench_tables};
+use crate::{interrupt, outside};
+
+/// What other programs read.
+const BENCH: &str = "bench.json";
+
+/// One row for every answer.
+const ROWS: &str = "rows.csv";
+
+/// The leaderboards as one table.
+const LEADERBOARD: &str = "leaderboard.csv";
+
+/// Folder with a page for every method.
+const METHODS: &str = "methods";
+
+/// Names the folder of measured records where the command line does not.
+const DATA: &str = "KEMPF_DATA";
+
+/// Runs a benchmark, prints the leaderboards, writes `bench.json`, tables, pages and figures.
+///
+/// Fails when the definition is at fault, when a folder of records cannot be listed, and when nothing can be asked.
+pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
+    let theme = request.style.theme()?;
+    let definition = match &request.definition {
+        Some(path) => Definition::read(path, common.seed)?,
+        None => Definition::published(common.seed)?,
+    };
+    let definition = definition.only(&request.sets, &request.tasks)?;
+    let methods = methods(request)?;
+    let shelf = Shelf::search(&folders(&request.data), &definition)?;
+    let entry = Entry { definition: &definition, shelf: &shelf, methods: &methods };
+    let results = ::bench::run(&entry, &Terminal::new(common.quiet))?;
+    if results.cases.is_empty() {
+        let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
+        return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
+    }
+    let default =
+        || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { &definition.name });
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?;
+    publish(&results, &folder, |folder| bench_figures::draw(&results, &theme, folder))?;
+
+    let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
+    let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
+    let naming = match results.naming.is_empty() {
+        true => String::new(),
+        false => format!("\n{}", bench_tables::naming_totals(&results).to_text()),
+    };
+    let head = format!("{}: {} questions\n", results.definition.name, results.cases.len());
+    let told = Told {
+        words: [&head, &naming],
+        table: &bench_tables::leaderboard(&results),
+        notes: &notes,
+        document: &results.json().on("describe", &folder.path().join(BENCH))?,
+    };
+    screen::tell(common, &told, &[])
+}
+
+/// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.
+fn methods(request: &BenchRequest) -> Result<Vec<Method>, Failure> {
+    let names = &request.methods;
+    let mut methods = Method::ours();
+    let known: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();
+    if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
+        return Err(Failure::input(format!("--method {unknown}: no such method; {}", suggestion(unknown, &known))));
+    }
+    methods.retain(|method| names.is_empty() || names.iter().any(|name| name == method.label()));
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let outside = outside::methods(&request.external, &known)?;
+    if !outside.is_empty() {
+        interrupt::install();
+    }
+    methods.extend(outside.into_iter().map(|(label, method)| Method::new(label, Arc::from(method))));
+    Ok(methods)
+}
+
+/// Where measured records are looked for.
+fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
+    match (named, env::var_os(DATA)) {
+        ([_, ..], _) => named.to_vec(),
+        ([], Some(folder)) if !folder.is_empty() => vec![PathBuf::from(folder)],
+        _ => Some(PathBuf::from("data")).filter(|folder| folder.is_dir()).into_iter().collect(),
+    }
+}
+
+fn skipped(one: &::bench::results::Skipped) -> String {
+    format!("{}, {}: {}", one.set, one.record, one.reason)
+}
+
+/// Writes everything; what an earlier run left and this one does not make goes away.
+fn publish(
+    results: &Results,
+    folder: &ResultFolder,
+    draw: impl FnOnce(&ResultFolder) -> Result<Vec<(String, String)>, Failure>,
+) -> Result<(), Failure> {
+    let path = folder.path().join(BENCH);
+    folder.keep(BENCH, results.json().on("describe", &path)?)?;
+    folder.write(ROWS, bench_tables::rows(results).to_csv())?;
+    folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
+    bench_figures::remove(folder)?;
+    let drawn = draw(folder)?;
+    let pages = folder.inside(METHODS)?;
+    for name in campaign::disk::names(pages.path()).on("list the folder", pages.path())? {
+        let old = pages.path().join(&name);
+        if name.ends_with(".md") {
+            campaign::disk::remove(&old).on("remove", &old)?;
+        }
+    }
+    for method in &results.methods {
+        pages.write(&format!("{method}.md"), bench_page::of_method(results, method))?;
+    }
+    write_page(folder, &bench_page::page(results, &drawn))
+}

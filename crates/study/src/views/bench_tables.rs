@@ -1,0 +1,343 @@
+//! Tables of a benchmark: leaderboards, sets, answers one by one.
+
+use bench::board::{Board, Figure, SetLine, Share, Standing, by_set};
+use bench::cases::{Case, Naming};
+use bench::naming::{NamingLine, total};
+use bench::{Results, Task};
+use report::number::{MISSING, fixed, significant};
+use report::{Column, Table};
+
+/// What stands for a figure that an answer which failed decides.
+const FAILED: &str = "failed";
+
+/// Digits of scores: no interval is so narrow that more of them would say anything.
+const DIGITS: usize = 3;
+
+fn score(value: Option<f64>) -> String {
+    value.map_or_else(|| FAILED.to_owned(), |value| significant(value, DIGITS))
+}
+
+fn value(figure: Figure) -> String {
+    score(figure.value)
+}
+
+fn ends(figure: Figure) -> String {
+    figure.ci95.map_or_else(|| MISSING.to_owned(), |[low, high]| format!("[{}, {}]", score(low), score(high)))
+}
+
+fn percent(figure: Figure) -> Figure {
+    let times = |value: f64| 100.0 * value;
+    Figure { value: figure.value.map(times), ci95: figure.ci95.map(|ends| ends.map(|end| end.map(times))) }
+}
+
+fn share(share: Share) -> String {
+    let [low, high] = share.ci95.map(|end| fixed(100.0 * end, 0));
+    format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
+}
+
+/// What a board is of, in words.
+pub fn board_name(board: &Board) -> String {
+    format!("{}, {}", board.task.title(), board.field)
+}
+
+fn columns(reference: &str, indices: bool) -> Vec<Column> {
+    let mut columns = vec![
+        Column::left("method"),
+        Column::decimal("median"),
+        Column::left("95 %"),
+        Column::decimal("90 % within"),
+        Column::right("failed"),
+        Column::decimal(format!("over {reference}")),
+        Column::left("95 %"),
+        Column::decimal("better").unit("%"),
+        Column::decimal("mean rank"),
+    ];
+    if indices {
+        columns.extend([Column::decimal("intervals hold K").unit("%"), Column::decimal("hold T").unit("%")]);
+    }
+    columns
+}
+
+fn cells(standing: &Standing, indices: bool) -> Vec<String> {
+    let paired = |figure: Option<Figure>, of: fn(Figure) -> String| figure.map_or_else(|| MISSING.to_owned(), of);
+    let mut cells = vec![
+        standing.method.clone(),
+        value(standing.median),
+        ends(standing.median),
+        value(standing.high),
+        if standing.failed == 0 { String::new() } else { standing.failed.to_string() },
+        paired(standing.ratio, value),
+        paired(standing.ratio, ends),
+        paired(standing.better.map(percent), |figure| figure.value.map_or_else(String::new, |value| fixed(value, 0))),
+        fixed(standing.rank, 1),
+    ];
+    if indices {
+        match standing.holds {
+            Some(holds) => cells.extend(holds.map(share)),
+            None => cells.extend([MISSING, MISSING].map(str::to_owned)),
+        }
+    }
+    cells
+}
+
+/// One board.
+pub fn board(results: &Results, board: &Board) -> Table {
+    let indices = board.task == Task::Indices;
+    let mut table = Table::new(columns(&results.reference, indices));
+    board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
+    table
+}
+
+/// All boards below each other, for a person.
+pub fn leaderboard(results: &Results) -> Table {
+    let mut columns = columns(&results.reference, true);
+    columns.splice(0..0, [Column::left("task"), Column::left("records"), Column::right("n")]);
+    let mut table = Table::new(columns);
+    for board in &results.boards {
+        for standing in &board.standings {
+            let mut line = vec![board.task.id().to_owned(), board.field.clone(), board.cases.to_string()];
+            line.extend(cells(standing, board.task == Task::Indices));
+            table.push(line);
+        }
+    }
+    table
+}
+
+/// All boards with all their numbers, for a program.
+pub fn leaderboard_numbers(results: &Results) -> Table {
+    let mut table = Table::new(
+        [
+            "task",
+            "records",
+            "cases",
+            "clusters",
+            "method",
+            "failed",
+            "median",
+            "median lower 95",
+            "median upper 95",
+            "90 % within",
+            "90 % within lower 95",
+            "90 % within upper 95",
+            "over reference",
+            "over reference lower 95",
+            "over reference upper 95",
+            "better [%]",
+            "better lower 95 [%]",
+            "better upper 95 [%]",
+            "mean rank",
+            "intervals hold K [%]",
+            "intervals hold T [%]",
+        ]
+        .map(Column::left),
+    );
+    let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let all = |figure: Option<Figure>| match figure {
+        None => vec![String::new(); 3],
+        Some(Figure { value, ci95 }) => {
+            let [low, high] = ci95.unwrap_or([None; 2]);
+            [value, low, high].map(text).to_vec()
+        }
+    };
+    for board in &results.boards {
+        for standing in &board.standings {
+            let held =
+                |place: usize| standing.holds.map(|holds| 100.0 * holds[place].count as f64 / holds[place].of as f64);
+            let head = [board.task.id(), board.field.as_str()].map(str::to_owned);
+            let counts = [board.cases.to_string(), board.clusters.to_string(), standing.method.clone()];
+            let figures = [Some(standing.median), Some(standing.high), standing.ratio, standing.better.map(percent)];
+            let line = head.into_iter().chain(counts).chain([standing.failed.to_string()]);
+            let line = line.chain(figures.into_iter().flat_map(all));
+            table.push(line.chain([Some(standing.rank), held(0), held(1)].map(text)));
+        }
+    }
+    table
+}
+
+/// Medians set by set, methods side by side.
+pub fn sets(results: &Results) -> Table {
+    let heads = [Column::left("task"), Column::left("set"), Column::right("n")];
+    let methods = results.methods.iter().map(Column::decimal);
+    let mut table = Table::new(heads.into_iter().chain(methods).collect::<Vec<_>>());
+    for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
+        let cell = |own: &Option<(f64, usize)>| {
+            own.map_or_else(
+                || MISSING.to_owned(),
+                |(median, _)| score(Some(median).filter(|median| median.is_finite())),
+            )
+        };
+        let head = [task.id().to_owned(), set, cases.to_string()];
+        table.push(head.into_iter().chain(methods.iter().map(cell)));
+    }
+    table
+}
+
+/// One method on every set, beside the reference.
+pub fn of_method(results: &Results, method: &str) -> Table {
+    let mut columns = vec![
+        Column::left("task"),
+        Column::left("set"),
+        Column::right("n"),
+        Column::decimal("median"),
+        Column::right("failed"),
+    ];
+    let place = |label: &str| results.methods.iter().position(|own| own == label);
+    let reference = place(&results.reference).filter(|_| method != results.reference);
+    columns.extend(reference.map(|_| Column::decimal(format!("median of {}", results.reference))));
+    let mut table = Table::new(columns);
+    let Some(own) = place(method) else { return table };
+    for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
+        let Some((median, failed)) = methods[own] else { continue };
+        let count = if failed == 0 { String::new() } else { failed.to_string() };
+        let mut line = vec![
+            task.id().to_owned(),
+            set,
+            cases.to_string(),
+            score(Some(median).filter(|median| median.is_finite())),
+            count,
+        ];
+        let other = reference.map(|place| methods[place]);
+        line.extend(other.map(|other| {
+            other.map_or_else(
+                || MISSING.to_owned(),
+                |(median, _)| score(Some(median).filter(|median| median.is_finite())),
+            )
+        }));
+        table.push(line);
+    }
+    table
+}
+
+/// One method on every board.
+pub fn standings_of(results: &Results, method: &str) -> Table {
+    let mut columns = columns(&results.reference, true);
+    columns[0] = Column::left("task");
+    columns.insert(1, Column::right("n"));
+    let mut table = Table::new(columns);
+    for board in &results.boards {
+        for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
+            let mut line = cells(standing, board.task == Task::Indices);
+            line[0] = format!("{} ({} of {})", board_name(board), place + 1, board.standings.len());
+            line.insert(1, board.cases.to_string());
+            table.push(line);
+        }
+    }
+    table
+}
+
+fn naming_table(first: &str) -> Table {
+    let said = Naming::ALL.map(|one| Column::right(one.words()));
+    let heads = [Column::left("method"), Column::left(first), Column::right("n")];
+    let rest = [Column::right("failed"), Column::decimal("named").unit("%")];
+    Table::new(heads.into_iter().chain(said).chain(rest).collect::<Vec<_>>())
+}
+
+fn push_naming(table: &mut Table, line: &NamingLine, set: &str) {
+    let count = |count: usize| if count == 0 { String::new() } else { count.to_string() };
+    let head = [line.method.clone(), set.to_owned(), line.named.of.to_string()];
+    let rest = [count(line.failed), share(line.named)];
+    table.push(head.into_iter().chain(line.counts.map(count)).chain(rest));
+}
+
+/// What methods said of missing effects, all ships together.
+pub fn naming_totals(results: &Results) -> Table {
+    let mut table = naming_table("ships");
+    for method in &results.methods {
+        for (is_missing, ships) in [(true, "that lack one effect"), (false, "that lack nothing")] {
+            if let Some(line) = total(&results.naming, method, is_missing) {
+                push_naming(&mut table, &line, ships);
+            }
+        }
+    }
+    table
+}
+
+/// The same set by set, of one method or of all.
+pub fn naming(results: &Results, method: Option<&str>) -> Table {
+    let mut table = naming_table("set");
+    let own = results.naming.iter().filter(|line| method.is_none_or(|method| line.method == method));
+    own.for_each(|line| push_naming(&mut table, line, &line.set));
+    table
+}
+
+/// The ranking over all predictions.
+pub fn overall(results: &Results) -> Table {
+    let mut table = Table::new([Column::left("method"), Column::decimal("mean rank"), Column::left("95 %")]);
+    for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
+        table.push([method.clone(), value(*rank), ends(*rank)]);
+    }
+    table
+}
+
+/// The sets and their records.
+pub fn present(results: &Results) -> Table {
+    let heads = [Column::left("set"), Column::right("trials"), Column::left("record"), Column::left("manoeuvre")];
+    let files = [Column::left("file"), Column::left("SHA-256")];
+    let mut table = Table::new(heads.into_iter().chain(files).collect::<Vec<_>>());
+    for set in &results.sets {
+        for (place, record) in set.records.iter().enumerate() {
+            let first = |text: String| if place == 0 { text } else { String::new() };
+            let trials = if set.source.is_none() { set.trials.to_string() } else { String::new() };
+            let file = record.file.as_ref();
+            let hash = file.map_or(MISSING.to_owned(), |file| format!("{}…", &file.sha256[..12]));
+            let name = file.map_or(MISSING.to_owned(), |file| file.name.clone());
+            let head = [first(set.name.clone()), first(trials), record.name.clone(), record.manoeuvre.clone()];
+            table.push(head.into_iter().chain([name, hash]));
+        }
+    }
+    table
+}
+
+/// One row for every answer.
+pub fn rows(results: &Results) -> Table {
+    let mut table = Table::new(
+        [
+            "task",
+            "records",
+            "set",
+            "trial",
+            "fitted",
+            "scored",
+            "method",
+            "score",
+            "K error [%]",
+            "T error [%]",
+            "K held",
+            "T held",
+            "missing",
+            "said",
+            "named",
+            "failure",
+        ]
+        .map(Column::left),
+    );
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
+    for case in &results.cases {
+        let Case { task, field, set, trial, fitted, scored, missing, answers } = case;
+        for answer in answers {
+            let errors = answer.errors_percent;
+            let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();
+            let said = answer.naming.map_or_else(String::new, |naming| naming.words().to_owned());
+            table.push([
+                task.id().to_owned(),
+                field.clone(),
+                set.clone(),
+                trial.map_or_else(String::new, |trial| trial.to_string()),
+                fitted.join(" + "),
+                scored.clone().unwrap_or_default(),
+                answer.method.clone(),
+                number(answer.score),
+                number(errors.map(|errors| errors[0])),
+                number(errors.map(|errors| errors[1])),
+                truth(answer.holds.map(|holds| holds[0])),
+                truth(answer.holds.map(|holds| holds[1])),
+                missing.clone().unwrap_or_default(),
+                said,
+                named.join(" + "),
+                answer.failure.clone().unwrap_or_default(),
+            ]);
+        }
+    }
+    table
+}

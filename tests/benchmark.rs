@@ -1,0 +1,77 @@
+//! The published benchmark: its definition is the one of the program, and its leaderboards follow from its answers.
+
+use std::path::{Path, PathBuf};
+
+use bench::board::boards;
+use bench::cases::Case;
+use bench::overall::overall;
+use bench::{Definition, Results, Task, naming};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn published() -> Results {
+    let path = root().join("results/bench/bench.json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+#[test]
+fn the_published_benchmark_is_that_of_the_program() {
+    let definition = Definition::published(None).unwrap_or_else(|failure| panic!("{failure}"));
+    let results = published();
+    assert_eq!(results.definition.sha256, definition.sha256, "run `study bench` again");
+    assert_eq!(results.skipped, [], "a published result has all records");
+    let asked: usize = definition
+        .sets
+        .iter()
+        .map(|set| {
+            let trials = results.sets.iter().find(|own| own.name == set.name).map_or(0, |own| own.trials);
+            set.questions.len() * trials
+        })
+        .sum();
+    assert_eq!(results.cases.len(), asked);
+}
+
+#[test]
+fn the_published_leaderboards_follow_from_the_stored_answers() {
+    let results = published();
+    assert_eq!(results.boards, boards(&results.cases, &results.methods, &results.reference));
+    assert_eq!(results.naming, naming::lines(&results.cases, &results.methods));
+    assert_eq!(results.overall, overall(&results.cases, &results.methods));
+    // The figures themselves, by another way: half of the scores are not larger, half are not smaller.
+    for board in &results.boards {
+        let cases: Vec<&Case> =
+            results.cases.iter().filter(|case| case.task == board.task && case.field == board.field).collect();
+        for standing in &board.standings {
+            let scores: Vec<f64> = cases.iter().filter_map(|case| case.score_of(&standing.method)).collect();
+            let median = standing.median.value.unwrap_or(f64::INFINITY);
+            let half = scores.len().div_ceil(2);
+            assert_eq!(scores.len(), board.cases);
+            assert!(scores.iter().filter(|score| **score <= median).count() >= half, "{}", standing.method);
+            assert!(scores.iter().filter(|score| **score >= median).count() >= half, "{}", standing.method);
+        }
+    }
+}
+
+/// Nobody predicts worse than a ship that goes straight on without its being said.
+#[test]
+fn the_floor_is_on_every_board_of_headings() {
+    let results = published();
+    for board in results.boards.iter().filter(|board| board.task != Task::Indices) {
+        let labels: Vec<&str> = board.standings.iter().map(|standing| standing.method.as_str()).collect();
+        assert_eq!(labels.len(), results.methods.len(), "{labels:?}");
+        assert!(labels.contains(&bench::method::STRAIGHT_ON), "{labels:?}");
+    }
+}
+
+/// What is published holds no place of a machine.
+#[test]
+fn the_published_benchmark_names_files_and_no_folders() {
+    for set in published().sets {
+        for file in set.records.iter().filter_map(|record| record.file.as_ref()) {
+            assert!(!file.name.contains(['/', '\\']), "{}", file.name);
+        }
+    }
+}
