@@ -1,11 +1,14 @@
 //! The tests of the whole workspace, one file a subject.
 
 mod architecture;
+mod benchmark;
 mod claims;
 mod effects;
+mod external;
 mod golden;
 mod identifiers;
 mod invariance;
+mod links;
 mod logs;
 mod logs_properties;
 mod measured;

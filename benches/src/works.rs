@@ -1,12 +1,14 @@
 //! All pieces of work, in groups: what is measured, what stands beside it and what is to be reached.
 
 mod identification;
+mod outside;
 mod prediction;
 mod simulation;
 mod studies;
 mod tracing;
 
 pub use identification::{RIVAL, identification};
+pub use outside::outside;
 pub use prediction::prediction;
 pub use simulation::simulation;
 pub use studies::{CHECK_S, SHARE, scenarios, scenarios_folder, studies, throughput};
@@ -14,7 +16,7 @@ pub use tracing::tracing;
 
 use crate::work::Group;
 
-/// Every group, in the order of reports.
+/// Every group of the report, in its order; [`outside`] needs a program beside the one that measures.
 pub fn all() -> Vec<Group> {
     vec![simulation(), identification(), tracing(), prediction(), studies()]
 }

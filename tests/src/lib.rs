@@ -7,12 +7,14 @@
 //! | simulated records, and what can be done to a record | [`records`] |
 //! | logs in every format and with every trouble, of one known ship | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
+//! | what the outside estimator of the tests computes | [`outside`] |
 //! | measured records, which are not part of the project | [`measured`] |
 //! | ships that are on no list, traced | [`unlisted`] |
 
 pub mod fuzz;
 pub mod logs;
 pub mod measured;
+pub mod outside;
 pub mod records;
 pub mod unlisted;
 pub mod validation;

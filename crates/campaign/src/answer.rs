@@ -9,7 +9,7 @@ use ship::angle::to_deg;
 use trial::Quantity;
 
 /// K, T and δ_r of one method.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Parameters {
     /// K, 1/s.
     #[serde(rename = "K_per_s")]
@@ -22,7 +22,7 @@ pub struct Parameters {
 }
 
 /// K and T without dimension: K' = K L/V, T' = T V/L.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PrimeIndices {
     /// K'.
     #[serde(rename = "K")]
@@ -40,7 +40,7 @@ impl Parameters {
 }
 
 /// Heading error on a record that was not used for identification.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Validation {
     /// The record.
     pub file: String,
@@ -49,7 +49,7 @@ pub struct Validation {
 }
 
 /// Whether a method gave an answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// It did.
@@ -59,10 +59,13 @@ pub enum Status {
 }
 
 /// The answer of one method.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodEntry {
     /// Id of the method, or its label in a scenario.
     pub method: String,
+    /// Id of the method in `fit.json`, where it goes by another name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<String>,
     /// Whether it gave an answer.
     pub status: Status,
     /// Why it gave none.
@@ -93,6 +96,7 @@ impl MethodEntry {
     pub fn of(method: &str, estimate: &Estimate, heading_rmse_deg: Option<f64>) -> Self {
         Self {
             method: method.to_owned(),
+            id: None,
             status: Status::Ok,
             reason: None,
             failure: None,
@@ -120,6 +124,7 @@ impl MethodEntry {
     pub fn failed(method: &str, error: &IdentifyError) -> Self {
         Self {
             method: method.to_owned(),
+            id: None,
             status: Status::Failed,
             reason: Some(error.to_string()),
             failure: Some(error.kind().to_owned()),

@@ -17,6 +17,7 @@ use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
+use crate::outside::AtWork;
 use crate::plan::Plan;
 use crate::rows::{Layout, Row};
 use crate::showcase;
@@ -51,6 +52,7 @@ pub fn collect(
     }
     if let Some(stored) = store::manifest_of_rows(folder.path())? {
         is_same(&stored, &manifest, folder.path())?;
+        let _outside = AtWork::begin(scenario, folder, observer)?;
         return look_again(scenario, manifest, folder, observer);
     }
     let design = design(scenario);
@@ -65,6 +67,7 @@ pub fn collect(
             files::MANIFEST
         )));
     }
+    let _outside = AtWork::begin(scenario, folder, observer)?;
     let mut plan = Plan::new(scenario, shard);
     let mut unfinished = Unfinished::open(folder, manifest, &design, &layout, observer)?;
     let mut spots = SpotCheck::new(scenario, folder.path());
@@ -247,12 +250,18 @@ fn watched<'scope>(
     let (send, receive) = channel();
     scope.spawn(move || {
         let bench = bench(scenario, &tasks);
-        tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
-            if !observer.is_asked_to_stop() {
-                // Nobody receives any more when the wait for a trial was given up.
-                let _ = send.send((index, bench.run(task)));
-            }
-        });
+        let run = || {
+            tasks.par_iter().enumerate().for_each_with(send, |send, (index, &task)| {
+                if !observer.is_asked_to_stop() {
+                    // Nobody receives any more when the wait for a trial was given up.
+                    let _ = send.send((index, bench.run(task)));
+                }
+            });
+        };
+        match observer.threads() {
+            Some(threads) => threads.install(run),
+            None => run(),
+        }
     });
     let mut asked: Option<Instant> = None;
     let is_stuck = loop {

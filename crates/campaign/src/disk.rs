@@ -4,6 +4,8 @@
 use std::fs;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use parquet::file::reader::{ChunkReader, Length};
 
@@ -50,21 +52,29 @@ impl File {
     /// Keeps all others out while the file is open; `false` when another one holds it.
     pub fn lock(&self) -> io::Result<bool> {
         strike(&self.path)?;
-        taken(self.file.try_lock())
+        taken(|| self.file.try_lock())
     }
 
     /// Keeps out those who want to write while the file is open; `false` when one of them holds it.
     pub fn lock_for_reading(&self) -> io::Result<bool> {
         strike(&self.path)?;
-        taken(self.file.try_lock_shared())
+        taken(|| self.file.try_lock_shared())
     }
 }
 
-fn taken(lock: Result<(), fs::TryLockError>) -> io::Result<bool> {
-    match lock {
-        Ok(()) => Ok(true),
-        Err(fs::TryLockError::WouldBlock) => Ok(false),
-        Err(fs::TryLockError::Error(error)) => Err(error),
+/// Time after which a lock that somebody holds is believed: a process that this program is about to start holds all its
+/// files for a moment, those included that were closed meanwhile.
+const MOMENT: Duration = Duration::from_millis(200);
+
+fn taken(lock: impl Fn() -> Result<(), fs::TryLockError>) -> io::Result<bool> {
+    let start = Instant::now();
+    loop {
+        match lock() {
+            Ok(()) => return Ok(true),
+            Err(fs::TryLockError::WouldBlock) if start.elapsed() < MOMENT => thread::sleep(MOMENT / 20),
+            Err(fs::TryLockError::WouldBlock) => return Ok(false),
+            Err(fs::TryLockError::Error(error)) => return Err(error),
+        }
     }
 }
 
@@ -112,6 +122,14 @@ impl ChunkReader for File {
             true => Ok(buffer.into()),
             false => Err(io::Error::from(io::ErrorKind::UnexpectedEof).into()),
         }
+    }
+}
+
+/// Opens a file to write at its end, and makes it when it is missing. Fails where a link is in its place.
+pub fn append(path: &Path) -> io::Result<fs::File> {
+    match is_link(path)? {
+        true => Err(io::Error::other("this is a link")),
+        false => fs::OpenOptions::new().append(true).create(true).open(path),
     }
 }
 

@@ -24,7 +24,7 @@ use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
 use crate::yardstick::{Yardstick, nearest_first_order};
-use scenario::{Cell, Procedure, Scenario, Specification, Specimen, identify};
+use scenario::{Cell, Procedure, Scenario, Specification, Specimen};
 
 /// Rows of one trial, and what they took.
 pub struct Outcome {
@@ -152,17 +152,6 @@ impl<'a> Bench<'a> {
             let blank = Row { method: index, ..blank.clone() };
             let validation = yardstick.validation.as_ref();
             rows.push(match &method.procedure {
-                Procedure::Identify { identifier, .. } => {
-                    let answer = identify(identifier.as_ref(), trials, &key);
-                    methods.push(start.elapsed());
-                    match answer {
-                        Err(error) => Row { failure: Some(error.kind().into()), ..blank },
-                        Ok(estimate) => Row {
-                            predicted: predicted(&|shown| known::of_estimate(&estimate, shown)),
-                            ..answered(blank, trials, validation, &estimate)
-                        },
-                    }
-                }
                 Procedure::Trace(settings) => {
                     let answer = ::trace::trace(trials, &[], settings);
                     methods.push(start.elapsed());
@@ -178,6 +167,17 @@ impl<'a> Bench<'a> {
                                 ..traced(blank, trials, validation, &analysis, missing, yardstick.expected)
                             }
                         }
+                    }
+                }
+                first_order => {
+                    let answer = first_order.identify(trials, &key).expect("it is no trace");
+                    methods.push(start.elapsed());
+                    match answer {
+                        Err(error) => Row { failure: Some(error.in_a_row().into()), ..blank },
+                        Ok(estimate) => Row {
+                            predicted: predicted(&|shown| known::of_estimate(&estimate, shown)),
+                            ..answered(blank, trials, validation, &estimate)
+                        },
                     }
                 }
             });

@@ -5,8 +5,8 @@ mod texts;
 
 use std::path::Path;
 
+use scenario::keys::Key;
 use simulate::limits::MOST_STEPS;
-use simulate::settings::Key;
 
 use crate::engine::{Bench, key};
 use crate::task::Task;
@@ -64,8 +64,11 @@ fn every_number_is_checked_and_found_again() {
 fn every_declared_number_is_among_them() {
     let texts = EVERYTHING.into_iter().chain([OF_STUDY]);
     let documents: Vec<toml::Table> = texts.map(|text| text.parse().expect("it is TOML")).collect();
-    for Key { key, unit, .. } in simulate::settings::keys() {
-        if unit == "table" || unit == "text" || unit.contains(" or ") {
+    const OF_A_TRIAL: [&str; 7] =
+        ["manoeuvre", "steering-gear", "helmsman", "approach", "recording", "sensor", "disturbance"];
+    for Key { key, unit, .. } in scenario::keys::keys() {
+        let is_of_a_trial = key.split('.').next().is_some_and(|part| OF_A_TRIAL.contains(&part));
+        if !is_of_a_trial || unit == "table" || unit == "text" || unit.contains(" or ") {
             continue;
         }
         let (part, rest) = key.split_once('.').expect("a key of a part");

@@ -7,6 +7,7 @@
 //! |---|---|
 //! | one trial | [`engine`] |
 //! | many of them, in order | [`task`], [`plan`], [`stopping`], [`collect`], [`merge`] |
+//! | methods that are other programs, and answers from elsewhere | [`outside`], [`answers`] |
 //! | what is stored | [`design`], [`rows`], [`store`], [`manifest`], [`showcase`], [`timings`], [`unfinished`] |
 //! | how it gets to the disk | [`files`], [`folder`], [`disk`] |
 //! | what is said about it | [`summary`], [`statistics`] |
@@ -14,6 +15,7 @@
 //! | what is known of a ship, for a prediction | [`known`] |
 
 pub mod answer;
+pub mod answers;
 mod bound;
 pub mod collect;
 pub mod curves;
@@ -29,6 +31,7 @@ pub mod known;
 pub mod manifest;
 pub mod merge;
 pub mod observer;
+pub mod outside;
 pub mod plan;
 pub mod rows;
 pub mod showcase;

@@ -13,7 +13,7 @@ use scenario::failure::{Failure, OnPath};
 use scenario::{Scenario, Words, identity};
 
 /// The manifest of a study or a shard of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Manifest {
     /// Name of the scenario.
@@ -48,7 +48,7 @@ pub struct Manifest {
 }
 
 /// What a study ran on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub struct Machine {
     /// Operating system and processor family.
@@ -57,6 +57,16 @@ pub struct Machine {
     pub threads: usize,
     /// Wall time of trials and identification, s.
     pub wall_time_s: f64,
+}
+
+/// Version and revision of the program: "0.2.0 (revision 1a2b3c4d5e)", with a word where its source had been changed.
+pub fn version() -> String {
+    let revision = option_env!("KEMPF_GIT_REVISION").map(|revision| revision[..10].to_owned());
+    let changed = option_env!("KEMPF_GIT_DIRTY").map(|_| String::from("changed"));
+    let words: Vec<String> =
+        revision.map(|revision| format!("revision {revision}")).into_iter().chain(changed).collect();
+    let number = env!("CARGO_PKG_VERSION");
+    if words.is_empty() { number.to_owned() } else { format!("{number} ({})", words.join(", ")) }
 }
 
 /// Largest manifest, bytes: a scenario and little beside it.
@@ -121,7 +131,9 @@ impl Manifest {
             let found = designs.map_or_else(Vec::new, |(own, theirs)| identity::differences(&own, &theirs));
             match found.is_empty() {
                 true => differences.push(
-                    "a record that the scenario replays, or a method that a program gave, has changed".to_owned(),
+                    "a record that the scenario replays, a file that a command in it names, answers that were read, or a \
+                     method that a program gave, has changed"
+                        .to_owned(),
                 ),
                 false => differences.extend(found.iter().map(ToString::to_string)),
             }

@@ -1,5 +1,6 @@
 //! Who watches a study while it runs: the command line with its bar, its warnings and Ctrl-C, or nobody.
 
+use rayon::ThreadPool;
 use scenario::failure::Failure;
 
 /// Is told how far a study is and what was odd, and asked whether to stop.
@@ -22,6 +23,11 @@ pub trait Observer: Sync {
     /// Whether to stop between two trials; what is done is kept.
     fn is_asked_to_stop(&self) -> bool {
         false
+    }
+
+    /// The threads on which trials are run; those of the whole program where it gives none.
+    fn threads(&self) -> Option<&ThreadPool> {
+        None
     }
 
     /// A trial does not end although the study was asked to stop. All trials before it are stored: a program may end

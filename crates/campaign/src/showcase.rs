@@ -15,7 +15,7 @@ use crate::answer::{MethodEntry, entry};
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::task::Task;
-use scenario::{Cell, Method, MethodName, Procedure, Published, Scenario, identify};
+use scenario::{Cell, Method, MethodName, Procedure, Published, Scenario};
 
 /// The first trial of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -52,8 +52,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
         .iter()
         .filter_map(|method| {
             // A trace is no first-order response; it has a report of its own.
-            let Procedure::Identify { identifier, .. } = &method.procedure else { return None };
-            let answer = identify(identifier.as_ref(), &trials, &engine::key(scenario, first));
+            let answer = method.procedure.identify(&trials, &engine::key(scenario, first))?;
             Some(entry(&method.label, answer, &trials))
         })
         .collect();

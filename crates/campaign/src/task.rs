@@ -18,7 +18,7 @@ pub struct Task {
 }
 
 /// Part `number` of `of` parts of a study.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(into = "String", try_from = "String")]
 pub struct Shard {
     /// From 1.

@@ -28,7 +28,7 @@ use found::Analysed;
 use points::{BaseCourse, Points};
 
 /// Which points are used, and how.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variant {
     /// All extrema, a start at rest and all passages, by least squares.
@@ -47,7 +47,7 @@ pub enum Variant {
 }
 
 /// Settings of [`CharacteristicPoints`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// Which points are used, and how.

@@ -1,5 +1,7 @@
 //! Why a method cannot give an estimate; every variant carries the numbers a reader needs.
 
+use std::borrow::Cow;
+
 use thiserror::Error;
 
 /// A failed identification: a result like any other, it becomes a row of the study.
@@ -97,9 +99,42 @@ pub enum IdentifyError {
         /// K/T, 1/s².
         gain: f64,
     },
+    /// Another program gave no answer; made by [`IdentifyError::outside`].
+    #[error("outside: {reason}")]
+    Outside {
+        /// Why, on one line that can be printed.
+        reason: String,
+    },
 }
 
+/// Most characters of what another program says.
+const LONGEST_REASON: usize = 80;
+
 impl IdentifyError {
+    /// A failure of another program in its own words, on one line of at most 80 characters. Blanks of any kind become
+    /// one, and what cannot be seen is shown as an escape.
+    pub fn outside(words: &str) -> Self {
+        let one_line = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        let shown = |c: char| match c {
+            ' '..='~' => c.to_string(),
+            // Behind a letter, which an accent needs.
+            c => ['a', c].iter().collect::<String>().escape_debug().skip(1).collect(),
+        };
+        let mut reason = String::new();
+        let mut left = LONGEST_REASON;
+        for piece in one_line.chars().map(shown) {
+            match left.checked_sub(piece.chars().count()) {
+                // Room for the sign that something is left out.
+                Some(rest) if rest > 0 => (left, reason) = (rest, reason + &piece),
+                _ => {
+                    reason.push('…');
+                    break;
+                }
+            }
+        }
+        Self::Outside { reason: if reason.is_empty() { "no reason given".to_owned() } else { reason } }
+    }
+
     /// A short word for tables and rows.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -113,6 +148,31 @@ impl IdentifyError {
             Self::NotConverged { .. } => "not-converged",
             Self::NoRudderEffect { .. } => "no-rudder-effect",
             Self::NotAShip { .. } => "not-a-ship",
+            Self::Outside { .. } => "outside",
         }
+    }
+
+    /// What a row says: the same word, and behind `outside` the words of the other program.
+    pub fn in_a_row(&self) -> Cow<'static, str> {
+        match self {
+            Self::Outside { .. } => self.to_string().into(),
+            own => own.kind().into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_another_program_says_is_one_short_line() {
+        let said = |words: &str| IdentifyError::outside(words).in_a_row().into_owned();
+        assert_eq!(said(" K̂ is\t0 at \"10°\"\n"), "outside: K̂ is 0 at \"10°\"");
+        assert_eq!(said("\u{1b}[31mred\u{202e}"), "outside: \\u{1b}[31mred\\u{202e}");
+        assert_eq!(said(" \n"), "outside: no reason given");
+        let long = said(&"é\u{7}".repeat(100_000));
+        assert!(long.chars().count() <= "outside: ".len() + LONGEST_REASON && long.ends_with('…'), "{long}");
+        assert_eq!(IdentifyError::NoTrial.in_a_row(), "no-trial");
     }
 }

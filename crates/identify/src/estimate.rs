@@ -19,11 +19,13 @@ pub enum StopReason {
     IterationLimit,
     /// The best point lies at the end of the searched range.
     RangeLimit,
+    /// Another program gave the answer and does not say.
+    Outside,
 }
 
 impl StopReason {
     /// All reasons.
-    pub const ALL: [Self; 4] = [Self::Direct, Self::Converged, Self::IterationLimit, Self::RangeLimit];
+    pub const ALL: [Self; 5] = [Self::Direct, Self::Converged, Self::IterationLimit, Self::RangeLimit, Self::Outside];
 
     /// The word used in tables and JSON.
     pub fn as_str(self) -> &'static str {
@@ -32,6 +34,7 @@ impl StopReason {
             Self::Converged => "converged",
             Self::IterationLimit => "iteration-limit",
             Self::RangeLimit => "range-limit",
+            Self::Outside => "outside",
         }
     }
 }
@@ -240,10 +243,13 @@ fn index_T(response: &FirstOrder, covariance: &Covariance) -> Quantity {
 }
 
 /// δ_r = (b δ_r)/b with the delta-method standard deviation and Fieller's interval, unbounded when the interval of
-/// b = K/T holds zero: a rudder that does not act has no bias.
+/// b = K/T holds zero: a rudder that does not act has no bias. Without a variance nothing is known of its error.
 fn bias(response: &FirstOrder, covariance: &Covariance) -> Quantity {
     let (b, value) = (response.K_over_T, response.rudder_bias);
     let m = &covariance.matrix;
+    if m[(2, 2)] == 0.0 {
+        return Quantity::bare(value);
+    }
     let z2 = covariance.quantile95().powi(2);
     // (x b)² = z² (b² s_δδ − 2 x b s_bδ + x² s_bb), a quadratic in the distance x from the estimate.
     let (p, q, c) = (b * b - z2 * m[(1, 1)], -z2 * b * m[(1, 2)], -z2 * b * b * m[(2, 2)]);

@@ -50,7 +50,7 @@ const SEARCH_HARMONICS: usize = 8;
 const LEAST_WHITE_SHARE: f64 = 0.5;
 
 /// How the number of harmonics is chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Order {
     /// Given.
@@ -68,7 +68,7 @@ pub enum Order {
 }
 
 /// The rudder that enters the equations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rudder {
     /// Projected on the basis of the heading.
@@ -79,7 +79,7 @@ pub enum Rudder {
 }
 
 /// The part of the record that is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Window {
     /// All of it.
@@ -90,7 +90,7 @@ pub enum Window {
 }
 
 /// Settings of [`FourierProjected`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
     /// How w is chosen.

@@ -28,7 +28,7 @@ use crate::samples::Samples;
 use crate::settings::SettingsError;
 
 /// How the answers of the triples become one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Aggregation {
     /// The mean of K and of T, eq. (11).
@@ -39,7 +39,7 @@ pub enum Aggregation {
 }
 
 /// Settings of [`FourierPublished`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
     /// Harmonics N.

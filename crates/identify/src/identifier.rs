@@ -1,6 +1,9 @@
 //! What all methods have in common: the trait, and what a method promises beyond it.
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
+use std::fs::File;
+use std::io;
+
 use trial::Trial;
 
 use crate::error::IdentifyError;
@@ -54,10 +57,36 @@ pub trait Identifier: Send + Sync {
         None
     }
 
+    /// What another program needs, for a method that is one; `None` for all others.
+    fn outside(&self) -> Option<&dyn Outside> {
+        None
+    }
+
     /// How near the method comes without noise; what the contract of all methods holds it to.
     fn promises(&self) -> Promises {
         Promises::default()
     }
+}
+
+/// Opens a file to write at its end.
+pub type Opener = Box<dyn Fn() -> io::Result<File> + Send + Sync>;
+
+/// A method that asks another program.
+pub trait Outside {
+    /// The command that is started: a program and its arguments.
+    fn command(&self) -> &[String];
+
+    /// Looks for the program and the scripts that the command names, and starts nothing.
+    ///
+    /// Fails with a sentence that names what is not there.
+    fn find(&self) -> Result<(), String>;
+
+    /// Where what processes that are started from now on say beside their answers goes: opened when there is something,
+    /// written up to a bounded size. Else it goes to the standard error of this program.
+    fn log_to(&self, open: Opener);
+
+    /// Ends the processes that wait for a trial, and the log with them.
+    fn end(&self);
 }
 
 /// Largest errors without noise.

@@ -30,7 +30,7 @@ use noise::Noise;
 const FEWEST_IN_PIECE: usize = 4;
 
 /// Settings of [`IntegralLeastSquares`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// Longest interval between headings that is integrated across, s; without it five mean intervals of the record.

@@ -26,7 +26,7 @@ const WARN_OF_BIAS: f64 = 0.02;
 const FEWEST_EQUATIONS: usize = 6;
 
 /// What is differentiated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Signal {
     /// The heading, twice.
@@ -37,7 +37,7 @@ pub enum Signal {
 }
 
 /// Settings of [`LeastSquares`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// What is differentiated.

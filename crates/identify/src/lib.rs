@@ -14,10 +14,12 @@
 //! | `output-error` | maximum likelihood by simulation with the recorded rudder, global in T |
 //! | `maximum-likelihood` | the same under a random yaw moment, rudder error and coloured compass error |
 //! | `srivc` | refined instrumental variables for continuous time (Young and Jakeman 1980) |
+//! | `external` | another program, asked in a line of JSON for every trial |
 
 pub mod characteristic_points;
 pub mod error;
 pub mod estimate;
+pub mod external;
 pub mod fourier;
 pub mod fourier_projected;
 pub mod fourier_published;
@@ -42,5 +44,5 @@ mod testing;
 
 pub use error::IdentifyError;
 pub use estimate::{Estimate, StopReason, Uncertainty};
-pub use identifier::{Accuracy, Identifier, Promises};
+pub use identifier::{Accuracy, Identifier, Outside, Promises};
 pub use registry::IdentifierSettings;

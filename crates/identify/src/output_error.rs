@@ -25,7 +25,7 @@ use crate::settings::{SettingsError, check_iterations};
 use likelihood::track::{Coefficients, Track};
 
 /// Settings of [`OutputError`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// Points of the scan per decade of |1/T|, for each sign.

@@ -15,7 +15,7 @@ pub const HIGHEST_ORDER: usize = 5;
 pub const COEFFICIENTS: usize = HIGHEST_ORDER + 1;
 
 /// Window and order of the local polynomials.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct SavitzkyGolay {
     /// Rows in the window, odd, at most 10,001.

@@ -21,6 +21,23 @@ pub fn run<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(kernel)
 }
 
+/// The widest registers of this machine, by the name of their instruction set.
+pub fn set() -> &'static str {
+    struct Nothing;
+    impl Kernel for Nothing {
+        type Output = ();
+
+        fn call(self) {}
+    }
+    // The last one is the widest.
+    on_every_set(|| Nothing)
+        .into_iter()
+        .filter(|(name, ())| *name != "chosen")
+        .map(|(name, ())| name)
+        .next_back()
+        .unwrap_or("plain")
+}
+
 /// Runs a kernel once as plain code and once with every instruction set that this machine has, with the name of each.
 pub fn on_every_set<K: Kernel>(kernel: impl Fn() -> K) -> Vec<(&'static str, K::Output)> {
     #[cfg_attr(not(target_arch = "x86_64"), expect(unused_mut, reason = "only one family has several sets"))]

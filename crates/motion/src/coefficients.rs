@@ -41,7 +41,7 @@ pub(crate) const TYPICAL: Coefficients =
 /// v. v² and u U₀ in surge, |r| v and r|r| in sway gained 0.02 or nothing.
 ///
 /// Sources: Abkowitz (1964); Norrbin (1971); Yasukawa & Yoshimura (2015) for the rudder behind a propeller.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Coefficients {
     /// Surplus of thrust over resistance per U₀² − u|u|, at least 0.001.

@@ -12,7 +12,7 @@ use crate::yaw::{YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};
 pub const HULL_COEFFICIENTS: usize = COEFFICIENTS + YAW_COEFFICIENTS;
 
 /// From what a covariance follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Spread {
     /// The coefficients were given; the covariance is zero.
@@ -26,7 +26,7 @@ pub enum Spread {
 }
 
 /// What is random in yaw: an Ornstein–Uhlenbeck moment that explains what is left of the yaw equation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Moment {
     /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
@@ -36,7 +36,7 @@ pub struct Moment {
 }
 
 /// What is left of the yaw equation in one record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HullRecord {
     /// Name of the record.
@@ -56,7 +56,7 @@ pub struct HullRecord {
 ///
 /// The equations hold for rudders, speeds and yaw rates like those of the records. A full ship may be unstable on a
 /// straight course; replays without a helmsman then drift apart however good the coefficients are.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hull {
     /// Surge and sway, with length and approach speed.

@@ -10,7 +10,7 @@ use crate::record::Output;
 /// Speed and drift of one ship: coefficients, length, approach speed, and what the fit tells about them.
 ///
 /// Made by [`fit()`](crate::fit()) or from known coefficients; immutable.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planar {
     /// The coefficients of the equations, dimensionless.
@@ -27,7 +27,7 @@ pub struct Planar {
 }
 
 /// What a fit tells about one record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RecordFit {
     /// Name of the record.
@@ -43,7 +43,7 @@ pub struct RecordFit {
 }
 
 /// Residuals of one kind of output.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Residual {
     /// What was fitted.

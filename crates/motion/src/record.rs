@@ -7,7 +7,7 @@ use trial::{Channel, Trial};
 use crate::error::MotionError;
 
 /// A kind of output that the equations are fitted to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Output {
     /// Surge velocity.

@@ -45,7 +45,7 @@ pub(crate) const TYPICAL_YAW: Yaw = Yaw { N_r: 1.5, N_v: 1.0, N_vrr: -2.0, N_d: 
 /// and with v and r of the same sign and both large, where N_vrr drives the turn.
 ///
 /// Sources: Abkowitz (1964); Norrbin (1971); Yasukawa & Yoshimura (2015) for the rudder behind a propeller.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Yaw {
     /// Damping of turning by the speed of the approach, at least 0.001.

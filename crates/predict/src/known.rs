@@ -12,7 +12,7 @@ use ship::{Response, ResponseModel};
 use crate::error::PredictError;
 
 /// An effect as it is written down.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct WrittenEffect {
     /// Identifier.
     pub id: String,
@@ -24,7 +24,7 @@ pub struct WrittenEffect {
 }
 
 /// One structure with its parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Member {
     /// Probability among the structures of its file.
     pub weight: f64,
@@ -41,7 +41,7 @@ pub struct Member {
 }
 
 /// Noise of the records the ship is known from.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct KnownNoise {
     /// Standard deviation of a reading of the heading, rad.
     pub heading_sd_rad: f64,
@@ -57,7 +57,7 @@ pub struct KnownNoise {
 }
 
 /// The steering gear as records show it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct KnownGear {
     /// Rate of the rudder, rad/s.
     pub rate_rad_s: f64,
@@ -66,7 +66,7 @@ pub struct KnownGear {
 }
 
 /// The range in which the ship was seen; outside, a prediction is extrapolation.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Seen {
     /// Largest rudder angle, rad.
     pub rudder_rad: f64,
@@ -75,7 +75,7 @@ pub struct Seen {
 }
 
 /// What is known of a ship.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct KnownShip {
     /// The structures, the most probable first.
     pub members: Vec<Member>,

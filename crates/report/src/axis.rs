@@ -201,6 +201,8 @@ impl Axis {
         let decades = (last - first + 1).max(0) as usize;
         // Few whole decades inside the range need the 2 and the 5 between them to be read.
         let leading: &[f64] = match decades {
+            // On a narrow axis of more than a decade the 3 would touch the 2.
+            0 | 1 if count < 5 && self.hi > 15.0 * self.lo => &[1.0, 2.0, 5.0],
             0 | 1 => &[1.0, 2.0, 3.0, 5.0],
             2 if count >= 5 => &[1.0, 2.0, 5.0],
             _ => &[1.0],

@@ -191,7 +191,7 @@ pub(crate) fn swept(
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
     let specification = resolve::specification(&wire, folder).map_err(blame)?;
-    let methods = methods(&wire.identifier).map_err(blame)?;
+    let methods = methods(&wire.identifier, folder).map_err(blame)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
         return Err(blame(Problem::value(
             KeyPath::dotted("identifier"),

@@ -14,38 +14,47 @@ use crate::part::Part;
 use crate::problem::{KeyPath, Mark, Problem};
 
 /// A draw as it is written.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct DrawWire {
     /// Dotted key that is drawn.
     key: String,
+    /// Normal distribution.
     normal: Option<NormalWire>,
+    /// Log-normal distribution.
     log_normal: Option<LogNormalWire>,
+    /// Uniform distribution.
     uniform: Option<RangeWire>,
+    /// Distribution whose logarithm is uniform.
     log_uniform: Option<RangeWire>,
     /// Values outside are drawn again.
     between: Option<[f64; 2]>,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct NormalWire {
+    /// Mean.
     mean: f64,
+    /// Standard deviation.
     sd: f64,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct LogNormalWire {
+    /// Median.
     median: f64,
     /// Standard deviation of the natural logarithm.
     sigma: f64,
 }
 
-#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct RangeWire {
+    /// Lower end.
     from: f64,
+    /// Upper end.
     to: f64,
 }
 

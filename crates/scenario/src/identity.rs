@@ -1,12 +1,13 @@
 //! What decides the rows of a scenario: its document without prose and presentation. Two scenarios with the same one
 //! give the same rows; where they differ, the keys say how.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::{fmt, io};
 
 use sha2::{Digest, Sha256};
 use toml::{Table, Value};
-use trial::file::{self, FileError};
+use trial::file::{self, FileError, Kind};
 use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
@@ -47,6 +48,30 @@ pub fn sha256_of(design: &Table, folder: &Path) -> Result<String, Failure> {
         }
     }
     Ok(hex(&digest.finalize()))
+}
+
+/// A script or program beside a scenario.
+const OF_A_COMMAND: Kind = Kind { name: "a file that a command names", largest: 1 << 30 };
+
+/// An identity, and with it the contents of those words of commands that are files in the folder of the scenario or
+/// named from there; the identity itself where there are none.
+///
+/// Fails when such a file cannot be read.
+pub fn with_files(sha256: String, words: &BTreeSet<&str>, folder: &Path) -> Result<String, Failure> {
+    let mut digest = Sha256::new_with_prefix(&sha256);
+    let mut is_any = false;
+    for word in words.iter().filter(|word| Path::new(word).is_relative()) {
+        let path = folder.join(word);
+        if !path.is_file() {
+            continue;
+        }
+        let mut own = Sha256::new();
+        let mut file = file::open(&path, OF_A_COMMAND).on("read", &path)?;
+        io::copy(&mut file, &mut own).on("read", &path)?;
+        digest.update(format!(" {word} {}", hex(&own.finalize())));
+        is_any = true;
+    }
+    Ok(if is_any { hex(&digest.finalize()) } else { sha256 })
 }
 
 /// Bytes as hexadecimal digits.

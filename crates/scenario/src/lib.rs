@@ -7,10 +7,13 @@
 //! | what a file says, and how it is read | `wire`, `reader`, `gaps`, [`part`], [`words`] |
 //! | what is wrong with it, and where | `fault`, [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
+//! | answers that were found elsewhere | [`answers`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
 //! | which scenarios give the same rows | [`identity`] |
+//! | what an editor knows of a file | [`schema`], [`keys`] |
 //! | a scenario with every default written out | `resolved`, [`Scenario::resolved`] |
 
+pub mod answers;
 pub mod cell;
 mod checks;
 mod draw;
@@ -19,6 +22,7 @@ pub mod failure;
 mod fault;
 mod gaps;
 pub mod identity;
+pub mod keys;
 mod limits;
 mod locate;
 pub mod method;
@@ -30,12 +34,15 @@ mod reader;
 mod resolve;
 mod resolved;
 mod scenario;
+pub mod schema;
+mod ship_schema;
 mod specification;
 pub mod stop;
 pub mod sweep;
 mod wire;
 pub mod words;
 
+pub use answers::Answers;
 pub use cell::{Cell, Refusal, Specimen};
 pub use effect::keys as effect_keys;
 pub use identity::hex;

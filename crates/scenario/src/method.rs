@@ -1,16 +1,18 @@
 //! The methods of a scenario: what each is called, and what it does with a trial.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use ::trace::search::{Rule, Thresholds};
 use ::trace::{EffectId, Wanted, monomial};
 use identify::settings::SettingsError;
-use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError};
+use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError, Outside, external};
 use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
+use crate::answers::Answers;
 use crate::problem::{KeyPath, Problem, of_text};
 use crate::{limits, name};
 
@@ -37,18 +39,37 @@ pub enum Procedure {
     },
     /// Traces what a first-order response lacks.
     Trace(::trace::Settings),
+    /// Looks up what somebody found elsewhere.
+    Answers(Arc<Answers>),
 }
 
-/// Id of a trace among the methods.
-pub const TRACE: &str = "trace";
-
-/// What a method is called, and which it is.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct MethodName {
-    /// Label in tables and figures.
-    pub label: String,
+impl Procedure {
     /// Id of the method.
-    pub id: String,
+    pub fn id(&self) -> &'static str {
+        match self {
+            Self::Identify { identifier, .. } => identifier.id(),
+            Self::Trace(_) => TRACE,
+            Self::Answers(_) => external::ID,
+        }
+    }
+
+    /// The first-order response of all records of one trial together; `None` for a trace. A method that draws at random
+    /// draws from the stream of this trial.
+    pub fn identify(&self, trials: &[Trial], key: &StreamKey) -> Option<Result<Estimate, IdentifyError>> {
+        match self {
+            Self::Identify { identifier, .. } => Some(identify(identifier.as_ref(), trials, key)),
+            Self::Trace(_) => None,
+            Self::Answers(answers) => Some(answers.to((key.cell, key.replicate))),
+        }
+    }
+
+    /// What another program needs, for a procedure that asks one.
+    pub fn outside(&self) -> Option<&dyn Outside> {
+        match self {
+            Self::Identify { identifier, .. } => identifier.outside(),
+            Self::Trace(_) | Self::Answers(_) => None,
+        }
+    }
 }
 
 /// Identifies all records of one trial together; a method that draws at random draws from the stream of this trial.
@@ -57,22 +78,41 @@ pub fn identify(identifier: &dyn Identifier, trials: &[Trial], key: &StreamKey) 
     own.as_deref().unwrap_or(identifier).identify(trials)
 }
 
+/// Id of a trace among the methods.
+pub const TRACE: &str = "trace";
+
+/// What a method is called, and which it is.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct MethodName {
+    /// Label in tables and figures.
+    pub label: String,
+    /// Id of the method.
+    pub id: String,
+}
+
 /// A method with its settings: one key beside the label, the id of the method; or a trace of what the base lacks.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct IdentifierWire {
+    /// What tables and figures call it; its id when left out.
     pub label: Option<String>,
+    /// A method by its id, with its settings.
     pub method: Option<IdentifierSettings>,
+    /// In place of a method: a trace of what the first-order response lacks.
     pub trace: Option<TraceWire>,
 }
 
 /// Settings of a trace.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct TraceWire {
+    /// What an effect has to gain in BIC.
     gain: f64,
+    /// Probability of naming any effect where there is none.
     false_discovery: f64,
+    /// Most effects of a model.
     most_effects: usize,
+    /// Which of the structures that were tried is believed.
     rule: Rule,
     /// Effects that may be missing; without the key all.
     menu: Option<Vec<String>>,
@@ -87,18 +127,15 @@ impl Default for TraceWire {
     }
 }
 
-/// The methods, all with names of their own.
-pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
+/// The methods, all with names of their own; files that they name are beside the scenario, in `folder`.
+pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Method>, Problem> {
     limits::entries("identifier", wire.len(), limits::MOST_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
     for (index, entry) in wire.iter().enumerate() {
         let key = list.child(index);
-        let procedure = procedure(entry, &key)?;
-        let id = match &procedure {
-            Procedure::Identify { identifier, .. } => identifier.id(),
-            Procedure::Trace(_) => TRACE,
-        };
+        let procedure = procedure(entry, &key, folder)?;
+        let id = procedure.id();
         let label = entry.label.clone().unwrap_or_else(|| id.to_owned());
         name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
@@ -123,11 +160,11 @@ pub(crate) fn methods(wire: &[IdentifierWire]) -> Result<Vec<Method>, Problem> {
 }
 
 /// What one entry asks for.
-fn procedure(entry: &IdentifierWire, key: &KeyPath) -> Result<Procedure, Problem> {
+fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Procedure, Problem> {
     match (&entry.method, &entry.trace) {
         (Some(settings), None) => {
             let table = key.child("method").child(registry_id(settings));
-            let identifier = settings.build().map_err(|error| refused(&table, &error))?;
+            let identifier = settings.build_in(folder).map_err(|error| refused(&table, &error))?;
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
         (None, Some(wire)) => tracing(wire).map(Procedure::Trace).map_err(|error| refused(&key.child("trace"), &error)),

@@ -89,6 +89,19 @@ pub fn of_file(path: &Path) -> Result<String, Failure> {
     }
 }
 
+/// A title as part of a file name: lower case, words joined by hyphens.
+pub fn slug(title: &str) -> String {
+    let mut slug = String::new();
+    for letter in title.chars() {
+        match letter {
+            letter if letter.is_ascii_alphanumeric() => slug.push(letter.to_ascii_lowercase()),
+            _ if slug.ends_with('-') || slug.is_empty() => {}
+            _ => slug.push('-'),
+        }
+    }
+    slug.trim_end_matches('-').to_owned()
+}
+
 /// The beginning of a text for messages, in quotes.
 pub fn shown(text: &str) -> String {
     const SHOWN: usize = 40;
@@ -126,5 +139,11 @@ mod tests {
         assert_eq!(label(&"é".repeat(81)), Err(Unfit::Long { most: 80, found: 81 }));
         assert_eq!(prose("one\r\n\ttwo"), Ok(()));
         assert_eq!(prose("one\u{1b}"), Err(Unfit::Unprintable('\u{1b}')));
+    }
+
+    #[test]
+    fn slugs_are_file_names() {
+        assert_eq!(slug("10/20 (published reading)"), "10-20-published-reading");
+        assert_eq!(slug(""), "");
     }
 }

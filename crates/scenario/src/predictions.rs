@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::problem::{KeyPath, Problem};
 
 /// Manoeuvres that are predicted from every answer and held against the same ship making them.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct PredictWire {
+    /// Manoeuvres, as `study predict --manoeuvre` takes them.
     pub manoeuvres: Vec<String>,
     /// Ships drawn for every prediction.
     #[serde(default = "draws")]

@@ -1,8 +1,9 @@
 //! A scenario with nothing left out: what was written, and every default that was taken, each marked as one.
 
-use simulate::settings::{Key, LeftOut, RecordingSettings, RudderSource, keys};
+use simulate::settings::{RecordingSettings, RudderSource};
 use toml::{Table, Value};
 
+use crate::keys::{Key, LeftOut, keys};
 use crate::method::Method;
 use crate::problem::{KeyPath, Problem};
 use crate::wire::{FirstOrderWire, ScenarioWire, SecondOrderWire};

@@ -1,15 +1,17 @@
 //! A scenario that has been checked in every cell, and how it is read.
 
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use identify::Identifier;
+use identify::{Identifier, Outside};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use simulate::settings::Assumption;
 use toml::Table;
 use trial::file::{self, FileError, Kind};
 
+use crate::answers::Answers;
 use crate::cell::{self, Cell};
 use crate::failure::Failure;
 use crate::identity::{self, hex};
@@ -102,7 +104,7 @@ impl Scenario {
                 KeyPath::default(),
                 "there is nothing in this scenario",
                 "expected keys",
-                "start from one of the files in scenarios/; the README explains the keys",
+                "start from one of the files in scenarios/; docs/src/reference/scenarios.md explains the keys",
             )));
         }
         let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
@@ -122,7 +124,7 @@ impl Scenario {
         }
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
         resolve::specification(&wire, &folder).map_err(&fail)?;
-        let methods = methods(&wire.identifier).map_err(&fail)?;
+        let methods = methods(&wire.identifier, &folder).map_err(&fail)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose().map_err(&fail)?;
         let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose().map_err(&fail)?;
         let axes: Vec<Axis> = wire
@@ -146,6 +148,10 @@ impl Scenario {
         checks::detail(&wire.output.detail, &cells).map_err(&fail)?;
         checks::marks(&wire.output.marks, &axes).map_err(&fail)?;
         checks::about(&wire.output.methods, &methods).map_err(&fail)?;
+        let outside = cells.iter().flat_map(|cell| &cell.methods).filter_map(|method| method.procedure.outside());
+        let words: BTreeSet<&str> = outside.flat_map(|outside| outside.command()).map(String::as_str).collect();
+        let design_sha256 = identity::sha256_of(&identity::design_of(&document), &folder)?;
+        let design_sha256 = identity::with_files(design_sha256, &words, &folder)?;
         Ok(Self {
             name: name.to_owned(),
             seed: seed.unwrap_or(wire.seed),
@@ -168,7 +174,7 @@ impl Scenario {
             },
             stop,
             predictions,
-            design_sha256: identity::sha256_of(&identity::design_of(&document), &folder)?,
+            design_sha256,
             sha256: hex(&Sha256::digest(text.as_bytes())),
             text,
         })
@@ -177,19 +183,31 @@ impl Scenario {
     /// The same scenario with a method of the caller's own behind its methods, on the same trials.
     ///
     /// Fails when the label cannot be one, or is that of another method.
-    pub fn with_identifier(mut self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
+    pub fn with_identifier(self, label: &str, identifier: Arc<dyn Identifier>) -> Result<Self, Failure> {
+        let command = identifier.outside().map_or_else(String::new, |outside| format!(" {:?}", outside.command()));
+        let own = format!("{}{command}", identifier.id());
+        self.with(label, Procedure::Identify { settings: None, identifier }, &own)
+    }
+
+    /// The same scenario with answers from elsewhere behind its methods.
+    ///
+    /// Fails when the label cannot be one, or is that of another method.
+    pub fn with_answers(self, label: &str, answers: Answers) -> Result<Self, Failure> {
+        let own = format!("answers {}", answers.sha256());
+        self.with(label, Procedure::Answers(Arc::new(answers)), &own)
+    }
+
+    /// One more method; `own` tells it from others in the identity of the study.
+    fn with(mut self, label: &str, procedure: Procedure, own: &str) -> Result<Self, Failure> {
         name::label(label)
             .map_err(|unfit| Failure::input(format!("a method is called {}; {unfit}", name::shown(label))))?;
         if self.labels().any(|known| known == label) {
             return Err(Failure::input(format!("two methods are called {label:?}; give this one a label of its own")));
         }
-        self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {}", self.design_sha256, identifier.id())));
+        self.design_sha256 = hex(&Sha256::digest(format!("{} {label} {own}", self.design_sha256)));
         for cell in &mut self.cells {
-            cell.methods.push(Method {
-                label: label.to_owned(),
-                id: identifier.id(),
-                procedure: Procedure::Identify { settings: None, identifier: Arc::clone(&identifier) },
-            });
+            let id = procedure.id();
+            cell.methods.push(Method { label: label.to_owned(), id, procedure: procedure.clone() });
         }
         Ok(self)
     }
@@ -222,6 +240,14 @@ impl Scenario {
             .iter()
             .map(|method| MethodName { label: method.label.clone(), id: method.id.to_owned() })
             .collect()
+    }
+
+    /// The programs that a run starts: every command once, with the first method that has it.
+    pub fn outside(&self) -> Vec<(&Method, &dyn Outside)> {
+        let mut commands = HashSet::new();
+        let methods = self.cells.iter().flat_map(|cell| &cell.methods);
+        let outside = methods.filter_map(|method| Some((method, method.procedure.outside()?)));
+        outside.filter(|(_, outside)| commands.insert(outside.command())).collect()
     }
 
     /// Labels of the methods, in the order of the scenario.

@@ -7,14 +7,16 @@ use crate::method::Method;
 use crate::problem::{KeyPath, Problem, suggestion};
 
 /// When a cell has had enough trials; `replicates` is then the most.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct StopWire {
+    /// What has to be known well enough.
     pub figure: StopFigure,
     /// Label of a method; all of them when left out.
     pub method: Option<String>,
     /// Per cent of K or T; points of per cent for a coverage.
     pub standard_error: f64,
+    /// Trials of a cell between two looks.
     #[serde(default = "hundred")]
     pub every: u64,
 }
@@ -33,7 +35,7 @@ pub enum Index {
 }
 
 /// The figure a rule looks at: of the relative errors, per cent, or the coverage of the quoted intervals, per cent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
 pub enum StopFigure {
     /// Mean error of K.
     #[serde(rename = "mean-K")]

@@ -18,7 +18,7 @@ use crate::problem::{KeyPath, Mark, Problem, of_text};
 const MOST_CELLS: usize = 100_000;
 
 /// An axis as it is written: `[[sweep]]`.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct AxisWire {
     /// Name on plots and in tables; the key when it is left out.
@@ -26,6 +26,7 @@ pub struct AxisWire {
     /// Dotted key that is swept, with `values`, `linear` or `log`.
     key: Option<String>,
     /// The values one by one.
+    #[schemars(with = "Option<Vec<serde_json::Value>>")]
     values: Option<Vec<Value>>,
     /// Evenly spaced values.
     linear: Option<RangeWire>,
@@ -36,21 +37,27 @@ pub struct AxisWire {
 }
 
 /// A range of numbers, both ends included.
-#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct RangeWire {
+    /// First value.
     from: f64,
+    /// Last value.
     to: f64,
+    /// How many values.
     points: usize,
 }
 
 /// A point that sets several keys.
-#[derive(Debug, Clone, Deserialize, Serialize)]
+#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct PointWire {
+    /// What it is called.
     label: String,
     /// Where it lies on an axis of numbers.
     value: Option<f64>,
+    /// Dotted keys and their values.
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")]
     set: Table,
 }
 

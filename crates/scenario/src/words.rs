@@ -27,7 +27,7 @@ pub struct Words {
 }
 
 /// A value of an axis with a name, such as the limit of a rule.
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisMark {
     /// Name of the axis.

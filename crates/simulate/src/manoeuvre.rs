@@ -12,7 +12,7 @@ use crate::error::{self, Checked};
 use crate::limits::MOST_EXECUTES;
 
 /// A side of the ship.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// Right, seen forward: positive rudder, growing heading.

@@ -3,19 +3,29 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
-use crate::commands::{check, find, fit, list, merge, overview, predict, report, run, sidecar, simulate, trace};
+use crate::bench_options::BenchRequest;
+use crate::commands::{
+    bench, check, doctor, find, fit, list, merge, overview, predict, report, run, schema, score, shell, sidecar,
+    simulate, trace,
+};
 use crate::options::{
-    Common, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, StudyStyle, TraceRequest,
+    Common, Described, FindRequest, FitRequest, Listed, PredictRequest, RunRequest, SimulateRequest, StudyStyle,
+    TraceRequest,
 };
 use crate::{screen, threads};
 use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 use scenario::failure::{Blame, Failure};
 use scenario::problem::suggestion;
 
+/// What `--version` tells.
+static VERSION: LazyLock<String> = LazyLock::new(campaign::manifest::version);
+
 /// Ship zig-zag trials: simulate them, identify K and T, benchmark the methods.
 #[derive(Debug, Parser)]
-#[command(name = "study", version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+#[command(name = "study", version = VERSION.as_str(), args_conflicts_with_subcommands = true, arg_required_else_help = true)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -74,6 +84,20 @@ enum Command {
         #[command(flatten)]
         common: Common,
     },
+    /// Score answers to simulated trials that another program found, beside the methods of the scenario
+    Score {
+        #[command(flatten)]
+        request: score::ScoreRequest,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Run the benchmark on measured and simulated trials: leaderboards, bench.json, report, plots
+    Bench {
+        #[command(flatten)]
+        request: BenchRequest,
+        #[command(flatten)]
+        common: Common,
+    },
     /// Resolve scenario files and run nothing
     Check {
         /// Scenario files
@@ -108,6 +132,33 @@ enum Command {
     /// Write one page over all published studies of a folder
     Overview {
         /// Folder that holds the folders of studies
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Look at the machine and the terminal: versions, threads, instruction sets, whether files can be written
+    Doctor {
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Print the JSON schema of a file, for editors and programs
+    Schema {
+        /// Which file
+        what: Described,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Print what a shell has to read to complete commands and options
+    Completions {
+        /// The shell
+        shell: Shell,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Write manual pages, one for every command
+    Man {
+        /// Folder for the pages, such as ~/.local/share/man/man1
         #[arg(value_name = "DIR")]
         folder: PathBuf,
         #[command(flatten)]
@@ -185,12 +236,24 @@ fn answer(cli: Cli) -> Result<(), Failure> {
             threads::start(&common)?;
             simulate::run(&request, &common)
         }
+        (Some(Command::Score { request, common }), _) => {
+            threads::start(&common)?;
+            score::run(&request, &common)
+        }
+        (Some(Command::Bench { request, common }), _) => {
+            threads::start(&common)?;
+            bench::run(&request, &common)
+        }
         (Some(Command::Check { scenarios, resolved, common }), _) => check::run(&scenarios, resolved, &common),
         (Some(Command::List { what, common }), _) => list::run(what, &common),
         (Some(Command::Report { folder, open, style, common }), _) => {
             threads::start(&common)?;
             report::run(&folder, open, &style, &common)
         }
+        (Some(Command::Doctor { common }), _) => doctor::run(&common),
+        (Some(Command::Schema { what, common }), _) => schema::run(what, &common),
+        (Some(Command::Completions { shell, common }), _) => shell::completions(shell, Cli::command(), &common),
+        (Some(Command::Man { folder, common }), _) => shell::man(&folder, Cli::command(), &common),
         (Some(Command::Overview { folder, common }), _) => overview::run(&folder, &common),
         (Some(Command::Merge { folders, style, common }), _) => {
             threads::start(&common)?;

@@ -4,20 +4,25 @@
 //! | to learn about | read |
 //! |---|---|
 //! | commands and exit codes | [`cli`], [`commands`] |
-//! | options | [`options`] |
+//! | options | [`options`], [`outside`] |
+//! | what a command works out | [`work`] |
 //! | tables, figures, pages and JSON | [`views`] |
 //! | the terminal | [`screen`], `terminal`, `progress`, `interrupt`, `threads` |
 
+pub mod bench_options;
 pub mod cli;
 pub mod commands;
 #[cfg(test)]
 mod faults;
 mod interrupt;
 pub mod options;
+pub mod outside;
 mod progress;
-mod records;
+pub mod records;
 pub mod scales;
 pub mod screen;
+pub mod style_options;
 mod terminal;
 mod threads;
 pub mod views;
+pub mod work;

@@ -1,17 +1,17 @@
 //! What a user may ask of a command: options and arguments, each declared once. Commands read them, nothing here acts.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::outside::NamedCommand;
+use crate::style_options::within;
+pub use crate::style_options::{FigureChoice, StudyStyle, Style};
 use ::trace::search::Rule;
 use ::trace::{EffectId, Wanted};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
 use predict::Kind;
-use report::theme::{DPI, WIDTH_MM};
-use report::{Table, Theme};
-use scenario::failure::{Failure, OnPath};
+use report::Table;
 use scenario::problem::suggestion;
 use trial::clock::Stamp;
 
@@ -27,79 +27,6 @@ pub struct RunRequest {
     /// How figures are drawn, and which
     #[command(flatten)]
     pub style: StudyStyle,
-}
-
-/// How figures are drawn.
-#[derive(Debug, Clone, Args)]
-pub struct Style {
-    /// Draw figures for print, MM millimetres wide [default: for a screen]
-    #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
-    pub paper: Option<f64>,
-    /// Resolution of figures for print
-    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
-    pub dpi: f64,
-    /// Sizes, colours and limits of axes of the figures; docs/style.toml has all keys
-    #[arg(long, value_name = "FILE.toml")]
-    pub style: Option<PathBuf>,
-}
-
-/// How the figures of a study are drawn, and which.
-#[derive(Debug, Clone, Args)]
-pub struct StudyStyle {
-    /// How they are drawn
-    #[command(flatten)]
-    pub style: Style,
-    /// Which figures are made
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t = FigureChoice::Named)]
-    pub figures: FigureChoice,
-}
-
-/// Which figures of a study are made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum FigureChoice {
-    /// Those the scenario names in `output.figures`; all where it names none
-    #[default]
-    Named,
-    /// All there are
-    All,
-    /// The one that stands for the study, `output.figure`
-    Hero,
-}
-
-/// Reads a number from `least` to `most`.
-fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| {
-        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
-        number.ok_or_else(|| format!("expected a number from {least} to {most}"))
-    }
-}
-
-impl Style {
-    /// The theme of the figures; what the command line says goes before the file. Fails when no page carries it, and
-    /// when the file cannot be read.
-    pub fn theme(&self) -> Result<Theme, Failure> {
-        let file = self.style.as_deref();
-        let own = file.map(style_of).transpose()?.unwrap_or_default();
-        let named = |error: String| match file {
-            Some(file) => Failure::input(format!("{}: {error}", file.display())),
-            None => Failure::input(error),
-        };
-        let printed = self.paper.map(|width_mm| (width_mm, self.dpi));
-        let printed = printed.or_else(|| Some((own.width_mm?, own.dpi.unwrap_or(self.dpi))));
-        let theme = match printed {
-            None => Theme::screen(),
-            Some((width_mm, dpi)) => Theme::paper(width_mm, dpi).map_err(|error| named(error.to_string()))?,
-        };
-        let own = report::Style { dpi: own.dpi.filter(|_| self.paper.is_none()), ..own };
-        own.on(theme).map_err(|error| named(error.to_string()))
-    }
-}
-
-/// A style from its file.
-fn style_of(path: &Path) -> Result<report::Style, Failure> {
-    let text = fs::read_to_string(path).on("read", path)?;
-    toml::from_str(&text)
-        .map_err(|error| Failure::input(format!("{}: {}", path.display(), error.to_string().trim_end())))
 }
 
 /// Most threads that can be asked for; no machine has more cores, and the system refuses many more.
@@ -120,7 +47,7 @@ pub struct Common {
     /// No progress bar and no table; errors and warnings remain
     #[arg(long)]
     pub quiet: bool,
-    /// Format of the table on standard output
+    /// What is written to standard output
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
 }
@@ -129,10 +56,10 @@ fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("expected a whole number from 0 to {}", u64::MAX))
 }
 
-/// Format of tables on standard output.
+/// What is written to standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
-    /// Aligned columns
+    /// Words and aligned columns, for people
     Text,
     /// Markdown
     Markdown,
@@ -140,6 +67,8 @@ pub enum Format {
     Csv,
     /// LaTeX with booktabs and siunitx
     Latex,
+    /// One JSON document, for programs
+    Json,
 }
 
 impl Format {
@@ -150,6 +79,7 @@ impl Format {
             Self::Markdown => table.to_markdown(),
             Self::Csv => table.to_csv(),
             Self::Latex => table.to_latex(),
+            Self::Json => table.to_json(),
         }
     }
 }
@@ -232,6 +162,9 @@ pub struct FitRequest {
     /// Methods to use [default: all]
     #[arg(long = "method", value_name = "ID")]
     pub methods: Vec<String>,
+    /// Also ask another program: it is started, and reads and writes lines of JSON
+    #[arg(long = "external", value_name = "LABEL=COMMAND")]
+    pub external: Vec<NamedCommand>,
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
@@ -386,10 +319,27 @@ pub struct PredictRequest {
     pub style: Style,
 }
 
+/// Files that have a schema.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Described {
+    /// Scenario of a study
+    Scenario,
+    /// Sidecar of a record
+    Sidecar,
+    /// fit.json
+    Fit,
+    /// trace.json
+    Trace,
+    /// predict.json
+    Predict,
+    /// manifest.toml
+    Manifest,
+}
+
 /// What can be listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Listed {
-    /// Identification methods
+    /// Identification methods with their settings
     Identifiers,
     /// Effects a first-order response lacks
     Effects,
@@ -399,40 +349,10 @@ pub enum Listed {
     Manoeuvres,
     /// Sensor keys
     Sensors,
-    /// Every key that says how a trial is made
+    /// Every key of a scenario
     Keys,
     /// What columns of a record may be called
     Columns,
     /// What a sidecar may say
     Sidecar,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn theme(file: &Path) -> Result<Theme, Failure> {
-        Style { paper: None, dpi: 600.0, style: Some(file.to_owned()) }.theme()
-    }
-
-    #[test]
-    fn the_sample_of_a_style_can_be_used() {
-        theme(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/style.toml"))).expect("a style");
-    }
-
-    #[test]
-    fn a_wrong_style_is_refused_with_its_file_and_key() {
-        let dir = tempfile::tempdir().expect("a folder");
-        let path = dir.path().join("own.toml");
-        for (text, said) in [
-            ("colour = 1", "unknown field `colour`, expected one of `width-mm`, `dpi`"),
-            ("width-mm = 3", "3 mm"),
-            ("dpi = 10", "dpi = 10: expected a number from 72 to 1200"),
-            ("[colours]\nink = \"black\"", "[colours] ink = \"black\": expected"),
-        ] {
-            fs::write(&path, text).expect("written");
-            let error = theme(&path).expect_err("refused").to_string();
-            assert!(error.contains("own.toml") && error.contains(said), "{error}");
-        }
-    }
 }

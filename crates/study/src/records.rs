@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use find::{Kind, Manoeuvre};
 use ship::Particulars;
 use ship::angle::KNOT;
+use trial::file::{STDIN, called};
 use trial::zigzag::median::upper_median;
 use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};
+use campaign::answers::TRIALS;
 use campaign::known::Shown;
 use scenario::failure::{Failure, OnPath};
 use scenario::name;
@@ -20,19 +22,27 @@ const ENDINGS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "log", "nmea", "
 /// manoeuvre.
 const REST: f64 = 0.02;
 
-/// The files that were named; a folder stands for all its records, in the order of their names.
+/// The files that were named; a folder stands for all its records, in the order of their names, and `-` for standard
+/// input.
 ///
-/// Fails for a folder without any.
+/// Fails for a folder without any, and where standard input is to be read twice.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    if paths.iter().filter(|path| *path == Path::new(STDIN)).count() > 1 {
+        return Err(Failure::input("- is given twice: standard input holds one record; give files for the others"));
+    }
     let mut files = Vec::new();
     for path in paths {
         if !path.is_dir() {
             files.push(path.clone());
             continue;
         }
+        // Among simulated records, each with its truth, are a list of them and answers.
+        let is_simulated = path.join(TRIALS).is_file();
         let is_record = |file: &PathBuf| {
             let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-            file.is_file() && ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
+            file.is_file()
+                && ending.is_some_and(|ending| ENDINGS.contains(&ending.as_str()))
+                && (!is_simulated || file.with_extension("truth.json").is_file())
         };
         let entries = std::fs::read_dir(path).on("read", path)?;
         let mut own: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(is_record).collect();
@@ -71,13 +81,13 @@ pub fn open(
         Some(folder.join(format!("{stem}.trial.toml"))).filter(|own| own.is_file())
     });
     // Folders and figures are named after the record.
-    name::of_file(path)?;
+    name::of_file(called(path))?;
     let sidecar = own
         .or_else(|| columns.filter(|columns| !columns.is_dir()).map(Path::to_path_buf))
         .or_else(|| Sidecar::found_beside(path));
     let mut log = Log::open(path, sidecar.as_deref(), others).map_err(Failure::input)?;
     let found = std::mem::take(&mut log.warnings);
-    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", path.display())));
+    warnings.extend(found.into_iter().map(|warning| format!("{}: {warning}", called(path).display())));
     Ok(log)
 }
 
@@ -112,7 +122,13 @@ pub fn read_others(
 }
 
 fn read(path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
-    let log = open(path, options.columns.as_deref(), &options.with_columns, warnings)?;
+    of_log(open(path, options.columns.as_deref(), &options.with_columns, warnings)?, called(path), options, warnings)
+}
+
+/// The record that a log holds: the part that was asked for, or its zig-zag. `path` is what messages call it.
+///
+/// Fails when that part is no record, and when the log holds several zig-zags and nobody said which.
+pub fn of_log(log: Log, path: &Path, options: &ReadingOptions, warnings: &mut Vec<String>) -> Result<Trial, Failure> {
     let (from, until) = (moment(&log, path, options.from.as_ref())?, moment(&log, path, options.until.as_ref())?);
     let log = if from.is_some() || until.is_some() {
         log.part(from.unwrap_or(f64::NEG_INFINITY), until.unwrap_or(f64::INFINITY)).map_err(Failure::input)?

@@ -29,17 +29,26 @@ fn threads_of(variable: Option<&str>, cores: usize) -> (usize, Option<String>) {
     }
 }
 
-/// Starts the threads of all parallel work.
-pub fn start(common: &Common) -> Result<(), Failure> {
-    let threads = match common.threads {
+/// Processors that this program may use.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Threads that parallel work gets.
+pub fn count(common: &Common) -> usize {
+    match common.threads {
         Some(threads) => usize::from(threads),
         None => {
-            let cores = std::thread::available_parallelism().map_or(1, usize::from);
-            let (threads, remark) = threads_of(std::env::var(THREADS).ok().as_deref(), cores);
+            let (threads, remark) = threads_of(std::env::var(THREADS).ok().as_deref(), cores());
             remark.iter().for_each(|remark| screen::warn(remark));
             threads
         }
-    };
+    }
+}
+
+/// Starts the threads of all parallel work.
+pub fn start(common: &Common) -> Result<(), Failure> {
+    let threads = count(common);
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()

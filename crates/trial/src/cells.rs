@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde::Deserialize;
 
 /// What stands between two cells of a line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Separator {
     /// A tab; two in a row enclose an empty cell.

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 /// How bytes stand for characters.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 pub enum Encoding {
     /// UTF-8, and so ASCII.
     #[default]

@@ -64,9 +64,8 @@ impl From<io::Error> for FileError {
 }
 
 /// An open file that ends with an error where it is longer than its kind may be.
-#[derive(Debug)]
 pub struct Limited {
-    file: File,
+    file: Box<dyn Read>,
     kind: Kind,
     size: Option<u64>,
     left: u64,
@@ -91,11 +90,22 @@ impl Read for Limited {
     }
 }
 
-/// Opens a file or a pipe.
+/// What stands for standard input where a file is named.
+pub const STDIN: &str = "-";
+
+/// What a file is called: its path, and of standard input a word that can be the name of something.
+pub fn called(path: &Path) -> &Path {
+    if path == Path::new(STDIN) { Path::new("stdin") } else { path }
+}
+
+/// Opens a file, a pipe or standard input ([`STDIN`]).
 ///
 /// Fails when there is none, and when it is known to be too large; a file that turns out to be so fails in reading,
 /// with an error that becomes a [`FileError`] again.
 pub fn open(path: &Path, kind: Kind) -> Result<Limited, FileError> {
+    if path == Path::new(STDIN) {
+        return Ok(Limited { file: Box::new(io::stdin().lock()), kind, size: None, left: kind.largest });
+    }
     let about = fs::metadata(path)?;
     let size = match about.file_type() {
         kind if kind.is_dir() => return Err(FileError::Folder),
@@ -106,7 +116,7 @@ pub fn open(path: &Path, kind: Kind) -> Result<Limited, FileError> {
     if size.is_some_and(|size| size > kind.largest) {
         return Err(FileError::TooLarge { kind, size });
     }
-    Ok(Limited { file: File::open(path)?, kind, size, left: kind.largest })
+    Ok(Limited { file: Box::new(File::open(path)?), kind, size, left: kind.largest })
 }
 
 #[cfg(unix)]

@@ -34,6 +34,7 @@ pub mod sidecar;
 mod sidecar_error;
 mod sidecar_form;
 mod sidecar_keys;
+mod sidecar_schema;
 mod words;
 pub mod writer;
 pub mod zigzag;

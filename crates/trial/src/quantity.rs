@@ -6,11 +6,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 ///
 /// Read off a record, `sd` is what white noise of heading and rudder gives it; it does not cover slow errors such as
 /// gyro bias, drift or waves longer than the local fits. Of an estimate, both are what the method promises.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Quantity {
     /// The value, in SI units and radians unless a name says otherwise; in files `null` when it is infinite (T of a
     /// neutrally stable ship), read back as NaN.
     #[serde(deserialize_with = "number_or_null")]
+    #[schemars(with = "Option<f64>")]
     pub value: f64,
     /// Its standard deviation, in the unit of the value.
     pub sd: Option<f64>,

@@ -25,7 +25,7 @@ pub use crate::sidecar_keys::{KEYS, Key};
 /// A sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
 
-#[derive(Deserialize, Default)]
+#[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Wire {
     #[serde(default)]
@@ -33,7 +33,9 @@ struct Wire {
     #[serde(default)]
     part: WirePart,
     #[serde(default)]
+    #[schemars(with = "Vec<WireColumn>")]
     column: Vec<Spanned<WireColumn>>,
+    #[schemars(with = "Option<WireShip>")]
     ship: Option<Spanned<WireShip>>,
     #[serde(default)]
     noise: WireNoise,
@@ -43,7 +45,7 @@ struct Wire {
     form: WireForm,
 }
 
-#[derive(Deserialize, Default)]
+#[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct WireTable {
     #[serde(default)]
@@ -52,22 +54,27 @@ struct WireTable {
     #[serde(default)]
     encoding: Encoding,
     header: Option<bool>,
+    #[schemars(with = "Option<f64>")]
     time_step_s: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize, Default)]
+#[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct WirePart {
+    #[schemars(with = "Option<f64>")]
     from_s: Option<Spanned<f64>>,
+    #[schemars(with = "Option<f64>")]
     until_s: Option<Spanned<f64>>,
+    #[schemars(with = "Option<usize>")]
     every: Option<Spanned<usize>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct WireColumn {
     index: Option<usize>,
     name: Option<String>,
+    #[schemars(with = "Option<String>")]
     is: Option<Spanned<String>>,
     #[serde(default)]
     flip: bool,
@@ -75,26 +82,37 @@ struct WireColumn {
     ignore: bool,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct WireShip {
+    #[schemars(with = "Option<f64>")]
     length_m: Option<Spanned<f64>>,
+    #[schemars(with = "Option<f64>")]
     speed_m_s: Option<Spanned<f64>>,
+    #[schemars(with = "Option<f64>")]
     speed_kn: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize, Default)]
+#[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct WireNoise {
+    #[schemars(with = "Option<f64>")]
     heading_deg: Option<Spanned<f64>>,
+    #[schemars(with = "Option<f64>")]
     yaw_rate_deg_s: Option<Spanned<f64>>,
+    #[schemars(with = "Option<f64>")]
     rudder_deg: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize, Default)]
+#[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct WireCheck {
     plausibility: Option<bool>,
+}
+
+/// The JSON schema of the file.
+pub fn schema() -> schemars::Schema {
+    crate::sidecar_schema::of::<Wire>()
 }
 
 /// Which column of a table is meant.

@@ -15,27 +15,46 @@ const LONGEST_TEXT: usize = 100;
 type Entry = Option<Spanned<Value>>;
 
 /// The table as it is written.
-#[derive(Deserialize, Default)]
+#[derive(Deserialize, Default, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(crate) struct WireForm {
+    #[schemars(with = "Option<String>")]
     administration: Entry,
+    #[schemars(with = "Option<String>")]
     ship_type: Entry,
+    #[schemars(with = "Option<f64>")]
     beam_m: Entry,
+    #[schemars(with = "Option<f64>")]
     draught_m: Entry,
+    #[schemars(with = "Option<f64>")]
     full_load_draught_m: Entry,
+    #[schemars(with = "Option<f64>")]
     block_coefficient: Entry,
+    #[schemars(with = "Option<String>")]
     rudder_type: Entry,
+    #[schemars(with = "Option<f64>")]
     rudder_area_m2: Entry,
+    #[schemars(with = "Option<u8>")]
     rudders: Entry,
+    #[schemars(with = "Option<String>")]
     propeller_type: Entry,
+    #[schemars(with = "Option<u8>")]
     propellers: Entry,
+    #[schemars(with = "Option<String>")]
     engine_type: Entry,
+    #[schemars(with = "Option<f64>")]
     trim_m: Entry,
+    #[schemars(with = "Option<String>")]
     ballast: Entry,
+    #[schemars(with = "Option<f64>")]
     water_depth_m: Entry,
+    #[schemars(with = "Option<u8>")]
     wind_beaufort: Entry,
+    #[schemars(with = "Option<u8>")]
     sea_state: Entry,
+    #[schemars(with = "Option<String>")]
     loading: Entry,
+    #[schemars(with = "Option<String>")]
     remark: Entry,
 }
 

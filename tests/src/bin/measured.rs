@@ -161,7 +161,7 @@ fn run(results: &Path) -> Outcome<()> {
 const INTRODUCTION: &str = "# Measured records, traced
 
 What a first-order response lacks on measured records, found from one record and judged on others that were not fitted. The records
-are not part of the project; where they come from is said in the README of the project. Made by
+are not part of the project; where they come from says [the book](../../docs/src/howto/public-trials.md). Made by
 
 ```text
 cargo run --release -p kempf-tests --bin measured -- results/measured

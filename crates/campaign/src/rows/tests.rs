@@ -175,7 +175,7 @@ fn errors_are_relative_to_the_truth() {
 
 #[test]
 fn every_column_is_documented() {
-    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/results.md"))
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference/results.md"))
         .expect("the page is there");
     for Column { name, meaning, .. } in COLUMNS.iter().chain(&OWN_COLUMNS).chain(&TRACE_COLUMNS).chain(&PREDICT_COLUMNS)
     {

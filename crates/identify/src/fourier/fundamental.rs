@@ -14,7 +14,7 @@ use crate::estimate::StopReason;
 use crate::settings::SettingsError;
 
 /// Where a local search for w starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum StartPoint {
     /// Highest peak of the discrete Fourier transform of the heading about its mean.
@@ -31,7 +31,7 @@ impl StartPoint {
 }
 
 /// How the fundamental is chosen.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Fundamental {
     /// A local search from every start, downhill in RSS(w); the best end wins.

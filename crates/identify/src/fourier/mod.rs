@@ -75,7 +75,7 @@ pub(crate) fn worse(one: StopReason, other: StopReason) -> StopReason {
         StopReason::Direct => 0,
         StopReason::Converged => 1,
         StopReason::IterationLimit => 2,
-        StopReason::RangeLimit => 3,
+        StopReason::RangeLimit | StopReason::Outside => 3,
     };
     if rank(other) > rank(one) { other } else { one }
 }

@@ -17,7 +17,7 @@ use crate::linear::LeastSquares;
 ///
 /// Noise of a regressor pulls its coefficient towards zero (errors in variables). The noise of r is smaller against
 /// its signal than that of r', by about the highest frequency of the series over that of the zig-zag.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Response {
     /// r' = −(1/T) r + (K/T) δ + (K/T) δ_r: the less biased of the two.

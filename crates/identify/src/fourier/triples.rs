@@ -26,7 +26,7 @@ pub const MOST_TRIPLES: usize = 10_000;
 const LONGEST_REST: f64 = 100.0;
 
 /// Which triples are used.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
 pub enum Selection {
     /// Any three instants.
@@ -41,7 +41,7 @@ pub enum Selection {
 }
 
 /// The rule of [`Selection::WellConditioned`].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct WellConditioned {
     /// Largest condition number of the equations, columns divided by the standard deviations of r' and δ.

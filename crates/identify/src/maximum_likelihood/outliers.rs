@@ -174,7 +174,7 @@ mod tests {
             spoilt[row] += by;
         }
         assert_eq!(find(&track, &spoilt, &[0, 60, 270]).spikes, [0, 60, 100, 101, 102, 270]);
-        assert_eq!(find(&track, &spoilt, &[0, 60, 270]).jumps, []);
+        assert_eq!(find(&track, &spoilt, &[0, 60, 270]).jumps, [0usize; 0]);
         let jumped: Vec<f64> =
             noise.iter().enumerate().map(|(row, x)| x + if row >= 130 { 0.07 } else { 0.0 }).collect();
         assert_eq!(find(&track, &jumped, &[]), Suspects { spikes: vec![], jumps: vec![130] });
@@ -187,7 +187,7 @@ mod tests {
         let smooth: Vec<f64> = (0..track.heading.len())
             .map(|k| 0.05 * (-(k as f64) / 6.0).exp() + 0.01 * (k as f64 / 40.0).sin())
             .collect();
-        assert_eq!(find(&track, &smooth, &[]).spikes, []);
+        assert_eq!(find(&track, &smooth, &[]).spikes, [0usize; 0]);
     }
 
     #[test]

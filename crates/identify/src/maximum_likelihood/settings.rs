@@ -4,7 +4,7 @@ use likelihood::Moment;
 use serde::{Deserialize, Serialize};
 
 /// Which yaw moment is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MomentChoice {
     /// The one with the lowest BIC.
@@ -34,7 +34,7 @@ impl MomentChoice {
 }
 
 /// Which compass error is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompassChoice {
     /// White, or with a correlation time where that has the lower BIC.
@@ -47,7 +47,7 @@ pub enum CompassChoice {
 }
 
 /// Which error of the recorded rudder is fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderChoice {
     /// The one that the record declares, if it makes the record more likely.
@@ -60,7 +60,7 @@ pub enum RudderChoice {
 }
 
 /// Settings of [`MaximumLikelihood`](super::MaximumLikelihood).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Settings {
     /// The yaw moment: `chosen`, `none`, `white`, `ornstein-uhlenbeck` or `walk`.

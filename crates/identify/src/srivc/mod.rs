@@ -49,7 +49,7 @@ const FEWEST_ROWS: usize = 10;
 const SHORTEST_STEP: f64 = 0.05;
 
 /// Settings of [`Srivc`].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
 pub struct Settings {
     /// Iterations after the start before the method gives up.

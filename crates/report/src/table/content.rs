@@ -16,12 +16,15 @@ pub struct Column {
     pub unit: Option<String>,
     /// How its cells are aligned.
     pub alignment: Alignment,
+    /// Whether its cells are intervals of the column before it, `[low, high]`; other programs read two columns.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub interval: bool,
 }
 
 impl Column {
     /// A column of words.
     pub fn left(heading: impl Into<String>) -> Self {
-        Self { heading: heading.into(), unit: None, alignment: Alignment::Left }
+        Self { heading: heading.into(), ..Self::default() }
     }
 
     /// A column of whole numbers.
@@ -34,6 +37,11 @@ impl Column {
         Self { alignment: Alignment::Decimal, ..Self::left(heading) }
     }
 
+    /// The 95 % intervals of the column before.
+    pub fn interval() -> Self {
+        Self { interval: true, ..Self::left("95 %") }
+    }
+
     /// The same column with a unit.
     pub fn unit(self, unit: impl Into<String>) -> Self {
         Self { unit: Some(unit.into()), ..self }
@@ -41,7 +49,13 @@ impl Column {
 
     /// Heading and unit, as in `K [1/s]`.
     pub(super) fn head(&self) -> String {
-        self.unit.as_ref().map_or_else(|| self.heading.clone(), |unit| format!("{} [{unit}]", self.heading))
+        // An interval stands beside the column whose unit it has.
+        if self.interval { self.heading.clone() } else { self.named(&self.heading) }
+    }
+
+    /// Another heading with the unit of this column.
+    pub(super) fn named(&self, heading: &str) -> String {
+        self.unit.as_ref().map_or_else(|| heading.to_owned(), |unit| format!("{heading} [{unit}]"))
     }
 }
 

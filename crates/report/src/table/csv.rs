@@ -1,38 +1,96 @@
-//! A table as CSV, after RFC 4180.
+//! A table for other programs: CSV, after RFC 4180, and the values of a JSON document. Both have the same columns: an
+//! interval is two of them.
+
+use std::borrow::Cow;
+
+use serde_json::{Map, Value};
 
 use super::content::Table;
+use super::width::Alignment;
 use crate::printable::escaped;
 
 impl Table {
     /// As CSV (RFC 4180, but with plain line breaks): headings with units in the first line, missing cells empty, and
-    /// ASCII minus signs, so that numbers can be read back. A text that a spreadsheet would take for a formula stands
-    /// behind an apostrophe. The title is not part of it.
+    /// ASCII minus signs, so that numbers can be read back. An interval is two columns, `K lower 95` and `K upper 95`.
+    /// A text that a spreadsheet would take for a formula stands behind an apostrophe. The title is not part of it.
     pub fn to_csv(&self) -> String {
-        render(self)
+        let line = |cells: Vec<String>| cells.join(",") + "\n";
+        let heads = line(self.heads().iter().map(|head| quote(head)).collect());
+        let of = |row| line(self.flat(row).map(|cell| cell.map_or_else(String::new, |cell| quote(&cell))).collect());
+        heads + &self.rows.iter().map(|row| of(row)).collect::<String>()
     }
-}
 
-fn render(table: &Table) -> String {
-    let mut out = String::new();
-    let heads: Vec<String> = table.columns.iter().map(|column| quote(&column.head())).collect();
-    out.push_str(&heads.join(","));
-    out.push('\n');
-    for row in &table.rows {
-        let cells: Vec<String> = table.cells(row).map(|cell| cell.map_or_else(String::new, readable)).collect();
-        out.push_str(&cells.join(","));
-        out.push('\n');
+    /// The rows as JSON: one object each, by the headings of the CSV; numbers as numbers, missing cells as null.
+    pub fn to_records(&self) -> Vec<Value> {
+        let heads = self.heads();
+        let is_number = self.columns.iter().flat_map(|column| {
+            let is_number = column.interval || column.alignment != Alignment::Left;
+            std::iter::repeat_n(is_number, if column.interval { 2 } else { 1 })
+        });
+        let is_number: Vec<bool> = is_number.collect();
+        let value = |cell: Cow<str>, is_number: bool| match cell.parse::<f64>() {
+            Ok(number) if is_number && number.is_finite() => match cell.parse::<i64>() {
+                Ok(whole) => whole.into(),
+                Err(_) => number.into(),
+            },
+            _ => Value::String(cell.into_owned()),
+        };
+        let record = |row| -> Value {
+            let cells =
+                self.flat(row).zip(&is_number).map(|(cell, is)| cell.map_or(Value::Null, |cell| value(cell, *is)));
+            heads.iter().cloned().zip(cells).collect::<Map<String, Value>>().into()
+        };
+        self.rows.iter().map(|row| record(row)).collect()
     }
-    out
+
+    /// The rows as a JSON document.
+    pub fn to_json(&self) -> String {
+        Value::from(self.to_records()).to_string()
+    }
+
+    /// Headings with units, two for an interval.
+    fn heads(&self) -> Vec<String> {
+        let mut heads = Vec::with_capacity(self.columns.len());
+        let mut of = "";
+        for column in &self.columns {
+            if column.interval {
+                heads.extend(["lower", "upper"].map(|end| column.named(&format!("{of} {end} 95"))));
+            } else {
+                heads.push(column.named(&column.heading));
+            }
+            of = if column.interval { of } else { &column.heading };
+        }
+        heads
+    }
+
+    /// The cells of a row as numbers are written for programs, two for an interval.
+    fn flat<'a>(&'a self, row: &'a [Option<String>]) -> impl Iterator<Item = Option<Cow<'a, str>>> {
+        self.cells(row).zip(&self.columns).flat_map(|(cell, column)| {
+            let ends = cell.filter(|_| column.interval).and_then(|cell| {
+                let (low, high) = cell.strip_prefix('[')?.strip_suffix(']')?.split_once(", ")?;
+                Some([low, high])
+            });
+            let cells = match (column.interval, ends) {
+                (false, _) => [cell, None],
+                (true, None) => [None, None],
+                (true, Some(ends)) => ends.map(Some),
+            };
+            cells.into_iter().take(if column.interval { 2 } else { 1 }).map(|cell| cell.map(readable))
+        })
+    }
 }
 
 /// A cell with minus signs and powers of ten as other programs read them: `-1.3e-12` for `−1.3×10⁻¹²`.
-fn readable(cell: &str) -> String {
-    let plain = cell.replace('−', "-");
-    let Some((mantissa, exponent)) = plain.split_once("×10") else { return quote(&plain) };
+fn readable(cell: &str) -> Cow<'_, str> {
+    let plain = match cell.contains('−') {
+        true => Cow::Owned(cell.replace('−', "-")),
+        false => Cow::Borrowed(cell),
+    };
+    let Some((mantissa, exponent)) = plain.split_once("×10") else { return plain };
     let digits: Option<String> = exponent.chars().map(from_superscript).collect();
     match digits.filter(|digits| !digits.is_empty()) {
-        Some(digits) => quote(&format!("{mantissa}e{digits}")),
-        None => quote(&plain),
+        Some(digits) => Cow::Owned(format!("{mantissa}e{digits}")),
+        None => plain,
     }
 }
 
@@ -67,22 +125,38 @@ fn is_number(text: &str) -> bool {
 mod tests {
     use super::*;
     use crate::number;
+    use crate::table::Column;
 
     #[test]
     fn numbers_can_be_read_back() {
         for value in [-1.331_63e-12, 4.5e23, -0.25, 2.0e-4, 0.0, 1.0e-100] {
-            let text = readable(&number::significant(value, 6));
+            let written = number::significant(value, 6);
+            let text = readable(&written);
             assert_eq!(text.parse(), Ok(value), "{text}");
         }
-        assert_eq!(readable("5×10 m, −3"), "\"5×10 m, -3\"");
+        assert_eq!(quote(&readable("5×10 m, −3")), "\"5×10 m, -3\"");
         assert_eq!(readable("−12.5 ± 0.1"), "-12.5 ± 0.1");
+    }
+
+    #[test]
+    fn an_interval_is_two_numbers() {
+        let columns = [Column::left("method"), Column::decimal("K").unit("1/s"), Column::interval().unit("1/s")];
+        let mut table = Table::new(columns);
+        table.push(["one", "0.1", "[−0.2, 4×10⁻¹]"]);
+        table.push(["two", number::MISSING, number::MISSING]);
+        assert!(table.to_text().contains("[−0.2, 4×10⁻¹]"));
+        let csv = "method,K [1/s],K lower 95 [1/s],K upper 95 [1/s]\none,0.1,-0.2,4e-1\ntwo,,,\n";
+        assert_eq!(table.to_csv(), csv);
+        let [one, two] = &table.to_records()[..] else { panic!("two rows") };
+        assert_eq!((&one["method"], &one["K upper 95 [1/s]"]), (&"one".into(), &0.4.into()));
+        assert_eq!((&two["K [1/s]"], &two["K lower 95 [1/s]"]), (&Value::Null, &Value::Null));
     }
 
     #[test]
     fn no_cell_is_a_formula() {
         for text in ["=1+1", "+A1", "-1+cmd|'/C calc'!A0", "@SUM(A1)", "−A1", "=A1×10²"] {
-            assert!(readable(text).starts_with('\''), "{text}");
+            assert!(quote(&readable(text)).starts_with('\''), "{text}");
         }
-        assert_eq!(readable("\t=1+1"), "\\t=1+1");
+        assert_eq!(quote("\t=1+1"), "\\t=1+1");
     }
 }

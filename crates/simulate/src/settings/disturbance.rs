@@ -1,91 +1,89 @@
 //! What the sea does to the ship, as a person writes it: moments as the rudder angle that has the same yaw moment.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
 use ship::narrow_band::NarrowBand;
 
 use crate::disturbance::{Disturbances, GaussMarkov, Squall, Wind};
-use crate::settings::declare::settings;
 use crate::settings::refusal::SettingError;
 
-settings! {
-    /// Wind and sea; a calm in all that is left out.
-    #[derive(Default)]
-    #[serde(default)]
-    pub struct DisturbanceSettings {
-        /// Steady wind, whose moment depends on the heading.
-        pub wind: Option<WindSettings>,
-        /// Gusts that act as a moment of their own, whatever the heading.
-        pub gusts: Option<GustSettings>,
-        /// Linear trend of the moment from the beginning of the run, as rudder angle.
-        pub drift_deg_per_s: f64,
-        /// A moment that is present for a part of the run only.
-        pub squall: Option<SquallSettings>,
-        /// Random walk of the moment: its standard deviation after one second, as rudder angle.
-        pub random_walk_deg_per_root_s: f64,
-        /// Narrow-band yaw from waves, seen on top of the response.
-        pub waves: Option<WavesSettings>,
-    }
-}
-
-settings! {
-    /// Steady wind.
-    pub struct WindSettings {
-        /// Largest moment, as rudder angle.
-        pub moment_deg: f64,
-        /// Direction the true wind comes from, clockwise from north.
-        pub from_deg: f64,
-        /// True wind speed; with it the record has wind channels.
-        pub speed_m_s: Option<f64>,
-        /// Gusting of this moment.
-        pub gusting: Option<GustingSettings>,
-    }
-}
-
-settings! {
-    /// Gusting of the moment of the wind.
-    pub struct GustingSettings {
-        /// Standard deviation, as a share of the moment.
-        pub sd: f64,
-        /// Correlation time.
-        pub correlation_s: f64,
-    }
-}
-
-settings! {
-    /// Gusts that act as a moment of their own.
-    pub struct GustSettings {
-        /// Standard deviation, as rudder angle.
-        pub sd_deg: f64,
-        /// Correlation time.
-        pub correlation_s: f64,
-    }
-}
-
-settings! {
+/// Wind and sea; a calm in all that is left out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct DisturbanceSettings {
+    /// Steady wind, whose moment depends on the heading.
+    pub wind: Option<WindSettings>,
+    /// Gusts that act as a moment of their own, whatever the heading.
+    pub gusts: Option<GustSettings>,
+    /// Linear trend of the moment from the beginning of the run, as rudder angle.
+    pub drift_deg_per_s: f64,
     /// A moment that is present for a part of the run only.
-    pub struct SquallSettings {
-        /// Moment between the edges, as rudder angle.
-        pub moment_deg: f64,
-        /// Beginning, from the beginning of the run.
-        pub start_s: f64,
-        /// Length, edges included.
-        pub duration_s: f64,
-        /// Length of each smooth edge, at most half the length.
-        pub edge_s: f64,
-    }
+    pub squall: Option<SquallSettings>,
+    /// Random walk of the moment: its standard deviation after one second, as rudder angle.
+    pub random_walk_deg_per_root_s: f64,
+    /// Narrow-band yaw from waves, seen on top of the response.
+    pub waves: Option<WavesSettings>,
 }
 
-settings! {
-    /// Narrow-band yaw from waves.
-    #[derive(Copy)]
-    pub struct WavesSettings {
-        /// Standard deviation of the heading they add.
-        pub sd_deg: f64,
-        /// Frequency of encounter.
-        pub frequency_rad_s: f64,
-        /// Relative damping: the smaller, the narrower the band.
-        pub damping: f64,
-    }
+/// Steady wind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct WindSettings {
+    /// Largest moment, as rudder angle.
+    pub moment_deg: f64,
+    /// Direction the true wind comes from, clockwise from north.
+    pub from_deg: f64,
+    /// True wind speed; with it the record has wind channels.
+    pub speed_m_s: Option<f64>,
+    /// Gusting of this moment.
+    pub gusting: Option<GustingSettings>,
+}
+
+/// Gusting of the moment of the wind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GustingSettings {
+    /// Standard deviation, as a share of the moment.
+    pub sd: f64,
+    /// Correlation time.
+    pub correlation_s: f64,
+}
+
+/// Gusts that act as a moment of their own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct GustSettings {
+    /// Standard deviation, as rudder angle.
+    pub sd_deg: f64,
+    /// Correlation time.
+    pub correlation_s: f64,
+}
+
+/// A moment that is present for a part of the run only.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SquallSettings {
+    /// Moment between the edges, as rudder angle.
+    pub moment_deg: f64,
+    /// Beginning, from the beginning of the run.
+    pub start_s: f64,
+    /// Length, edges included.
+    pub duration_s: f64,
+    /// Length of each smooth edge, at most half the length.
+    pub edge_s: f64,
+}
+
+/// Narrow-band yaw from waves.
+#[derive(Debug, Clone, PartialEq, Copy, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct WavesSettings {
+    /// Standard deviation of the heading they add.
+    pub sd_deg: f64,
+    /// Frequency of encounter.
+    pub frequency_rad_s: f64,
+    /// Relative damping: the smaller, the narrower the band.
+    pub damping: f64,
 }
 
 impl DisturbanceSettings {

@@ -1,79 +1,80 @@
 //! What the ship is asked to do, as a person writes it.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::Polyline;
 use ship::angle::from_deg;
 
 use crate::manoeuvre::{Manoeuvre, PullOut, Side, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
-use crate::settings::declare::settings;
 use crate::settings::refusal::SettingError;
 
-settings! {
-    /// A manoeuvre: one key, its name.
-    pub enum ManoeuvreSettings {
-        /// Zig-zag: the rudder is reversed whenever the heading deviates far enough from the base course.
-        ZigZag(ZigZagSettings),
-        /// Turning circle: one order, held.
-        TurningCircle(TurningCircleSettings),
-        /// Pull-out: a turn, then rudder amidships.
-        PullOut(PullOutSettings),
-        /// The rudder of a record, followed as it is, without helmsman and steering gear.
-        Replay(ReplaySettings),
-    }
+/// A manoeuvre: one key, its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ManoeuvreSettings {
+    /// Zig-zag: the rudder is reversed whenever the heading deviates far enough from the base course.
+    ZigZag(ZigZagSettings),
+    /// Turning circle: one order, held.
+    TurningCircle(TurningCircleSettings),
+    /// Pull-out: a turn, then rudder amidships.
+    PullOut(PullOutSettings),
+    /// The rudder of a record, followed as it is, without helmsman and steering gear.
+    Replay(ReplaySettings),
 }
 
-settings! {
-    /// A zig-zag; a 10/20 has rudder 10° and heading 20°.
-    pub struct ZigZagSettings {
-        /// Rudder angle δ to either side.
-        pub rudder_deg: f64,
-        /// Deviation of the heading ψ from the base course at which the rudder is reversed.
-        pub heading_deg: f64,
-        /// Side of the first execute.
-        #[serde(default)]
-        pub first: Side,
-        /// Number of the execute that ends the manoeuvre, or `duration-s`; left out, the end of the record is its end.
-        pub executes: Option<usize>,
-        /// Time from the first execute to the end, or `executes`.
-        pub duration_s: Option<f64>,
-    }
+/// A zig-zag; a 10/20 has rudder 10° and heading 20°.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ZigZagSettings {
+    /// Rudder angle δ to either side.
+    pub rudder_deg: f64,
+    /// Deviation of the heading ψ from the base course at which the rudder is reversed.
+    pub heading_deg: f64,
+    /// Side of the first execute.
+    #[serde(default)]
+    pub first: Side,
+    /// Number of the execute that ends the manoeuvre, or `duration-s`; left out, the end of the record is its end.
+    pub executes: Option<usize>,
+    /// Time from the first execute to the end, or `executes`.
+    pub duration_s: Option<f64>,
 }
 
-settings! {
-    /// A turning circle.
-    pub struct TurningCircleSettings {
-        /// Rudder angle δ.
-        pub rudder_deg: f64,
-        /// Side of the turn.
-        #[serde(default)]
-        pub side: Side,
-        /// Time from the execute to the end, or `heading-change-deg`.
-        pub duration_s: Option<f64>,
-        /// Change of heading that ends the turn, or `duration-s`.
-        pub heading_change_deg: Option<f64>,
-    }
+/// A turning circle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct TurningCircleSettings {
+    /// Rudder angle δ.
+    pub rudder_deg: f64,
+    /// Side of the turn.
+    #[serde(default)]
+    pub side: Side,
+    /// Time from the execute to the end, or `heading-change-deg`.
+    pub duration_s: Option<f64>,
+    /// Change of heading that ends the turn, or `duration-s`.
+    pub heading_change_deg: Option<f64>,
 }
 
-settings! {
-    /// A pull-out.
-    pub struct PullOutSettings {
-        /// Rudder angle δ of the turn.
-        pub rudder_deg: f64,
-        /// Side of the turn.
-        #[serde(default)]
-        pub side: Side,
-        /// Time the rudder is held.
-        pub hold_s: f64,
-        /// Time from the order amidships to the end.
-        pub duration_s: f64,
-    }
+/// A pull-out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PullOutSettings {
+    /// Rudder angle δ of the turn.
+    pub rudder_deg: f64,
+    /// Side of the turn.
+    #[serde(default)]
+    pub side: Side,
+    /// Time the rudder is held.
+    pub hold_s: f64,
+    /// Time from the order amidships to the end.
+    pub duration_s: f64,
 }
 
-settings! {
-    /// The rudder of a recorded trial, followed as it is.
-    pub struct ReplaySettings {
-        /// Record with a rudder, relative to the scenario.
-        pub file: String,
-    }
+/// The rudder of a recorded trial, followed as it is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct ReplaySettings {
+    /// Record with a rudder, relative to the scenario.
+    pub file: String,
 }
 
 impl ManoeuvreSettings {

@@ -3,7 +3,6 @@
 //!
 //! Where the text of a scenario comes from, and where in it a fault stands, is for whoever reads it.
 
-mod declare;
 mod disturbance;
 mod manoeuvre;
 mod recording;
@@ -12,7 +11,6 @@ mod sensor;
 mod steering;
 mod trial;
 
-pub use declare::{Key, LeftOut};
 pub use disturbance::{
     DisturbanceSettings, GustSettings, GustingSettings, SquallSettings, WavesSettings, WindSettings,
 };
@@ -21,4 +19,4 @@ pub use recording::{RecordingSettings, RudderSource};
 pub use refusal::SettingError;
 pub use sensor::{DropOutSettings, HeadingSpikesSettings, HeadingWanderSettings, SensorSettings};
 pub use steering::{ApproachSettings, GearSettings, HelmsmanSettings};
-pub use trial::{Assumption, checked, keys};
+pub use trial::{Assumption, checked};

@@ -1,33 +1,33 @@
 //! Which part of a run is recorded, as a person writes it.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
 
 use crate::recording::{Recording, RudderColumn, Start};
-use crate::settings::declare::{Kind, Written, settings};
 use crate::settings::refusal::SettingError;
 
-settings! {
-    /// The record of a run.
-    pub struct RecordingSettings {
-        /// Time between two rows.
-        pub sampling_s: f64,
-        /// Time from the first to the last row; left out, the record lasts until the end of the manoeuvre.
-        pub duration_s: Option<f64>,
-        /// Number of the execute, from 1, at which the record starts; left out, it starts with the run.
-        pub after_execute: Option<usize>,
-        /// Time from that execute to the first row; 0 when left out.
-        pub offset_s: Option<f64>,
-        /// What stands in the rudder column: the feedback, or angles rebuilt from the orders.
-        #[serde(default)]
-        pub rudder: RudderSource,
-        /// Rate at which angles are rebuilt from orders; inf for a rudder that jumps.
-        pub assumed_rudder_rate_deg_s: Option<f64>,
-    }
+/// The record of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct RecordingSettings {
+    /// Time between two rows.
+    pub sampling_s: f64,
+    /// Time from the first to the last row; left out, the record lasts until the end of the manoeuvre.
+    pub duration_s: Option<f64>,
+    /// Number of the execute, from 1, at which the record starts; left out, it starts with the run.
+    pub after_execute: Option<usize>,
+    /// Time from that execute to the first row; 0 when left out.
+    pub offset_s: Option<f64>,
+    /// What stands in the rudder column: the feedback, or angles rebuilt from the orders.
+    #[serde(default)]
+    pub rudder: RudderSource,
+    /// Rate at which angles are rebuilt from orders; inf for a rudder that jumps.
+    pub assumed_rudder_rate_deg_s: Option<f64>,
 }
 
 /// What stands in the rudder column.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum RudderSource {
     /// The rudder feedback.
@@ -35,12 +35,6 @@ pub enum RudderSource {
     Feedback,
     /// Angles rebuilt from the orders.
     Orders,
-}
-
-impl Written for RudderSource {
-    fn kind() -> Kind {
-        Kind::Name(&["feedback", "orders"])
-    }
 }
 
 impl RecordingSettings {

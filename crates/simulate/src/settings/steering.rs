@@ -1,59 +1,54 @@
 //! Who steers, what moves the rudder and how the ship comes to the first execute, as a person writes it.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
 
 use crate::error::shown;
 use crate::gear::SteeringGear;
 use crate::helm::{Helmsman, Watches};
-use crate::settings::declare::settings;
 use crate::settings::refusal::SettingError;
 use crate::simulation::Approach;
 
-settings! {
-    /// What moves the rudder.
-    #[derive(Default)]
-    #[serde(default)]
-    pub struct GearSettings {
-        /// Rudder rate; that of the ship where its source gives one, and else the rudder moves instantly.
-        pub rate_deg_s: Option<f64>,
-        /// Time constant of the approach to the order.
-        pub lag_s: f64,
-        /// Time from order to first movement.
-        pub dead_time_s: f64,
-        /// Error at which the pump stops, and below which it does not start.
-        pub dead_band_deg: f64,
-        /// Largest rudder angle to either side; that of the ship where its source gives one, and else 90°.
-        pub maximum_deg: Option<f64>,
-    }
+/// What moves the rudder.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct GearSettings {
+    /// Rudder rate; that of the ship where its source gives one, and else the rudder moves instantly.
+    pub rate_deg_s: Option<f64>,
+    /// Time constant of the approach to the order.
+    pub lag_s: f64,
+    /// Time from order to first movement.
+    pub dead_time_s: f64,
+    /// Error at which the pump stops, and below which it does not start.
+    pub dead_band_deg: f64,
+    /// Largest rudder angle to either side; that of the ship where its source gives one, and else 90°.
+    pub maximum_deg: Option<f64>,
 }
 
-settings! {
-    /// Who reads the compass and turns the wheel.
-    #[derive(Default)]
-    #[serde(default)]
-    pub struct HelmsmanSettings {
-        /// Time between readings of the heading display; left out, he knows the true heading at every instant.
-        pub reads_display_every_s: Option<f64>,
-        /// Time from seeing the heading waited for to giving the order.
-        pub reaction_time_s: f64,
-    }
+/// Who reads the compass and turns the wheel.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct HelmsmanSettings {
+    /// Time between readings of the heading display; left out, he knows the true heading at every instant.
+    pub reads_display_every_s: Option<f64>,
+    /// Time from seeing the heading waited for to giving the order.
+    pub reaction_time_s: f64,
 }
 
-settings! {
-    /// How the ship comes to the first execute.
-    #[derive(Default)]
-    #[serde(default)]
-    pub struct ApproachSettings {
-        /// Heading at the beginning of the run: the base course.
-        pub heading_deg: f64,
-        /// Yaw rate at the beginning of the run.
-        pub yaw_rate_deg_s: f64,
-        /// Rudder until the first execute.
-        pub rudder_deg: f64,
-        /// Straight run before the first execute.
-        pub lead_in_s: f64,
-    }
+/// How the ship comes to the first execute.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct ApproachSettings {
+    /// Heading at the beginning of the run: the base course.
+    pub heading_deg: f64,
+    /// Yaw rate at the beginning of the run.
+    pub yaw_rate_deg_s: f64,
+    /// Rudder until the first execute.
+    pub rudder_deg: f64,
+    /// Straight run before the first execute.
+    pub lead_in_s: f64,
 }
 
 /// No rudder is put further than across the ship, deg.

@@ -5,30 +5,9 @@ use crate::helm::Watches;
 use crate::manoeuvre::{Manoeuvre, ZigZag, ZigZagEnd};
 use crate::recording::{RudderColumn, Start};
 use crate::sensor::HeadingSensor;
-use crate::settings::declare::{Entry, Key};
-use crate::settings::disturbance::DisturbanceSettings;
-use crate::settings::manoeuvre::ManoeuvreSettings;
-use crate::settings::recording::RecordingSettings;
 use crate::settings::refusal::SettingError;
-use crate::settings::sensor::SensorSettings;
-use crate::settings::steering::{ApproachSettings, GearSettings, HelmsmanSettings};
+use crate::settings::steering::GearSettings;
 use crate::simulation::Simulation;
-
-/// Every key of the settings of a trial, in the order in which things happen.
-pub fn keys() -> Vec<Key> {
-    [
-        Entry::new::<ManoeuvreSettings>("manoeuvre", &["What the ship is asked to do: one of these."], false),
-        Entry::new::<Option<GearSettings>>("steering_gear", &["What moves the rudder."], false),
-        Entry::new::<Option<HelmsmanSettings>>("helmsman", &["Who reads the compass and turns the wheel."], false),
-        Entry::new::<Option<ApproachSettings>>("approach", &["How the ship comes to the first execute."], false),
-        Entry::new::<RecordingSettings>("recording", &["Which part of the run is written down."], false),
-        Entry::new::<Option<SensorSettings>>("sensor", &["Instruments, perfect in all that is left out."], false),
-        Entry::new::<Option<DisturbanceSettings>>("disturbance", &["Wind and sea; a calm when left out."], false),
-    ]
-    .iter()
-    .flat_map(|part| part.keys(""))
-    .collect()
-}
 
 /// The simulation, if its settings go together.
 ///

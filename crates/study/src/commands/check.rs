@@ -2,33 +2,53 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::options::Common;
+use crate::options::{Common, Format};
 use crate::screen;
+use crate::views::document;
+use campaign::outside;
 use scenario::Scenario;
 use scenario::failure::{Blame, Failure};
+use serde_json::{Value, json};
 use simulate::settings::Assumption;
 
 /// Resolves every file and prints one line for each that is right, with a note where its rudder moves instantly; with
 /// `resolved` the whole scenario below it. All that are wrong are in the message.
 pub fn run(scenarios: &[PathBuf], resolved: bool, common: &Common) -> Result<(), Failure> {
-    let mut wrong = Vec::new();
+    let (mut wrong, mut right) = (Vec::new(), Vec::new());
     for path in scenarios {
         match Scenario::read(path, common.seed) {
+            Ok(_) if common.quiet => {}
+            Ok(scenario) if common.format == Format::Json => right.push(entry(path, &scenario, resolved)),
             Ok(scenario) if resolved => {
                 let summary: String = summary(path, &scenario).lines().map(|line| format!("# {line}\n")).collect();
                 screen::say(&format!("{summary}\n{}", scenario.resolved()))?;
             }
-            Ok(_) if common.quiet => {}
             Ok(scenario) => screen::say(&summary(path, &scenario))?,
             Err(failure) => wrong.push(failure),
         }
+    }
+    if common.format == Format::Json && !common.quiet {
+        document::say("check/1", json!({ "scenarios": right, "wrong": wrong.len() }))?;
     }
     let Some(first) = wrong.first() else { return Ok(()) };
     let others: String = wrong[1..].iter().map(|failure| format!("\n\n{failure}")).collect();
     Err(Failure { blame: Blame::Input, message: first.message.clone() + &others })
 }
 
-/// The size of a scenario, and below it a note on a rudder that moves instantly, which few mean and no real ship has.
+/// A scenario that is right, for a program.
+fn entry(path: &Path, scenario: &Scenario, resolved: bool) -> Value {
+    let assumptions: Vec<String> = scenario.defaults_that_matter().into_iter().map(|(_, sentence)| sentence).collect();
+    let whole = resolved.then(|| scenario.resolved().parse::<toml::Table>().expect("it has been resolved"));
+    json!({
+        "file": path.display().to_string(), "name": scenario.name, "question": scenario.words.question.trim(),
+        "seed": scenario.seed, "design_sha256": scenario.design_sha256, "replicates": scenario.replicates,
+        "cells": scenario.cells.iter().map(|cell| cell.labels.clone()).collect::<Vec<_>>(),
+        "methods": scenario.method_names(), "assumptions": assumptions, "resolved": whole,
+    })
+}
+
+/// The size of a scenario, and below it the programs that a run starts, and a note on a rudder that moves instantly,
+/// which few mean and no real ship has.
 fn summary(path: &Path, scenario: &Scenario) -> String {
     let size = format!(
         "{}: {}, {}, {} each",
@@ -38,10 +58,9 @@ fn summary(path: &Path, scenario: &Scenario) -> String {
         counted(scenario.replicates, "trial"),
     );
     let mut defaults = scenario.defaults_that_matter().into_iter();
-    match defaults.find(|(assumption, _)| *assumption == Assumption::InstantRudder) {
-        Some((_, sentence)) => format!("{size}\n  note: {sentence}"),
-        None => size,
-    }
+    let instant = defaults.find(|(assumption, _)| *assumption == Assumption::InstantRudder);
+    let notes = outside::told(scenario).into_iter().chain(instant.map(|(_, sentence)| sentence));
+    size + &notes.map(|note| format!("\n  note: {note}")).collect::<String>()
 }
 
 fn counted(count: u64, word: &str) -> String {

@@ -1,14 +1,19 @@
 //! `study find`: the manoeuvres inside long logs.
 
+use std::path::Path;
+
 use find::{Kind, Manoeuvre};
-use report::number::{MISSING, fixed};
+use report::number::{MISSING, fixed, optional};
 use report::{Column, Table};
+use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
+use trial::file::called;
 
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};
 use crate::screen;
+use crate::views::document;
 use scenario::failure::Failure;
 
 /// Prints the manoeuvres of every log.
@@ -20,9 +25,15 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
         return Err(Failure::input(format!("--with-columns is for one log, {} are given; give one", files.len())));
     }
     let mut warnings = Vec::new();
+    let mut logs = Vec::new();
     for file in &files {
         let log = open(file, request.columns.as_deref(), &request.with_columns, &mut warnings)?;
+        let file = called(file);
         let found = manoeuvres(&log);
+        if common.format == Format::Json {
+            logs.push(entry(file, &log, &found));
+            continue;
+        }
         let table = common.format.render(&table(&log, &found));
         if common.format != Format::Text {
             screen::say(table.trim_end())?;
@@ -44,10 +55,46 @@ pub fn run(request: &FindRequest, common: &Common) -> Result<(), Failure> {
             .collect();
         screen::say(&format!("{head}\n\n{table}\n{remarks}"))?;
     }
+    if common.format == Format::Json {
+        document::say("find/1", json!({ "logs": logs }))?;
+    }
     for warning in warnings {
         screen::warn(&format!("warning: {warning}"));
     }
     Ok(())
+}
+
+/// A log with its manoeuvres for a program.
+fn entry(file: &Path, log: &Log, found: &[Manoeuvre]) -> Value {
+    let clock = |time: f64| log.clock().map(|clock| clock.at(time).to_string());
+    let manoeuvres: Vec<Value> = (1..)
+        .zip(found)
+        .map(|(number, one)| {
+            let [rudder, heading] = angles(one).map(|angle| angle.map(to_deg));
+            json!({
+                "trial": number, "kind": one.kind.name(), "from_s": one.from, "until_s": one.until,
+                "clock": clock(one.from).zip(clock(one.until)), "executes": one.executes,
+                "rudder_deg": rudder, "heading_deg": heading, "remarks": one.quality.remarks(),
+            })
+        })
+        .collect();
+    let (first, last) = (log.time()[0], log.time()[log.time().len() - 1]);
+    let date = log.clock().and_then(|clock| clock.date_at(first)).map(|day| day.to_string());
+    json!({
+        "file": file.display().to_string(), "rows": log.time().len(), "duration_s": last - first, "date": date,
+        "manoeuvres": manoeuvres,
+    })
+}
+
+/// Rudder and heading that a manoeuvre is known by, rad.
+fn angles(one: &Manoeuvre) -> [Option<f64>; 2] {
+    match one.kind {
+        Kind::ZigZag { rudder, heading } => [Some(rudder), Some(heading)],
+        Kind::TurningCircle { rudder, turned } => [Some(rudder), Some(turned)],
+        Kind::PullOut { rudder } => [Some(rudder), None],
+        Kind::Spiral { largest, .. } => [Some(largest), None],
+        _ => [None, None],
+    }
 }
 
 fn table(log: &Log, found: &[Manoeuvre]) -> Table {
@@ -63,15 +110,8 @@ fn table(log: &Log, found: &[Manoeuvre]) -> Table {
     ]);
     for (number, one) in (1..).zip(found) {
         let clock = log.clock().map(|clock| format!("{} to {}", clock.at(one.from), clock.at(one.until)));
-        let angle = |angle: f64| fixed(to_deg(angle), 1);
         let missing = || MISSING.to_owned();
-        let (rudder, heading) = match one.kind {
-            Kind::ZigZag { rudder, heading } => (angle(rudder), angle(heading)),
-            Kind::TurningCircle { rudder, turned } => (angle(rudder), angle(turned)),
-            Kind::PullOut { rudder } => (angle(rudder), missing()),
-            Kind::Spiral { largest, .. } => (angle(largest), missing()),
-            _ => (missing(), missing()),
-        };
+        let [rudder, heading] = angles(one).map(|angle| optional(angle.map(to_deg), 1));
         table.push([
             number.to_string(),
             one.kind.name(),

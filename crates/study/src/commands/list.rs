@@ -1,20 +1,23 @@
 //! `study list`: what scenario files can name.
 
-use identify::{IdentifierSettings, registry};
+use clap::ValueEnum;
+use identify::{IdentifierSettings, external, registry};
 use report::number::MISSING;
 use report::{Column, Table};
+use serde_json::json;
 use ship::angle::KNOT;
 use ship::{effects, ships};
 
 use crate::options::{Common, Format, Listed};
 use crate::screen;
+use crate::views::document;
 use trial::Channel;
 use trial::names::{self, Said};
 use trial::sidecar::Key;
 
 use scenario::effect_keys;
 use scenario::failure::Failure;
-use simulate::settings;
+use scenario::keys::{Key as ScenarioKey, keys as keys_of_scenario};
 
 /// Prints the list.
 pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
@@ -28,19 +31,28 @@ pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
         Listed::Columns => columns(),
         Listed::Sidecar => sidecar(),
     };
+    if common.format == Format::Json {
+        let name = what.to_possible_value().map(|value| value.get_name().to_owned());
+        return document::say("list/1", json!({ "what": name, "entries": table.to_records() }));
+    }
     let head = match what {
         _ if common.format != Format::Markdown => "",
-        Listed::Keys => PAGE,
+        Listed::Identifiers => IDENTIFIERS,
+        Listed::Effects => EFFECTS,
+        Listed::Ships => SHIPS,
+        Listed::Keys => KEYS,
         Listed::Columns => COLUMNS,
         Listed::Sidecar => SIDECAR,
-        _ => "",
+        Listed::Manoeuvres | Listed::Sensors => "",
     };
     screen::say(&format!("{head}{}", common.format.render(&table).trim_end()))
 }
 
 fn identifiers() -> Result<Table, Failure> {
     let mut table = Table::new([Column::left("id"), Column::left("method"), Column::left("settings")]);
-    for settings in registry::defaults() {
+    // No program is started by default; the command stands for any.
+    let outside = IdentifierSettings::External(external::Settings::new(["python3", "mine.py"]));
+    for settings in registry::defaults().into_iter().chain([outside]) {
         let method = settings.build().map_err(|error| Failure::work(format!("default settings: {error}")))?;
         table.push([method.id().to_owned(), method.summary().to_owned(), keys(&settings)]);
     }
@@ -101,7 +113,7 @@ fn ships() -> Table {
 fn keys_below(part: &str) -> Table {
     let mut table =
         Table::new([Column::left("key"), Column::left("unit"), Column::left("default"), Column::left("meaning")]);
-    for settings::Key { key, unit, default, meaning } in settings::keys() {
+    for ScenarioKey { key, unit, default, meaning } in keys_of_scenario() {
         if let Some(key) = key.strip_prefix(part) {
             // A table shows the marks of code as they are.
             table.push([key, &unit, &default.to_string(), &meaning.replace('`', "")]);
@@ -139,6 +151,35 @@ fn sidecar() -> Table {
     }
     table
 }
+
+/// What stands before the methods in Markdown, which is a page of the documentation.
+const IDENTIFIERS: &str = "\
+# Methods
+
+What finds K, T and the rudder bias δ_r in a record. The id is what `study fit --method` and `[[identifier]] method.ID` of a
+scenario take. Settings are shown with their defaults, as a scenario may write them. Made by `study list identifiers --format
+markdown`.
+
+";
+
+/// What stands before the effects in Markdown, which is a page of the documentation.
+const EFFECTS: &str = "\
+# Effects
+
+What a first-order response may lack. `study trace` looks for each of them; a scenario puts them into a ship by the keys of the
+third column, `[[effect]] ID = { KEY = VALUE }`. Units of the parameters are those of `trace.json`. Made by `study list effects
+--format markdown`.
+
+";
+
+/// What stands before the ships in Markdown, which is a page of the documentation.
+const SHIPS: &str = "\
+# Ships
+
+What `[ship.ID]` of a scenario may name, with length between perpendiculars and approach speed. Made by `study list ships --format
+markdown`.
+
+";
 
 /// What stands before the names of columns in Markdown, which is a page of the documentation.
 const COLUMNS: &str = "\
@@ -186,10 +227,11 @@ speed-m-s = 1.18
 ";
 
 /// What stands before the keys in Markdown, which is a page of the documentation.
-const PAGE: &str = "\
-# Keys of a trial
+const KEYS: &str = "\
+# Keys of a scenario
 
-How a trial is made, key by key. A key that is required may be left out with the whole table it stands in. `study list ships` and
-`study list effects` name the keys below `ship` and `effect`. Made by `study list keys --format markdown`.
+What a scenario can say, key by key; `[]` stands for one entry of a list, such as an `[[identifier]]`. A key that is required may be
+left out with the whole table it stands in. `study list ships` and `study list effects` say more on what stands below `ship` and
+`effect`. Made by `study list keys --format markdown`.
 
 ";

@@ -1,18 +1,20 @@
-//! The commands, one file each: they read options, ask the crates below for work, and hand the answer to
-//! [`crate::views`].
+//! The commands, one file each: they read options, have the work done by [`crate::work`] or the crates below, and hand
+//! the answer to [`crate::views`].
 
-mod alone;
+pub mod bench;
 pub mod check;
+pub mod doctor;
 pub mod find;
 pub mod fit;
 pub mod list;
 pub mod merge;
 pub mod overview;
-mod planned;
 pub mod predict;
 pub mod report;
 pub mod run;
+pub mod schema;
+pub mod score;
+pub mod shell;
 pub mod sidecar;
 pub mod simulate;
-mod steady;
 pub mod trace;

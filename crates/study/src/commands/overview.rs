@@ -5,9 +5,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use report::markdown;
+use serde::Serialize;
+use serde_json::json;
 
-use crate::options::Common;
+use crate::options::{Common, Format};
 use crate::screen;
+use crate::views::document;
 use crate::views::drawings::HERO;
 use campaign::disk;
 use campaign::files;
@@ -26,6 +29,7 @@ const MARK: &str = "<!-- Made by `study overview`, which writes it anew. -->\n";
 const LARGEST: u64 = 1 << 26;
 
 /// One published study.
+#[derive(Serialize)]
 struct Study {
     name: String,
     question: String,
@@ -45,6 +49,9 @@ pub fn run(folder: &Path, common: &Common) -> Result<(), Failure> {
         )));
     }
     target.write(PAGE, MARK.to_owned() + &markdown::prose(&page(&studies)))?;
+    if common.format == Format::Json && !common.quiet {
+        return document::say("overview/1", json!({ "page": path.display().to_string(), "studies": studies }));
+    }
     if common.quiet { Ok(()) } else { screen::say(&format!("{} studies: {}", studies.len(), path.display())) }
 }
 

@@ -7,10 +7,12 @@ use campaign::folder::ResultFolder;
 use campaign::task::{Shard, default_folder};
 use scenario::Scenario;
 use scenario::failure::Failure;
+use serde_json::json;
 
-use crate::options::{Common, RunRequest};
+use crate::options::{Common, Format, RunRequest};
 use crate::screen;
 use crate::terminal::Terminal;
+use crate::views::document;
 use crate::views::publish::publish;
 
 /// Runs a scenario, or a shard of it, and publishes it as `study report` would.
@@ -23,9 +25,13 @@ pub fn run(path: &Path, request: &RunRequest, common: &Common) -> Result<(), Fai
     if shard == Shard::WHOLE {
         return publish(&stored, &folder, (&theme, request.style.figures), common);
     }
-    match common.quiet {
-        true => Ok(()),
-        false => screen::say(&format!(
+    match common.format {
+        _ if common.quiet => Ok(()),
+        Format::Json => {
+            let folder = folder.path().display().to_string();
+            document::say("shard/1", json!({ "folder": folder, "manifest": stored.manifest }))
+        }
+        _ => screen::say(&format!(
             "shard {shard} of {} is in {}; `study merge` joins all {}",
             scenario.name,
             folder.path().display(),

@@ -1,24 +1,23 @@
-//! `study simulate`: the trials of a scenario as records that `study fit` reads, with the truth beside each.
+//! `study simulate`: the trials of a scenario as records that `study fit` reads, with the truth beside each, and in a
+//! folder a list of them that `study score` knows.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use campaign::engine::{self, Truths};
+use campaign::answers::{TRIALS, Trials, part_name, record_name};
 use campaign::folder::ResultFolder;
 use campaign::task::Task;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
+use report::{Column, Table};
 use scenario::Scenario;
 use scenario::failure::{Failure, OnPath};
-use scenario::problem::suggestion;
-use simulate::Simulated;
+use serde_json::json;
 
-use crate::options::{Common, Replicates, SimulateRequest};
-use crate::views::picture::{first_failure, slug};
-use crate::views::truth_file::TruthFile;
+use crate::options::{Common, Format, SimulateRequest};
+use crate::views::document;
+use crate::views::picture::first_failure;
+use crate::work::simulate::{Made, records, tasks};
 use crate::{progress, screen};
-
-/// Most records that one call writes: more are a study, which keeps them as rows.
-const MOST_RECORDS: u64 = 100_000;
 
 /// Simulates the trials that are asked for and writes them, with the truth of each.
 ///
@@ -30,9 +29,9 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
         return Err(Failure::input("no place for the records is given; add --out FILE.csv or --out DIR"));
     };
     let tasks = tasks(&scenario, request)?;
-    let records: u64 = tasks.iter().map(|task| scenario.cells[task.cell].records() as u64).sum();
+    let count: u64 = tasks.iter().map(|task| scenario.cells[task.cell].records() as u64).sum();
     let is_file = out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
-    let (folder, names) = match (is_file, records) {
+    let (folder, names) = match (is_file, count) {
         (true, 1) => {
             let parent = out.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
             (ResultFolder::shared(parent)?, vec![scenario::name::of_file(out)?])
@@ -44,7 +43,7 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
                 out.display()
             )));
         }
-        (false, _) => (ResultFolder::hold(out)?, tasks.iter().map(|task| name_of(&scenario, *task)).collect()),
+        (false, _) => (ResultFolder::hold(out)?, tasks.iter().map(|task| record_name(&scenario, *task)).collect()),
     };
     first_failure(
         tasks
@@ -53,96 +52,50 @@ pub fn run(request: &SimulateRequest, common: &Common) -> Result<(), Failure> {
             .progress_with(progress::of("records", tasks.len() as u64, common.quiet))
             .map(|(task, name)| write(&scenario, *task, name, &folder)),
     )?;
+    if !is_file {
+        list(&scenario, &tasks, &names, &folder)?;
+    }
     if common.quiet {
         return Ok(());
     }
-    match (names.as_slice(), records) {
+    if common.format == Format::Json {
+        let files: Vec<String> =
+            names.iter().map(|name| folder.path().join(format!("{name}.csv")).display().to_string()).collect();
+        return document::say("simulate/1", json!({ "records": count, "files": files }));
+    }
+    match (names.as_slice(), count) {
         ([name], 1) => screen::say(&format!("{}", folder.path().join(format!("{name}.csv")).display())),
-        _ => screen::say(&format!("{records} records in {}", folder.path().display())),
+        _ => screen::say(&format!("{count} records in {}", folder.path().display())),
     }
 }
 
-/// The trials that are asked for, in their order.
-fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>, Failure> {
-    let titles: Vec<String> = scenario.cells.iter().map(|cell| cell.title()).collect();
-    let cells = match &request.cell {
-        None => 0..titles.len(),
-        Some(label) => {
-            let cell = titles.iter().position(|title| title == label).ok_or_else(|| {
-                let advice = match titles.as_slice() {
-                    [only] if only.is_empty() => {
-                        "leave --cell out: the scenario has one cell, without a label".to_owned()
-                    }
-                    titles => suggestion(label, &titles[..titles.len().min(20)]),
-                };
-                Failure::input(format!("--cell {label:?}: {} has no such cell; {advice}", request.scenario.display()))
-            })?;
-            cell..cell + 1
-        }
-    };
-    let replicates = match request.replicate {
-        Replicates::All => 0..scenario.replicates,
-        Replicates::One(number) if number < scenario.replicates => number..number + 1,
-        Replicates::One(number) => {
-            return Err(Failure::input(format!(
-                "--replicate {number}: {} has {} trials in a cell, which are counted from 0",
-                request.scenario.display(),
-                scenario.replicates
-            )));
-        }
-    };
-    let count = (cells.len() as u64).saturating_mul(replicates.end - replicates.start);
-    if count > MOST_RECORDS {
-        return Err(Failure::input(format!(
-            "{count} records are asked for; expected at most {MOST_RECORDS}; name a cell with --cell or a trial with --replicate"
-        )));
+/// Writes which record is of which trial, and what it takes to make the trials again.
+fn list(scenario: &Scenario, tasks: &[Task], names: &[String], folder: &ResultFolder) -> Result<(), Failure> {
+    let columns = ["record", "cell", "label", "replicate", "also"];
+    let mut table = Table::new(columns.map(Column::left));
+    for (task, name) in tasks.iter().zip(names) {
+        let file = |number: usize| format!("{}.csv", part_name(name, number));
+        let cell = &scenario.cells[task.cell];
+        let also: Vec<String> = (1..cell.records()).map(file).collect();
+        let (number, replicate) = (task.cell.to_string(), task.replicate.to_string());
+        table.push([file(0), number, cell.title(), replicate, also.join(" ")]);
     }
-    Ok(cells.flat_map(|cell| replicates.clone().map(move |replicate| Task { cell, replicate })).collect())
+    folder.write("trials.csv", table.to_csv())?;
+    let text = toml::to_string(&Trials::of(scenario)).on("describe the trials in", folder.path())?;
+    folder.write(TRIALS, format!("{SCORE}{text}"))
 }
 
-/// What the record of a trial is called in a folder: scenario, cell and number, as far as there are several.
-fn name_of(scenario: &Scenario, task: Task) -> String {
-    let mut name = scenario.name.clone();
-    if scenario.cells.len() > 1 {
-        name += &format!("-{:0width$}", task.cell, width = (scenario.cells.len() - 1).to_string().len());
-        let title = slug(&scenario.cells[task.cell].title());
-        if !title.is_empty() {
-            name += &format!("-{title}");
-        }
-    }
-    if scenario.replicates > 1 {
-        name += &format!("-{:0width$}", task.replicate, width = (scenario.replicates - 1).to_string().len());
-    }
-    name
-}
+/// First line of the description of the trials.
+const SCORE: &str = "# `study score ANSWERS.csv` scores answers to these trials that lie beside this file.\n";
 
 /// Writes the records of a trial, the sidecar of each where the ship has a length, and its truth.
 fn write(scenario: &Scenario, task: Task, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
-    let refuse = |error: String| {
-        Failure::work(format!(
-            "trial {} of cell {} of {} cannot be made: {error}",
-            task.replicate, task.cell, scenario.name
-        ))
-    };
-    let records: Vec<Simulated> = engine::simulate(scenario, task).map_err(refuse)?;
-    let truths: Truths = engine::truths(scenario, task).map_err(refuse)?;
-    for (number, simulated) in records.iter().enumerate() {
-        let name = if number == 0 { name.to_owned() } else { format!("{name}-also-{number}") };
-        let truth = TruthFile::of(scenario, task, simulated, truths).map_err(refuse)?;
-        write_record(simulated, &truth, &name, folder)?;
+    for Made { name, table, sidecar, truth } in records(scenario, task, name)? {
+        folder.write(&format!("{name}.csv"), table)?;
+        if let Some(sidecar) = sidecar {
+            folder.write(&format!("{name}.trial.toml"), sidecar)?;
+        }
+        folder.write(&format!("{name}.truth.json"), truth)?;
     }
     Ok(())
-}
-
-fn write_record(simulated: &Simulated, truth: &TruthFile, name: &str, folder: &ResultFolder) -> Result<(), Failure> {
-    let path: PathBuf = folder.path().join(format!("{name}.csv"));
-    let mut table = Vec::new();
-    trial::write_csv(&simulated.trial, &mut table).on("write", &path)?;
-    folder.write(&format!("{name}.csv"), table)?;
-    if let Some(particulars) = simulated.trial.particulars() {
-        let sidecar = format!("[ship]\nlength-m = {:?}\nspeed-m-s = {:?}\n", particulars.length, particulars.speed);
-        folder.write(&format!("{name}.trial.toml"), sidecar)?;
-    }
-    let text = serde_json::to_string(truth).on("describe", &path)?;
-    folder.write(&format!("{name}.truth.json"), text + "\n")
 }

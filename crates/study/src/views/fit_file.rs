@@ -12,7 +12,7 @@ use super::scale_comparison::ScalesEntry;
 use crate::records::file_of;
 
 /// One record of `fit.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TrialEntry {
     /// The file as it was named.
     pub file: String,
@@ -27,7 +27,7 @@ pub struct TrialEntry {
 }
 
 /// One IMO criterion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CriterionEntry {
     /// What is limited.
     pub criterion: String,
@@ -42,7 +42,7 @@ pub struct CriterionEntry {
 }
 
 /// Zig-zag characteristics of a record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ZigZagEntry {
     /// Initial turning time, s.
     pub initial_turning_time_s: Option<f64>,
@@ -57,9 +57,10 @@ pub struct ZigZagEntry {
 }
 
 /// `fit.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct FitFile {
     /// `fit/1`.
+    #[schemars(extend("const" = "fit/1"))]
     pub schema: String,
     /// The records.
     pub trials: Vec<TrialEntry>,

@@ -9,6 +9,7 @@ use trial::{Quantity, Trial};
 
 use super::fit_file::FitFile;
 use super::scale_comparison::{ComparedModel, ComparedTerm, ScalesEntry, prime_table};
+use crate::outside::Named;
 use crate::scales::{Together, scale_name};
 use campaign::answer::MethodEntry;
 
@@ -18,7 +19,7 @@ pub const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
 
 /// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
 pub fn compared(
-    methods: &[Box<dyn Identifier>],
+    methods: &[Named],
     answers: &[(MethodEntry, Option<Estimate>)],
     together: &Together,
 ) -> Option<ScalesEntry> {
@@ -32,7 +33,7 @@ pub fn compared(
         methods
             .par_iter()
             .zip(answers)
-            .filter_map(|(method, (entry, joint))| {
+            .filter_map(|((_, method), (entry, joint))| {
                 let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
                 Some(ComparedModel { model: entry.method.clone(), terms })
             })

@@ -14,7 +14,7 @@ pub fn table(entries: &[MethodEntry], validated: &[String]) -> Table {
     let mut columns = vec![Column::left("method")];
     for (symbol, unit) in [("K", "1/s"), ("T", "s"), ("δ_r", "deg")] {
         columns.push(Column::decimal(symbol).unit(unit));
-        columns.push(Column::left("95 %"));
+        columns.push(Column::interval().unit(unit));
     }
     columns.push(Column::decimal("rms ψ").unit("deg"));
     columns.extend(validated.iter().map(|name| Column::decimal(format!("on {name}")).unit("deg")));

@@ -207,7 +207,7 @@ pub fn sentence(report: &TraceReport, shown: &Shown) -> String {
 }
 
 /// The moment of one record in `trace.json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct MissingMomentEntry {
     /// The record.
     file: String,
@@ -220,7 +220,7 @@ pub struct MissingMomentEntry {
 }
 
 /// One curve.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct PanelEntry {
     channel: &'static str,
     /// Share of the variance of its walk that the curve takes away.

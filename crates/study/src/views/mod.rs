@@ -1,8 +1,12 @@
 //! What people and programs see: tables, figures, pages and JSON. Views read what was computed and compute nothing.
 
+pub mod bench_figures;
+pub mod bench_page;
+pub mod bench_tables;
 pub mod charts;
 pub mod coverage_table;
 pub mod curve_tables;
+pub mod document;
 pub mod drawings;
 pub mod fit_figures;
 pub mod fit_file;

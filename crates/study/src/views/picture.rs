@@ -4,6 +4,7 @@ use campaign::folder::ResultFolder;
 use rayon::prelude::*;
 use report::Figure;
 use scenario::failure::{Failure, OnPath};
+pub use scenario::name::slug;
 
 /// Does all of it in parallel and fails with the first failure in order, whichever came first in time.
 pub fn first_failure(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
@@ -14,19 +15,6 @@ pub fn first_failure(work: impl IndexedParallelIterator<Item = Result<(), Failur
 pub fn write_figure(figure: &Figure, folder: &ResultFolder, stem: &str) -> Result<(), Failure> {
     folder.write(&format!("{stem}.svg"), figure.svg())?;
     folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
-}
-
-/// A title as part of a file name: lower case, words joined by hyphens.
-pub fn slug(title: &str) -> String {
-    let mut slug = String::new();
-    for letter in title.chars() {
-        match letter {
-            letter if letter.is_ascii_alphanumeric() => slug.push(letter.to_ascii_lowercase()),
-            _ if slug.ends_with('-') || slug.is_empty() => {}
-            _ => slug.push('-'),
-        }
-    }
-    slug.trim_end_matches('-').to_owned()
 }
 
 #[cfg(test)]
@@ -45,11 +33,5 @@ mod tests {
             _ => Ok(()),
         });
         assert_eq!(first_failure(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
-    }
-
-    #[test]
-    fn slugs_are_file_names() {
-        assert_eq!(slug("10/20 (published reading)"), "10-20-published-reading");
-        assert_eq!(slug(""), "");
     }
 }

@@ -14,7 +14,7 @@ use super::predict_tables::{bracket, digits, words};
 use crate::records::file_of;
 
 /// A record that was corrected to full load.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct CorrectedEntry {
     file: String,
     /// Models at full load.
@@ -26,7 +26,7 @@ pub struct CorrectedEntry {
     warnings: Vec<String>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct FigureEntry {
     /// T.
     measured: f64,
@@ -44,7 +44,7 @@ struct FigureEntry {
     warnings: Vec<String>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct RangeEntry {
     median: f64,
     ci50: [f64; 2],

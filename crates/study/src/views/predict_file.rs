@@ -17,8 +17,10 @@ use super::predict_report::Predicted;
 use crate::records::{file_of, names};
 
 /// `predict.json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct PredictFile {
+    /// `predict/1`.
+    #[schemars(extend("const" = "predict/1"))]
     schema: &'static str,
     models: Vec<ModelEntry>,
     draws: usize,
@@ -36,13 +38,13 @@ pub struct PredictFile {
     form_remarks: Option<Vec<String>>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct ModelEntry {
     file: String,
     weight: f64,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct ManoeuvreEntry {
     kind: String,
     figures: BTreeMap<&'static str, FigureEntry>,
@@ -50,7 +52,7 @@ struct ManoeuvreEntry {
     lost: usize,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct FigureEntry {
     median: f64,
     ci50: [f64; 2],
@@ -62,7 +64,7 @@ struct FigureEntry {
     shares: BTreeMap<&'static str, f64>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct ReplayEntry {
     file: String,
     band_coverage_90: f64,
@@ -72,7 +74,7 @@ struct ReplayEntry {
     figures: BTreeMap<&'static str, ComparedEntry>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct CurrentEntry {
     speed_m_s: f64,
     /// Direction it sets to.
@@ -91,7 +93,7 @@ impl From<Current> for CurrentEntry {
     }
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct ComparedEntry {
     measured: f64,
     median: f64,
@@ -100,7 +102,7 @@ struct ComparedEntry {
     inside90: bool,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct CriterionEntry {
     criterion: &'static str,
     manoeuvre: String,

@@ -22,7 +22,7 @@ fn decimals_of(sd: Option<f64>) -> usize {
 }
 
 /// An entry of the form for other programs.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct FormEntry {
     section: &'static str,
     field: &'static str,

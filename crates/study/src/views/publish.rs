@@ -6,15 +6,16 @@ use campaign::design::Design;
 use campaign::disk;
 use campaign::folder::ResultFolder;
 use campaign::store::Stored;
-use campaign::summary::Tally;
+use campaign::summary::{Summary, Tally};
 use rayon::prelude::*;
 use report::{Table, Theme, markdown};
 use scenario::failure::{Failure, OnPath};
+use serde_json::json;
 
 use super::drawings::{self, write_all};
 use super::page_files::{REPORT, write_page};
 use super::study_page::{on_screen, page};
-use super::{coverage_table, curve_tables, tables, tracing_table};
+use super::{coverage_table, curve_tables, document, tables, tracing_table};
 use crate::options::{Common, FigureChoice, Format};
 use crate::screen;
 
@@ -22,9 +23,41 @@ use crate::screen;
 pub fn publish(
     stored: &Stored,
     folder: &ResultFolder,
-    (theme, figures): (&Theme, FigureChoice),
+    style: (&Theme, FigureChoice),
     common: &Common,
 ) -> Result<(), Failure> {
+    let summary = put(stored, folder, style)?;
+    let design = &stored.design;
+    match common.format {
+        _ if common.quiet => Ok(()),
+        Format::Text => {
+            let page = folder.path().join(REPORT);
+            screen::say(&format!("{}\nreport: {}", on_screen(stored, &summary), page.display()))
+        }
+        // Another program reads the table: nothing else may stand beside it.
+        Format::Csv => screen::say(tables::summary(&summary.methods, design).to_csv().trim_end()),
+        Format::Json => screen::say_document(&document(stored, &summary, folder)?),
+        format => screen::say(format.render(&tables::summary_in_brief(&summary, design)).trim_end()),
+    }
+}
+
+/// What was published, for other programs. Fails where it cannot be written as JSON.
+pub fn document(stored: &Stored, summary: &Summary, folder: &ResultFolder) -> Result<String, Failure> {
+    let body = json!({
+        "folder": folder.path().display().to_string(),
+        "manifest": stored.manifest,
+        "summary": tables::summary(&summary.methods, &stored.design).to_records(),
+        "failures": tables::failures(summary, &stored.design),
+    });
+    document::of("study/1", body)
+}
+
+/// Makes the tables, the figures and `report.md` and `report.html` in a folder; returns what they are made from.
+pub fn put(
+    stored: &Stored,
+    folder: &ResultFolder,
+    (theme, figures): (&Theme, FigureChoice),
+) -> Result<Summary, Failure> {
     let design = &stored.design;
     let mut tally = Tally::new(design);
     stored.rows(|row| {
@@ -63,20 +96,8 @@ pub fn publish(
     curve_tables::write_showcases(stored, &drawings, folder)?;
     // Whatever a scenario or a label holds: no HTML.
     write_page(folder, &markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
-
-    match common.format {
-        _ if common.quiet => Ok(()),
-        Format::Text => {
-            let page = folder.path().join(REPORT);
-            screen::say(&format!("{}\nreport: {}", on_screen(stored, &summary), page.display()))
-        }
-        // Another program reads the table: nothing else may stand beside it.
-        Format::Csv => screen::say(tables::summary(&summary.methods, design).to_csv().trim_end()),
-        format => {
-            let brief = brief.unwrap_or_else(|| tables::summary_in_brief(&summary, design));
-            screen::say(format.render(&brief).trim_end())
-        }
-    }
+    drop(drawings);
+    Ok(summary)
 }
 
 const SUMMARY: &str = "summary.csv";

@@ -11,7 +11,7 @@ use crate::records::file_of;
 use crate::scales::{Together, scale_name};
 
 /// One number without dimension at every scale.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ComparedTerm {
     /// Symbol.
     pub symbol: String,
@@ -28,7 +28,7 @@ pub struct ComparedTerm {
 }
 
 /// The terms of one model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ComparedModel {
     /// A method, or `traced`.
     pub model: String,
@@ -37,7 +37,7 @@ pub struct ComparedModel {
 }
 
 /// The records of one scale.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ScaleEntry {
     /// Length, m.
     pub length_m: f64,
@@ -50,7 +50,7 @@ pub struct ScaleEntry {
 }
 
 /// Everything that is said of records of several scales.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ScalesEntry {
     /// The scales; numbers with a dimension are told at the first.
     pub groups: Vec<ScaleEntry>,
@@ -149,10 +149,10 @@ pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
     let mut table = Table::new([
         Column::left("method"),
         Column::decimal("K′"),
-        Column::left("95 %"),
+        Column::interval(),
         Column::left("sd"),
         Column::decimal("T′"),
-        Column::left("95 %"),
+        Column::interval(),
         Column::left("sd"),
     ]);
     let sd =

@@ -114,7 +114,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     for index in ["K", "T"] {
         columns.push(Column::decimal(format!("{index} median")).unit("%"));
         columns.push(Column::decimal(format!("{index} rms")).unit("%"));
-        columns.push(Column::left("95 %"));
+        columns.push(Column::interval().unit("%"));
         columns.push(Column::right("coverage").unit("%"));
         columns.push(Column::decimal("sd/bound"));
     }
@@ -150,7 +150,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
     let mut columns = vec![Column::left("method"), Column::right("failed")];
     for index in ["K", "T"] {
         columns.push(Column::decimal(format!("{index} median size")).unit("%"));
-        columns.push(Column::left("95 %"));
+        columns.push(Column::interval().unit("%"));
         columns.push(Column::decimal("90 %").unit("%"));
         columns.push(Column::right("coverage").unit("%"));
     }

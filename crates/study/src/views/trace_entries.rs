@@ -12,7 +12,7 @@ use ship::particulars::prime_unit;
 use trial::Quantity;
 
 /// A parameter.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct ParameterEntry {
     /// Value, standard deviation and 95 % interval.
     #[serde(flatten)]
@@ -30,7 +30,7 @@ pub struct ParameterEntry {
 }
 
 /// A number without dimension; angles in radians.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct PrimeEntry {
     /// Value, standard deviation and 95 % interval.
     #[serde(flatten)]
@@ -45,7 +45,7 @@ pub fn is_false(flag: &bool) -> bool {
 }
 
 /// A model on the way from the base to the final one.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct StepEntry {
     /// Identifier of the effect that was added; null for the base.
     added: Option<&'static str>,
@@ -68,7 +68,7 @@ impl From<&Step> for StepEntry {
 }
 
 /// An effect that was found.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct EffectEntry {
     id: &'static str,
     form: &'static str,
@@ -88,7 +88,7 @@ pub struct EffectEntry {
 }
 
 /// An effect of the list.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct CandidateEntry {
     id: &'static str,
     outcome: &'static str,
@@ -100,7 +100,7 @@ pub struct CandidateEntry {
 }
 
 /// An effect in one form.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct FormEntry {
     form: &'static str,
     only: Option<String>,
@@ -113,7 +113,7 @@ pub struct FormEntry {
 }
 
 /// A structure that the records cannot tell from the best.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct StructureEntry {
     effects: Vec<TermEntry>,
     weight: f64,
@@ -121,7 +121,7 @@ pub struct StructureEntry {
 }
 
 /// A term of a structure.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct TermEntry {
     id: &'static str,
     form: &'static str,
@@ -129,7 +129,7 @@ pub struct TermEntry {
 }
 
 /// What the probabilities rest on.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct PriorEntry {
     /// Places of the menu: effects, and moments of time once for every record.
     menu: usize,

@@ -37,8 +37,8 @@ type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
 
 /// Draws everything into `folder` and returns stems and captions.
 pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
-    let analysis = report.analysis;
-    let trials: Vec<&Trial> = report.trials.iter().chain(report.others).collect();
+    let analysis = &report.analysis;
+    let trials: Vec<&Trial> = report.trials.iter().chain(&report.others).collect();
     let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
     // Two names may make one slug.
     let slugs = names(report.names.iter().map(|name| slug(name)));
@@ -143,8 +143,8 @@ fn of_the_ship<'a>(report: &'a TraceReport, theme: &'a Theme) -> Vec<Drawing<'a>
 
 /// The first two overshoots of every zig-zag, which are those that have a limit.
 fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
-    let analysis = report.analysis;
-    let trials = report.trials.iter().chain(report.others);
+    let analysis = &report.analysis;
+    let trials = report.trials.iter().chain(&report.others);
     let judged = analysis.identification.iter().chain(&analysis.validation);
     let mut rows = Vec::new();
     for (((trial, judged), name), ship) in trials.zip(judged).zip(&report.names).zip(&report.sailed_by) {
@@ -317,7 +317,7 @@ fn power(residual: &Series) -> Curve {
 
 /// The way of the model and the candidates beside it.
 fn candidates(report: &TraceReport, theme: &Theme) -> Figure {
-    let analysis = report.analysis;
+    let analysis = &report.analysis;
     let only = |name: Option<&String>| name.map_or_else(String::new, |name| format!(", {name}"));
     let steps = analysis.steps.iter().map(|step| EvidenceStep {
         name: step.added.map_or_else(

@@ -22,7 +22,7 @@ use crate::records::file_of;
 use campaign::answer::{Parameters, PrimeIndices};
 
 /// K and T that follow the measured speed.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct SpeedScalingEntry {
     /// The speed of which K and T are told.
     pub speed_m_s: f64,
@@ -31,9 +31,10 @@ pub struct SpeedScalingEntry {
 }
 
 /// `trace.json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct TraceFile {
     /// `trace/2`.
+    #[schemars(extend("const" = "trace/2"))]
     pub schema: &'static str,
     /// `clean`, `traced` or `unexplained`.
     pub verdict: &'static str,
@@ -77,14 +78,14 @@ pub struct TraceFile {
 }
 
 /// Readings of one record that were left out.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct OutliersEntry {
     file: String,
     times_s: Vec<f64>,
 }
 
 /// What is left.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct UnexplainedEntry {
     present: bool,
     signature: Option<String>,
@@ -92,7 +93,7 @@ pub struct UnexplainedEntry {
 }
 
 /// A term without a name that would carry some of it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct EmpiricalEntry {
     terms: Vec<&'static str>,
     equation: &'static str,
@@ -103,7 +104,7 @@ pub struct EmpiricalEntry {
 }
 
 /// Errors of both kinds of records.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct ErrorEntry {
     identification: Vec<BeforeAfter>,
     validation: Vec<BeforeAfter>,
@@ -113,7 +114,7 @@ pub struct ErrorEntry {
 }
 
 /// One record.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct BeforeAfter {
     file: String,
     before: ErrorsEntry,
@@ -121,7 +122,7 @@ pub struct BeforeAfter {
 }
 
 /// Errors of one model on one record.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct ErrorsEntry {
     heading_rmse_deg: f64,
     yaw_rate_rmse_deg_s: Option<f64>,
@@ -136,21 +137,21 @@ pub struct ErrorsEntry {
 }
 
 /// Residual before and after.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct ResidualEntry {
     before: WhitenessEntry,
     after: WhitenessEntry,
 }
 
 /// Whiteness of a residual.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct WhitenessEntry {
     lag1_autocorrelation: f64,
     whiteness_p: f64,
 }
 
 /// The augmented model.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct ModelEntry {
     equations: Vec<&'static str>,
     #[serde(flatten)]
@@ -160,7 +161,7 @@ pub struct ModelEntry {
 }
 
 /// K, T and δ_r of the augmented model.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct Indices {
     #[serde(rename = "K_per_s")]
     k_per_s: Index,
@@ -173,7 +174,7 @@ struct Indices {
 }
 
 /// An index, and whether it rests on a parameter at an end of its range.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 struct Index {
     #[serde(flatten)]
     quantity: Quantity,
@@ -182,7 +183,7 @@ struct Index {
 }
 
 /// A parameter with its symbol.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct NamedParameter {
     key: &'static str,
     symbol: &'static str,
@@ -198,7 +199,7 @@ impl NamedParameter {
 }
 
 /// The noise of one record.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct RecordNoiseEntry {
     file: String,
     /// Standard deviation of the white part.
@@ -215,7 +216,7 @@ pub struct RecordNoiseEntry {
 }
 
 /// The random part.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct NoiseEntry {
     heading_sd_deg: f64,
     random_moment: Option<&'static str>,
@@ -259,7 +260,7 @@ fn entries<'a>(trials: &[Trial], judged: impl IntoIterator<Item = Option<&'a Jud
 impl TraceFile {
     /// The file of one analysis.
     pub fn of(report: &TraceReport) -> Self {
-        let analysis = report.analysis;
+        let analysis = &report.analysis;
         let degree = to_deg(1.0);
         let base = &analysis.base;
         let whiteness = |k: usize| WhitenessEntry {
@@ -297,9 +298,9 @@ impl TraceFile {
                 }),
             },
             error: ErrorEntry {
-                identification: entries(report.trials, analysis.identification.iter().map(Some)),
-                validation: entries(report.others, analysis.validation.iter().map(Some)),
-                leave_one_out: entries(report.trials, analysis.left_out.iter().map(Option::as_ref)),
+                identification: entries(&report.trials, analysis.identification.iter().map(Some)),
+                validation: entries(&report.others, analysis.validation.iter().map(Some)),
+                leave_one_out: entries(&report.trials, analysis.left_out.iter().map(Option::as_ref)),
             },
             residual: ResidualEntry { before: whiteness(0), after: whiteness(1) },
             noise: report.names[..report.trials.len()]

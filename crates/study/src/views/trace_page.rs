@@ -56,9 +56,9 @@ const MOST_TIMES: f64 = 20.0;
 
 /// The words of one analysis.
 pub fn words(report: &TraceReport) -> String {
-    let analysis = report.analysis;
+    let analysis = &report.analysis;
     let rows: usize = report.trials.iter().map(Trial::len).sum();
-    let mut text = match report.trials {
+    let mut text = match &report.trials[..] {
         [only] => format!("{}: {rows} rows, {:.1} s", only.name(), only.duration()),
         several => format!("{} records together: {rows} rows", several.len()),
     };
@@ -271,7 +271,7 @@ pub fn next_trial(report: &TraceReport) -> String {
 
 /// `report.md`. `figures` are the stems and captions of what was drawn.
 pub fn page(report: &TraceReport, figures: &[(String, String)]) -> String {
-    let analysis = report.analysis;
+    let analysis = &report.analysis;
     let mut text = format!("# Trace of {}\n\n", report.names[..report.trials.len()].join(", "));
     let _ = writeln!(text, "```text\n{}\n```\n", words(report));
     let _ = writeln!(text, "## Error before and after\n\n{}", errors(report).to_markdown());

@@ -12,7 +12,7 @@ use super::scale_comparison::ScalesEntry;
 use crate::views::index_figures::Amplitudes;
 
 /// Everything that is said about one analysis.
-pub struct TraceReport<'a> {
+pub struct TraceReport {
     /// Length and speed at which numbers with a dimension are told, where they are known.
     pub ship: Option<Particulars>,
     /// Length and speed of the ship of every record as it was read.
@@ -28,13 +28,13 @@ pub struct TraceReport<'a> {
     /// Where the fitted records are of several scales: which terms scale.
     pub scales: Option<ScalesEntry>,
     /// Records that were fitted.
-    pub trials: &'a [Trial],
+    pub trials: Vec<Trial>,
     /// Records that were not.
-    pub others: &'a [Trial],
+    pub others: Vec<Trial>,
     /// A name for every record, no two the same: first the fitted ones.
     pub names: Vec<String>,
     /// The analysis.
-    pub analysis: &'a Analysis,
+    pub analysis: Analysis,
     /// What planned trials would tell, best first.
     pub prospects: Vec<::trace::analysis::Prospect>,
     /// The yaw moment that the base lacks on every fitted record; `None` where it has too few headings.

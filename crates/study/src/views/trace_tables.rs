@@ -41,7 +41,7 @@ pub fn errors(report: &TraceReport) -> Table {
     columns.push(Column::decimal("overshoots").unit("deg"));
     columns.push(Column::decimal("band covers").unit("%"));
     let mut table = Table::new(columns);
-    let analysis = report.analysis;
+    let analysis = &report.analysis;
     let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
     let uses = fitted.chain(analysis.validation.iter().map(|judged| (judged, "held out")));
     let left_out = analysis.left_out.iter().zip(&report.names);
@@ -73,8 +73,8 @@ pub fn overshoots(report: &TraceReport) -> Option<Table> {
         Column::left("overshoots [deg]"),
         Column::decimal("period").unit("s"),
     ]);
-    let analysis = report.analysis;
-    let trials = report.trials.iter().chain(report.others);
+    let analysis = &report.analysis;
+    let trials = report.trials.iter().chain(&report.others);
     let judged = analysis.identification.iter().chain(&analysis.validation);
     for ((trial, judged), name) in trials.zip(judged).zip(&report.names) {
         let Ok(measured) = ZigZag::of(trial) else { continue };
@@ -96,7 +96,7 @@ fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
 
 /// K, T and every parameter with its interval.
 pub fn parameters(report: &TraceReport) -> Table {
-    let analysis = report.analysis;
+    let analysis = &report.analysis;
     let remarks = analysis.parameters.iter().any(|fitted| fitted.at_bound);
     let mut columns = ["parameter", "value", "95 % interval", "unit"].map(Column::left).to_vec();
     columns.extend(report.ship.iter().flat_map(|_| ["prime", "95 % interval", "unit"].map(Column::left)));

@@ -138,7 +138,7 @@ fn further_records_of_a_trial_are_written_beside_the_first() {
     desk.run(&["check", "wrong.toml"]).is_refused(2, &["further record 1", "-20"]);
 }
 
-/// The records that the README reads are what the scenario beside them makes today.
+/// The records that README and tutorial read are what the scenario beside them makes today.
 #[test]
 fn the_sample_records_are_those_of_their_scenario() {
     let desk = Desk::new();
@@ -186,16 +186,4 @@ fn a_run_that_reproduces_what_is_published_leaves_it_as_it_is() {
     std::fs::remove_file(desk.path("out/rows.parquet")).expect("it was written");
     desk.run(&["small.toml", "--out", "out", "--seed", "9", "--quiet"]).is_done();
     assert!(desk.bytes("out/manifest.toml") != before[0]);
-}
-
-/// The table in the README is the one that its first command prints.
-#[test]
-fn the_readme_shows_what_the_main_job_prints() {
-    let readme = std::fs::read_to_string(of_repository("README.md")).expect("it is there");
-    let (_, rest) = readme.split_once("```text\n").expect("a table");
-    let (table, _) = rest.split_once("```").expect("its end");
-    let desk = Desk::new();
-    let scenario = of_repository("scenarios/yukun.toml");
-    let run = desk.run(&[scenario.to_str().expect("UTF-8"), "--out", "yukun", "--figures", "hero"]);
-    assert!(run.is_done().out.contains(table), "{}", run.out);
 }

@@ -1,5 +1,6 @@
 //! Running the binary as a user does: a folder of its own, the exit code, and what it says.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
@@ -7,6 +8,8 @@ use ship::Ship;
 use ship::angle::{from_deg, to_deg};
 use simulate::manoeuvre::ZigZagEnd;
 use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
+
+use crate::schemas;
 
 /// A folder that goes away, and the program run in it.
 pub struct Desk {
@@ -46,6 +49,31 @@ impl Desk {
             .current_dir(self.folder.path())
             .output()
             .expect("the program starts");
+        if status.success() {
+            schemas::hold_below(self.folder.path());
+        }
+        Run {
+            code: status.code(),
+            out: String::from_utf8(stdout).expect("UTF-8"),
+            err: String::from_utf8(stderr).expect("UTF-8"),
+        }
+    }
+
+    /// The same with a text on standard input.
+    pub fn run_with_input(&self, arguments: &[&str], input: &str) -> Run {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_study"))
+            .args(arguments)
+            .current_dir(self.folder.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        let mut pipe = child.stdin.take().expect("it is piped");
+        // A program that refuses its arguments reads nothing.
+        let _ = pipe.write_all(input.as_bytes());
+        drop(pipe);
+        let Output { status, stdout, stderr } = child.wait_with_output().expect("it ends");
         Run {
             code: status.code(),
             out: String::from_utf8(stdout).expect("UTF-8"),

@@ -1,6 +1,6 @@
 //! Logs as they are, to the answer: what is found in them, which part is used, what a person can say.
 
-use crate::desk::{Desk, of_repository, zig_zag_csv};
+use crate::desk::{Desk, zig_zag_csv};
 
 /// Rows of time, heading and rudder: a straight piece, a zig-zag, twice, and a straight end.
 fn long_log() -> String {
@@ -102,14 +102,4 @@ fn a_first_description_is_written_for_a_person_to_check() {
     assert!(text.contains(wanted), "{text}");
     std::fs::write(&path, text.replace(wanted, &wanted.replace("# ", ""))).expect("written");
     desk.run(&["fit", "run.csv", "--method", "output-error"]).is_done();
-}
-
-#[test]
-fn the_pages_of_columns_and_sidecars_are_what_the_commands_print() {
-    let desk = Desk::new();
-    for what in ["columns", "sidecar"] {
-        let page = std::fs::read_to_string(of_repository(&format!("docs/{what}.md"))).expect("there is a page");
-        let run = desk.run(&["list", what, "--format", "markdown"]);
-        assert!(run.is_done().out == page, "run `study list {what} --format markdown > docs/{what}.md` again");
-    }
 }

@@ -1,16 +1,22 @@
 //! The command line as a user meets it: the built program on scenarios and records, good and bad. What is asserted is
 //! the exit code, the one message, and what lies on disk afterwards; what the numbers mean is tested elsewhere.
 
+mod benchmark;
+mod book;
 mod commands;
 mod desk;
 mod logs;
 mod monte_carlo;
 mod names;
+mod outside;
 mod pages;
 mod predictions;
+mod programs;
 mod records;
+mod reference;
 mod scales;
 mod scenarios;
+mod schemas;
 mod stored;
 mod traces;
 mod tracks;

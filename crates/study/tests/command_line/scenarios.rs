@@ -377,14 +377,6 @@ fn a_resolved_scenario_is_a_scenario() {
 }
 
 #[test]
-fn the_page_of_keys_is_what_the_command_prints() {
-    let desk = Desk::new();
-    let page = std::fs::read_to_string(of_repository("docs/keys.md")).expect("there is a page");
-    let run = desk.run(&["list", "keys", "--format", "markdown"]);
-    assert!(run.is_done().out == page, "run `study list keys --format markdown > docs/keys.md` again");
-}
-
-#[test]
 fn every_scenario_of_the_repository_is_right() {
     let desk = Desk::new();
     let mut files: Vec<String> = std::fs::read_dir(of_repository("scenarios"))
@@ -397,16 +389,6 @@ fn every_scenario_of_the_repository_is_right() {
     assert!(!files.is_empty());
     let arguments: Vec<&str> = ["check"].into_iter().chain(files.iter().map(String::as_str)).collect();
     assert_eq!(desk.run(&arguments).is_done().out.lines().count(), files.len());
-}
-
-/// The scenario that the README shows, as a reader would copy it.
-#[test]
-fn the_scenario_of_the_readme_is_right() {
-    let readme = std::fs::read_to_string(of_repository("README.md")).expect("the README");
-    let (_, rest) = readme.split_once("```toml\n").expect("the README shows a scenario");
-    let (scenario, _) = rest.split_once("```").expect("the block ends");
-    let desk = Desk::new();
-    desk.run(&["check", desk.file("readme.toml", scenario)]).is_done();
 }
 
 /// Published results are those of the scenarios as they are, and the page over them is what the command makes.

@@ -112,7 +112,7 @@ fn an_undeclared_effect_is_named_and_everything_is_written() {
     );
     assert!(steps[0]["added"].is_null() && steps[1]["delta_bic"].as_f64() > Some(10.0), "{steps:?}");
     assert!(steps.iter().all(|step| step["held_out_heading_rmse_deg"].is_f64()), "{steps:?}");
-    let page = include_str!("../../../../docs/results.md");
+    let page = include_str!("../../../../docs/src/reference/results.md");
     for (file, rows) in
         [("replay", 100), ("replay-other", 100), ("residual", 100), ("spectrum", 10), ("autocorrelation", 10)]
     {

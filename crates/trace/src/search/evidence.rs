@@ -8,7 +8,7 @@ use ship::Shown;
 const MOST_EFFECTS: usize = 20;
 
 /// What decides whether a term is believed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct Thresholds {
     /// Smallest gain in BIC (Kass and Raftery 1995: above 10 is very strong).

@@ -17,8 +17,9 @@ use crate::index::RecordNumber;
 use crate::structure::{Structure, Term};
 
 /// Which of the structures that were tried is believed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "String", into = "&'static str")]
+#[schemars(extend("enum" = Rule::ALL.map(Rule::as_str)))]
 pub enum Rule {
     /// The structure in which a search by the thresholds ends: every effect gains what it needs in BIC = −2 log L +
     /// k ln N, where k counts all that was fitted, and passes a test of its likelihood ratio (Schwarz 1978; Kass and

@@ -13,6 +13,7 @@ use super::table;
 use crate::channel::Channel;
 use crate::clock::Clock;
 use crate::encoding::Encoding;
+use crate::file::called;
 use crate::hygiene;
 use crate::plausibility;
 use crate::record::{Columns, Mark, Origin, Trial, TrialError};
@@ -44,8 +45,8 @@ pub struct Log {
 }
 
 impl Log {
-    /// Reads the log at `path` as the sidecar at `sidecar` describes it, and the channels of `others` beside it, each
-    /// as the sidecar beside it describes.
+    /// Reads the log at `path`, or on standard input for `-`, as the sidecar at `sidecar` describes it, and the
+    /// channels of `others` beside it, each as the sidecar beside it describes.
     ///
     /// Fails as [`read_with`] does, but for what makes a record of it, and where two files have no time in common.
     pub fn open(path: &Path, sidecar: Option<&Path>, others: &[PathBuf]) -> Result<Self, ReadError> {
@@ -54,7 +55,7 @@ impl Log {
         }
         let sidecar = sidecar.map(Sidecar::load).transpose()?;
         let piece = piece(path, sidecar.as_ref(), others.is_empty())?;
-        let mut log = Self::of(path, piece, sidecar);
+        let mut log = Self::of(called(path), piece, sidecar);
         for other in others {
             log.join(other)?;
         }
@@ -62,6 +63,21 @@ impl Log {
             log.settle_joined()?;
         }
         Ok(log)
+    }
+
+    /// Reads the log that `input` gives; `path` names it, and `size` (bytes), where known, serves to estimate the rows
+    /// of a file that is too long.
+    ///
+    /// Fails as [`open`](Self::open) does, except for faults of the file system.
+    pub fn of_bytes(
+        path: &Path,
+        input: impl std::io::Read,
+        size: Option<u64>,
+        sidecar: Option<&Sidecar>,
+    ) -> Result<Self, ReadError> {
+        let content = input::recognise(Box::new(input)).map_err(|problem| ReadError::table(path, problem))?;
+        let piece = of_content(path, content, size, sidecar, true)?;
+        Ok(Self::of(path, piece, sidecar.cloned()))
     }
 
     fn of(path: &Path, piece: Piece, sidecar: Option<Sidecar>) -> Self {
@@ -211,9 +227,9 @@ fn joined_hash(one: &str, other: &str) -> String {
 }
 
 fn piece(path: &Path, sidecar: Option<&Sidecar>, whole: bool) -> Result<Piece, ReadError> {
-    let fault = |problem| ReadError::table(path, problem);
-    let (content, size) = input::open(path).map_err(fault)?;
-    of_content(path, content, size, sidecar, whole)
+    let name = called(path);
+    let (content, size) = input::open(path).map_err(|problem| ReadError::table(name, problem))?;
+    of_content(name, content, size, sidecar, whole)
 }
 
 fn of_content(
@@ -308,7 +324,5 @@ pub fn read_bytes(
     size: Option<u64>,
     sidecar: Option<&Sidecar>,
 ) -> Result<Reading, ReadError> {
-    let content = input::recognise(Box::new(input)).map_err(|problem| ReadError::table(path, problem))?;
-    let piece = of_content(path, content, size, sidecar, true)?;
-    Log::of(path, piece, sidecar.cloned()).into_trial(None)
+    Log::of_bytes(path, input, size, sidecar)?.into_trial(None)
 }

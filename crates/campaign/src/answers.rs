@@ -1,0 +1,353 @@
+//! Trials that leave the house and the answers that come back: which record is which trial, and a table of answers.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use identify::external::{Answer, Errors};
+use scenario::answers::{Answers, Place};
+use scenario::failure::Failure;
+use scenario::name::{shown, slug};
+use scenario::{Scenario, hex};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use ship::angle::from_deg;
+use trial::file::{self, Kind};
+
+use crate::observer::Observer;
+use crate::task::Task;
+
+/// File beside simulated records from which their scenario can be read, with its seed.
+pub const TRIALS: &str = "trials.toml";
+
+/// What `trials.toml` says. A scenario can be read from it as from a manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Trials {
+    /// Name of the scenario.
+    pub name: String,
+    /// Seed that was used.
+    pub seed: u64,
+    /// SHA-256 of all that decides the trials.
+    pub design_sha256: String,
+    /// The scenario file as it was read.
+    pub scenario: String,
+}
+
+impl Trials {
+    /// Those of a scenario.
+    pub fn of(scenario: &Scenario) -> Self {
+        let Scenario { name, seed, design_sha256, text, .. } = scenario;
+        Self { name: name.clone(), seed: *seed, design_sha256: design_sha256.clone(), scenario: text.clone() }
+    }
+}
+
+/// What the first record of a trial is called in a folder: scenario, cell and number, as far as there are several.
+pub fn record_name(scenario: &Scenario, task: Task) -> String {
+    let mut name = scenario.name.clone();
+    if scenario.cells.len() > 1 {
+        name += &format!("-{:0width$}", task.cell, width = (scenario.cells.len() - 1).to_string().len());
+        let title = slug(&scenario.cells[task.cell].title());
+        if !title.is_empty() {
+            name += &format!("-{title}");
+        }
+    }
+    if scenario.replicates > 1 {
+        name += &format!("-{:0width$}", task.replicate, width = (scenario.replicates - 1).to_string().len());
+    }
+    name
+}
+
+/// What a record of a trial is called; those behind the first carry their number.
+pub fn part_name(record: &str, number: usize) -> String {
+    if number == 0 { record.to_owned() } else { format!("{record}-also-{number}") }
+}
+
+/// A table of answers; the longest that makes sense has a line for every trial of a large study.
+const TABLE: Kind = Kind { name: "a table of answers", largest: 1 << 30 };
+
+/// Columns of a table of answers.
+const COLUMNS: [&str; 10] = [
+    "record",
+    "cell",
+    "replicate",
+    "K_per_s",
+    "T_s",
+    "delta_r_deg",
+    "K_sd_per_s",
+    "T_sd_s",
+    "delta_r_sd_deg",
+    "failed",
+];
+
+/// Columns of the list of trials, which a table of answers may have kept.
+const OF_THE_LIST: [&str; 2] = ["label", "also"];
+
+/// Lines at fault that a message names.
+const MOST_FAULTS: usize = 10;
+
+/// Reads a table of answers to the trials of a scenario: `record`, or `cell` and `replicate`; `K_per_s` and `T_s`; and
+/// what else is known, `delta_r_deg`, `K_sd_per_s`, `T_sd_s`, `delta_r_sd_deg`, and `failed`, the reason why there is
+/// no answer. Tells trials without an answer and columns that are not read.
+///
+/// Fails when a column is missing, and with all lines that are not of one trial of the scenario, or hold no numbers.
+pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result<Answers, Failure> {
+    let refuse = |problem: String| Failure::input(format!("{}: {problem}", path.display()));
+    let text = file::read_text(path, TABLE).map_err(|error| refuse(error.to_string()))?;
+    let text = text.trim_start_matches('\u{feff}');
+    let head = text.lines().next().unwrap_or_default();
+    let separator = [b';', b'\t'].into_iter().find(|own| head.as_bytes().contains(own)).unwrap_or(b',');
+    let mut table =
+        ReaderBuilder::new().delimiter(separator).trim(Trim::All).flexible(true).from_reader(text.as_bytes());
+    let columns = Columns::of(table.headers().map_err(|error| refuse(error.to_string()))?).map_err(refuse)?;
+    if !columns.ignored.is_empty() {
+        observer.warn(&format!("{}: not read: {}", path.display(), columns.ignored.join(", ")));
+    }
+    let records = Records::of(scenario);
+    let mut lines: HashMap<Place, u64> = HashMap::new();
+    let mut answers = HashMap::new();
+    let mut faults = Vec::new();
+    for row in table.records() {
+        let row = row.map_err(|error| refuse(error.to_string()))?;
+        let line = row.position().map_or(0, |position| position.line());
+        let read = columns.place(&row, &records).and_then(|place| Ok((place, columns.answer(&row)?)));
+        match read.map(|(place, answer)| (lines.insert(place, line), answers.insert(place, answer))) {
+            Ok((None, _)) => {}
+            Ok((Some(first), _)) => faults.push(format!("line {line}: the trial of line {first} is answered again")),
+            Err(fault) => faults.push(format!("line {line}: {fault}")),
+        }
+    }
+    if !faults.is_empty() {
+        let more = faults.len().saturating_sub(MOST_FAULTS);
+        faults.truncate(MOST_FAULTS);
+        let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
+        return Err(refuse(format!(
+            "these lines are no answers to trials of {}:\n  {}{more}\nexpected a line for every trial at most, named as in \
+             trials.csv, which `study simulate` writes beside the records",
+            scenario.name,
+            faults.join("\n  ")
+        )));
+    }
+    let trials = scenario.cells.len() as u64 * scenario.replicates;
+    let left = trials - answers.len() as u64;
+    if left > 0 && scenario.stop.is_none() {
+        observer.warn(&format!("{}: {left} of {trials} trials have no answer, which counts as failed", path.display()));
+    }
+    Ok(Answers::new(answers, hex(&Sha256::digest(text.as_bytes()))))
+}
+
+/// Which trial a record is of.
+struct Records<'a> {
+    scenario: &'a Scenario,
+    /// By the names of cells: in most studies there are far fewer cells than trials.
+    cells: HashMap<String, u64>,
+}
+
+impl<'a> Records<'a> {
+    fn of(scenario: &'a Scenario) -> Self {
+        let name = |cell: usize| (stem(&record_name(scenario, Task { cell, replicate: 0 })).0.to_owned(), cell as u64);
+        let several = scenario.replicates > 1;
+        let whole = |cell: usize| (record_name(scenario, Task { cell, replicate: 0 }), cell as u64);
+        let cells = 0..scenario.cells.len();
+        Self { scenario, cells: cells.map(|cell| if several { name(cell) } else { whole(cell) }).collect() }
+    }
+
+    /// The trial of a record, by the name of its file.
+    fn find(&self, record: &str) -> Option<Place> {
+        let file = record.rsplit(['/', '\\']).next().unwrap_or(record);
+        let name = file.strip_suffix(".csv").unwrap_or(file);
+        let place = match self.scenario.replicates {
+            0 | 1 => (*self.cells.get(name)?, 0),
+            _ => {
+                let (cell, number) = stem(name);
+                (*self.cells.get(cell)?, number.parse().ok()?)
+            }
+        };
+        let is_that = |(cell, replicate): &Place| {
+            *replicate < self.scenario.replicates
+                && record_name(self.scenario, Task { cell: *cell as usize, replicate: *replicate }) == name
+        };
+        Some(place).filter(is_that)
+    }
+}
+
+/// A name in front of its last hyphen, and behind it.
+fn stem(name: &str) -> (&str, &str) {
+    name.rsplit_once('-').unwrap_or((name, ""))
+}
+
+/// Where the columns of a table are.
+struct Columns {
+    places: [Option<usize>; COLUMNS.len()],
+    ignored: Vec<String>,
+}
+
+impl Columns {
+    fn of(head: &StringRecord) -> Result<Self, String> {
+        let places = COLUMNS.map(|name| head.iter().position(|own| own == name));
+        let has = |name: &str| head.iter().any(|own| own == name);
+        let missing: Vec<&str> = ["K_per_s", "T_s"].into_iter().filter(|name| !has(name)).collect();
+        if !missing.is_empty() || !(has("record") || has("cell") && has("replicate")) {
+            let found: Vec<String> = head.iter().take(2 * COLUMNS.len()).map(shown).collect();
+            return Err(format!(
+                "the columns are {}; expected `record`, or `cell` and `replicate`, beside `K_per_s` and `T_s`",
+                found.join(", ")
+            ));
+        }
+        let is_known = |own: &&str| COLUMNS.contains(own) || OF_THE_LIST.contains(own);
+        let ignored = head.iter().filter(|own| !is_known(own)).take(COLUMNS.len()).map(shown).collect();
+        Ok(Self { places, ignored })
+    }
+
+    /// What a row has in a column; `None` where it has nothing.
+    fn text<'a>(&self, row: &'a StringRecord, name: &str) -> Option<&'a str> {
+        let column = COLUMNS.iter().position(|own| *own == name)?;
+        row.get(self.places[column]?).filter(|text| !text.is_empty())
+    }
+
+    fn number(&self, row: &StringRecord, name: &str) -> Result<Option<f64>, String> {
+        let Some(text) = self.text(row, name) else { return Ok(None) };
+        let number = text.parse::<f64>().map_err(|_| format!("{name} is {}; expected a number", shown(text)))?;
+        Ok(Some(number).filter(|number| number.is_finite()))
+    }
+
+    fn place(&self, row: &StringRecord, records: &Records) -> Result<Place, String> {
+        if let Some(record) = self.text(row, "record") {
+            return records.find(record).ok_or_else(|| format!("{} is no record of this scenario", shown(record)));
+        }
+        let whole = |name: &str| {
+            let text = self.text(row, name).unwrap_or_default();
+            text.parse::<u64>().map_err(|_| format!("{name} is {}; expected a whole number from 0", shown(text)))
+        };
+        let (cell, replicate) = (whole("cell")?, whole("replicate")?);
+        let Scenario { cells, replicates, .. } = records.scenario;
+        match cell < cells.len() as u64 && replicate < *replicates {
+            true => Ok((cell, replicate)),
+            false => Err(format!(
+                "there is no trial {replicate} of cell {cell}; the scenario has {} cells with {replicates} trials each, \
+                 counted from 0",
+                cells.len()
+            )),
+        }
+    }
+
+    fn answer(&self, row: &StringRecord) -> Result<Result<Answer, String>, String> {
+        let number = |name: &str| self.number(row, name);
+        let (k, t, bias) = (number("K_per_s")?, number("T_s")?, number("delta_r_deg")?);
+        let sd = [number("K_sd_per_s")?, number("T_sd_s")?, number("delta_r_sd_deg")?.map(from_deg)];
+        let answer = match (self.text(row, "failed"), k, t) {
+            (Some(words), _, _) => Err(words.to_owned()),
+            (None, Some(k), Some(t)) => {
+                let errors = if sd == [None; 3] { Errors::Unknown } else { Errors::Deviations(sd) };
+                Ok(Answer { K: k, T: t, rudder_bias: from_deg(bias.unwrap_or(0.0)), errors })
+            }
+            (None, None, _) => Err("K_per_s is missing or is no finite number".to_owned()),
+            (None, Some(_), None) => Err("T_s is missing or is no finite number".to_owned()),
+        };
+        Ok(answer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use scenario::MethodName;
+
+    use super::*;
+
+    fn scenario(cells: &str, replicates: u32) -> Scenario {
+        let text = format!(
+            "question = \"?\"\nseed = 1\nreplicates = {replicates}\n[ship.yukun]\n[manoeuvre.zig-zag]\nrudder-deg = 10.0\nheading-deg = 10.0\n\
+             [recording]\nsampling-s = 1.0\nduration-s = 60.0\n[[identifier]]\nmethod.srivc = {{}}\n{cells}"
+        );
+        Scenario::parse(Path::new("it.toml"), "it", text, None).unwrap_or_else(|failure| panic!("{failure}"))
+    }
+
+    const TWO_CELLS: &str = "[[sweep]]\nkey = \"sensor.heading-noise-deg\"\nvalues = [0.1, 0.2]\n";
+
+    #[derive(Default)]
+    struct Told(Mutex<String>);
+
+    impl Observer for Told {
+        fn warn(&self, line: &str) {
+            *self.0.lock().expect("nobody panics") += line;
+        }
+    }
+
+    fn read_from(text: &str, scenario: &Scenario) -> (Result<Answers, String>, String) {
+        let desk = tempfile::tempdir().expect("a folder");
+        let path = desk.path().join("answers.csv");
+        std::fs::write(&path, text).expect("written");
+        let told = Told::default();
+        let read = read(&path, scenario, &told).map_err(|failure| failure.message);
+        (read, told.0.into_inner().expect("nobody panics"))
+    }
+
+    #[test]
+    fn every_record_is_known_by_its_name() {
+        for (cells, replicates) in [("", 1), ("", 12), (TWO_CELLS, 1), (TWO_CELLS, 1000)] {
+            let scenario = scenario(cells, replicates);
+            let records = Records::of(&scenario);
+            for task in (0..scenario.cells.len())
+                .flat_map(|cell| [0, u64::from(replicates) - 1].map(|replicate| Task { cell, replicate }))
+            {
+                let name = record_name(&scenario, task);
+                for written in [name.clone(), format!("{name}.csv"), format!("a/b/{name}.csv"), format!("c:\\{name}")] {
+                    assert_eq!(records.find(&written), Some((task.cell as u64, task.replicate)), "{written}");
+                }
+                assert_eq!(records.find(&part_name(&name, 1)), None);
+                assert_eq!(records.find(&format!("{name}9")), None);
+            }
+        }
+    }
+
+    #[test]
+    fn a_table_is_read_as_it_comes() {
+        let scenario = scenario(TWO_CELLS, 3);
+        let by_record = "\u{feff}label;record ;K_per_s;T_s;delta_r_deg;K_sd_per_s;T_sd_s;failed;seconds\n\
+                         0.1;it-0-0-1-2.csv;0.1;16;1.5;0.01;1;;3\n;it-1-0-2-0.csv;NaN;16;;;;;3\n;it-1-0-2-1;;;;;;no luck;3\n";
+        let (read, told) = read_from(by_record, &scenario);
+        let answers = read.expect("a table of answers");
+        let good = answers.to((0, 2)).expect("an answer");
+        assert!(
+            (good.response.rudder_bias - from_deg(1.5)).abs() < 1e-15
+                && (good.K().sd.expect("given") - 0.01).abs() < 1e-12
+        );
+        let said = |place| answers.to(place).expect_err("none").to_string();
+        assert_eq!(said((1, 0)), "outside: K_per_s is missing or is no finite number");
+        assert_eq!((said((1, 1)), said((0, 0))), ("outside: no luck".into(), "outside: no answer".into()));
+        assert!(told.contains("\"seconds\"") && !told.contains("label") && told.contains("3 of 6 trials"), "{told}");
+        let (read, told) = read_from("cell,replicate,K_per_s,T_s\n1,2,0.1,16\n", &scenario);
+        assert_eq!(read.expect("a table").to((1, 2)).expect("an answer").K().value, 0.1);
+        assert!(told.contains("5 of 6 trials"));
+        let named = scenario.with_answers("mine", answers).unwrap_or_else(|failure| panic!("{failure}"));
+        let last = MethodName { label: "mine".into(), id: "external".into() };
+        assert_eq!(named.method_names().pop(), Some(last));
+    }
+
+    #[test]
+    fn what_is_no_answer_is_refused_with_its_line() {
+        let scenario = scenario(TWO_CELLS, 3);
+        let refused = |text: &str, parts: &[&str]| {
+            let error = read_from(text, &scenario).0.expect_err("refused");
+            parts.iter().for_each(|part| assert!(error.contains(part), "{part}: {error}"));
+        };
+        refused("", &["expected `record`"]);
+        refused("record,K_per_s\n", &["\"record\", \"K_per_s\"", "`T_s`"]);
+        refused("cell,K_per_s,T_s\n", &["`cell` and `replicate`"]);
+        refused(
+            "cell,replicate,K_per_s,T_s\n0,0,1,1\n0,3,1,1\n2,0,1,1\n0,0,1,1\n-1,0,1,1\n0,1,a lot,1\n",
+            &[
+                "line 3: there is no trial 3 of cell 0",
+                "line 4: there is no trial 0 of cell 2",
+                "line 5: the trial of line 2 is answered again",
+                "line 6: cell is \"-1\"",
+                "line 7: K_per_s is \"a lot\"; expected a number",
+            ],
+        );
+        refused("record,K_per_s,T_s\nother.csv,1,1\n", &["line 2: \"other.csv\" is no record of this scenario"]);
+        let many: String = (0..100).map(|line| format!("x{line},1,1\n")).collect();
+        refused(&format!("record,K_per_s,T_s\n{many}"), &["line 11: ", "and 90 more"]);
+    }
+}

@@ -1,0 +1,149 @@
+//! A method that is another program: it is started once, asked trial by trial in one line of JSON each, and answers in
+//! one line each. What stands in the lines is in [`protocol`], how a program is started, asked and ended in `process`
+//! and `crew`.
+//!
+//! A program works on one trial at a time, so there are never more processes of a command than threads that ask. An
+//! answer may depend on nothing but its question: then rows do not depend on the number of threads.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+use ship::Shown;
+use trial::{Origin, Trial};
+
+use crate::error::IdentifyError;
+use crate::estimate::Estimate;
+use crate::identifier::{Identifier, Opener, Outside};
+use crate::settings::SettingsError;
+use crew::Crew;
+
+mod answer;
+mod crew;
+mod place;
+mod process;
+pub mod protocol;
+mod trouble;
+
+pub use answer::{Answer, Errors};
+pub use place::shown;
+pub use process::end_all;
+
+/// Id of a method that is another program.
+pub const ID: &str = "external";
+
+/// Most words of a command.
+const MOST_WORDS: usize = 64;
+
+/// Longest word of a command, bytes.
+const LONGEST_WORD: usize = 4096;
+
+/// Times that may be waited for an answer, s.
+const TIMEOUTS_S: std::ops::RangeInclusive<f64> = 0.01..=86_400.0;
+
+/// The command of an outside estimator, and how long its answer is waited for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Settings {
+    /// The program and its arguments; no shell looks at them.
+    pub command: Vec<String>,
+    /// Longest time to an answer, s; that to the first one holds the start of the program.
+    #[serde(default = "usual_timeout_s")]
+    pub timeout_s: f64,
+}
+
+fn usual_timeout_s() -> f64 {
+    60.0
+}
+
+impl Settings {
+    /// A command with the usual time for an answer.
+    pub fn new(command: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { command: command.into_iter().map(Into::into).collect(), timeout_s: usual_timeout_s() }
+    }
+
+    /// Checks the settings and makes the method, whose program runs in `folder`. Nothing is started.
+    pub fn build(self, folder: &Path) -> Result<External, SettingsError> {
+        let Self { command, timeout_s } = self;
+        if !(1..=MOST_WORDS).contains(&command.len()) {
+            return Err(SettingsError::new("command", format!("a list of {}", command.len()), "1 to 64 words"));
+        }
+        let is_word = |word: &String| !word.trim().is_empty() && word.len() <= LONGEST_WORD && !word.contains('\0');
+        if let Some(wrong) = command.iter().find(|word| !is_word(word)) {
+            let found = format!("a list with {:?}", wrong.chars().take(20).collect::<String>());
+            return Err(SettingsError::new("command", found, "words that are not blank, of at most 4096 bytes each"));
+        }
+        if !TIMEOUTS_S.contains(&timeout_s) {
+            return Err(SettingsError::new("timeout-s", Shown(timeout_s), "a time from 0.01 to 86400 s"));
+        }
+        Ok(External { timeout: Duration::from_secs_f64(timeout_s), crew: Crew::of(command, folder) })
+    }
+}
+
+/// An outside estimator with its settings.
+pub struct External {
+    timeout: Duration,
+    crew: Arc<Crew>,
+}
+
+impl Identifier for External {
+    fn id(&self) -> &'static str {
+        ID
+    }
+
+    fn summary(&self) -> &'static str {
+        "another program, asked in a line of JSON for every trial"
+    }
+
+    fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {
+        let first = trials.first().ok_or(IdentifyError::NoTrial)?;
+        let mut process = self.crew.take()?;
+        loop {
+            let before = process.answered();
+            // The number of a simulated trial is the same whoever asks, so a program may draw by it.
+            let number = match first.origin() {
+                Origin::Simulated { replicate, .. } => *replicate,
+                Origin::Measured { .. } => before,
+            };
+            let asked = process.ask(self.timeout, |line| protocol::question(number, trials, line));
+            match asked.and_then(|line| protocol::answer(&line, number)) {
+                Ok(answer) => {
+                    self.crew.give_back(process);
+                    return answer.map_err(|words| IdentifyError::outside(&words))?.estimate();
+                }
+                // What a process did before must not show in a row: a new one is asked once more.
+                Err(trouble) if before > 0 && trouble.may_be_of_the_past() => {
+                    process.kill();
+                    process = self.crew.start()?;
+                }
+                Err(trouble) => {
+                    process.kill();
+                    return Err(trouble.into());
+                }
+            }
+        }
+    }
+
+    fn outside(&self) -> Option<&dyn Outside> {
+        Some(self)
+    }
+}
+
+impl Outside for External {
+    fn command(&self) -> &[String] {
+        self.crew.command()
+    }
+
+    fn find(&self) -> Result<(), String> {
+        place::find(self.crew.command(), self.crew.folder())
+    }
+
+    fn log_to(&self, open: Opener) {
+        self.crew.log_to(open);
+    }
+
+    fn end(&self) {
+        self.crew.end();
+    }
+}

@@ -1,0 +1,176 @@
+//! K, T and δ_r as somebody else found them, and the estimate that is made of them.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
+
+use nalgebra::{Matrix3, Vector3};
+use ship::FirstOrder;
+
+use crate::error::IdentifyError;
+use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
+
+/// K, T and δ_r as somebody else found them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// K, 1/s.
+    pub K: f64,
+    /// T, s.
+    pub T: f64,
+    /// δ_r, rad.
+    pub rudder_bias: f64,
+    /// What is known of their errors.
+    pub errors: Errors,
+}
+
+/// What somebody else knows of the errors of K (1/s), T (s) and δ_r (rad), in this order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Errors {
+    /// Nothing.
+    Unknown,
+    /// Standard deviations.
+    Deviations([Option<f64>; 3]),
+    /// The covariance.
+    Covariance(Matrix3<f64>),
+}
+
+/// Said where standard deviations are all that is known.
+const UNCORRELATED: &str = "errors of K and T are taken as independent, because no covariance was given: their own \
+                            intervals do not depend on it, that of K/T and predictions do";
+
+/// Largest asymmetry of a covariance and excess of a correlation over one, as a share: rounding.
+const ROUNDING: f64 = 1e-6;
+
+impl Answer {
+    /// The estimate: a first-order response, and the covariance of (1/T, K/T, δ_r) to first order in the errors.
+    ///
+    /// With J = ∂(1/T, K/T, δ_r)/∂(K, T, δ_r) it is J C Jᵀ; C is diagonal where only standard deviations are given. A
+    /// δ_r without an error has none in the estimate, either. Fails with [`IdentifyError::NotAShip`] unless K/T > 0.
+    pub fn estimate(&self) -> Result<Estimate, IdentifyError> {
+        let Self { K, T, rudder_bias, .. } = *self;
+        let response = FirstOrder::from_indices(K, T, rudder_bias);
+        let FirstOrder { inverse_T, K_over_T, .. } = response;
+        if !(inverse_T.is_finite() && K_over_T.is_finite() && K_over_T > 0.0) {
+            return Err(IdentifyError::NotAShip { inverse_time: inverse_T, gain: K_over_T });
+        }
+        if !rudder_bias.is_finite() {
+            return Err(IdentifyError::outside("the rudder bias is no finite number"));
+        }
+        let (a, b) = (inverse_T, K_over_T);
+        let jacobian = Matrix3::new(0.0, -a * a, 0.0, a, -a * b, 0.0, 0.0, 0.0, 1.0);
+        let transformed = |(known, warning)| (jacobian * known * jacobian.transpose(), warning);
+        let is_finite = |(matrix, _): &(Matrix3<f64>, _)| matrix.iter().all(|value| value.is_finite());
+        let (uncertainty, warning) = match self.covariance().map(transformed).filter(is_finite) {
+            None => (Uncertainty::None { reason: "the outside estimator gave no errors of both K and T" }, None),
+            Some((matrix, warning)) => {
+                (Uncertainty::Covariance(Covariance { matrix, degrees_of_freedom: None }), warning)
+            }
+        };
+        Ok(Estimate {
+            response,
+            uncertainty,
+            robust: None,
+            stop: StopReason::Outside,
+            evaluations: 0,
+            diagnostics: Vec::new(),
+            warnings: warning.into_iter().map(str::to_owned).collect(),
+        })
+    }
+
+    /// The covariance of (K, T, δ_r), and what has to be said of it; `None` where K or T has no error, or what is given
+    /// is no covariance.
+    fn covariance(&self) -> Option<(Matrix3<f64>, Option<&'static str>)> {
+        match self.errors {
+            Errors::Unknown => None,
+            Errors::Deviations([K, T, rudder_bias]) => {
+                let variance = |sd: Option<f64>| sd.filter(|sd| sd.is_finite() && *sd >= 0.0).map(|sd| sd * sd);
+                let diagonal = Vector3::new(variance(K)?, variance(T)?, variance(rudder_bias).unwrap_or(0.0));
+                Some((Matrix3::from_diagonal(&diagonal), Some(UNCORRELATED)))
+            }
+            Errors::Covariance(matrix) => is_covariance(&matrix).then_some((matrix, None)),
+        }
+    }
+}
+
+/// Whether a matrix is finite and symmetric, with variances that are not negative and correlations up to one.
+fn is_covariance(matrix: &Matrix3<f64>) -> bool {
+    (0..3).all(|i| {
+        (0..3).all(|j| {
+            let (one, other) = (matrix[(i, j)], matrix[(j, i)]);
+            let most = (matrix[(i, i)] * matrix[(j, j)]).sqrt() * (1.0 + ROUNDING);
+            // Written so that NaN is refused too.
+            one.abs() <= most && most.is_finite() && (one - other).abs() <= ROUNDING * most && matrix[(i, i)] >= 0.0
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn answer(errors: Errors) -> Answer {
+        Answer { K: 0.1, T: 16.0, rudder_bias: 0.01, errors }
+    }
+
+    fn estimate(errors: Errors) -> Estimate {
+        answer(errors).estimate().expect("a ship")
+    }
+
+    /// What goes in as standard deviations comes out as such: the transformation to 1/T and K/T and the delta method
+    /// back are inverse to one another.
+    #[test]
+    fn errors_survive_the_change_of_parameters() {
+        let sd = [0.004, 0.9, 0.002];
+        let check = |found: &Estimate| {
+            for (found, expected) in [found.K(), found.T(), found.rudder_bias()].iter().zip(sd) {
+                assert_relative_eq!(found.sd.expect("given"), expected, max_relative = 1e-12);
+                assert!(found.ci95.is_some());
+            }
+        };
+        let alone = estimate(Errors::Deviations(sd.map(Some)));
+        check(&alone);
+        assert_eq!(alone.warnings, [UNCORRELATED]);
+        let mut matrix = Matrix3::from_diagonal(&Vector3::from(sd.map(|sd| sd * sd)));
+        (matrix[(0, 1)], matrix[(1, 0)]) = (0.9 * sd[0] * sd[1], 0.9 * sd[0] * sd[1]);
+        let correlated = estimate(Errors::Covariance(matrix));
+        check(&correlated);
+        assert!(correlated.warnings.is_empty());
+        // K/T is known far better where the errors go together.
+        let gain = |estimate: &Estimate| match &estimate.uncertainty {
+            Uncertainty::Covariance(covariance) => covariance.matrix[(1, 1)],
+            _ => f64::NAN,
+        };
+        assert!(gain(&correlated) < 0.3 * gain(&alone), "{} {}", gain(&correlated), gain(&alone));
+    }
+
+    #[test]
+    fn what_is_not_known_is_not_made_up() {
+        let half = estimate(Errors::Deviations([Some(0.004), Some(0.9), None]));
+        assert!(half.K().sd.is_some() && half.T().sd.is_some());
+        assert_eq!((half.rudder_bias().sd, half.rudder_bias().ci95), (None, None));
+        let bad = Matrix3::from_diagonal(&Vector3::new(1e-6, -1.0, 1e-6));
+        let skew = Matrix3::new(1e-4, 5e-3, 0.0, -5e-3, 1.0, 0.0, 0.0, 0.0, 1e-6);
+        let beyond = Matrix3::new(1e-4, 5e-2, 0.0, 5e-2, 1.0, 0.0, 0.0, 0.0, 1e-6);
+        let none = [
+            Errors::Unknown,
+            Errors::Deviations([Some(0.004), None, Some(0.1)]),
+            Errors::Deviations([Some(f64::INFINITY), Some(1.0), None]),
+            Errors::Deviations([Some(-0.1), Some(1.0), None]),
+            Errors::Deviations([Some(1e200), Some(1.0), None]),
+            Errors::Covariance(bad),
+            Errors::Covariance(skew),
+            Errors::Covariance(beyond),
+        ];
+        for errors in none {
+            let found = estimate(errors);
+            assert_eq!([found.K().sd, found.T().sd, found.rudder_bias().sd], [None; 3], "{errors:?}");
+        }
+    }
+
+    #[test]
+    fn no_ship_is_made_of_nonsense() {
+        let of = |K, T| Answer { K, T, ..answer(Errors::Unknown) }.estimate();
+        for (K, T) in [(0.1, 0.0), (-0.1, 16.0), (0.1, -16.0), (0.0, 16.0), (1e300, 1e-300), (0.1, f64::INFINITY)] {
+            assert_eq!(of(K, T).expect_err("no ship").kind(), "not-a-ship", "{K} {T}");
+        }
+        assert!(of(-0.1, -16.0).expect("unstable on course").response.is_course_unstable());
+    }
+}

@@ -1,0 +1,143 @@
+//! The processes of one command in one folder, shared by all methods with that command: those of the cells of a sweep
+//! are asked in turn and need no more processes than one cell.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, Weak};
+
+use crate::identifier::Opener;
+
+use super::place;
+use super::process::{Listener, Process, locked};
+use super::trouble::Trouble;
+
+/// Most commands whose processes are kept while they wait: those that were asked last.
+const MOST_COMMANDS: usize = 16;
+
+/// Most bytes of a log.
+const MOST_LOG: u64 = 1 << 20;
+
+/// Said at the end of a log that is full.
+const FULL: &[u8] = b"\n(what was said after this is not kept)\n";
+
+/// All crews, the one that was asked last at the end.
+static CREWS: Mutex<Vec<Weak<Crew>>> = Mutex::new(Vec::new());
+
+/// The processes of one command.
+pub struct Crew {
+    command: Vec<String>,
+    folder: PathBuf,
+    idle: Mutex<Vec<Process>>,
+    log: Mutex<Option<Arc<Mutex<Log>>>>,
+}
+
+impl Crew {
+    /// The crew of a command in a folder, shared with whoever has it already.
+    pub fn of(command: Vec<String>, folder: &Path) -> Arc<Self> {
+        let mut crews = locked(&CREWS);
+        crews.retain(|crew| crew.strong_count() > 0);
+        let known = crews.iter().filter_map(Weak::upgrade);
+        if let Some(own) = known.into_iter().find(|crew| crew.command == command && crew.folder == folder) {
+            return own;
+        }
+        let own = Self { command, folder: folder.to_owned(), idle: Mutex::default(), log: Mutex::default() };
+        let own = Arc::new(own);
+        crews.push(Arc::downgrade(&own));
+        own
+    }
+
+    /// The program and its arguments.
+    pub fn command(&self) -> &[String] {
+        &self.command
+    }
+
+    /// Where it runs.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// A process to ask: one that waits, or a new one.
+    pub fn take(self: &Arc<Self>) -> Result<Process, Trouble> {
+        self.was_asked();
+        let idle = locked(&self.idle).pop();
+        idle.map_or_else(|| self.start(), Ok)
+    }
+
+    /// A new process.
+    pub fn start(&self) -> Result<Process, Trouble> {
+        let log = locked(&self.log).clone();
+        let log = log.map(|log| -> Listener { Box::new(move |words| locked(&log).add(words)) });
+        place::command(&self.command, &self.folder)
+            .and_then(|command| Process::start(command, log))
+            .map_err(Trouble::NotStarted)
+    }
+
+    /// Takes back a process that waits.
+    pub fn give_back(&self, process: Process) {
+        locked(&self.idle).push(process);
+    }
+
+    /// Where what its processes say beside their answers goes from now on.
+    pub fn log_to(&self, open: Opener) {
+        *locked(&self.log) = Some(Arc::new(Mutex::new(Log { open, file: None, left: MOST_LOG })));
+    }
+
+    /// Ends the processes that wait, and with them the log.
+    pub fn end(&self) {
+        let idle = std::mem::take(&mut *locked(&self.idle));
+        Process::end(idle);
+        *locked(&self.log) = None;
+    }
+
+    /// Makes it the last that was asked; processes of the one that was not asked for so many others end.
+    fn was_asked(self: &Arc<Self>) {
+        let mut crews = locked(&CREWS);
+        let own = Arc::downgrade(self);
+        let place = crews.iter().rposition(|crew| Weak::ptr_eq(crew, &own));
+        match place {
+            Some(place) if place + 1 == crews.len() => return,
+            Some(place) => drop(crews.remove(place)),
+            None => {}
+        }
+        crews.push(own);
+        let beyond = crews.len().checked_sub(MOST_COMMANDS + 1).and_then(|place| crews[place].upgrade());
+        drop(crews);
+        if let Some(beyond) = beyond {
+            let idle = std::mem::take(&mut *locked(&beyond.idle));
+            Process::end(idle);
+        }
+    }
+}
+
+impl Drop for Crew {
+    fn drop(&mut self) {
+        Process::end(std::mem::take(&mut *locked(&self.idle)));
+    }
+}
+
+/// What processes say beside their answers, up to a size. A log that cannot be written is not missed.
+struct Log {
+    open: Opener,
+    file: Option<File>,
+    left: u64,
+}
+
+impl Log {
+    fn add(&mut self, words: &[u8]) {
+        if self.left == 0 {
+            return;
+        }
+        if self.file.is_none() {
+            self.file = (self.open)().ok();
+            // What an earlier run left counts.
+            let size = self.file.as_ref().and_then(|file| file.metadata().ok()).map_or(MOST_LOG, |about| about.len());
+            self.left = MOST_LOG.saturating_sub(size);
+        }
+        let Some(file) = self.file.as_mut().filter(|_| self.left > 0) else { return };
+        let fitting = &words[..words.len().min(usize::try_from(self.left).unwrap_or(usize::MAX))];
+        self.left -= fitting.len() as u64;
+        let end = if self.left == 0 { FULL } else { b"" };
+        let _ = file.write_all(&[fitting, end].concat());
+    }
+}

@@ -1,0 +1,216 @@
+//! One process of another program: started, asked, ended. A thread of its own writes and reads, so that whoever asks
+//! can stop waiting whatever the process does.
+
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use super::trouble::Trouble;
+
+/// Most bytes of an answer.
+const MOST_BYTES: usize = 4 << 20;
+
+/// Time that processes get to end by themselves after their input has ended.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Time between two looks whether a process has ended.
+const LOOK: Duration = Duration::from_millis(2);
+
+/// Variables of libraries that would start threads of their own, beside those that ask.
+const THREADS: [&str; 5] =
+    ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"];
+
+/// All processes that were started; those that have ended are left out with the next start.
+static STARTED: Mutex<Vec<Weak<Mutex<Child>>>> = Mutex::new(Vec::new());
+
+/// What a mutex holds; a panic of another thread leaves nothing half done in any of these.
+pub fn locked<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Kills every process that an outside estimator runs in, for a program that is about to end itself. What such a
+/// process has started has to see to its own end.
+pub fn end_all() {
+    for child in locked(&STARTED).drain(..).filter_map(|child| child.upgrade()) {
+        // It has ended, or there is nothing more that can be done.
+        let _ = locked(&child).kill();
+    }
+}
+
+/// A question and back again with its answer: the memory of both is used for the next ones.
+struct Exchange {
+    question: Vec<u8>,
+    answer: Vec<u8>,
+    read: io::Result<()>,
+}
+
+/// Takes what a process says beside its answers, line by line.
+pub type Listener = Box<dyn FnMut(&[u8]) + Send>;
+
+/// A process that waits for a question.
+pub struct Process {
+    child: Arc<Mutex<Child>>,
+    /// Without it the input of the process ends.
+    questions: Option<SyncSender<Exchange>>,
+    answers: Receiver<Exchange>,
+    idle: Option<Exchange>,
+    answered: u64,
+    log: Option<JoinHandle<()>>,
+}
+
+impl Process {
+    /// Starts a command, which says where it runs. Its standard error goes to `log`, or to that of this program.
+    pub fn start(mut command: Command, log: Option<Listener>) -> io::Result<Self> {
+        let unset = THREADS.into_iter().filter(|name| std::env::var_os(name).is_none());
+        command.envs(unset.map(|name| (name, "1"))).env("PYTHONUNBUFFERED", "1");
+        command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        command.stderr(if log.is_some() { Stdio::piped() } else { Stdio::inherit() });
+        apart(&mut command);
+        let mut child = command.spawn()?;
+        let (input, output) = (child.stdin.take(), child.stdout.take());
+        let (Some(input), Some(output)) = (input, output) else { return Err(io::ErrorKind::BrokenPipe.into()) };
+        let errors = child.stderr.take();
+        let child = Arc::new(Mutex::new(child));
+        let mut started = locked(&STARTED);
+        started.retain(|child| child.strong_count() > 0);
+        started.push(Arc::downgrade(&child));
+        drop(started);
+        let (questions, asked) = sync_channel(1);
+        let (answer, answers) = sync_channel(1);
+        let idle = Some(Exchange { question: Vec::new(), answer: Vec::new(), read: Ok(()) });
+        let mut this = Self { child, questions: Some(questions), answers, idle, answered: 0, log: None };
+        thread::Builder::new().name("outside".to_owned()).spawn(move || converse(input, output, &asked, &answer))?;
+        if let Some((errors, log)) = errors.zip(log) {
+            this.log = Some(thread::Builder::new().name("outside-log".to_owned()).spawn(move || keep(errors, log))?);
+        }
+        Ok(this)
+    }
+
+    /// Questions it has answered.
+    pub fn answered(&self) -> u64 {
+        self.answered
+    }
+
+    /// Asks what `write` writes and waits for the line of the answer, without its end.
+    pub fn ask(&mut self, timeout: Duration, write: impl FnOnce(&mut Vec<u8>)) -> Result<Vec<u8>, Trouble> {
+        let (Some(mut exchange), Some(questions)) = (self.idle.take(), &self.questions) else {
+            return Err(Trouble::Ended(None));
+        };
+        exchange.question.clear();
+        write(&mut exchange.question);
+        exchange.answer.clear();
+        if questions.send(exchange).is_err() {
+            return Err(Trouble::Ended(self.status()));
+        }
+        let mut exchange = match self.answers.recv_timeout(timeout) {
+            Ok(exchange) => exchange,
+            Err(RecvTimeoutError::Timeout) => return Err(Trouble::Silent(timeout)),
+            Err(RecvTimeoutError::Disconnected) => return Err(Trouble::Ended(self.status())),
+        };
+        if exchange.answer.len() > MOST_BYTES {
+            return Err(Trouble::TooLong { most: MOST_BYTES });
+        }
+        if exchange.read.is_err() || exchange.answer.pop_if(|last| *last == b'\n').is_none() {
+            return Err(Trouble::Ended(self.status()));
+        }
+        self.answered += 1;
+        let answer = std::mem::take(&mut exchange.answer);
+        self.idle = Some(exchange);
+        Ok(answer)
+    }
+
+    /// How the process has ended, when it does soon.
+    fn status(&self) -> Option<ExitStatus> {
+        self.ends_by(Instant::now() + PATIENCE)
+    }
+
+    fn ends_by(&self, end: Instant) -> Option<ExitStatus> {
+        loop {
+            match locked(&self.child).try_wait() {
+                Ok(Some(status)) => return Some(status),
+                Ok(None) if Instant::now() < end => {}
+                _ => return None,
+            }
+            thread::sleep(LOOK);
+        }
+    }
+
+    /// Ends it at once.
+    pub fn kill(&mut self) {
+        let mut child = locked(&self.child);
+        // Both fail for a process that has ended, which is what is wanted.
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+
+    /// Ends processes: their input ends, and who is still there a little later is killed.
+    pub fn end(mut processes: Vec<Self>) {
+        processes.iter_mut().for_each(|process| process.questions = None);
+        let end = Instant::now() + PATIENCE;
+        for process in &mut processes {
+            if process.ends_by(end).is_none() {
+                process.kill();
+            }
+            // Its last words; what it has started itself may hold the pipe for longer.
+            while process.log.as_ref().is_some_and(|log| !log.is_finished()) && Instant::now() < end {
+                thread::sleep(LOOK);
+            }
+        }
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // One that was ended in order is gone already.
+        if self.ends_by(Instant::now()).is_none() {
+            self.kill();
+        }
+    }
+}
+
+/// Ctrl-C is a request to this program, which ends the others when it does: a trial under way must not fail by it.
+#[cfg(unix)]
+fn apart(command: &mut Command) {
+    std::os::unix::process::CommandExt::process_group(command, 0);
+}
+
+/// The same.
+#[cfg(windows)]
+fn apart(command: &mut Command) {
+    const CREATE_NEW_PROCESS_GROUP: u32 = 0x200;
+    std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
+}
+
+#[cfg(not(any(unix, windows)))]
+fn apart(_: &mut Command) {}
+
+/// Writes questions and reads answers until nobody asks any more, or listens.
+fn converse(mut input: ChildStdin, output: ChildStdout, asked: &Receiver<Exchange>, answers: &SyncSender<Exchange>) {
+    let mut output = BufReader::new(output);
+    for mut exchange in asked {
+        // A process that does not read may have said why before: its output tells.
+        let _ = input.write_all(&exchange.question);
+        let mut line = output.by_ref().take(MOST_BYTES as u64 + 1);
+        exchange.read = line.read_until(b'\n', &mut exchange.answer).map(drop);
+        if answers.send(exchange).is_err() {
+            return;
+        }
+    }
+}
+
+/// Hands on what a process says beside its answers.
+fn keep(errors: impl Read, mut log: Listener) {
+    let mut errors = BufReader::new(errors);
+    let mut line = Vec::new();
+    loop {
+        line.clear();
+        // In pieces of a bounded size, whole lines where they are short.
+        match errors.by_ref().take(MOST_BYTES as u64).read_until(b'\n', &mut line) {
+            Ok(0) | Err(_) => return,
+            Ok(_) => log(&line),
+        }
+    }
+}

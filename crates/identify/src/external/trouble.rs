@@ -1,0 +1,44 @@
+//! What can go wrong between this program and another one.
+
+use std::process::ExitStatus;
+use std::time::Duration;
+
+use thiserror::Error;
+
+use crate::error::IdentifyError;
+
+/// Why there is no answer; the process is of no more use.
+#[derive(Debug, Error)]
+pub enum Trouble {
+    /// The program cannot be started.
+    #[error("not started: {0}")]
+    NotStarted(std::io::Error),
+    /// Nothing came in time.
+    #[error("no answer within {} s", .0.as_secs_f64())]
+    Silent(Duration),
+    /// The process is gone, or has closed its output.
+    #[error("the process ended without an answer{}", .0.map_or_else(String::new, |status| format!(" ({status})")))]
+    Ended(Option<ExitStatus>),
+    /// A line without an end.
+    #[error("an answer of more than {most} bytes")]
+    TooLong {
+        /// Most bytes.
+        most: usize,
+    },
+    /// A line that is no answer to the question.
+    #[error("{0}")]
+    Nonsense(String),
+}
+
+impl Trouble {
+    /// Whether an earlier trial may be to blame. Silence is not asked for twice: it would take the time twice.
+    pub fn may_be_of_the_past(&self) -> bool {
+        matches!(self, Self::Ended(_) | Self::TooLong { .. } | Self::Nonsense(_))
+    }
+}
+
+impl From<Trouble> for IdentifyError {
+    fn from(trouble: Trouble) -> Self {
+        Self::outside(&trouble.to_string())
+    }
+}

@@ -1,0 +1,198 @@
+//! The keys of a scenario as a list for a person: made from the schema, and so from the types that read the file.
+
+use serde_json::{Map, Value};
+
+use crate::schema::schema;
+
+/// A key of a scenario, for a person who looks for it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Key {
+    /// With dots, from the root of a scenario; `[]` marks an entry of a list.
+    pub key: String,
+    /// Unit of the number, or what stands there instead of one.
+    pub unit: String,
+    /// What holds when it is left out.
+    pub default: LeftOut,
+    /// In the words of the field.
+    pub meaning: String,
+}
+
+/// What holds when a key is left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LeftOut {
+    /// It cannot be left out where the table it stands in is given.
+    Required,
+    /// What the meaning of the key says.
+    Nothing,
+    /// This value, as TOML writes it.
+    Value(String),
+}
+
+impl std::fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Required => "required",
+            Self::Nothing => "–",
+            Self::Value(value) => value,
+        })
+    }
+}
+
+/// Every key of a scenario, in the order of its types.
+pub fn keys() -> Vec<Key> {
+    let schema = schema().to_value();
+    let mut keys = Vec::new();
+    Walk { definitions: &schema["definitions"] }.below("", &schema, &mut keys);
+    keys
+}
+
+/// Tables whose keys are those of `manoeuvre` and `recording`.
+const AS_BEFORE: [&str; 4] = ["also[].manoeuvre", "also[].recording", "validation.manoeuvre", "validation.recording"];
+
+struct Walk<'a> {
+    definitions: &'a Value,
+}
+
+impl<'a> Walk<'a> {
+    /// The keys of a table.
+    fn below(&self, path: &str, table: &'a Value, keys: &mut Vec<Key>) {
+        let is_required =
+            |name: &str| table["required"].as_array().is_some_and(|names| names.iter().any(|known| known == name));
+        for (name, value) in fields(table) {
+            self.key(&format!("{path}{name}"), (value, &Value::Null), is_required(name), keys);
+        }
+        // Of a choice the key is described where the choice is.
+        for variant in table["oneOf"].as_array().into_iter().flatten() {
+            for (name, value) in fields(variant) {
+                self.key(&format!("{path}{name}"), (value, variant), false, keys);
+            }
+        }
+    }
+
+    /// A key, and those below it.
+    fn key(&self, key: &str, (written, variant): (&'a Value, &'a Value), is_required: bool, keys: &mut Vec<Key>) {
+        let mut value = self.resolved(written);
+        let kind = |value: &'a Value| value["type"].as_str().or(value["type"][0].as_str());
+        let list = kind(value).filter(|kind| *kind == "array").map(|_| self.resolved(&value["items"]));
+        let is_list_of_tables = list.is_some_and(is_table);
+        value = list.filter(|_| is_list_of_tables).unwrap_or(value);
+        let names = names(value);
+        let unit = match (list.is_some(), names.is_empty(), kind(value)) {
+            (true, ..) => String::from(if is_list_of_tables { "list of tables" } else { "list" }),
+            (_, false, _) => names.join(" or "),
+            (.., Some("integer")) => String::from("whole number"),
+            (.., Some("number")) => unit_of(key).to_owned(),
+            (.., Some("boolean")) => String::from("true or false"),
+            (.., Some("string")) => String::from("text"),
+            _ => String::from("table"),
+        };
+        let meaning =
+            [variant, written, value].into_iter().find_map(|one| one["description"].as_str()).unwrap_or_default();
+        let default = match &written["default"] {
+            _ if is_required => LeftOut::Required,
+            Value::Null | Value::Array(_) | Value::Object(_) => LeftOut::Nothing,
+            Value::Number(number) => LeftOut::Value(number.as_f64().map_or_else(String::new, |own| own.to_string())),
+            value => LeftOut::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
+        };
+        keys.push(Key { key: key.to_owned(), unit, default, meaning: in_one_line(meaning) });
+        // A further manoeuvre has the keys of the first.
+        if !AS_BEFORE.contains(&key) {
+            let mark = if is_list_of_tables { "[]." } else { "." };
+            self.below(&format!("{key}{mark}"), value, keys);
+        }
+    }
+
+    /// What a value is: behind references, and without the null of an option.
+    fn resolved(&self, value: &'a Value) -> &'a Value {
+        let inner = match value["anyOf"].as_array().or(value["allOf"].as_array()) {
+            Some(several) => several.iter().find(|one| one["type"] != "null").unwrap_or(value),
+            None => value,
+        };
+        match inner["$ref"].as_str().and_then(|place| place.strip_prefix("#/definitions/")) {
+            Some(name) => self.resolved(&self.definitions[name]),
+            None => inner,
+        }
+    }
+}
+
+/// The keys of a table with what may stand behind them.
+fn fields(table: &Value) -> impl Iterator<Item = (&str, &Value)> {
+    table["properties"].as_object().into_iter().flat_map(Map::iter).map(|(name, value)| (name.as_str(), value))
+}
+
+fn is_table(value: &Value) -> bool {
+    value["properties"].is_object() || (value["oneOf"].is_array() && names(value).is_empty())
+}
+
+/// The names that may stand behind a key.
+fn names(value: &Value) -> Vec<&str> {
+    let several = value["oneOf"].as_array().map_or(std::slice::from_ref(value), Vec::as_slice);
+    several
+        .iter()
+        .flat_map(|one| one["enum"].as_array().into_iter().flatten().chain(Some(&one["const"])))
+        .filter_map(Value::as_str)
+        .collect()
+}
+
+/// Lines of a comment as one.
+fn in_one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Endings of keys and the units they stand for, the longest first.
+const UNITS: [(&str, &str); 20] = [
+    ("-deg-per-root-s", "deg/√s"),
+    ("-s2-per-deg2", "s²/deg²"),
+    ("-s-per-deg2", "s/deg²"),
+    ("-deg-per-s", "deg/s"),
+    ("-s-per-deg", "s/deg"),
+    ("-per-deg2", "1/deg²"),
+    ("-per-s", "1/s"),
+    ("-deg-s", "deg/s"),
+    ("-rad-s", "rad/s"),
+    ("-m-s", "m/s"),
+    ("-deg", "deg"),
+    ("-kn", "kn"),
+    ("-m", "m"),
+    ("-s", "s"),
+    ("-rows", "rows"),
+    ("-percent", "%"),
+    ("-minutes", "min"),
+    ("-hours", "h"),
+    ("-mm", "mm"),
+    ("-rps", "1/s"),
+];
+
+/// The unit that is in the name of a key.
+fn unit_of(key: &str) -> &'static str {
+    UNITS.iter().find(|(ending, _)| key.ends_with(ending)).map_or("1", |(_, unit)| unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_has_a_meaning_and_no_link() {
+        let keys = keys();
+        let silent: Vec<&str> = keys.iter().filter(|key| key.meaning.is_empty()).map(|key| key.key.as_str()).collect();
+        assert!(silent.is_empty(), "{}", silent.join("\n"));
+        let linked: Vec<&Key> =
+            keys.iter().filter(|key| key.meaning.contains("](") || key.meaning.contains("[`")).collect();
+        assert!(linked.is_empty(), "{linked:?}");
+    }
+
+    #[test]
+    fn units_defaults_and_names_are_those_of_the_types() {
+        let keys = keys();
+        let of = |wanted: &str| keys.iter().find(|key| key.key == wanted).unwrap_or_else(|| panic!("no {wanted}"));
+        assert_eq!(of("steering-gear.rate-deg-s").unit, "deg/s");
+        assert_eq!(of("steering-gear.lag-s").default, LeftOut::Value("0".into()));
+        assert_eq!(of("steering-gear.rate-deg-s").default, LeftOut::Nothing);
+        assert_eq!(of("manoeuvre.zig-zag.rudder-deg").default, LeftOut::Required);
+        assert_eq!(of("manoeuvre.zig-zag.first").unit, "starboard or port");
+        assert_eq!(of("sweep[].points[].label").unit, "text");
+        assert_eq!(of("identifier[].method.output-error.iterations").unit, "whole number");
+        assert_eq!(of("output.figures").unit, "list");
+    }
+}

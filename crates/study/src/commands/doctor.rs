@@ -1,0 +1,66 @@
+//! `study doctor`: what the program finds on this machine, for a person whose study is slow or cannot be written.
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use campaign::folder::ResultFolder;
+use campaign::manifest;
+use report::{Column, Table};
+use scenario::failure::Failure;
+use serde_json::json;
+
+use crate::options::{Common, Format};
+use crate::views::document;
+use crate::{screen, threads};
+
+/// A file that is written and removed again.
+const PROBE: &str = ".study-doctor";
+
+/// Tells what there is.
+///
+/// Fails when no file can be written to the folder where results go.
+pub fn run(common: &Common) -> Result<(), Failure> {
+    let folder = common.out.as_deref().unwrap_or(Path::new("."));
+    let written = probe(folder);
+    let terminal = |is: bool, coloured: bool| match (is, coloured) {
+        (false, _) => "no terminal",
+        (true, false) => "terminal without colours",
+        (true, true) => "terminal with colours",
+    };
+    let (output, errors) = (std::io::stdout(), std::io::stderr());
+    let found = [
+        ("version", manifest::version()),
+        ("machine", format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS)),
+        ("processors", threads::cores().to_string()),
+        ("threads", threads::count(common).to_string()),
+        ("instruction set", lanes::set().to_owned()),
+        ("standard output", terminal(output.is_terminal(), screen::is_coloured(&output)).to_owned()),
+        ("standard error", terminal(errors.is_terminal(), screen::is_coloured(&errors)).to_owned()),
+        ("spreadsheets", String::from(if cfg!(feature = "spreadsheets") { "read" } else { "not compiled in" })),
+        (
+            "writing",
+            written.as_ref().map_or_else(|error| error.message.clone(), |()| format!("works in {}", folder.display())),
+        ),
+    ];
+    match common.format {
+        _ if common.quiet => {}
+        Format::Json => {
+            let table = found.iter().map(|(name, value)| (name.replace(' ', "_"), json!(value)));
+            document::say("doctor/1", table.collect::<serde_json::Map<_, _>>().into())?;
+        }
+        format => {
+            let mut table = Table::new([Column::left("what"), Column::left("found")]);
+            found.iter().for_each(|(name, value)| table.push([name, value.as_str()]));
+            screen::say(format.render(&table).trim_end())?;
+        }
+    }
+    written
+}
+
+/// Writes a file as results are written, and removes it.
+fn probe(folder: &Path) -> Result<(), Failure> {
+    let folder = ResultFolder::shared(folder)?;
+    folder.write(PROBE, "written and read\n")?;
+    let path = folder.path().join(PROBE);
+    std::fs::remove_file(&path).map_err(|error| Failure::work(format!("failed to remove {}: {error}", path.display())))
+}

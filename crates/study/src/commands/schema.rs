@@ -1,0 +1,38 @@
+//! `study schema`: the JSON schema of a file that people or programs write or read.
+
+use campaign::manifest::Manifest;
+use scenario::failure::{Failure, OnPath};
+use scenario::schema::plain;
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+use std::path::Path;
+
+use crate::options::{Common, Described};
+use crate::screen;
+use crate::views::document;
+use crate::views::fit_file::FitFile;
+use crate::views::predict_file::PredictFile;
+use crate::views::trace_file::TraceFile;
+
+/// Prints the schema.
+pub fn run(what: Described, common: &Common) -> Result<(), Failure> {
+    let text = document::text(&schema(what)).on("describe", Path::new("a schema"))?;
+    if common.quiet { Ok(()) } else { screen::say_document(&text) }
+}
+
+/// The schema of a file, in draft 7, which editors of TOML understand as well.
+pub fn schema(what: Described) -> Schema {
+    match what {
+        Described::Scenario => scenario::schema::schema(),
+        Described::Sidecar => trial::sidecar::schema(),
+        Described::Fit => of::<FitFile>(),
+        Described::Trace => of::<TraceFile>(),
+        Described::Predict => of::<PredictFile>(),
+        Described::Manifest => of::<Manifest>(),
+    }
+}
+
+/// The schema of what the program writes.
+fn of<T: JsonSchema>() -> Schema {
+    plain(SchemaSettings::draft07().for_serialize().into_generator().into_root_schema_for::<T>())
+}

@@ -1,0 +1,89 @@
+//! `study score`: answers that were found elsewhere, as one more method of the scenario that the trials are of.
+
+use std::path::PathBuf;
+
+use campaign::answers::{self, TRIALS, Trials};
+use campaign::collect::collect;
+use campaign::folder::ResultFolder;
+use campaign::task::{Shard, default_folder};
+use clap::Args;
+use scenario::Scenario;
+use scenario::failure::Failure;
+use scenario::name;
+use trial::file::{self, Kind};
+
+use crate::options::{Common, StudyStyle};
+use crate::terminal::Terminal;
+use crate::views::publish::publish;
+
+/// What `study score` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct ScoreRequest {
+    /// Answers to trials that `study simulate` wrote: record (or cell and replicate), K_per_s, T_s; and as far as they
+    /// are known delta_r_deg, K_sd_per_s, T_sd_s, delta_r_sd_deg, failed
+    #[arg(value_name = "ANSWERS.csv")]
+    pub answers: PathBuf,
+    /// Scenario of the trials [default: that in trials.toml beside the answers]
+    #[arg(long, value_name = "SCENARIO.toml")]
+    pub scenario: Option<PathBuf>,
+    /// What the method behind the answers is called [default: the name of the file]
+    #[arg(long, value_name = "NAME")]
+    pub label: Option<String>,
+    /// Discard rows of an earlier run in the folder instead of going on with them
+    #[arg(long)]
+    pub restart: bool,
+    /// How figures are drawn, and which
+    #[command(flatten)]
+    pub style: StudyStyle,
+}
+
+/// A scenario and little beside it.
+const LIST: Kind = Kind { name: "a description of trials", largest: 1 << 22 };
+
+/// Runs the methods of the scenario on its trials, adds the answers, and publishes all as `study SCENARIO` would.
+///
+/// Fails when the answers are to other trials than those of the scenario.
+pub fn run(request: &ScoreRequest, common: &Common) -> Result<(), Failure> {
+    let scenario = scenario_of(request, common)?;
+    let theme = request.style.style.theme()?;
+    let terminal = Terminal::new(common.quiet);
+    let label = request.label.clone().map_or_else(|| name::of_file(&request.answers), Ok)?;
+    let answers = answers::read(&request.answers, &scenario, &terminal)?;
+    let place = default_folder(&format!("{}-score", scenario.name), Shard::WHOLE);
+    let scenario = scenario.with_answers(&label, answers)?;
+    let folder = ResultFolder::hold(common.out.as_deref().unwrap_or(&place))?;
+    let stored = collect(&scenario, Shard::WHOLE, &folder, request.restart, &terminal)?;
+    publish(&stored, &folder, (&theme, request.style.figures), common)
+}
+
+/// The scenario of the answers, with the seed of their trials.
+fn scenario_of(request: &ScoreRequest, common: &Common) -> Result<Scenario, Failure> {
+    let beside = request.answers.with_file_name(TRIALS);
+    let scenario = match &request.scenario {
+        Some(named) => named,
+        None if beside.is_file() => &beside,
+        None => {
+            return Err(Failure::input(format!(
+                "no scenario is given, and there is no {}; add --scenario SCENARIO.toml, or put the answers beside the trials",
+                beside.display()
+            )));
+        }
+    };
+    if !beside.is_file() {
+        return Scenario::read(scenario, common.seed);
+    }
+    let text =
+        file::read_text(&beside, LIST).map_err(|error| Failure::input(format!("{}: {error}", beside.display())))?;
+    let trials: Trials = toml::from_str(&text).map_err(|error| {
+        Failure::input(format!("{}: {}; expected what `study simulate` wrote", beside.display(), error.message()))
+    })?;
+    let scenario = Scenario::read(scenario, Some(common.seed.unwrap_or(trials.seed)))?;
+    if (&scenario.design_sha256, scenario.seed) == (&trials.design_sha256, trials.seed) {
+        return Ok(scenario);
+    }
+    Err(Failure::input(format!(
+        "the trials beside {} are not those of the scenario, which was changed since, or has files that are not beside it \
+         or another seed; give the scenario they were simulated with (--scenario), or simulate them again",
+        request.answers.display()
+    )))
+}

@@ -1,0 +1,52 @@
+//! `study completions SHELL` and `study man DIR`: what a shell and `man` know of the program, made from its options.
+
+use std::path::Path;
+
+use clap::Command;
+use clap_complete::Shell;
+use scenario::failure::{Failure, OnPath};
+use serde_json::json;
+
+use crate::options::{Common, Format};
+use crate::screen;
+use crate::views::document;
+
+/// Prints what a shell has to read to complete commands and options.
+pub fn completions(shell: Shell, mut command: Command, common: &Common) -> Result<(), Failure> {
+    let name = command.get_name().to_owned();
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command, &name, &mut script);
+    let script = String::from_utf8_lossy(&script).into_owned();
+    match common.format {
+        _ if common.quiet => Ok(()),
+        Format::Json => document::say("completions/1", json!({ "shell": shell.to_string(), "script": script })),
+        // A script is not shown but read.
+        _ => screen::say_document(&script),
+    }
+}
+
+/// Writes a page for the program and one for each of its commands.
+///
+/// Fails when the folder cannot be written.
+pub fn man(folder: &Path, mut command: Command, common: &Common) -> Result<(), Failure> {
+    command.build();
+    std::fs::create_dir_all(folder).on("make", folder)?;
+    let mut files = Vec::new();
+    let program = command.get_name().to_owned();
+    let below: Vec<Command> = command.get_subcommands().filter(|one| one.get_name() != "help").cloned().collect();
+    let below = below.into_iter().map(|one| (format!("{program}-{}", one.get_name()), one));
+    for (name, command) in std::iter::once((program.clone(), command.clone())).chain(below) {
+        let path = folder.join(format!("{name}.1"));
+        // `man` has no word for a blank in a name.
+        let page = clap_mangen::Man::new(command.name(name));
+        let mut text = Vec::new();
+        page.render(&mut text).on("make", &path)?;
+        std::fs::write(&path, text).on("write", &path)?;
+        files.push(path.display().to_string());
+    }
+    match common.format {
+        _ if common.quiet => Ok(()),
+        Format::Json => document::say("man/1", json!({ "files": files })),
+        _ => screen::say(&format!("{} pages in {}; read one with `man {}`", files.len(), folder.display(), files[0])),
+    }
+}

@@ -1,0 +1,112 @@
+//! How figures are drawn, as options of the command line and as a file.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use report::Theme;
+use report::theme::{DPI, WIDTH_MM};
+use scenario::failure::{Failure, OnPath};
+
+/// How figures are drawn.
+#[derive(Debug, Clone, Args)]
+pub struct Style {
+    /// Draw figures for print, MM millimetres wide [default: for a screen]
+    #[arg(long, value_name = "MM", value_parser = within(WIDTH_MM), allow_hyphen_values = true)]
+    pub paper: Option<f64>,
+    /// Resolution of figures for print
+    #[arg(long, value_name = "DPI", default_value_t = 600.0, requires = "paper", value_parser = within(DPI), allow_hyphen_values = true)]
+    pub dpi: f64,
+    /// Sizes, colours and limits of axes of the figures; docs/src/reference/style.toml has all keys
+    #[arg(long, value_name = "FILE.toml")]
+    pub style: Option<PathBuf>,
+}
+
+/// How the figures of a study are drawn, and which.
+#[derive(Debug, Clone, Args)]
+pub struct StudyStyle {
+    /// How they are drawn
+    #[command(flatten)]
+    pub style: Style,
+    /// Which figures are made
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t = FigureChoice::Named)]
+    pub figures: FigureChoice,
+}
+
+/// Which figures of a study are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum FigureChoice {
+    /// Those the scenario names in `output.figures`; all where it names none
+    #[default]
+    Named,
+    /// All there are
+    All,
+    /// The one that stands for the study, `output.figure`
+    Hero,
+}
+
+/// Reads a number from `least` to `most`.
+pub(crate) fn within([least, most]: [f64; 2]) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let number = text.parse().ok().filter(|number| (least..=most).contains(number));
+        number.ok_or_else(|| format!("expected a number from {least} to {most}"))
+    }
+}
+
+impl Style {
+    /// The theme of the figures; what the command line says goes before the file. Fails when no page carries it, and
+    /// when the file cannot be read.
+    pub fn theme(&self) -> Result<Theme, Failure> {
+        let file = self.style.as_deref();
+        let own = file.map(style_of).transpose()?.unwrap_or_default();
+        let named = |error: String| match file {
+            Some(file) => Failure::input(format!("{}: {error}", file.display())),
+            None => Failure::input(error),
+        };
+        let printed = self.paper.map(|width_mm| (width_mm, self.dpi));
+        let printed = printed.or_else(|| Some((own.width_mm?, own.dpi.unwrap_or(self.dpi))));
+        let theme = match printed {
+            None => Theme::screen(),
+            Some((width_mm, dpi)) => Theme::paper(width_mm, dpi).map_err(|error| named(error.to_string()))?,
+        };
+        let own = report::Style { dpi: own.dpi.filter(|_| self.paper.is_none()), ..own };
+        own.on(theme).map_err(|error| named(error.to_string()))
+    }
+}
+
+/// A style from its file.
+fn style_of(path: &Path) -> Result<report::Style, Failure> {
+    let text = fs::read_to_string(path).on("read", path)?;
+    toml::from_str(&text)
+        .map_err(|error| Failure::input(format!("{}: {}", path.display(), error.to_string().trim_end())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn theme(file: &Path) -> Result<Theme, Failure> {
+        Style { paper: None, dpi: 600.0, style: Some(file.to_owned()) }.theme()
+    }
+
+    #[test]
+    fn the_sample_of_a_style_can_be_used() {
+        theme(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/src/reference/style.toml"))).expect("a style");
+    }
+
+    #[test]
+    fn a_wrong_style_is_refused_with_its_file_and_key() {
+        let dir = tempfile::tempdir().expect("a folder");
+        let path = dir.path().join("own.toml");
+        for (text, said) in [
+            ("colour = 1", "unknown field `colour`, expected one of `width-mm`, `dpi`"),
+            ("width-mm = 3", "3 mm"),
+            ("dpi = 10", "dpi = 10: expected a number from 72 to 1200"),
+            ("[colours]\nink = \"black\"", "[colours] ink = \"black\": expected"),
+        ] {
+            fs::write(&path, text).expect("written");
+            let error = theme(&path).expect_err("refused").to_string();
+            assert!(error.contains("own.toml") && error.contains(said), "{error}");
+        }
+    }
+}

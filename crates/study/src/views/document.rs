@@ -1,0 +1,29 @@
+//! JSON for other programs: the text of a file, which is also what `--format json` writes to standard output.
+
+use scenario::failure::Failure;
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::screen;
+
+/// The text of a document. Fails where a type cannot be written as JSON.
+pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
+    serde_json::to_string_pretty(document).map(|text| text + "\n")
+}
+
+/// The document of a command without a file of its own: an object, with the name of what it holds first.
+///
+/// Fails where it cannot be written as JSON.
+pub fn of(schema: &str, body: Value) -> Result<String, Failure> {
+    let mut document = serde_json::Map::new();
+    document.insert("schema".into(), schema.into());
+    document.extend(body.as_object().cloned().unwrap_or_default());
+    text(&document).map_err(Failure::work)
+}
+
+/// Writes such a document to standard output.
+///
+/// Fails as [`of`] and [`screen::say`] do.
+pub fn say(schema: &str, body: Value) -> Result<(), Failure> {
+    screen::say_document(&of(schema, body)?)
+}

@@ -1,0 +1,9 @@
+//! What a command works out before anything is drawn, written or said; what a program that calls this crate asks for.
+
+mod alone;
+pub mod fit;
+mod planned;
+pub mod predict;
+pub mod simulate;
+mod steady;
+pub mod trace;

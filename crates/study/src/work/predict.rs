@@ -1,0 +1,319 @@
+//! A prediction: the ships that models stand for, steered through manoeuvres and held against records.
+
+use std::path::Path;
+
+use predict::correction::{self, Correction, Doubt};
+use predict::form::{self, Record};
+use predict::kind::Kind;
+use predict::known::is_same_length;
+use predict::replay::Replayed;
+use predict::turn::{self, Current};
+use predict::{KnownShip, Mixture, PredictError, Prediction, imo};
+use report::number::fixed;
+use scenario::failure::Failure;
+use scenario::name;
+use serde_json::Value;
+use ship::Particulars;
+use ship::angle::KNOT;
+use trial::{Conditions, Trial, file};
+
+use crate::options::{PredictRequest, ReadingOptions};
+use crate::progress;
+use crate::records::file_of;
+use crate::views::predict_report::Predicted;
+
+/// Methods of fit.json in the order in which they are asked; those that are not named come last.
+const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
+
+/// What is known of a ship; the covariances of the longest mixtures have a hundredth of this.
+const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
+
+/// What is known of a ship, and from where.
+pub struct Model {
+    file: String,
+    known: KnownShip,
+    /// How it was identified.
+    method: String,
+}
+
+/// The ships of several models at a scale.
+fn mixture_of(models: &[Model], particulars: Option<Particulars>) -> Result<Mixture, PredictError> {
+    let of =
+        |model: &Model| -> Result<(KnownShip, f64), PredictError> { Ok((at_scale(&model.known, particulars)?, 1.0)) };
+    Mixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
+}
+
+impl Model {
+    /// What is known of the ship in a file, as a request asks for it.
+    ///
+    /// Fails when it cannot be read, and as [`of_document`](Self::of_document) does.
+    pub fn of_file(path: &Path, request: &PredictRequest, warnings: &mut Vec<String>) -> Result<Self, Failure> {
+        let shown = path.display().to_string();
+        name::of_file(path)?;
+        let text = file::read_text(path, MODEL).map_err(|error| {
+            Failure::input(format!("{shown}: {error}; expected the fit.json or trace.json of this program"))
+        })?;
+        Self::of_document(&shown, &text, request.method.as_deref(), request.calm, warnings)
+    }
+
+    /// What is known of the ship in the text of a `fit.json` or `trace.json`; of several methods the named one, or the
+    /// one whose intervals hold most. `calm` leaves the weather of the records out. `shown` is what messages call it.
+    ///
+    /// Fails when the text is no such document, and when it holds no answer with a covariance.
+    pub fn of_document(
+        shown: &str,
+        text: &str,
+        asked: Option<&str>,
+        calm: bool,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, Failure> {
+        let value: Value = serde_json::from_str(text).map_err(|error| {
+            Failure::input(format!(
+                "{shown}: this is no JSON ({error}); expected the fit.json or trace.json of this program"
+            ))
+        })?;
+        let old = |what: &str| {
+            Failure::input(format!(
+                "{shown}: {what}; it was written by an older program, make it again with `study {what}`"
+            ))
+        };
+        let (known, method) = match value["schema"].as_str() {
+            Some(schema) if schema.starts_with("fit/") => {
+                let ships = value.get("ships").and_then(Value::as_object).ok_or_else(|| old("fit"))?;
+                let id = method(shown, ships, asked)?;
+                if asked.is_none() {
+                    warnings.push(format!("{shown}: the answer of {id} is used; --method names another"));
+                }
+                (ships[&id].clone(), id)
+            }
+            Some(schema) if schema.starts_with("trace/") => {
+                (value.get("ship").cloned().ok_or_else(|| old("trace"))?, String::from("trace"))
+            }
+            found => {
+                let found =
+                    found.map_or_else(|| String::from("no `schema`"), |schema| format!("schema = \"{schema}\""));
+                return Err(Failure::input(format!(
+                    "{shown}: {found}; expected the fit.json or trace.json of this program"
+                )));
+            }
+        };
+        let known: KnownShip = serde_json::from_value(known)
+            .map_err(|error| Failure::input(format!("{shown}: what is known of the ship cannot be read: {error}")))?;
+        if known.leans_on_sway() {
+            warnings.push(format!(
+                "{shown}: a term of the model takes the measured sway, and here that of an equation fitted to it; intervals \
+                 of such models held less often than others, so trace again with --without-effect sway_coupling_measured"
+            ));
+        }
+        let known = if calm { known.in_calm() } else { Ok(known) };
+        Ok(Self {
+            known: known.map_err(|error| Failure::input(format!("{shown}: {error}")))?,
+            file: shown.to_owned(),
+            method,
+        })
+    }
+}
+
+/// What is asked for.
+pub struct Asked<'a> {
+    /// The ship; several models are a mixture, all alike.
+    pub models: &'a [Model],
+    /// The same ship as she was loaded in the records; empty where they need no correction.
+    pub ballast: &'a [Model],
+    /// Records that are held against their prediction.
+    pub records: Vec<Trial>,
+    /// What is taken out of the tracks of their turns; `None` for what each shows itself.
+    pub current: Option<Current>,
+    /// Manoeuvres to predict.
+    pub manoeuvres: Vec<Kind>,
+    /// Ships that are drawn.
+    pub draws: usize,
+    /// Whether the models were read without their weather.
+    pub calm: bool,
+    /// Length and speed that are predicted for; a speed that is not given is NaN.
+    pub scale: Option<Particulars>,
+    /// Whether the form of MSC/Circ.1053 is filled in.
+    pub form: bool,
+    /// What a sidecar says of the conditions, and its name.
+    pub declared: Option<(&'a str, &'a Conditions)>,
+}
+
+/// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
+pub fn manoeuvres(request: &PredictRequest) -> Vec<Kind> {
+    let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
+        ([], true) => Kind::of_imo(),
+        (asked, _) => asked.to_vec(),
+    };
+    for kind in form::manoeuvres() {
+        if request.form && !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+}
+
+/// Length and speed that were asked for.
+pub fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
+    let length = options.length_m?;
+    let speed = options.speed_m_s.or(options.speed_kn.map(|speed| speed * KNOT));
+    Some(Particulars { length, speed: speed.unwrap_or(f64::NAN) })
+}
+
+/// Predicts the manoeuvres and replays the records.
+///
+/// Fails when a model cannot be brought to the scale that is asked for, when a record does not say how the ship began,
+/// and when hardly any drawn ship comes to the end of every manoeuvre.
+pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<Predicted, Failure> {
+    let Asked { models, ballast, records, current, manoeuvres: kinds, draws, calm, scale, form, declared } = asked;
+    let records: Vec<(Trial, Option<Current>)> = records
+        .into_iter()
+        .map(|record| at_own_scale(record, warnings))
+        .map(|record| turn::without_current(record, current))
+        .collect();
+    let first = models[0].file.clone();
+    let refused = |error: PredictError| Failure::input(format!("{first}: {error}"));
+    let mixture = mixture_of(models, scale).map_err(refused)?;
+    let busy = progress::busy("predicting", quiet);
+    let mut manoeuvres: Vec<Prediction> = Vec::with_capacity(kinds.len());
+    let mut lost = None;
+    for kind in &kinds {
+        match mixture.predict(kind, draws, true) {
+            Ok(prediction) => manoeuvres.push(prediction),
+            // One manoeuvre that the model cannot make says nothing of the others.
+            Err(error @ PredictError::Lost { .. }) => {
+                warnings.push(format!("{first}: {error}; it is left out"));
+                lost = Some(error);
+            }
+            Err(error) => return Err(refused(error)),
+        }
+    }
+    if let Some(error) = lost.filter(|_| manoeuvres.is_empty() && records.is_empty()) {
+        return Err(refused(error));
+    }
+    let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
+    for (record, current) in records {
+        let (replayed, correction) = held_against((&record, current), [models, ballast], (scale, draws), warnings)?;
+        replays.push((record, replayed));
+        corrections.push(correction);
+    }
+    busy.finish_and_clear();
+    let particulars = mixture.particulars();
+    let form = form.then(|| {
+        let records: Vec<Record> = (replays.iter().zip(&corrections))
+            .map(|((trial, replayed), correction)| Record {
+                trial,
+                correction: correction.as_ref(),
+                current: replayed.current,
+            })
+            .collect();
+        form::fill(&manoeuvres, particulars, &records, declared)
+    });
+    let weight = 1.0 / models.len() as f64;
+    Ok(Predicted {
+        criteria: particulars.map(|particulars| imo::criteria(&manoeuvres, particulars)).unwrap_or_default(),
+        models: models.iter().map(|model| (model.file.clone(), weight)).collect(),
+        ballast: ballast.iter().map(|model| model.file.clone()).collect(),
+        corrections,
+        form,
+        draws,
+        calm,
+        manoeuvres,
+        replays,
+        particulars,
+        hull: mixture.first().hull.is_some(),
+        seen: mixture.first().seen,
+    })
+}
+
+/// Whether a record is of a ship of this length, m, as far as is known.
+fn is_of(record: &Trial, length: f64) -> bool {
+    record.particulars().is_none_or(|own| is_same_length(own.length, length))
+}
+
+/// A record at the scale that its sidecar declares, where another one is asked for: a model is replayed as a model.
+fn at_own_scale(record: Trial, warnings: &mut Vec<String>) -> Trial {
+    let Some(own) = record.conditions().particulars.filter(|own| !is_of(&record, own.length)) else { return record };
+    warnings.push(format!(
+        "{}: its sidecar says {} m at {} m/s; it is replayed at that scale, and manoeuvres are predicted at the other",
+        file_of(&record).0,
+        fixed(own.length, 2),
+        fixed(own.speed, 2)
+    ));
+    record.with_particulars(own)
+}
+
+/// A record beside its replay, and corrected to full load where there is a model of its condition; `models` are those
+/// at full load and those in the condition of the record.
+fn held_against(
+    (record, current): (&Trial, Option<Current>),
+    [full, ballast]: [&[Model]; 2],
+    (asked, draws): (Option<Particulars>, usize),
+    warnings: &mut Vec<String>,
+) -> Result<(Replayed, Option<Correction>), Failure> {
+    // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
+    let scale = asked.filter(|asked| is_of(record, asked.length)).or_else(|| record.particulars());
+    let scaled = |models: &[Model]| {
+        mixture_of(models, scale).map_err(|error| Failure::input(format!("{}: {error}", models[0].file)))
+    };
+    let file = file_of(record).0;
+    let own = scaled(if ballast.is_empty() { full } else { ballast })?;
+    let replayed = own.replay(record, draws, current).map_err(|error| Failure::input(format!("{file}: {error}")))?;
+    let Some(replayed) = replayed else {
+        let what = "too few headings at its beginning to say how the ship began";
+        return Err(Failure::input(format!("{file}: {what}; choose a part with --from in `study find`")));
+    };
+    if ballast.is_empty() {
+        return Ok((replayed, None));
+    }
+    let mut correction = match correction::correct(&scaled(full)?, &own, record, draws) {
+        Ok(correction) => correction,
+        Err(error @ PredictError::Lost { .. }) => {
+            warnings.push(format!("{file}: {error}; it is not corrected to full load"));
+            return Ok((replayed, None));
+        }
+        Err(error) => return Err(Failure::input(format!("{file}: {error}"))),
+    };
+    if correction.figures.is_empty() {
+        warnings.push(format!(
+            "{file}: it shows no figure of a zig-zag or a turn from its first execute on; it is not corrected to full \
+             load"
+        ));
+        return Ok((replayed, None));
+    }
+    let mut of_models = correction::differences(&full[0].known, &ballast[0].known);
+    if full[0].method != ballast[0].method {
+        let [full, trial] = [full, ballast].map(|models| models[0].method.clone());
+        of_models.push(Doubt::Method { full, trial });
+    }
+    correction.doubts.splice(0..0, of_models);
+    Ok((replayed, Some(correction)))
+}
+
+/// A ship at the scale that was asked for; one whose scale is not known takes it as its own.
+fn at_scale(known: &KnownShip, asked: Option<Particulars>) -> Result<KnownShip, PredictError> {
+    let Some(Particulars { length, speed }) = asked else { return Ok(known.clone()) };
+    let speed = Some(speed).filter(|speed| speed.is_finite());
+    match (known.length_m, speed) {
+        (None, Some(_)) => Ok(KnownShip { length_m: Some(length), speed_m_s: speed, ..known.clone() }),
+        // The speed of a trial is read off its beginning and never quite that of another.
+        (Some(own), _) if is_same_length(own, length) => Ok(known.clone()),
+        _ => known.scaled_to(length, speed),
+    }
+}
+
+/// The method whose answer is used.
+fn method(file: &str, ships: &serde_json::Map<String, Value>, asked: Option<&str>) -> Result<String, Failure> {
+    let known: Vec<&str> = ships.keys().map(String::as_str).collect();
+    if known.is_empty() {
+        let what = "no method has a covariance for this record, so there are no intervals to predict";
+        return Err(Failure::input(format!("{file}: {what}; use a longer record or several")));
+    }
+    match asked {
+        Some(asked) if known.contains(&asked) => Ok(asked.to_owned()),
+        Some(asked) => Err(Failure::input(format!(
+            "{file}: --method {asked}: this file has no such answer with a covariance; use one of {}",
+            known.join(", ")
+        ))),
+        None => Ok(METHODS.into_iter().find(|id| known.contains(id)).unwrap_or(known[0]).to_owned()),
+    }
+}

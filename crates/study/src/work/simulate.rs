@@ -1,0 +1,99 @@
+//! Simulated trials as records that other commands read, each with its truth.
+
+use campaign::answers::part_name;
+use campaign::engine::{self, Truths};
+use campaign::task::Task;
+use scenario::Scenario;
+use scenario::failure::Failure;
+use scenario::problem::suggestion;
+use ship::Particulars;
+use simulate::Simulated;
+
+use crate::options::{Replicates, SimulateRequest};
+use crate::views::truth_file::TruthFile;
+
+/// Most records that one call writes: more are a study, which keeps them as rows.
+const MOST_RECORDS: u64 = 100_000;
+
+/// The trials that are asked for, in their order.
+///
+/// Fails when no such cell or trial is there, and for too many.
+pub fn tasks(scenario: &Scenario, request: &SimulateRequest) -> Result<Vec<Task>, Failure> {
+    let titles: Vec<String> = scenario.cells.iter().map(|cell| cell.title()).collect();
+    let cells = match &request.cell {
+        None => 0..titles.len(),
+        Some(label) => {
+            let cell = titles.iter().position(|title| title == label).ok_or_else(|| {
+                let advice = match titles.as_slice() {
+                    [only] if only.is_empty() => {
+                        "leave --cell out: the scenario has one cell, without a label".to_owned()
+                    }
+                    titles => suggestion(label, &titles[..titles.len().min(20)]),
+                };
+                Failure::input(format!("--cell {label:?}: {} has no such cell; {advice}", request.scenario.display()))
+            })?;
+            cell..cell + 1
+        }
+    };
+    let replicates = match request.replicate {
+        Replicates::All => 0..scenario.replicates,
+        Replicates::One(number) if number < scenario.replicates => number..number + 1,
+        Replicates::One(number) => {
+            return Err(Failure::input(format!(
+                "--replicate {number}: {} has {} trials in a cell, which are counted from 0",
+                request.scenario.display(),
+                scenario.replicates
+            )));
+        }
+    };
+    let count = (cells.len() as u64).saturating_mul(replicates.end - replicates.start);
+    if count > MOST_RECORDS {
+        return Err(Failure::input(format!(
+            "{count} records are asked for; expected at most {MOST_RECORDS}; name a cell with --cell or a trial with --replicate"
+        )));
+    }
+    Ok(cells.flat_map(|cell| replicates.clone().map(move |replicate| Task { cell, replicate })).collect())
+}
+
+/// A simulated record as it is written.
+pub struct Made {
+    /// What it is called.
+    pub name: String,
+    /// The record, as CSV.
+    pub table: Vec<u8>,
+    /// Its sidecar, where the ship has a length: the table does not hold it.
+    pub sidecar: Option<String>,
+    /// What is true of it, as JSON.
+    pub truth: String,
+}
+
+/// The records of one trial; the first is called `name`, further ones of the same ship after it.
+///
+/// Fails when the trial cannot be made.
+pub fn records(scenario: &Scenario, task: Task, name: &str) -> Result<Vec<Made>, Failure> {
+    let refuse = |error: String| {
+        Failure::work(format!(
+            "trial {} of cell {} of {} cannot be made: {error}",
+            task.replicate, task.cell, scenario.name
+        ))
+    };
+    let simulated = engine::simulate(scenario, task).map_err(refuse)?;
+    let truths = engine::truths(scenario, task).map_err(refuse)?;
+    let made = simulated
+        .iter()
+        .enumerate()
+        .map(|(number, simulated)| made(scenario, task, simulated, truths, part_name(name, number)));
+    made.collect::<Result<_, String>>().map_err(refuse)
+}
+
+fn made(scenario: &Scenario, task: Task, simulated: &Simulated, truths: Truths, name: String) -> Result<Made, String> {
+    let mut table = Vec::new();
+    trial::write_csv(&simulated.trial, &mut table).map_err(|error| error.to_string())?;
+    let truth = serde_json::to_string(&TruthFile::of(scenario, task, simulated, truths)?);
+    let truth = truth.map_err(|error| error.to_string())? + "\n";
+    let sidecar = simulated
+        .trial
+        .particulars()
+        .map(|Particulars { length, speed }| format!("[ship]\nlength-m = {length:?}\nspeed-m-s = {speed:?}\n"));
+    Ok(Made { name, table, sidecar, truth })
+}

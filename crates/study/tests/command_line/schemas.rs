@@ -1,0 +1,141 @@
+//! Schemas: the published ones are those of the program, and whatever the program writes in any test holds to them.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use jsonschema::Validator;
+use serde_json::Value;
+use study::commands::schema::schema;
+use study::options::Described;
+
+use crate::desk::{Desk, of_repository};
+
+const ALL: [(&str, Described); 6] = [
+    ("scenario", Described::Scenario),
+    ("sidecar", Described::Sidecar),
+    ("fit", Described::Fit),
+    ("trace", Described::Trace),
+    ("predict", Described::Predict),
+    ("manifest", Described::Manifest),
+];
+
+static VALIDATORS: LazyLock<Vec<(&str, Validator)>> = LazyLock::new(|| {
+    let validator = |what| jsonschema::validator_for(schema(what).as_value()).expect("a schema");
+    ALL.map(|(name, what)| (name, validator(what))).into()
+});
+
+/// What is wrong with a document by a schema.
+fn faults(name: &str, document: &Value) -> Vec<String> {
+    let (_, validator) = VALIDATORS.iter().find(|(known, _)| *known == name).expect("a schema of that name");
+    validator.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect()
+}
+
+fn hold(name: &str, file: &Path, document: &Value) {
+    let faults = faults(name, document);
+    assert!(faults.is_empty(), "{} and the schema of {name}: {}", file.display(), faults.join("; "));
+}
+
+/// A TOML file as the values of JSON; infinite numbers, which JSON has not, as a number.
+fn of_toml(text: &str) -> Option<Value> {
+    fn value(toml: toml::Value) -> Value {
+        match toml {
+            toml::Value::Float(number) if !number.is_finite() => Value::from(f64::MAX),
+            toml::Value::Array(items) => items.into_iter().map(value).collect(),
+            toml::Value::Table(table) => table.into_iter().map(|(name, one)| (name, value(one))).collect(),
+            other => serde_json::to_value(other).expect("plain data"),
+        }
+    }
+    Some(value(toml::Value::Table(text.parse().ok()?)))
+}
+
+/// Holds all documents below a folder to their schemas; a file that a test has damaged is no JSON or TOML.
+pub fn hold_below(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let name = entry.file_name().to_string_lossy().into_owned();
+        match name.as_str() {
+            "fit.json" | "trace.json" | "predict.json" => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                let Ok(document) = serde_json::from_str(&text) else { continue };
+                hold(name.trim_end_matches(".json"), &path, &document);
+            }
+            "manifest.toml" => {
+                let text = std::fs::read_to_string(&path).unwrap_or_default();
+                let Some(manifest) = of_toml(&text) else { continue };
+                hold("manifest", &path, &manifest);
+                let scenario = manifest["scenario"].as_str().and_then(of_toml);
+                scenario.iter().for_each(|scenario| hold("scenario", &path, scenario));
+            }
+            _ if path.is_dir() => hold_below(&path),
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn the_published_schemas_are_those_of_the_program() {
+    let desk = Desk::new();
+    for (name, _) in ALL {
+        let page = std::fs::read_to_string(of_repository(&format!("docs/schemas/{name}.json"))).expect("it is there");
+        let run = desk.run(&["schema", name]);
+        assert!(run.is_done().out == page, "run `study schema {name} > docs/schemas/{name}.json` again");
+    }
+}
+
+/// Every scenario and sidecar of the repository that a person wrote names its schema in the first line, and all hold to
+/// it.
+#[test]
+fn files_of_the_repository_hold_to_their_schemas() {
+    let mut seen = [0, 0];
+    let mut folders = vec![of_repository("scenarios")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let which = match () {
+                // The definition of the benchmark, which names its records and tasks.
+                () if name == "zigzag-bench.toml" => continue,
+                () if name.ends_with(".trial.toml") => "sidecar",
+                () if name.ends_with(".toml") => "scenario",
+                () => continue,
+            };
+            let text = std::fs::read_to_string(&path).expect("a file");
+            let named = text.lines().next().and_then(|line| line.strip_prefix("#:schema ")).unwrap_or_default();
+            let place = path.parent().expect("a folder").join(named).canonicalize();
+            let published = of_repository(&format!("docs/schemas/{which}.json")).canonicalize();
+            // What the program writes beside a simulated record has no place of its own yet, and what is compiled into
+            // it needs none.
+            let is_written = path.with_extension("").with_extension("truth.json").is_file()
+                || path.parent().is_some_and(|folder| folder.ends_with("bench"));
+            if !is_written {
+                assert_eq!(place.ok(), published.ok(), "{}: its first line names the schema", path.display());
+            }
+            hold(which, &path, &of_toml(&text).expect("TOML"));
+            seen[usize::from(which == "sidecar")] += 1;
+        }
+    }
+    assert!(seen[0] >= 20 && seen[1] > 10, "{seen:?}");
+}
+
+/// What a schema is for: a wrong key, a wrong kind of value and a missing key are seen before the program runs.
+#[test]
+fn a_schema_refuses_what_the_program_refuses() {
+    let good = std::fs::read_to_string(of_repository("scenarios/yukun.toml")).expect("a file");
+    let faults = |text: &str| faults("scenario", &of_toml(text).expect("TOML"));
+    assert!(faults(&good).is_empty(), "{:?}", faults(&good));
+    for (from, to) in [
+        ("replicates =", "replicate ="),
+        ("sampling-s = ", "sampling-s = \"1\" # "),
+        ("heading-noise-deg", "heading-nois-deg"),
+        ("method.output-error", "method.output-eror"),
+        ("[ship.", "[ship.not-"),
+    ] {
+        let wrong = good.replacen(from, to, 1);
+        assert_ne!(wrong, good, "{from}");
+        assert!(!faults(&wrong).is_empty(), "{from} as {to} is not seen");
+    }
+}

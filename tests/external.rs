@@ -1,0 +1,336 @@
+//! Outside estimators: a process that is asked trial by trial, and what happens when it does not answer as it should.
+//! The estimator of these tests is `src/bin/estimator.rs`.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+
+use campaign::collect::collect;
+use campaign::folder::ResultFolder;
+use campaign::rows::Row;
+use campaign::store::Stored;
+use campaign::task::Shard;
+use campaign::{Observer, Unwatched};
+use identify::external::{External, Settings};
+use identify::{Identifier, IdentifyError};
+use kempf_tests::outside::least_squares;
+use kempf_tests::records::Case;
+use scenario::Scenario;
+use study::options::{Common, FitRequest, Format, ReadingOptions, Style};
+use trial::Trial;
+
+const ESTIMATOR: &str = env!("CARGO_BIN_EXE_estimator");
+
+/// The estimator in one of its modes, with a short time to answer.
+fn method(arguments: &[&str]) -> External {
+    let settings = Settings { timeout_s: 5.0, ..Settings::new([&[ESTIMATOR], arguments].concat()) };
+    settings.build(Path::new("")).expect("valid settings")
+}
+
+fn record(seed: u64) -> Trial {
+    Case { noise_deg: 0.05, ..Case::default() }.trial(seed)
+}
+
+fn direct(trial: &Trial) -> [f64; 3] {
+    let heading: Vec<Option<f64>> =
+        trial.heading().iter().map(|psi| Some(*psi).filter(|psi| psi.is_finite())).collect();
+    least_squares(trial.time(), &heading, trial.rudder()).expect("a zig-zag")
+}
+
+#[test]
+fn an_answer_is_that_of_the_program_to_the_last_bit() {
+    let honest = method(&[]);
+    let [one, other] = [record(1), record(2)];
+    for trial in [&one, &other] {
+        let found = honest.identify(std::slice::from_ref(trial)).expect("an answer").response;
+        let [k, t, bias] = direct(trial);
+        let expected = ship::FirstOrder::from_indices(k, t, bias);
+        assert_eq!(found, expected);
+        assert!((k / 0.1 - 1.0).abs() < 0.1 && (t / 16.3 - 1.0).abs() < 0.15, "K = {k}, T = {t}");
+    }
+    // Further records of the same ship come with the first: the program takes the mean.
+    let both = honest.identify(&[one.clone(), other.clone()]).expect("an answer").response;
+    let mean = 0.5 * (direct(&one)[1] + direct(&other)[1]);
+    assert!((both.T() - mean).abs() < 1e-12 * mean, "{} {mean}", both.T());
+}
+
+/// The example for users, without noise and with its own standard deviations.
+#[test]
+fn the_example_finds_the_ship() {
+    let settings = Settings::new([env!("CARGO_BIN_EXE_least-squares")]);
+    let method = settings.build(Path::new("")).expect("valid settings");
+    let clean = method.identify(&[Case::default().trial(0)]).expect("an answer");
+    assert!((clean.response.T() / 16.3 - 1.0).abs() < 0.01, "T = {}", clean.response.T());
+    let noisy = method.identify(&[record(5)]).expect("an answer");
+    let [low, high] = noisy.T().ci95.expect("it gives standard deviations");
+    assert!(low < 16.3 && 16.3 < high && high - low < 4.0, "{low} to {high}");
+}
+
+#[test]
+fn an_estimate_has_the_errors_that_were_given() {
+    let found = method(&[]).identify(&[record(3)]).expect("an answer");
+    let near = |value: Option<f64>, expected: f64| (value.expect("given") - expected).abs() < 1e-9;
+    assert!(near(found.K().sd, 0.01) && near(found.T().sd, 1.5), "{:?} {:?}", found.K(), found.T());
+    assert_eq!(found.rudder_bias().sd, None);
+    assert_eq!(found.stop.as_str(), "outside");
+}
+
+fn refused(arguments: &[&str], timeout_s: f64) -> String {
+    let settings = Settings { timeout_s, ..Settings::new([&[ESTIMATOR], arguments].concat()) };
+    let method = settings.build(Path::new("")).expect("valid settings");
+    let failure = |method: &dyn Identifier| match method.identify(&[record(4)]) {
+        Err(IdentifyError::Outside { reason }) => reason,
+        other => panic!("{arguments:?}: {other:?}"),
+    };
+    let reason = failure(&method);
+    // The next trial gets a new process, whatever became of the last.
+    assert_eq!(failure(&method), reason);
+    reason
+}
+
+#[test]
+fn whatever_a_program_does_the_reason_is_told() {
+    assert_eq!(refused(&["silent"], 0.2), "no answer within 0.2 s");
+    assert_eq!(refused(&["deaf"], 0.2), "no answer within 0.2 s");
+    assert_eq!(refused(&["dies"], 5.0), "the process ended without an answer (exit status: 7)");
+    assert_eq!(refused(&["cut"], 5.0), "the process ended without an answer (exit status: 0)");
+    assert_eq!(refused(&["nonsense"], 5.0), "not JSON: Warning: \\u{1b}[31m4");
+    assert_eq!(refused(&["endless"], 30.0), "an answer of more than 4194304 bytes");
+    assert_eq!(refused(&["wrong-number"], 5.0), "an answer to trial 5 where 4 was asked");
+    assert_eq!(refused(&["fails", "4"], 5.0), "no \\u{7}excitation at all");
+    let missing = Settings::new(["no-such-program-here"]).build(Path::new("")).expect("nothing is started");
+    let error = missing.identify(&[record(1)]).expect_err("there is no such program").to_string();
+    assert!(error.starts_with("outside: not started: "), "{error}");
+}
+
+/// A record that is longer than the pipe between the two does not make anybody wait for ever.
+#[test]
+fn a_long_record_is_no_trap() {
+    let long = Case { duration_s: 6000.0, period_s: 0.25, ..Case::default() }.trial(0);
+    let settings = Settings { timeout_s: 0.3, ..Settings::new([ESTIMATOR, "deaf"]) };
+    let deaf = settings.build(Path::new("")).expect("valid settings");
+    assert!(deaf.identify(std::slice::from_ref(&long)).expect_err("it does not read").to_string().contains("within"));
+    let found = method(&[]).identify(std::slice::from_ref(&long)).expect("an answer").response;
+    assert!((found.T() / 16.3 - 1.0).abs() < 0.1, "T = {}", found.T());
+}
+
+/// Whether a process that ends after every answer, or tires, or says everything twice, was asked before is not seen.
+#[test]
+fn what_a_process_did_before_does_not_show() {
+    for mode in ["once", "tires", "twice"] {
+        let method = method(&[mode]);
+        for seed in 0..7 {
+            let trial = record(seed);
+            let found = method.identify(std::slice::from_ref(&trial)).expect("an answer").response;
+            assert_eq!(found.T(), direct(&trial)[1], "{mode} {seed}");
+        }
+    }
+}
+
+fn scenario_of(commands: &[&[&str]], more: &str, path: &Path) -> Scenario {
+    let methods: String = commands
+        .iter()
+        .enumerate()
+        .map(|(number, arguments)| {
+            let command: Vec<&str> = [&[ESTIMATOR], *arguments].concat();
+            format!("[[identifier]]\nlabel = \"mine {number}\"\nmethod.external = {{ command = {command:?}, timeout-s = 2 }}\n")
+        })
+        .collect();
+    let text = format!(
+        "question = \"Does it answer?\"\nseed = 9\nreplicates = 12\n[ship.yukun]\n[manoeuvre.zig-zag]\nrudder-deg = 10.0\n\
+         heading-deg = 10.0\n[steering-gear]\nrate-deg-s = 2.5\n[recording]\nsampling-s = 2.0\nduration-s = 200.0\n{more}\n\
+         [[identifier]]\nmethod.integral-least-squares = {{}}\n{methods}[[sweep]]\nkey = \"sensor.heading-noise-deg\"\nvalues = [0.05, 0.2]\n"
+    );
+    Scenario::parse(path, "outside", text, None).unwrap_or_else(|failure| panic!("{failure}"))
+}
+
+/// Runs a study into a folder on so many threads; returns the bytes of its rows.
+fn run(scenario: &Scenario, threads: usize, folder: &Path, observer: &dyn Observer) -> Vec<u8> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let held = ResultFolder::hold(folder).expect("a folder");
+    let done = pool.install(|| collect(scenario, Shard::WHOLE, &held, false, observer));
+    done.unwrap_or_else(|failure| panic!("{failure}"));
+    fs::read(folder.join("rows.parquet")).expect("rows")
+}
+
+fn rows(folder: &Path) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let keep = |row| {
+        rows.push(row);
+        Ok(())
+    };
+    Stored::read(folder).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
+    rows
+}
+
+/// Stops a study after some trials.
+struct Impatient(Mutex<u32>);
+
+impl Observer for Impatient {
+    fn advance(&self) {
+        *self.0.lock().expect("nobody panics") += 1;
+    }
+
+    fn is_asked_to_stop(&self) -> bool {
+        *self.0.lock().expect("nobody panics") > 5
+    }
+}
+
+#[test]
+fn rows_do_not_depend_on_threads_or_interruptions() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let modes: [&[&str]; 5] = [&[], &["dies", "3"], &["nonsense", "4"], &["fails", "5"], &["tires"]];
+    let study = scenario_of(&modes, "", &desk.path().join("outside.toml"));
+    let one = run(&study, 1, &desk.path().join("one"), &Unwatched);
+    let four = run(&study, 4, &desk.path().join("four"), &Unwatched);
+    assert!(one == four, "one thread and four give other rows");
+    let cut = desk.path().join("cut");
+    let held = ResultFolder::hold(&cut).expect("a folder");
+    let stopped = collect(&study, Shard::WHOLE, &held, false, &Impatient(Mutex::new(0))).err().expect("it stops");
+    assert!(stopped.message.contains("goes on from there"), "{stopped}");
+    drop(held);
+    assert!(run(&study, 2, &cut, &Unwatched) == one, "an interrupted study gives other rows");
+    // Once more, finished as it is: some trials are computed again and found to be the same.
+    assert!(run(&study, 2, &cut, &Unwatched) == one);
+    let failures: Vec<(u64, u64, usize, String)> = rows(&cut)
+        .into_iter()
+        .filter_map(|row| Some((row.cell, row.replicate, row.method, row.failure?.into())))
+        .collect();
+    let expected = |cell: u64| {
+        [
+            (cell, 3, 2, "outside: the process ended without an answer (exit status: 7)".to_owned()),
+            (cell, 4, 3, "outside: not JSON: Warning: \\u{1b}[31m4".to_owned()),
+            (cell, 5, 4, "outside: no \\u{7}excitation at all".to_owned()),
+        ]
+    };
+    assert_eq!(failures, [expected(0), expected(1)].concat());
+}
+
+#[test]
+fn further_records_of_a_ship_are_asked_about_together() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let also = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }";
+    let study = scenario_of(&[&[]], also, &desk.path().join("outside.toml"));
+    run(&study, 2, &desk.path().join("out"), &Unwatched);
+    let task = campaign::task::Task { cell: 1, replicate: 3 };
+    let trials = campaign::engine::simulate(&study, task).expect("two records");
+    let mean = trials.iter().map(|one| direct(&one.trial)[1]).sum::<f64>() / 2.0;
+    let rows = rows(&desk.path().join("out"));
+    let row = rows.iter().find(|row| (row.cell, row.replicate, row.method) == (1, 3, 1)).expect("a row");
+    assert_eq!(row.t_s, Some(mean));
+}
+
+#[test]
+fn what_a_program_says_beside_its_answers_is_kept_within_bounds() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let study = scenario_of(&[&["says"], &["chatters"]], "", &desk.path().join("outside.toml"));
+    let folder = desk.path().join("out");
+    run(&study, 2, &folder, &Unwatched);
+    let log = fs::read_to_string(folder.join("external-mine-0.log")).expect("a log");
+    assert_eq!((log.lines().count(), log.matches("trial 3 of 101 rows").count()), (24, 2), "{log}");
+    let long = fs::metadata(folder.join("external-mine-1.log")).expect("a log").len();
+    assert!((1 << 20..(1 << 20) + 100).contains(&long), "{long} bytes");
+    // It is no part of the study, and grows with it.
+    run(&study, 2, &folder, &Unwatched);
+    assert!(fs::metadata(folder.join("external-mine-0.log")).expect("a log").len() > log.len() as u64);
+    assert!(!fs::read_to_string(folder.join("manifest.toml")).expect("a manifest").contains(".log"));
+}
+
+/// The commands that were told.
+#[derive(Default)]
+struct Told(Mutex<Vec<String>>);
+
+impl Observer for Told {
+    fn note(&self, line: &str) {
+        self.0.lock().expect("nobody panics").push(line.to_owned());
+    }
+}
+
+#[test]
+fn a_run_says_what_it_starts_and_starts_few_processes() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let started = desk.path().join("started");
+    let command: &[&str] = &["started", started.to_str().expect("UTF-8")];
+    // Both cells and both methods have one command.
+    let study = scenario_of(&[command, command], "", &desk.path().join("outside.toml"));
+    assert!(!started.exists(), "a scenario that is read starts nothing");
+    let told = Told::default();
+    run(&study, 3, &desk.path().join("out"), &told);
+    let told = told.0.into_inner().expect("nobody panics");
+    assert!(told.len() == 1 && told[0].contains("estimator started") && told[0].contains("`mine 0`"), "{told:?}");
+    let processes = fs::read_to_string(&started).expect("it was started").lines().count();
+    assert!((1..=3).contains(&processes), "{processes} processes for three threads");
+}
+
+#[test]
+fn a_fit_asks_other_programs_too() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let path = desk.path().join("zz.csv");
+    let trial = record(6);
+    trial::write_csv(&trial, fs::File::create(&path).expect("a file")).expect("written");
+    let read = trial::reader::read(&path).expect("a record").trial;
+    let request = FitRequest {
+        trials: vec![path],
+        validate: Vec::new(),
+        methods: vec!["integral-least-squares".to_owned()],
+        external: vec![format!("my method='{ESTIMATOR}' honest").parse().expect("a command")],
+        reading: ReadingOptions {
+            columns: None,
+            with_columns: Vec::new(),
+            trial: None,
+            from: None,
+            until: None,
+            length_m: None,
+            speed_m_s: None,
+            speed_kn: None,
+        },
+        style: Style { paper: Some(60.0), dpi: 72.0, style: None },
+    };
+    let out = desk.path().join("fit");
+    let common = Common { out: Some(out.clone()), threads: None, seed: None, quiet: true, format: Format::Text };
+    study::commands::fit::run(&request, &common).unwrap_or_else(|failure| panic!("{failure}"));
+    let text = fs::read_to_string(out.join("fit.json")).expect("a fit");
+    let fit: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let [ours, theirs] = [&fit["methods"][0], &fit["methods"][1]];
+    assert!(ours["id"].is_null() && theirs["method"] == "my method" && theirs["id"] == "external", "{theirs}");
+    let k = theirs["parameters"]["K_per_s"]["value"].as_f64().expect("an answer");
+    assert!((k - direct(&read)[0]).abs() < 1e-12, "{k}");
+    assert!(fs::read_to_string(out.join("report.md")).expect("a page").contains("my method"));
+}
+
+#[test]
+fn what_is_not_there_is_said_before_the_first_trial() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let path = desk.path().join("outside.toml");
+    let missing = |from: &str, to: &str| {
+        let text = scenario_of(&[&["honest"]], "", &path).text.replace(from, to);
+        let study = Scenario::parse(&path, "outside", text, None).unwrap_or_else(|failure| panic!("{failure}"));
+        let folder = desk.path().join("none");
+        let held = ResultFolder::hold(&folder).expect("a folder");
+        let failure = collect(&study, Shard::WHOLE, &held, false, &Unwatched).err().expect("something is missing");
+        assert_eq!(failure.blame, scenario::failure::Blame::Input);
+        assert!(!folder.join("unfinished").exists(), "nothing was begun");
+        failure.message
+    };
+    let program = missing(ESTIMATOR, "no-such-program-here");
+    assert!(program.contains("`mine 0`") && program.contains("`no-such-program-here` on the PATH"), "{program}");
+    let script = missing("honest", "mine.py");
+    assert!(script.contains("there is no file mine.py in") && script.contains("manifest"), "{script}");
+}
+
+#[test]
+fn a_script_is_part_of_the_identity_of_a_study() {
+    let desk = tempfile::tempdir().expect("a folder");
+    let path = desk.path().join("outside.toml");
+    let of = |content: &str| {
+        fs::write(desk.path().join("mine.txt"), content).expect("written");
+        scenario_of(&[&["honest", "0", "mine.txt"]], "", &path)
+    };
+    let (one, other, again) = (of("a = 1"), of("a = 2"), of("a = 1"));
+    assert_eq!(one.design_sha256, again.design_sha256);
+    assert_ne!(one.design_sha256, other.design_sha256);
+    run(&one, 2, &desk.path().join("out"), &Unwatched);
+    let held = ResultFolder::hold(&desk.path().join("out")).expect("a folder");
+    let failure = collect(&other, Shard::WHOLE, &held, false, &Unwatched).err().expect("another study");
+    assert!(failure.message.contains("a file that a command in it names"), "{failure}");
+}
