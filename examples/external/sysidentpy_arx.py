@@ -15,34 +15,12 @@ What was chosen:
 - The library needs even steps: missing rows and uneven steps are bridged by straight lines, long gaps are refused.
 It gives no standard deviations.
 """
-import json
-import sys
-
 import numpy as np
 from sysidentpy.basis_function import Polynomial
 from sysidentpy.model_structure_selection import FROLS
 from sysidentpy.parameter_estimation import TotalLeastSquares
 
-
-def even_steps(record):
-    """Time, heading, rudder and yaw rate (or None) on even steps of the median length."""
-    t = np.array(record["t_s"], dtype=float)
-    keys = ["heading_rad", "rudder_rad"]
-    if record.get("yaw_rate_rad_s") and any(rate is not None for rate in record["yaw_rate_rad_s"]):
-        keys.append("yaw_rate_rad_s")
-    signals = [np.array(record[key], dtype=float) for key in keys]  # null becomes NaN
-    there = [np.isfinite(signal) & np.isfinite(t) for signal in signals]
-    if min(len(t), *(rows.sum() for rows in there)) < 20:
-        raise ValueError("fewer than twenty rows")
-    if np.ptp(signals[1][there[1]]) < 1e-4:
-        raise ValueError("the rudder does not move")
-    step = np.median(np.diff(t))
-    if not step > 0 or max(np.diff(t[rows]).max() for rows in there) > 5.5 * step:
-        raise ValueError("a gap of more than five steps")
-    start, end = max(t[rows][0] for rows in there), min(t[rows][-1] for rows in there)
-    grid = start + step * np.arange(int((end - start) / step + 1e-6) + 1)
-    even = [np.interp(grid, t[rows], signal[rows]) for rows, signal in zip(there, signals)]
-    return grid, even[0], even[1], even[2] if len(even) > 2 else None
+from records import answer_all, even_steps
 
 
 def rows_of_average(t, delta):
@@ -74,10 +52,4 @@ def estimate(record):
     return {"K_per_s": (b0 + b1) / (1 - a), "T_s": -dt / np.log(a), "delta_r_rad": c / (b0 + b1)}
 
 
-for line in sys.stdin:
-    record = json.loads(line)
-    try:
-        answer = json.dumps({"trial": record["trial"], **estimate(record)}, allow_nan=False)
-    except Exception as error:
-        answer = json.dumps({"trial": record["trial"], "failed": str(error)})
-    print(answer, flush=True)
+answer_all(estimate)
