@@ -1,4 +1,4 @@
-//! `study predict`: what an identified ship will do. The prediction is that of the crate [`predict`]; here models are
+//! `study predict`: what an identified ship will do. The prediction is that of the crate [`mod@predict`]; here models are
 //! read, and its words, tables, figures and files are made.
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! `study trace`: close the loop on measured records. The analysis is that of the crate [`trace`]; here its words,
+//! `study trace`: close the loop on measured records. The analysis is that of the crate [`mod@trace`]; here its words,
 //! tables, figures and files are made.
 
 use crate::options::{Common, TraceRequest};
