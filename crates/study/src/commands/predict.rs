@@ -1,5 +1,5 @@
-//! `study predict`: what an identified ship will do. The prediction is that of the crate [`mod@predict`]; here models are
-//! read, and its words, tables, figures and files are made.
+//! `study predict`: what an identified ship will do. The prediction is that of the crate [`mod@predict`]; here models
+//! are read, and its words, tables, figures and files are made.
 
 use std::path::{Path, PathBuf};
 
