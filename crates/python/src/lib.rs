@@ -3,12 +3,12 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | records | [`record`] |
-//! | what is asked of them | [`fit`], [`trace`], [`predict`] |
-//! | scenarios | [`scene`], [`simulate`], [`run`] |
-//! | work that is waited for, and Ctrl-C | [`wait`] |
-//! | keywords as options of the command line | [`asked`] |
-//! | exceptions | [`raise`] |
+//! | records | `record` |
+//! | what is asked of them | `fit`, `trace`, `predict` |
+//! | scenarios | `scene`, `simulate`, `run` |
+//! | work that is waited for, and Ctrl-C | `wait` |
+//! | keywords as options of the command line | `asked` |
+//! | exceptions | `raise` |
 
 mod asked;
 mod curve;
