@@ -3,12 +3,15 @@
 import doctest
 import importlib
 import pkgutil
+import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import kempf
 import pytest
+from conftest import ROOT
 
 HERE = Path(__file__).parent
 
@@ -39,6 +42,17 @@ def test_examples_in_the_documentation_hold():
             assert done.failed == 0, module.name
             tried += done.attempted
     assert tried > 5
+
+
+@pytest.mark.parametrize("page", ["crates/python/README.md", "docs/src/howto/notebook.md"])
+def test_what_a_page_shows_works(page, monkeypatch):
+    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / page).read_text("utf-8"), re.MULTILINE | re.DOTALL)
+    assert blocks
+    # Pages are read from the root of the repository.
+    monkeypatch.chdir(ROOT)
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", kempf.KempfWarning)
+        exec("".join(blocks), {})
 
 
 def test_types_agree_with_what_is_there():
