@@ -27,7 +27,8 @@ impl<'a> AtWork<'a> {
         for (method, outside) in &this.0 {
             outside.find().map_err(|problem| {
                 Failure::input(format!(
-                    "the method `{}` runs `{}` in the folder of its scenario, or of the manifest that is run again: {problem}",
+                    "the method `{}` runs `{}` in the folder of its scenario, or of the manifest that is run again: {problem}; \
+                     a manifest can be copied to where the scenario was",
                     method.label,
                     shown(outside.command())
                 ))

@@ -165,10 +165,15 @@ pub fn method_ids() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(id, _)| *id)
 }
 
-/// A variant has the colour of its method, a hollow marker and a dash of its own.
+/// A variant has the colour of its method, a hollow marker and a dash of its own; of estimators outside each has its
+/// own colour too.
 fn variant_look(method: &str, number: usize) -> Look {
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [DOTTED, SHORT_DASH, DASH_DOT, LONG_DASH];
+    // Estimators outside have an id in common and nothing else.
+    if method == "external" {
+        return other_look(number);
+    }
     Look {
         marker: MARKERS[number % MARKERS.len()],
         dash: DASHES[number % DASHES.len()],
@@ -244,6 +249,12 @@ mod tests {
         let method = Origin::Method("srivc".into()).look();
         assert_eq!((variant(0).colour, variant(1).colour), (method.colour, method.colour));
         assert!(variant(0).marker != variant(1).marker && variant(0).dash != variant(1).dash);
+    }
+
+    #[test]
+    fn estimators_outside_differ_in_colour() {
+        let outside = |number| Origin::Variant { label: "other".into(), method: "external".into(), number }.look();
+        assert!(outside(0).colour != outside(1).colour && outside(1).colour != outside(2).colour);
     }
 
     #[test]

@@ -110,7 +110,7 @@ fn page(studies: &[Study]) -> String {
     let mut page = String::from(
         "# Results\n\nOne study a section: its question, what came out, and the figure that shows it. Each folder holds the \
          whole report,\nevery figure with its 95 % interval as CSV, Markdown and LaTeX, and a manifest from which \
-         `study NAME/manifest.toml --out DIR`\nruns it again.\n",
+         `study NAME/manifest.toml --out DIR`\nruns it again; a study that starts other programs is run from its scenario.\n",
     );
     for Study { name, question, finding, figure } in studies {
         write!(page, "\n## [{name}]({name}/report.md)\n\n**{question}**\n").expect("writing to a string does not fail");
