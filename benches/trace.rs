@@ -1,4 +1,4 @@
-//! Time to trace what a first-order response lacks, on one core: 400 rows and 20 000 rows.
+//! Time to trace what a first-order response lacks, on one core: a simulated record and measured ones.
 //! The pieces of work are defined in `kempf_benches::works`.
 
 fn main() {

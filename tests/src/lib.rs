@@ -8,13 +8,17 @@
 //! | logs in every format and with every trouble, of one known ship | [`logs`] |
 //! | damaged files for every reader | [`fuzz`] |
 //! | what the outside estimator of the tests computes | [`outside`] |
-//! | measured records, which are not part of the project | [`measured`] |
+//! | measured records, which are not part of the project | [`measured`], [`autopilot`], [`wrapped`] |
+//! | effects of one hull, record by record | [`stability`] |
 //! | ships that are on no list, traced | [`unlisted`] |
 
+pub mod autopilot;
 pub mod fuzz;
 pub mod logs;
 pub mod measured;
 pub mod outside;
 pub mod records;
+pub mod stability;
 pub mod unlisted;
 pub mod validation;
+pub mod wrapped;

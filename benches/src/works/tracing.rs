@@ -1,56 +1,74 @@
 //! Tracing what a first-order response lacks.
 
-use identify::{Identifier, output_error};
-use trace::candidates::{self, Sizes};
-use trace::fit::Problem;
-use trace::record::Record;
-use trace::search::Search;
-use trace::structure::Structure;
+use std::path::{Path, PathBuf};
+
 use trace::{Settings, trace};
 use trial::Trial;
 
-use crate::records::{damped_zig_zag, first_order_zig_zag, record};
+use crate::records::{first_order_zig_zag, record};
 use crate::work::{Group, Reach, Work};
 
-/// Every candidate fitted on the base of a record, by output error.
-fn all_candidates(trial: &Trial) -> usize {
-    let method = output_error::Settings::default().build().expect("default settings are valid");
-    let base = method.identify(std::slice::from_ref(trial)).expect("a zig-zag").response;
-    let replay = identify::replay::replay(trial, &base).expect("finite");
-    let initial = vec![replay.initial()];
-    let record = Record::averaged(trial, base.T().abs());
-    let problem = Problem::new(vec![record], base.inverse_T, base.K_over_T);
-    let structure = Structure::base(1, false);
-    let theta = [base.inverse_T, base.K_over_T, base.rudder_bias];
-    let sizes = Sizes::of(&problem.records, base.inverse_T, &problem.replay(&structure, &theta, &initial));
-    let candidates = candidates::all(&problem.records, &sizes);
-    let thresholds = Settings::default().thresholds;
-    let search = Search::new(&problem, &candidates, thresholds);
-    let start = search.base(structure, &theta, &initial);
-    search.try_all(&start, &start.plain, false).len()
+/// Zig-zags of KVLCC2, HSVA: those that are fitted together, then the others.
+const HSVA: [&str; 8] = [
+    "zigzag_20_10_s",
+    "zigzag_10_10_s",
+    "zigzag_15_05",
+    "zigzag_35_05",
+    "zigzag_30_05",
+    "zigzag_20_05",
+    "zigzag_10_05",
+    "zigzag_05_01",
+];
+
+/// How many of them are fitted together while the others are held out.
+const TOGETHER: usize = 3;
+
+/// The measured records of a folder, which are not part of the project; `None`, and one line on standard error, when
+/// one is not there. They are looked for in the folder named by the environment variable `TRIAL_DATA`, or else in the
+/// shared folder beside the project.
+///
+/// # Panics
+/// When a record is there and cannot be read.
+fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let data = std::env::var_os("TRIAL_DATA").map_or_else(|| project.join("../../shared/data"), PathBuf::from);
+    let sidecar = project.join(format!("../scenarios/measured/{folder}.trial.toml"));
+    let read = |name: &&str| {
+        let path = data.join(folder).join(format!("{name}.csv"));
+        if !path.is_file() {
+            eprintln!("skipped: no measured record {folder}/{name}.csv; set TRIAL_DATA to the folder that holds it");
+            return None;
+        }
+        let reading = trial::read_with(&path, Some(&sidecar));
+        Some(reading.unwrap_or_else(|error| panic!("{}: {error}", path.display())).trial)
+    };
+    names.iter().map(read).collect()
 }
 
-/// All candidates, and whole traces, of a short record and a long one.
+/// Whole traces of a simulated record and of measured ones.
 pub fn tracing() -> Group {
     let mut group = Group::new(
         "trace",
-        "Records of 400 and of 20 000 rows half a second apart, on one core: every candidate fitted once on the base, and the \
-         whole trace with its rounds, evidence and held-out errors.",
+        "Whole traces with bands and the errors of restarted replays, on one core: a simulated record that lacks nothing, and \
+         measured zig-zags of KVLCC2 where they are at hand.",
     );
-    let clean = record(&first_order_zig_zag(400));
-    let (damped, long) = (record(&damped_zig_zag(400)), record(&damped_zig_zag(20_000)));
-    let candidates = |name: &str, trial: &Trial| {
-        let trial = trial.clone();
-        Work::new(name, move || all_candidates(&trial)).slow()
-    };
-    let whole = |name: &str, trial: Trial| {
+    let whole = |name: &str, trials: Vec<Trial>, held_out: Vec<Trial>| {
         let settings = Settings::default();
-        Work::new(name, move || trace(std::slice::from_ref(&trial), &[], &settings).is_ok()).slow()
+        Work::new(name, move || trace(&trials, &held_out, &settings).is_ok()).slow()
     };
-    group.alone(candidates("all candidates, 400 rows", &damped), Some(Reach::Time(0.05)));
-    group.alone(candidates("all candidates, 20 000 rows", &long), Some(Reach::Time(2.0)));
-    group.alone(whole("whole trace, clean, 400 rows", clean), None);
-    group.alone(whole("whole trace, cubic damping, 400 rows", damped), None);
-    group.alone(whole("whole trace, cubic damping, 20 000 rows", long), None);
+    let clean = record(&first_order_zig_zag(400));
+    group.alone(whole("one record, nothing missing, 400 rows", vec![clean], Vec::new()), Some(Reach::Time(0.1)));
+    if let Some(marin) = measured("kvlcc2_marin", &["zigzag_10"]) {
+        group.alone(whole("one record, MARIN, 961 rows", marin, Vec::new()), Some(Reach::Time(0.5)));
+    }
+    if let Some(all) = measured("kvlcc2_hsva", &HSVA) {
+        let (fitted, others) = all.split_at(TOGETHER);
+        let one = vec![fitted[0].clone()];
+        group.alone(whole("one record, HSVA, 1901 rows", one, Vec::new()), Some(Reach::Time(1.0)));
+        let three = whole("three records, HSVA, five held out", fitted.to_vec(), others.to_vec());
+        group.alone(three, Some(Reach::Time(3.0)));
+        let eight = whole("eight records, HSVA, each left out in turn", all, Vec::new());
+        group.alone(eight, Some(Reach::Time(10.0)));
+    }
     group
 }

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use ::trace::document::EffectEntry;
 use ::trace::record::Record;
-use ::trace::{Analysis, TraceError, replay_errors};
+use ::trace::{Analysis, TraceError};
 use campaign::statistics::Moments;
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
@@ -117,7 +118,6 @@ impl Method {
                     true => trials.iter().map(of_common).collect(),
                     false => trials.into(),
                 };
-                // Held-out records stay unseen: a trace that is handed them drops what makes them worse.
                 let settings = ::trace::Settings { thorough: false, ..::trace::Settings::default() };
                 let kind = |error: &TraceError| match error {
                     TraceError::Base(error) => error.kind(),
@@ -169,7 +169,7 @@ impl Model {
                 error_on(trial, &analysis.identification.get(number)?.after.replay)
             }
             (Self::Traced(analysis), None) => {
-                replay_errors::full(&analysis.ship(), &Record::whole(trial), &starts(trial))?.rms()
+                analysis.average().replay(&Record::whole(trial), &starts(trial), false)?.replay.rms()
             }
         };
         error.is_finite().then_some(error)
@@ -179,24 +179,27 @@ impl Model {
     pub fn indices(&self) -> Option<[Quantity; 2]> {
         match self {
             Self::Response(estimate) => Some([estimate.K(), estimate.T()]),
-            Self::Traced(analysis) => Some(analysis.indices),
+            Self::Traced(analysis) => {
+                let indices = &analysis.document.model.indices;
+                Some([indices.K_per_s, indices.T_s])
+            }
             Self::StraightOn => None,
         }
     }
 
-    /// The effects it names, in the order of discovery, each followed by those that the records cannot tell from it.
+    /// The effects it names, the most probable first, each followed by those that the records cannot tell from it.
     pub fn named(&self) -> Option<Vec<Vec<String>>> {
         let Self::Traced(analysis) = self else { return None };
-        let group = |effect: &::trace::analysis::Traced| {
-            let mut ids = vec![effect.id.to_owned()];
-            for (alias, _) in &effect.aliases {
-                if !ids.iter().any(|known| known == alias) {
-                    ids.push((*alias).to_owned());
+        let group = |effect: &EffectEntry| {
+            let mut ids = vec![effect.id.clone()];
+            for alias in &effect.aliases {
+                if !ids.contains(alias) {
+                    ids.push(alias.clone());
                 }
             }
             ids
         };
-        Some(analysis.effects.iter().map(group).collect())
+        Some(analysis.document.effects.iter().map(group).collect())
     }
 }
 

@@ -6,12 +6,13 @@
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
-use ::trace::analysis::{OnRecord, Traced};
+use ::trace::document::EffectEntry;
+use ::trace::judge::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use identify::{Estimate, StopReason};
 use predict::KnownShip;
 use ship::FirstOrder;
-use ship::angle::to_deg;
+use ship::angle::{from_deg, to_deg};
 use simulate::{Prepared, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
@@ -242,32 +243,30 @@ fn traced(
     expected: Option<f64>,
 ) -> Row {
     let elsewhere = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
-    let named = |effect: &Traced| {
-        let mut ids = vec![effect.id];
-        ids.extend(effect.aliases.iter().map(|(id, _)| *id));
-        ids.dedup();
-        NamedEffect { id: effect.id.into(), aliases: ids[1..].iter().map(|&id| id.into()).collect() }
+    let document = &analysis.document;
+    let named = |effect: &EffectEntry| {
+        let aliases = effect.aliases.iter().filter(|alias| **alias != effect.id);
+        NamedEffect { id: effect.id.as_str().into(), aliases: aliases.map(|id| id.as_str().into()).collect() }
     };
-    let [k, t] = analysis.indices;
-    // Several records may have a rudder bias each.
-    let bias = analysis.rudder_bias.unwrap_or(Quantity::bare(f64::NAN));
+    let probability = |id: &str| document.candidates.iter().find(|one| one.id == id).map_or(0.0, |one| one.probability);
+    let indices = &document.model.indices;
     Row {
         heading_rmse_deg: finite(to_deg(misfit(analysis, trials))),
         validation_rmse_deg: elsewhere.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
         stop: Some(StopReason::Converged.as_str()),
         traced: Some(Box::new(TraceAnswer {
-            verdict: analysis.verdict,
-            named: analysis.effects.iter().map(named).collect(),
+            verdict: document.verdict,
+            named: document.effects.iter().map(named).collect(),
             probabilities: effect_ids()
-                .map(|id| (Box::from(id), (DIGITS * analysis.weights.of_effect(id)).round() / DIGITS))
+                .map(|id| (Box::from(id), (DIGITS * probability(id)).round() / DIGITS))
                 .filter(|(_, probability)| *probability >= NEXT_TO_NOTHING)
                 .collect(),
             margin: margin(analysis, missing),
             expected,
             band_fitted: analysis.identification[0].after.coverage(),
-            band_held_out: elsewhere.as_ref().and_then(OnRecord::coverage),
+            band_held_out: elsewhere.as_ref().and_then(ReplayResult::coverage),
         })),
-        ..with_indices(blank, [k, t, bias])
+        ..with_indices(blank, [indices.K_per_s, indices.T_s, indices.delta_r_deg.scaled(from_deg(1.0))])
     }
 }
 
@@ -277,12 +276,12 @@ const NEXT_TO_NOTHING: f64 = 0.005;
 /// Probabilities are stored in multiples of one over this, so that a stored row is the one that was computed.
 const DIGITS: f64 = 1000.0;
 
-/// By how much the one missing effect gains more in BIC than the best other one, each added alone.
+/// By how much more log evidence speaks for the one missing effect than for the best other one.
 fn margin(analysis: &Analysis, missing: &[String]) -> Option<f64> {
     let [truth] = missing else { return None };
     let best = |is_truth: bool| {
-        let gains = analysis.candidates.iter().filter(|one| (one.id == truth) == is_truth);
-        gains.filter_map(|one| one.gain_alone).max_by(f64::total_cmp)
+        let candidates = analysis.document.candidates.iter().filter(|one| (one.id == *truth) == is_truth);
+        candidates.filter_map(|one| one.delta_bic).map(|delta| -0.5 * delta).max_by(f64::total_cmp)
     };
     Some(best(true)? - best(false)?)
 }

@@ -10,7 +10,7 @@ use ship::angle::{from_deg, to_deg};
 use ship::{Particulars, Response};
 use trace::Analysis;
 use trace::analysis::Plausible;
-use trace::noise::Wander;
+use trace::document::RecordNoiseEntry;
 use trial::{Channel, Trial, ZigZag};
 
 /// What records show of a ship, whatever model is fitted to them: read once for all of its answers.
@@ -149,25 +149,33 @@ pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<KnownShip> {
 /// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for:
 /// its covariance holds the doubt about the noise, which that of a trace does not.
 pub fn of_analysis(analysis: &Analysis, shown: &Shown) -> KnownShip {
-    let noise = &analysis.randomness;
-    let moment = match noise.wander {
-        Some(Wander::White) => Moment::White,
-        Some(Wander::Walk) => Moment::Walk,
-        Some(Wander::OrnsteinUhlenbeck(_)) => Moment::OrnsteinUhlenbeck,
-        None | Some(Wander::Compass(_)) => Moment::None,
-    };
-    let noise = KnownNoise {
-        heading_sd_rad: noise.white,
-        moment,
-        moment_sd_rudder_rad: noise.rudder,
-        moment_correlation_s: noise.correlation,
-    };
     let members = analysis.plausible().iter().map(member).collect();
-    let rates = analysis.identification.iter().map(|judged| judged.after.replay.yaw_rate.as_slice());
+    let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
+    let noise = mean_noise(&analysis.document.noise);
     let known = shown.with(members, noise, analysis.initial_yaw_rate(), rates);
     match known.members.first() {
-        Some(first) if first.effects.is_empty() && moment != Moment::None => with_likelihood(known, shown),
+        Some(first) if first.effects.is_empty() && noise.moment != Moment::None => with_likelihood(known, shown),
         _ => known,
+    }
+}
+
+/// The noise of several records: means of the sizes, the kind being one and the same in all.
+fn mean_noise(records: &[RecordNoiseEntry]) -> KnownNoise {
+    let mean = |of: fn(&RecordNoiseEntry) -> Option<f64>| {
+        let values: Vec<f64> = records.iter().filter_map(of).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    let moment = match records.first().map(|record| record.moment.as_str()) {
+        Some("white") => Moment::White,
+        Some("ornstein-uhlenbeck") => Moment::OrnsteinUhlenbeck,
+        Some("walk") => Moment::Walk,
+        _ => Moment::None,
+    };
+    KnownNoise {
+        heading_sd_rad: from_deg(mean(|record| Some(record.heading_sd_deg)).unwrap_or(0.0)),
+        moment,
+        moment_sd_rudder_rad: from_deg(mean(|record| record.moment_sd_rudder_deg).unwrap_or(0.0)),
+        moment_correlation_s: mean(|record| record.moment_correlation_s),
     }
 }
 

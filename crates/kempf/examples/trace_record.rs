@@ -11,12 +11,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).unwrap_or_else(|| "scenarios/records/undeclared-damping.csv".into());
     let record = read(&PathBuf::from(path))?.trial;
     let analysis = trace(std::slice::from_ref(&record), &[], &Settings::default())?;
-    println!("{}: {}", record.name(), analysis.verdict.as_str());
-    for effect in &analysis.effects {
-        println!("  {} ({}): {}", effect.id, effect.form, effect.sentence);
+    println!("{}: {}", record.name(), analysis.document.headline);
+    for effect in &analysis.document.effects {
+        println!("  {} ({}): {}", effect.id, effect.form, effect.evidence);
     }
-    let judged = &analysis.identification[0];
-    let (before, after) = (to_deg(judged.before.errors.heading), to_deg(judged.after.errors.heading));
+    let compared = &analysis.identification[0];
+    let (before, after) = (to_deg(compared.before.errors.heading), to_deg(compared.after.errors.heading));
     println!("heading error {before:.3} deg before, {after:.3} deg after");
     Ok(())
 }

@@ -30,7 +30,7 @@ fn an_answer_is_held_against_the_truth() {
 #[test]
 fn a_record_is_traced() {
     let text = output("trace_record");
-    assert!(text.contains("traced") && text.contains("nonlinear_damping") && text.contains("before"), "{text}");
+    assert!(text.contains("lacks") && text.contains("nonlinear_damping") && text.contains("before"), "{text}");
 }
 
 #[test]

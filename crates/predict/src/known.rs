@@ -247,7 +247,7 @@ impl KnownShip {
     /// Whether the most probable structure has a term in the measured sway and no hull takes its place: a manoeuvre
     /// that was not made has the sway of an equation fitted beside it.
     pub fn leans_on_sway(&self) -> bool {
-        let sway = ship::effects::Effect::id(&ship::effects::SwayCouplingMeasured);
+        let sway = ship::effects::Effect::id(&ship::effects::SwayCouplingMeasured { approach_speed: 1.0 });
         let likeliest = self.members.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
         self.hull.is_none() && likeliest.is_some_and(|member| member.effects.iter().any(|effect| effect.id == sway))
     }

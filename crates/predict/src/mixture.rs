@@ -367,7 +367,7 @@ mod tests {
     #[test]
     fn a_model_that_needs_what_is_not_there_is_refused() {
         let mut known = made_up::known();
-        let sway = ship::effects::SwayCouplingMeasured;
+        let sway = ship::effects::SwayCouplingMeasured { approach_speed: 1.0 };
         known.members[0].effects[0].id = ship::effects::Effect::id(&sway).into();
         known.members[0].effects[0].form = ship::effects::Effect::form(&sway).into();
         let error = Mixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();

@@ -1,14 +1,13 @@
 //! `trace`: what a first-order ship lacks.
 
-use ::trace::analysis::Judged;
+use campaign::folder::ResultFolder;
 use pyo3::prelude::*;
-use scenario::failure::Failure;
+use scenario::failure::{Failure, OnPath};
 use study::options::TraceRequest;
 use study::records::warn_of_repetition;
 use study::views::document;
-use study::views::trace_file::TraceFile;
+use study::views::trace_curves::{Curves, TracedRecord};
 use study::work;
-use trial::Trial;
 
 use crate::asked::request;
 use crate::curve::{Curve, curve};
@@ -23,20 +22,19 @@ pub struct Trace {
     #[pyo3(get)]
     warnings: Vec<String>,
     /// Fitted records, then those of the validation, at one scale; each with its replays.
-    judged: Vec<(Trial, Judged)>,
+    records: Vec<TracedRecord>,
 }
 
 #[pymethods]
 impl Trace {
     /// A record as it was fitted: at the scale of the first.
     fn record(&self, place: usize) -> Option<Record> {
-        self.judged.get(place).map(|(trial, _)| Record::plain(trial.clone()))
+        self.records.get(place).map(|one| Record::plain(one.trial.clone()))
     }
 
-    /// The rudder of a record replayed through the base, and through the final model.
+    /// The rudder of a record replayed through the base, and through the average of the structures.
     fn replays<'py>(&self, py: Python<'py>, place: usize) -> Option<[Curve<'py>; 2]> {
-        let (_, judged) = self.judged.get(place)?;
-        Some([&judged.before, &judged.after].map(|on| curve(py, &on.replay)))
+        Some(self.records.get(place)?.replays.each_ref().map(|replay| curve(py, replay)))
     }
 }
 
@@ -55,10 +53,12 @@ pub fn trace(
         let (records, others) = (work::trace::without(&asked, records), work::trace::without(&asked, others));
         let mut warnings = Vec::new();
         warn_of_repetition(&records, &others, &mut warnings);
-        let report = work::trace::trace(&records, &others, &work::trace::settings(&asked), true, &mut warnings)?;
-        let text = document::text(&TraceFile::of(&report)).map_err(Failure::work)?;
-        let judged = report.analysis.identification.into_iter().chain(report.analysis.validation);
-        let judged = report.trials.into_iter().chain(report.others).zip(judged).collect();
-        Ok(Trace { text, warnings, judged })
+        let traced = work::trace::trace(&records, &others, &work::trace::settings(&asked), true, &mut warnings)?;
+        let text = document::text(&traced.document).map_err(Failure::work)?;
+        let place = std::env::temp_dir();
+        let scratch = tempfile::tempdir().on("create", &place)?;
+        traced.write(&ResultFolder::hold(scratch.path())?)?;
+        let records = Curves::of(&traced.document, scratch.path())?.records;
+        Ok(Trace { text, warnings, records })
     })
 }

@@ -27,15 +27,14 @@ def test_a_fit_of_paths_and_of_some_methods_is_that_of_the_command(study, tmp_pa
 
 
 def test_a_trace_is_that_of_the_command(study, tmp_path, first_order, undeclared):
-    words = ["--without", "wind", "--without-effect", "second_order,wind_moment", "--rule", "probability", "--own-bias"]
+    words = ["--without", "wind", "--without-effect", "second_order,wind_moment", "--rule", "bic"]
     study("trace", undeclared, "--validate", first_order, *words, "--out", "t")
     result = kempf.trace(
         undeclared,
         validate=first_order,
         without="wind",
         without_effect=["second_order", "wind_moment"],
-        rule="probability",
-        own_bias=True,
+        rule="bic",
     )
     expected = (tmp_path / "t" / "trace.json").read_bytes()
     assert result.save(tmp_path / "own.json").read_bytes() == expected

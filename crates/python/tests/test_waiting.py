@@ -96,7 +96,7 @@ def test_an_interrupted_trace_returns_at_once(undeclared, interrupted):
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         for _ in range(100):
-            kempf.trace(records, own_bias=True)
+            kempf.trace(records)
     assert time.monotonic() - start < 5
 
 

@@ -30,7 +30,8 @@ pub fn keys(effect: &dyn Effect) -> Option<&'static str> {
         ("rudder_saturation", _) => "c3-per-deg2",
         ("rudder_deadband", _) if effect.form() == RudderDeadband::Backlash.form() => "backlash-deg",
         ("rudder_deadband", _) => "dead-band-deg",
-        ("port_starboard_asymmetry", _) => "gain-share",
+        ("port_starboard_asymmetry", "a") => "gain-share",
+        ("port_starboard_asymmetry", _) => "moment-by-drift-s",
         ("moment_drift", _) => "rudder-deg-per-s",
         ("transient_disturbance", _) if effect.parameters().len() == 3 => "rudder-deg, centre-s, duration-s",
         ("wave_yaw", _) => "sd-deg, frequency-rad-s, damping",
@@ -156,8 +157,11 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
         EffectWire::RudderDeadband(DeadBandWire::DeadBandDeg(width)) => {
             (Arc::new(RudderDeadband::DeadBand), vec![setting("dead-band-deg", width, DEGREE)])
         }
-        EffectWire::PortStarboardAsymmetry(AsymmetryWire { gain_share }) => {
-            (Arc::new(PortStarboardAsymmetry), vec![setting("gain-share", gain_share, 1.0)])
+        EffectWire::PortStarboardAsymmetry(AsymmetryWire::GainShare(share)) => {
+            (Arc::new(PortStarboardAsymmetry::Gain), vec![setting("gain-share", share, 1.0)])
+        }
+        EffectWire::PortStarboardAsymmetry(AsymmetryWire::MomentByDriftS(time)) => {
+            (Arc::new(PortStarboardAsymmetry::Drift), vec![setting("moment-by-drift-s", time, 1.0)])
         }
         EffectWire::MomentDrift(DriftWire { rudder_deg_per_s }) => {
             (Arc::new(MomentDrift { reference_time: 0.0 }), vec![setting("rudder-deg-per-s", rudder_deg_per_s, DEGREE)])

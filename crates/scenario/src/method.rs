@@ -3,8 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use ::trace::search::{Rule, Thresholds};
-use ::trace::{EffectId, Wanted, monomial};
+use ::trace::{EffectId, Rule, Selection, empirical};
 use identify::settings::SettingsError;
 use identify::{Estimate, Identifier, IdentifierSettings, IdentifyError, Outside, external};
 use rand::RngExt;
@@ -106,14 +105,10 @@ pub(crate) struct IdentifierWire {
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct TraceWire {
-    /// What an effect has to gain in BIC.
-    gain: f64,
-    /// Probability of naming any effect where there is none.
-    false_discovery: f64,
-    /// Most effects of a model.
-    most_effects: usize,
-    /// Which of the structures that were tried is believed.
-    rule: Rule,
+    /// How structures are weighed.
+    rule: RuleWire,
+    /// Probability from which an effect is named.
+    probability: f64,
     /// Effects that may be missing; without the key all.
     menu: Option<Vec<String>>,
     /// Monomials that stand among the candidates.
@@ -122,9 +117,20 @@ pub(crate) struct TraceWire {
 
 impl Default for TraceWire {
     fn default() -> Self {
-        let Thresholds { gain, false_discovery, most_effects } = Thresholds::default();
-        Self { gain, false_discovery, most_effects, rule: Rule::default(), menu: None, monomials: 0 }
+        let ::trace::Settings { probability, monomials, .. } = ::trace::Settings::default();
+        Self { rule: RuleWire::default(), probability, menu: None, monomials }
     }
+}
+
+/// How structures are weighed.
+#[derive(Debug, Clone, Copy, Default, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum RuleWire {
+    /// By their marginal likelihood under the priors of all coefficients.
+    #[default]
+    Posterior,
+    /// By exp(−BIC/2).
+    Bic,
 }
 
 /// The methods, all with names of their own; files that they name are beside the scenario, in `folder`.
@@ -186,23 +192,26 @@ fn refused(table: &KeyPath, error: &SettingsError) -> Problem {
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.
 fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
-    let TraceWire { gain, false_discovery, most_effects, rule, ref menu, monomials } = *wire;
-    let thresholds = Thresholds { gain, false_discovery, most_effects };
-    thresholds.check()?;
-    let wanted = menu.as_deref().map_or_else(|| Ok(Wanted::default()), among)?;
-    if monomials > monomial::all().count() {
+    let TraceWire { rule, probability, ref menu, monomials } = *wire;
+    let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
+    let rule = match rule {
+        RuleWire::Posterior => Rule::Posterior,
+        RuleWire::Bic => Rule::Bic,
+    };
+    if monomials > empirical::all().count() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }
-    let rest = ::trace::Settings::default();
-    Ok(::trace::Settings { thresholds, rule, wanted, monomials, thorough: false, ..rest })
+    let settings = ::trace::Settings { probability, rule, monomials, selection, thorough: false };
+    settings.check()?;
+    Ok(settings)
 }
 
 /// A search among some effects.
-fn among(menu: &[String]) -> Result<Wanted, SettingsError> {
+fn among(menu: &[String]) -> Result<Selection, SettingsError> {
     let id = |name: &String| {
         EffectId::find(name).ok_or_else(|| SettingsError::new("menu", name, "an effect of `study list effects`"))
     };
-    Ok(Wanted::among(&menu.iter().map(id).collect::<Result<Vec<_>, _>>()?))
+    Ok(Selection::among(&menu.iter().map(id).collect::<Result<Vec<_>, _>>()?))
 }
 
 /// The key of a method in a scenario.
@@ -224,12 +233,12 @@ mod tests {
     #[test]
     fn a_trace_has_a_rule_and_a_menu() {
         let usual = traced("").expect("the usual");
-        assert_eq!((usual.rule, usual.thresholds, usual.monomials), (Rule::Bic, Thresholds::default(), 0));
-        assert_eq!(usual.wanted, Wanted::default());
-        let keys = "rule = \"probability-0.9\", menu = [\"wind_moment\"], monomials = 59, gain = 6.0";
+        assert_eq!(usual, ::trace::Settings { thorough: false, ..::trace::Settings::default() });
+        let keys = "rule = \"bic\", menu = [\"wind_moment\"], monomials = 59, probability = 0.9";
         let other = traced(keys).expect("settings in range");
-        assert_eq!((other.rule, other.monomials, other.thresholds.gain), (Rule::Probability90, 59, 6.0));
-        assert_eq!(["wind_moment", "speed_loss", "wave_yaw"].map(|id| other.wanted.allows(id)), [true, false, false]);
+        assert_eq!((other.rule, other.monomials, other.probability), (Rule::Bic, 59, 0.9));
+        let allowed = ["wind_moment", "speed_loss", "wave_yaw"].map(|id| other.selection.allows(id));
+        assert_eq!(allowed, [true, false, false]);
     }
 
     #[test]
@@ -238,9 +247,11 @@ mod tests {
             let error = traced(keys).expect_err("out of range");
             assert!(error.contains(name), "{error}");
         };
-        refused("rule = \"aic\"", "there is no rule `aic`; expected one of bic, pastis, held-out");
+        refused("rule = \"aic\"", "expected `posterior` or `bic`");
+        refused("probability = 0.4", "probability");
+        refused("gain = 6.0", "gain");
         refused("menu = [\"wind\"]", "wind");
         refused("monomials = 60", "59");
-        assert_eq!(monomial::all().count(), 59);
+        assert_eq!(empirical::all().count(), 59);
     }
 }

@@ -177,7 +177,7 @@ pub enum EffectWire {
     RudderSaturation(SaturationWire),
     /// Play between the recorded rudder and the one that acts; one of these.
     RudderDeadband(DeadBandWire),
-    /// A gain that differs by side: K (δ + a |δ|).
+    /// A ship that turns more readily to one side; one of these.
     PortStarboardAsymmetry(AsymmetryWire),
     /// A slow trend of the yaw moment.
     MomentDrift(DriftWire),
@@ -223,10 +223,12 @@ pub struct SaturationWire {
 }
 
 #[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct AsymmetryWire {
-    /// Share a; above 0 the rudder acts more to starboard.
-    pub gain_share: f64,
+#[serde(rename_all = "kebab-case")]
+pub enum AsymmetryWire {
+    /// Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.
+    GainShare(f64),
+    /// Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.
+    MomentByDriftS(f64),
 }
 
 #[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]

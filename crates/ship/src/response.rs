@@ -206,7 +206,7 @@ impl<R: EffectReal> Response<R> {
 
     /// Measured channels that effects of this response need.
     pub fn needs(&self, channel: Regressor) -> bool {
-        self.model.effects.iter().any(|effect| effect.needs() == Some(channel))
+        self.model.effects.iter().any(|effect| effect.uses(channel))
     }
 
     /// Shortest time constant of base and effects, s.

@@ -6,8 +6,7 @@ use std::str::FromStr;
 use crate::outside::NamedCommand;
 use crate::style_options::within;
 pub use crate::style_options::{FigureChoice, StudyStyle, Style};
-use ::trace::search::Rule;
-use ::trace::{EffectId, Wanted};
+use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
 use predict::Kind;
@@ -213,16 +212,12 @@ pub struct TraceRequest {
     /// Records of one ship, analysed together; a folder stands for all its records
     #[arg(required = true, value_name = "TRIAL")]
     pub trials: Vec<PathBuf>,
-    /// Records that are kept from the fit; only their initial state is fitted, and what makes their error worse is not
-    /// kept
+    /// Records that only judge the result: nothing but their initial state is fitted
     #[arg(long, value_name = "TRIAL")]
     pub validate: Vec<PathBuf>,
     /// How the records are read
     #[command(flatten)]
     pub reading: ReadingOptions,
-    /// Give every record a rudder bias of its own
-    #[arg(long)]
-    pub own_bias: bool,
     /// Analyse without these columns, as if they had not been recorded: `wind`, `speed`, `propeller`, `sway`
     #[arg(long, value_name = "CHANNEL", value_enum)]
     pub without: Vec<Withheld>,
@@ -235,9 +230,8 @@ pub struct TraceRequest {
     /// Effects that are no candidates
     #[arg(long, value_name = "ID,…", value_delimiter = ',', value_parser = effect)]
     pub without_effect: Vec<EffectId>,
-    /// Which of the structures that were tried is believed: `bic`, `pastis`, `held-out`, `bagged`, `probability`,
-    /// `probability-0.9`
-    #[arg(long, value_name = "NAME", default_value = Rule::default().as_str())]
+    /// How structures are weighed: `posterior`, by their likelihood under the priors of the coefficients, or `bic`
+    #[arg(long, value_name = "NAME", default_value = Rule::default().as_str(), value_parser = rule)]
     pub rule: Rule,
     /// How figures are drawn
     #[command(flatten)]
@@ -246,12 +240,17 @@ pub struct TraceRequest {
 
 impl TraceRequest {
     /// What is asked for and what excluded.
-    pub fn wanted(&self) -> Wanted {
+    pub fn selection(&self) -> Selection {
         match self.only.as_slice() {
-            [] => Wanted { with: self.with.clone(), without: self.without_effect.clone(), search: true },
-            only => Wanted::only(only.to_vec()),
+            [] => Selection { with: self.with.clone(), without: self.without_effect.clone(), search: true },
+            only => Selection::only(only.to_vec()),
         }
     }
+}
+
+fn rule(name: &str) -> Result<Rule, String> {
+    let known = Rule::ALL.map(Rule::as_str);
+    Rule::ALL.into_iter().find(|rule| rule.as_str() == name).ok_or_else(|| suggestion(name, &known))
 }
 
 fn effect(name: &str) -> Result<EffectId, String> {

@@ -1,109 +1,111 @@
-//! What may be missing: every effect in every form the records allow, as it proposes itself for their manoeuvres.
+//! What may be missing: every effect in every form the records allow, with its priors for their manoeuvres.
 
-use ship::Polyline;
-use ship::effects::{self, Effect, Manoeuvres, Proposal};
+use std::sync::Arc;
 
-use crate::index::RecordNumber;
+use ship::effects::{self, Effect, Manoeuvres, Proposal, RudderDeadband, SecondOrder, SteeringLag};
+use ship::{Polyline, Regressor};
+use trial::Trial;
+
+use crate::model::Term;
 use crate::record::Record;
-use crate::structure::Term;
+use crate::selection::Selection;
 
-/// An effect in one form that these records may lack.
+/// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
+const PROPELLER_CHANGE: f64 = 0.05;
+
+/// Probability that an effect is there before any record is seen.
+pub const PROBABILITY: f64 = 0.1;
+
+/// The same of an effect of the measured speed or sway: every hull has it.
+pub const PROBABILITY_OF_MOTION: f64 = 0.5;
+
+/// The same of a moment that depends on time, in one record: it resembles chance.
+pub const PROBABILITY_OF_TIME: f64 = 0.003;
+
+/// An effect in one form that records may lack.
 #[derive(Debug, Clone)]
 pub struct Candidate {
     /// The term.
-    pub term: Term,
-    /// Where a fit starts; the best end counts. Empty where the start has to be looked for in the residual.
-    pub starts: Vec<Vec<f64>>,
-    /// Parameters of an effect as large as it can be expected: what a record cannot see of this size, it cannot see.
-    pub large: Vec<f64>,
+    pub term: Arc<Term>,
+    /// Log of the prior odds that it is there.
+    pub log_odds: f64,
 }
 
-/// Sizes of the manoeuvres, from which bounds and scales follow.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sizes {
-    /// Time constant of the base, s, positive and shorter than a tenth of the longest record.
-    pub time: f64,
-    /// Root mean square yaw rate, rad/s.
-    pub rate: f64,
-    /// Largest rudder angle, rad.
-    pub rudder: f64,
-    /// Longest record, s.
-    pub duration: f64,
-    /// Usual time between rows, s.
-    pub spacing: f64,
+/// Time of a ship L/U, s: from its particulars, else (K/T)^(−1/2), which is about that.
+pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
+    let known = trials.iter().find_map(|trial| trial.particulars().map(|own| own.time()).filter(|t| t.is_normal()));
+    known.unwrap_or_else(|| gain.abs().max(1e-9).sqrt().recip())
 }
 
-impl Sizes {
-    /// Sizes of records whose base response has 1/T and leaves these replayed headings (rad, observed rows).
-    pub fn of(records: &[Record], inverse_time: f64, headings: &[Vec<f64>]) -> Self {
-        let duration = records.iter().map(Record::duration).fold(0.0, f64::max);
-        let spacing = records.iter().map(|record| record.spacing).fold(0.0, f64::max);
-        let rudder = records.iter().flat_map(Record::rudder).fold(0.0_f64, |most, delta| most.max(delta.abs()));
-        let (mut square, mut time) = (0.0, 0.0);
-        for (record, headings) in records.iter().zip(headings) {
-            for (rows, pair) in record.observed.windows(2).zip(headings.windows(2)) {
-                let h = record.time[rows[1]] - record.time[rows[0]];
-                square += (pair[1] - pair[0]).powi(2) / h;
-                time += h;
-            }
-        }
-        let rate = (square / time).sqrt().max(1e-6);
-        let time = inverse_time.abs().recip().min(0.1 * duration).max(spacing);
-        Self { time, rate, rudder: rudder.max(1e-3), duration, spacing }
-    }
-}
-
-impl Sizes {
-    /// The manoeuvres of these records, with the span of one of them.
-    pub fn manoeuvres(&self, records: &[Record], of: &Record) -> Manoeuvres {
-        let propeller = || {
-            let mean = mean_square(records, Record::propeller)?.sqrt();
-            let values = records.iter().filter_map(Record::propeller).flat_map(|rate| rate.values());
-            let (lowest, highest) = values.fold((f64::MAX, f64::MIN), |(lo, hi), &n| (lo.min(n), hi.max(n)));
-            Some([mean, lowest, highest])
-        };
-        Manoeuvres {
-            time: self.time,
-            rate: self.rate,
-            rudder: self.rudder,
-            duration: self.duration,
-            spacing: self.spacing,
-            speed_square: mean_square(records, Record::speed),
-            sway_square: mean_square(records, Record::sway),
-            wind_square: mean_square(records, Record::wind_speed),
-            propeller: propeller(),
-            span: [of.time[0], of.time[of.time.len() - 1]],
-        }
-    }
-}
-
-impl Candidate {
-    /// What an effect proposes for all records, or for one of them `only`.
-    pub fn new(proposal: Proposal, only: Option<RecordNumber>) -> Self {
-        let Proposal { effect, held, lowest, highest, scale, starts, large } = proposal;
-        Self { term: Term { effect, only, held, lowest, highest, scale }, starts, large }
+/// The manoeuvres of some records, with the span of one of them.
+pub fn manoeuvres(records: &[Record], trials: &[Trial], time: f64, of: &Record) -> Manoeuvres {
+    let approach = || trials.iter().find_map(|trial| trial.particulars().map(|own| own.speed));
+    let speed = |signal: fn(&Record) -> Option<&Polyline>| {
+        let square = mean_square(records, signal)?;
+        let mean = mean_square(records, Record::speed).map_or(square, |speed| speed).sqrt();
+        Some(approach().unwrap_or(mean))
+    };
+    let propeller = || {
+        let mean = mean_square(records, Record::propeller)?.sqrt();
+        let values = records.iter().filter_map(Record::propeller).flat_map(|rate| rate.values());
+        let (lowest, highest) = values.fold((f64::MAX, f64::MIN), |(low, high), &n| (low.min(n), high.max(n)));
+        (highest - lowest > PROPELLER_CHANGE * mean).then_some(mean)
+    };
+    let rudder = records.iter().flat_map(Record::rudder).fold(1e-3_f64, |most, delta| most.max(delta.abs()));
+    Manoeuvres {
+        time,
+        rudder,
+        duration: records.iter().map(Record::duration).fold(0.0, f64::max),
+        spacing: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
+        speed: speed(Record::speed),
+        sway: speed(Record::sway),
+        wind_square: mean_square(records, Record::wind_speed),
+        propeller: propeller(),
+        span: [of.time[0], of.time[of.time.len() - 1]],
     }
 }
 
 /// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
 /// depends on time alone is one of every record.
-pub fn all(records: &[Record], sizes: &Sizes) -> Vec<Candidate> {
-    let effects = effects::all();
-    let of = |effect: &dyn Effect, only: Option<RecordNumber>| {
-        let about = sizes.manoeuvres(records, &records[only.map_or(0, |only| only.0)]);
-        Some(Candidate::new(effect.proposal(&about)?, only))
+pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Candidate> {
+    let mut candidates = Vec::new();
+    for effect in effects::all().iter().filter(|effect| selection.allows(effect.id())) {
+        let places: Vec<Option<usize>> = match effect.is_of_time() && records.len() > 1 {
+            true => (0..records.len()).map(Some).collect(),
+            false => vec![None],
+        };
+        for only in places {
+            let about = manoeuvres(records, trials, time, &records[only.unwrap_or(0)]);
+            let Some(Proposal { effect, priors }) = effect.proposal(&about) else { continue };
+            candidates.push(Term { effect, only, priors });
+        }
+    }
+    let forms = |id: &str, only: Option<usize>| {
+        candidates.iter().filter(|term| term.effect.id() == id && term.only == only).count() as f64
     };
-    effects
-        .iter()
-        .flat_map(|effect| {
-            let places = if effect.is_of_time() && records.len() > 1 {
-                (0..records.len()).map(|number| Some(RecordNumber(number))).collect()
-            } else {
-                vec![None]
-            };
-            places.into_iter().filter_map(|only| of(effect.as_ref(), only))
-        })
-        .collect()
+    let weighed = |term: &Term| {
+        let own = match (term.effect.is_of_time(), term.effect.needs()) {
+            (true, _) => PROBABILITY_OF_TIME,
+            (false, Some(Regressor::Speed | Regressor::Sway)) => PROBABILITY_OF_MOTION,
+            (false, _) => PROBABILITY,
+        };
+        let probability = own / forms(term.effect.id(), term.only);
+        Candidate { term: Arc::new(term.clone()), log_odds: (probability / (1.0 - probability)).ln() }
+    };
+    candidates.iter().map(weighed).collect()
+}
+
+/// Whether a form takes the place of another one of the same effect when that is refitted, and is no candidate of the
+/// full model: a short lag and a short dead time do the same.
+pub fn is_variant(effect: &dyn Effect) -> bool {
+    (effect.id(), effect.form()) == (SteeringLag::FirstOrder.id(), SteeringLag::FirstOrder.form())
+}
+
+/// Whether an effect makes the ship answer the rudder later, or sooner, and little else.
+pub fn is_delay(effect: &dyn Effect) -> bool {
+    let play = RudderDeadband::Backlash;
+    let id = effect.id();
+    id == SteeringLag::DeadTime.id() || id == SecondOrder.id() || (id, effect.form()) == (play.id(), play.form())
 }
 
 /// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.

@@ -4,7 +4,7 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::diagnostics::{self, Series};
-use crate::fit::{Fit, Problem, whiten};
+use crate::fit::{Law, Problem};
 
 /// Probability below which innovations are not those of the noise model.
 const IMPROBABLE: f64 = 1e-4;
@@ -19,9 +19,18 @@ pub struct Innovations {
 }
 
 impl Innovations {
-    /// Those of a fit under its own colour.
-    pub fn of(problem: &Problem, fit: &Fit) -> Self {
-        let white = whiten(&fit.residual, &problem.whiteners(&fit.colour));
+    /// Those of a residual (rad) of every record under a law.
+    pub fn of(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Self {
+        let weights = problem.weights(law);
+        let white: Vec<Vec<f64>> = residual
+            .to_vec()
+            .into_iter()
+            .enumerate()
+            .map(|(record, mut residual)| {
+                weights.apply(record, &mut [&mut residual]);
+                residual
+            })
+            .collect();
         let series: Vec<Series> = problem
             .records
             .iter()

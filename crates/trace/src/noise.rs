@@ -37,18 +37,24 @@ pub enum Wander {
     /// ε' = −ε/τ + w, added to the heading that is read: a compass whose errors last for a time τ, this one of
     /// [`COMPASS`].
     Compass(usize),
+    /// ε'' + 2ε'/τ + ε/τ² = w, added to the heading: a smooth error that lasts for a time τ, this one of [`SMOOTH`]. It is
+    /// what a model leaves that is not quite that of the ship.
+    Smooth(usize),
 }
 
 /// Correlation times of gusts that are told apart, as shares of the longest record.
-pub const GUSTS: [f64; 4] = [0.015, 0.03, 0.06, 0.12];
+pub const GUSTS: [f64; 3] = [0.02, 0.05, 0.12];
 
 /// Correlation times of an error of the compass that are told apart, as shares of the longest record.
-pub const COMPASS: [f64; 6] = [0.004, 0.008, 0.016, 0.032, 0.064, 0.128];
+pub const COMPASS: [f64; 4] = [0.01, 0.03, 0.06, 0.128];
+
+/// Correlation times of a smooth error that are told apart, as shares of the longest record.
+pub const SMOOTH: [f64; 3] = [0.01, 0.03, 0.08];
 
 impl Wander {
-    /// Whether it is an error of the compass.
-    pub fn is_of_compass(self) -> bool {
-        matches!(self, Self::Compass(_))
+    /// Whether it is an error of the heading, and no moment.
+    pub fn is_of_heading(self) -> bool {
+        matches!(self, Self::Compass(_) | Self::Smooth(_))
     }
 
     /// Number of parameters: the level, and the correlation time where there is one.
@@ -62,6 +68,7 @@ impl Wander {
             Self::White | Self::Walk => None,
             Self::OrnsteinUhlenbeck(number) => Some(GUSTS[number] * longest),
             Self::Compass(number) => Some(COMPASS[number] * longest),
+            Self::Smooth(number) => Some(SMOOTH[number] * longest),
         }
     }
 
@@ -73,6 +80,7 @@ impl Wander {
             Self::OrnsteinUhlenbeck(number) => white / (GUSTS[number] * longest).powi(2),
             Self::Walk => 20.0 / longest.powi(5),
             Self::Compass(number) => 2.0 / (COMPASS[number] * longest),
+            Self::Smooth(number) => 4.0 / (SMOOTH[number] * longest).powi(3),
         }
     }
 
@@ -81,7 +89,11 @@ impl Wander {
     /// error of the compass the standard deviation, rad.
     pub fn size(self, level: f64, longest: f64) -> f64 {
         let square = level * self.intensity(longest);
-        self.correlation(longest).map_or(square, |time| 0.5 * time * square).sqrt()
+        match (self, self.correlation(longest)) {
+            (Self::Smooth(_), _) => level.sqrt(),
+            (_, Some(time)) => (0.5 * time * square).sqrt(),
+            (_, None) => square.sqrt(),
+        }
     }
 
     /// x' = G x + w on the last state for a ship of the given 1/T, heading first.
@@ -93,6 +105,7 @@ impl Wander {
                 DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, -damping, 1.0, 0.0, 0.0, -fading])
             }
             Self::Compass(_) => DMatrix::from_element(1, 1, -fading),
+            Self::Smooth(_) => DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -fading * fading, -2.0 * fading]),
         }
     }
 }
@@ -126,8 +139,8 @@ impl Colour {
 #[derive(Debug, Clone)]
 struct Drift {
     states: usize,
-    /// Variance of the last state at the beginning.
-    beginning: f64,
+    /// Variance of the states at the beginning.
+    beginning: [f64; 3],
     /// Transition and added covariance of every distinct step.
     steps: Vec<(Matrix, Matrix)>,
     /// The step before every observed row.
@@ -138,7 +151,12 @@ impl Drift {
     fn new(kind: Wander, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
         let intensity = kind.intensity(longest);
         let generator = kind.generator(inverse_time, longest);
-        let beginning = kind.correlation(longest).map_or(0.0, |time| 0.5 * time * intensity);
+        let beginning = match (kind, kind.correlation(longest)) {
+            (Wander::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0],
+            (Wander::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity],
+            (_, Some(time)) => [0.5 * time * intensity, 0.0, 0.0],
+            (_, None) => [0.0; 3],
+        };
         let mut known: Vec<f64> = Vec::new();
         let mut steps = Vec::new();
         let of_row = durations
@@ -187,6 +205,7 @@ pub struct RecordNoise {
     walk: Drift,
     gusts: [OnceLock<Drift>; GUSTS.len()],
     compass: [OnceLock<Drift>; COMPASS.len()],
+    smooth: [OnceLock<Drift>; SMOOTH.len()],
 }
 
 impl RecordNoise {
@@ -204,6 +223,7 @@ impl RecordNoise {
             walk: Drift::new(Wander::Walk, damping, &durations, longest),
             gusts: Default::default(),
             compass: Default::default(),
+            smooth: Default::default(),
             damping,
             variances: record.observed.iter().map(variance).collect(),
             durations,
@@ -245,6 +265,7 @@ impl RecordNoise {
                 Wander::Walk => &self.walk,
                 Wander::OrnsteinUhlenbeck(number) => self.gusts[number].get_or_init(new),
                 Wander::Compass(number) => self.compass[number].get_or_init(new),
+                Wander::Smooth(number) => self.smooth[number].get_or_init(new),
             };
             (drift, level)
         });
@@ -253,7 +274,7 @@ impl RecordNoise {
         observe[0] = 1.0;
         let mut initial = [[0.0; MOST]; MOST];
         if let Some((drift, level)) = drift {
-            initial[own - 1][own - 1] = level * drift.beginning;
+            (0..own).for_each(|k| initial[k][k] = level * drift.beginning[k]);
         }
         if let Some(waves) = &colour.waves {
             observe[own] = 1.0;

@@ -13,10 +13,10 @@ use ship::{EffectReal, Polyline, Regressor, Response};
 use trial::{Channel, Trial};
 
 /// Rows that are kept at least, however dense they are.
-const FEWEST_ROWS: usize = 400;
+const FEWEST_ROWS: usize = 300;
 
 /// Rows per time constant that are kept at least.
-const ROWS_PER_TIME: f64 = 20.0;
+const ROWS_PER_TIME: f64 = 10.0;
 
 /// Rows that are kept at most.
 const MOST_ROWS: usize = 4000;
@@ -273,7 +273,7 @@ fn relative_wind(trial: &Trial) -> Option<(Vec<f64>, Vec<f64>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::of_columns;
+    use crate::synthetic::of_columns;
 
     #[test]
     fn groups_end_at_gaps() {

@@ -13,8 +13,11 @@ use ship::{EffectReal, Response, Tangent};
 use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 
+use crate::model::step;
 use crate::record::Record;
-use crate::structure::step;
+
+/// Steps of the solver per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
+const SOLVER_STEPS: f64 = 4.0;
 
 /// Lengths of the windows after which a replay is restarted, s.
 pub const HORIZONS: [f64; 2] = [20.0, 60.0];
@@ -74,38 +77,8 @@ pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option
     replayed.heading.iter().all(|psi| psi.is_finite()).then_some(replayed)
 }
 
-/// The heading error of a full replay alone.
-pub fn in_brief(replayed: &Replay) -> Errors {
-    Errors {
-        heading: replayed.rms(),
-        rows: replayed.observed().count(),
-        yaw_rate: None,
-        overshoot: None,
-        horizon: [None; HORIZONS.len()],
-    }
-}
-
-/// Errors of a full replay, with the restarted ones.
-pub fn errors(trial: &Trial, record: &Record, response: &Response, replayed: &Replay) -> Errors {
-    let first = trial.observed_rows().next().unwrap_or(0);
-    let yaw_rate = trial.yaw_rate().and_then(|measured| {
-        let differences: Vec<f64> = measured[first..]
-            .iter()
-            .zip(&replayed.yaw_rate)
-            .map(|(measured, replayed)| measured - replayed)
-            .filter(|d| d.is_finite())
-            .collect();
-        root_mean_square(&differences)
-    });
-    Errors {
-        yaw_rate,
-        overshoot: overshoot_error(trial, replayed),
-        horizon: HORIZONS.map(|length| restarted(response, record, replayed.initial(), length)),
-        ..in_brief(replayed)
-    }
-}
-
-fn root_mean_square(values: &[f64]) -> Option<f64> {
+/// Root mean square; `None` of nothing.
+pub fn root_mean_square(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt())
 }
 
@@ -120,7 +93,8 @@ pub fn replayed_zigzag(trial: &Trial, replayed: &Replay) -> Option<ZigZag> {
     ZigZag::of(&twin).ok()
 }
 
-fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
+/// Mean absolute error of the overshoot angles of a replay, rad; `None` where not both are a zig-zag.
+pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     let (measured, twin) = (ZigZag::of(trial).ok()?, replayed_zigzag(trial, replayed)?);
     // Both have the executes of the recorded rudder; a peak may be seen in one of them alone.
     let time = |zigzag: &ZigZag, overshoot: &Overshoot| zigzag.executes[overshoot.execute].time.value;
@@ -137,13 +111,13 @@ fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     (!pairs.is_empty()).then(|| pairs.iter().sum::<f64>() / pairs.len() as f64)
 }
 
-/// Error of a replay that is restarted every `length` seconds from the best heading and yaw rate of the window; the
-/// memory of the effects goes on.
-fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f64) -> Option<f64> {
+/// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the window;
+/// the memory of the effects goes on. `None` when a window holds too few headings.
+pub fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; response.dimension()];
     enter(response, record, 0, initial, None, &mut state);
-    let (mut square, mut rows) = (0.0, 0usize);
+    let mut headings = vec![0.0; count];
     let mut from = 0;
     while from < count {
         let end = record.time[from] + length;
@@ -154,23 +128,24 @@ fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f6
         }
         // The window ends where the next one begins.
         let until = (to + 1).min(count);
-        let seen = (from..to).filter(|&row| record.heading[row].is_finite()).count();
-        if seen < FEWEST {
+        if (from..to).filter(|&row| record.heading[row].is_finite()).count() < FEWEST {
             return None;
         }
         let memory = state.clone();
         let start = [state[0], state[1]];
-        let (found, best) = settle(response, record, from..to, start, Some(&memory), &[])?;
-        square += found;
-        rows += seen;
+        let (_, best) = settle(response, record, from..to, start, Some(&memory), &[])?;
         enter(response, record, from, best, Some(&memory), &mut state);
-        run(response, record, from..until, &mut state, |_, _, _| {});
+        run(response, record, from..until, &mut state, |row, heading, _| {
+            if row < to {
+                headings[row] = heading;
+            }
+        });
         if to == count {
             break;
         }
         from = to;
     }
-    Some((square / rows as f64).sqrt())
+    Some(headings)
 }
 
 /// The state at a row: at rest there but for heading and yaw rate, or with the `memory` that the effects have by then.
@@ -202,7 +177,7 @@ fn run<R: EffectReal>(
     state: &mut [R],
     mut visit: impl FnMut(usize, R, R),
 ) {
-    let step = step(response, record.spacing);
+    let step = step(response, record.spacing, SOLVER_STEPS);
     let times = &record.time[rows.clone()];
     replay_states(response, &record.recorded(response), times, step, state, |row, state, _| {
         visit(rows.start + row, state[0], state[1]);

@@ -1,10 +1,9 @@
 //! Whether the heading carries a narrow band of waves: the likelihood of the residual over frequency, width and
 //! strength.
 
-use lanes::column::dot;
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::{Problem, log_variance, whiten};
+use crate::fit::{Law, Problem};
 use crate::noise::Colour;
 
 /// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.
@@ -21,13 +20,20 @@ const WIDEST: f64 = 0.3;
 const SMALLEST_SHARE: f64 = 0.05;
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
-/// The waves that explain a residual best beside a random moment; `None` when none can be resolved or helps.
-pub fn find(problem: &Problem, residual: &[Vec<f64>], beside: &Colour) -> Option<NarrowBand> {
+/// The waves that explain a residual best beside what wanders under a law; `None` when none can be resolved or helps.
+pub fn find(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Option<NarrowBand> {
+    let beside = &Colour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
     let judge = |colour: &Colour| {
-        let whiteners = problem.whiteners(colour);
-        let rss = whiten(residual, &whiteners).iter().map(|white| dot(white, white)).sum();
-        (problem.deviance(rss, log_variance(&whiteners)), rss)
+        let weights = problem.weights(&Law {
+            colour: *colour,
+            variance: vec![1.0; residual.len()],
+            power: vec![1.0; residual.len()],
+        });
+        let rss = weights.misfit(residual);
+        let log_variance: f64 = weights.whiteners.iter().map(|whitener| whitener.log_variance).sum();
+        let n = problem.observations() as f64;
+        (n * (rss / n).ln() + log_variance, rss)
     };
     let value = |waves: NarrowBand| judge(&Colour { waves: Some(waves), ..*beside }).0;
     let slowest = FASTER * problem.records.iter().map(fundamental).fold(0.0, f64::max);

@@ -7,19 +7,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use kempf_tests::autopilot;
 use kempf_tests::measured::folder;
+use kempf_tests::stability;
+use kempf_tests::wrapped::without_jumps;
 use report::number::{fixed, significant};
 use report::{Column, Table};
-use serde_json::Value;
-use ship::angle::to_deg;
 use study::options::{Common, Format, ReadingOptions, Style, TraceRequest, Withheld};
-use trace::candidates::{self, Sizes};
-use trace::fit::Problem;
-use trace::noise::Colour;
-use trace::record::Record;
-use trace::search::Rule;
-use trace::structure::Structure;
-use trial::{Channel, Trial};
+use trace::document::{BeforeAfter, EffectEntry, ErrorsEntry, RecordNoiseEntry};
+use trace::{Document, Rule};
 
 /// Records of one ship, of which each is fitted in turn and the others are held out.
 struct Set {
@@ -33,6 +29,8 @@ struct Set {
     circles: &'static [&'static str],
     /// Whether the records have wind columns.
     wind: bool,
+    /// The column of directions that was interpolated across north.
+    wrapped: Option<&'static str>,
 }
 
 impl Set {
@@ -40,12 +38,18 @@ impl Set {
     fn others(&self, records: &[&str]) -> Vec<&'static str> {
         self.records.iter().copied().filter(|other| !records.contains(other)).collect()
     }
+
+    /// What is held out from a record alone: the other zig-zags, or the circles where there are none.
+    fn beside(&self, record: &str) -> Vec<&'static str> {
+        let others = self.others(&[record]);
+        if others.is_empty() { self.circles.to_vec() } else { others }
+    }
 }
 
 const ESSO_OSAKA: [&str; 5] =
     ["zigzag_13_57_45", "zigzag_13_04_24", "zigzag_13_14_21", "zigzag_13_42_53", "zigzag_14_10_05"];
 
-const SETS: [Set; 3] = [
+const SETS: [Set; 4] = [
     Set {
         name: "KVLCC2, 7 m model, HSVA",
         folder: "kvlcc2_hsva",
@@ -62,6 +66,7 @@ const SETS: [Set; 3] = [
         pools: &[&["zigzag_20_10_s", "zigzag_10_10_s", "zigzag_15_05"]],
         circles: &[],
         wind: false,
+        wrapped: None,
     },
     Set {
         name: "KVLCC2, MARIN, full-scale values",
@@ -70,6 +75,7 @@ const SETS: [Set; 3] = [
         pools: &[&["zigzag_20", "zigzag_-20"]],
         circles: &["turning_35"],
         wind: false,
+        wrapped: None,
     },
     Set {
         name: "Esso Osaka, 3 m model outdoors",
@@ -83,6 +89,16 @@ const SETS: [Set; 3] = [
             "turning_sep14_14_50_41",
         ],
         wind: true,
+        wrapped: None,
+    },
+    Set {
+        name: "Boat of 3.6 m, Fuzhou",
+        folder: "usv_fuzhou",
+        records: &["zigzag_30_inter_xy"],
+        pools: &[],
+        circles: &["turnningdata_xy"],
+        wind: false,
+        wrapped: Some("zcourse"),
     },
 ];
 
@@ -116,37 +132,21 @@ fn run(results: &Path) -> Outcome<()> {
     let scratch = tempfile::tempdir()?;
     let mut page = String::from(INTRODUCTION);
     for set in &SETS {
+        let _ = writeln!(page, "## {}\n", set.name);
+        if !folder().join(set.folder).is_dir() {
+            eprintln!("skipped: no measured records {}", set.folder);
+            page += "Not traced: the records are not there.\n\n";
+            continue;
+        }
         let mut table = errors_table();
-        let withheld: &[bool] = if set.wind { &[false, true] } else { &[false] };
-        for &record in set.records {
-            for &without_wind in withheld {
-                let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
-                let out = scratch.path().join(&name);
-                let json = trace_some(set, &[record], &set.others(&[record]), without_wind, &out)?;
-                let label = if without_wind { format!("{record}, wind withheld") } else { record.to_owned() };
-                table.push(line(label, &json));
-                if KEPT.contains(&(record, without_wind)) {
-                    keep(&out, &results.join(format!("{}-{name}", set.folder)))?;
-                }
-            }
-        }
-        for (number, pool) in set.pools.iter().enumerate() {
-            let out = scratch.path().join(format!("{}-pool-{number}", set.folder));
-            let others = set.others(pool);
-            let json = trace_some(set, pool, &others, false, &out)?;
-            let left = if others.is_empty() { ", each left out in turn" } else { "" };
-            let together = format!("together: {}", pool.join(", "));
-            table.push(line(format!("{together}{left}"), &json));
-            if !set.circles.is_empty() {
-                let json = trace_some(set, pool, set.circles, false, &out)?;
-                table.push(line(format!("{together}; turning circles held out"), &json));
-            }
-        }
-        let _ = writeln!(page, "## {}\n\n{}", set.name, table.to_markdown());
-        if set.wind {
-            page += &wind(set)?;
+        let alone = each_alone(set, scratch.path(), results, &mut table)?;
+        pooled(set, scratch.path(), &mut table)?;
+        let _ = writeln!(page, "{}", table.to_markdown());
+        if alone.len() > 1 {
+            let _ = writeln!(page, "{STABILITY}\n\n{}", stability::table(&alone).to_markdown());
         }
     }
+    let _ = writeln!(page, "{CLOSED_LOOP}\n\n{}", closed_loop(scratch.path())?.to_markdown());
     page += KEPT_REPORTS;
     for (record, without_wind) in KEPT {
         let set = SETS.iter().find(|set| set.records.contains(&record)).ok_or("a kept record belongs to a set")?;
@@ -155,6 +155,45 @@ fn run(results: &Path) -> Outcome<()> {
     }
     fs::create_dir_all(results)?;
     fs::write(results.join("README.md"), page)?;
+    Ok(())
+}
+
+/// A line for every record traced alone; the documents of those with all that was recorded.
+fn each_alone(set: &Set, scratch: &Path, results: &Path, table: &mut Table) -> Outcome<Vec<(&'static str, Document)>> {
+    let withheld: &[bool] = if set.wind { &[false, true] } else { &[false] };
+    let mut alone = Vec::new();
+    for &record in set.records {
+        for &without_wind in withheld {
+            let name = if without_wind { format!("{record}-without-wind") } else { record.to_owned() };
+            let out = scratch.join(&name);
+            let document = trace_some(set, &[record], &set.beside(record), without_wind, &out)?;
+            let label = if without_wind { format!("{record}, wind withheld") } else { record.to_owned() };
+            table.push(line(label, &document));
+            if KEPT.contains(&(record, without_wind)) {
+                keep(&out, &results.join(format!("{}-{name}", set.folder)))?;
+            }
+            if !without_wind {
+                alone.push((record, document));
+            }
+        }
+    }
+    Ok(alone)
+}
+
+/// Lines for the records that are traced together.
+fn pooled(set: &Set, scratch: &Path, table: &mut Table) -> Outcome<()> {
+    for (number, pool) in set.pools.iter().enumerate() {
+        let out = scratch.join(format!("{}-pool-{number}", set.folder));
+        let others = set.others(pool);
+        let document = trace_some(set, pool, &others, false, &out)?;
+        let left = if others.is_empty() { ", each left out in turn" } else { "" };
+        let together = format!("together: {}", pool.join(", "));
+        table.push(line(format!("{together}{left}"), &document));
+        if !set.circles.is_empty() {
+            let document = trace_some(set, pool, set.circles, false, &out)?;
+            table.push(line(format!("{together}; turning circles held out"), &document));
+        }
+    }
     Ok(())
 }
 
@@ -168,14 +207,25 @@ cargo run --release -p kempf-tests --bin measured -- results/measured
 ```
 
 A line is one analysis: `study trace` of one record, or of some together, with all others of its set held out; where all are fitted
-together, each is left out in turn. Where K and T follow the measured speed from the start, which costs no parameter, *speed scaling*
-stands first. *heading*: error of the recorded rudder replayed over the whole record, before (the best
-first-order base) and after. *windows*: the same restarted every 20 and 60 s. On held-out records only initial states are fitted;
-errors of several records are root mean squares over them, as the ratio after over before. *band*: share of the measured headings of
-the held-out records inside the 95 % band of the final model. Terms are in the order of discovery; those marked * were believed
-because they predict the held-out records, the others because of their likelihood against random moments.
+together, each is left out in turn, and where there is one zig-zag, a turning circle is held out. *heading*: error of the recorded
+rudder replayed over the whole record, before (the best first-order base) and after (the average of the structures). *windows*: the
+same restarted every 20 and 60 s. On held-out records only initial states are fitted; errors of several records are root mean squares
+over them, as the ratio after over before. *band*: share of the measured headings of the held-out records inside the 95 % band, and
+mean width of the band. Effects are named with their probability, the most probable first; *or* stands before those that the records
+cannot tell from it.
 
 ";
+
+const STABILITY: &str = "### The same effect in several records
+
+Every effect that is named in a record of this hull traced alone: in how many of them, and its coefficients with their standard
+deviations; without dimension where length and speed are known.";
+
+const CLOSED_LOOP: &str = "## Full scale, under autopilot
+
+No zig-zags: what a trace makes of a ship that an autopilot keeps on its course in a seaway. Neither file says its units. Assumed are
+0.001 deg/s for the yaw rate of HAKUSAN, whose sum is the heading, and 0.01 deg for its rudder; degrees, one row a second and a rudder
+positive to port for America Maru.";
 
 const KEPT_REPORTS: &str = "## Reports\n\nWhole, with figures:\n\n";
 
@@ -190,18 +240,44 @@ fn errors_table() -> Table {
         Column::decimal("held out: windows of 20 s"),
         Column::decimal("held out: windows of 60 s"),
         Column::decimal("held out: inside the band").unit("%"),
+        Column::decimal("held out: width of the band").unit("deg"),
     ])
 }
 
 /// Runs `study trace` on some records of a set, others held out, and reads `trace.json`.
-fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool, out: &Path) -> Outcome<Value> {
-    let path = |name: &str| folder().join(set.folder).join(format!("{name}.csv"));
+fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool, out: &Path) -> Outcome<Document> {
+    eprintln!("{}: {}{}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
+    let path = |name: &&str| file(set, name, out);
     let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
+    let withheld = if without_wind { vec![Withheld::Wind] } else { Vec::new() };
+    let [records, held_out] = [records, held_out].map(|names| names.iter().map(path).collect::<Outcome<Vec<_>>>());
+    trace_files(records?, held_out?, withheld, Some(sidecars), out)
+}
+
+/// The file of a record; a copy beside the results where directions have to be left out of it.
+fn file(set: &Set, record: &str, out: &Path) -> Outcome<PathBuf> {
+    let path = folder().join(set.folder).join(format!("{record}.csv"));
+    let Some(column) = set.wrapped else { return Ok(path) };
+    let copies = out.with_extension("records");
+    fs::create_dir_all(&copies)?;
+    let copy = copies.join(format!("{record}.csv"));
+    fs::write(&copy, without_jumps(&fs::read_to_string(&path)?, column))?;
+    Ok(copy)
+}
+
+/// Runs `study trace` on some files and reads `trace.json`.
+fn trace_files(
+    trials: Vec<PathBuf>,
+    validate: Vec<PathBuf>,
+    without: Vec<Withheld>,
+    columns: Option<PathBuf>,
+    out: &Path,
+) -> Outcome<Document> {
     let request = TraceRequest {
-        trials: records.iter().map(|record| path(record)).collect(),
-        validate: held_out.iter().map(|record| path(record)).collect(),
+        trials,
+        validate,
         reading: ReadingOptions {
-            columns: Some(sidecars),
+            columns,
             with_columns: Vec::new(),
             trial: None,
             from: None,
@@ -210,8 +286,7 @@ fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool
             speed_m_s: None,
             speed_kn: None,
         },
-        own_bias: false,
-        without: if without_wind { vec![Withheld::Wind] } else { Vec::new() },
+        without,
         with: Vec::new(),
         only: Vec::new(),
         without_effect: Vec::new(),
@@ -219,44 +294,115 @@ fn trace_some(set: &Set, records: &[&str], held_out: &[&str], without_wind: bool
         style: Style { paper: None, dpi: 600.0, style: None },
     };
     let common = Common { out: Some(out.to_owned()), threads: None, seed: None, quiet: true, format: Format::Text };
-    eprintln!("{}: {}{}", set.folder, records.join(", "), if without_wind { ", wind withheld" } else { "" });
     study::commands::trace::run(&request, &common).map_err(|failure| failure.to_string())?;
     Ok(serde_json::from_str(&fs::read_to_string(out.join("trace.json"))?)?)
 }
 
-/// One line of the table, from `trace.json`.
-fn line(label: String, json: &Value) -> Vec<String> {
-    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
-    let empty = Vec::new();
-    let records = |kind: &str| json["error"][kind].as_array().unwrap_or(&empty);
-    let fitted = records("identification");
-    let held_out = [records("validation").as_slice(), records("leave_one_out")].concat();
-    let pooled = |all: &[Value], when: &str, of: &dyn Fn(&Value) -> &Value| {
-        let square = all.iter().map(|record| number(of(&record[when])).powi(2)).sum::<f64>();
-        (square / all.len() as f64).sqrt()
+/// What is named, in words.
+fn named(document: &Document) -> String {
+    let word = |effect: &EffectEntry| {
+        let aliases: String = effect.aliases.iter().map(|alias| format!(" or {alias}")).collect();
+        format!("{} ({}){aliases} {}", effect.id, effect.form, fixed(effect.probability, 2))
     };
-    let heading: &dyn Fn(&Value) -> &Value = &|errors| &errors["heading_rmse_deg"];
-    let [before, after] = ["before", "after"].map(|when| pooled(fitted, when, heading));
-    let ratio = |of| significant(pooled(&held_out, "after", of) / pooled(&held_out, "before", of), 2);
-    let covered = held_out.iter().map(|record| number(&record["after"]["band_coverage_95"])).sum::<f64>();
-    let scaling = (!json["speed_scaling"].is_null()).then(|| String::from("speed scaling"));
-    let effects = json["effects"].as_array().unwrap_or(&empty).iter().map(|effect| {
-        let predicted = effect["evidence"].as_str().is_some_and(|text| text.contains("does not stand"));
-        let text = |key: &str| effect[key].as_str().unwrap_or_default().to_owned();
-        format!("{} ({}){}", text("id"), text("form"), if predicted { "*" } else { "" })
-    });
-    let found: Vec<String> = scaling.into_iter().chain(effects).collect();
+    match document.effects.as_slice() {
+        [] => "nothing".to_owned(),
+        effects => effects.iter().map(word).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// Root mean square of a number of the errors of some records; not a number where one has none.
+fn pooled_error(records: &[&BeforeAfter], of: impl Fn(&BeforeAfter) -> Option<f64>) -> f64 {
+    let square: f64 = records.iter().map(|record| of(record).unwrap_or(f64::NAN).powi(2)).sum();
+    (square / records.len() as f64).sqrt()
+}
+
+/// One line of the table.
+fn line(label: String, document: &Document) -> Vec<String> {
+    let error = &document.error;
+    let fitted: Vec<&BeforeAfter> = error.identification.iter().collect();
+    let held_out: Vec<&BeforeAfter> = error.validation.iter().chain(&error.leave_one_out).collect();
+    let heading = |errors: &ErrorsEntry| Some(errors.heading_rmse_deg);
+    let window = |length: &'static str| move |errors: &ErrorsEntry| errors.horizon_rmse_deg.get(length).copied()?;
+    let ratio = |of: &dyn Fn(&ErrorsEntry) -> Option<f64>| {
+        let [before, after] =
+            [pooled_error(&held_out, |record| of(&record.before)), pooled_error(&held_out, |record| of(&record.after))];
+        significant(after / before, 2)
+    };
+    let mean = |of: fn(&ErrorsEntry) -> Option<f64>| {
+        held_out.iter().map(|record| of(&record.after).unwrap_or(f64::NAN)).sum::<f64>() / held_out.len() as f64
+    };
+    let before = pooled_error(&fitted, |record| heading(&record.before));
+    let after = pooled_error(&fitted, |record| heading(&record.after));
     vec![
         label,
-        if found.is_empty() { "nothing".to_owned() } else { found.join(", ") },
+        named(document),
         significant(before, 3),
         significant(after, 3),
         significant(after / before, 2),
-        ratio(heading),
-        ratio(&|errors| &errors["horizon_rmse_deg"]["20"]),
-        ratio(&|errors| &errors["horizon_rmse_deg"]["60"]),
-        fixed(100.0 * covered / held_out.len() as f64, 0),
+        ratio(&heading),
+        ratio(&window("20")),
+        ratio(&window("60")),
+        fixed(100.0 * mean(|errors| errors.band_coverage_95), 0),
+        significant(mean(|errors| errors.band_width_95_deg), 2),
     ]
+}
+
+/// What a trace says of records without a zig-zag: a line each, or why there is none.
+fn closed_loop(scratch: &Path) -> Outcome<Table> {
+    let mut table = Table::new([
+        Column::left("record"),
+        Column::left("found"),
+        Column::left("verdict"),
+        Column::decimal("heading before").unit("deg"),
+        Column::decimal("after").unit("deg"),
+        Column::left("noise"),
+    ]);
+    for record in autopilot::ALL {
+        let source = folder().join("full_scale_closed_loop").join(record.file);
+        let Ok(text) = fs::read_to_string(&source) else {
+            table.push([record.name, "not traced: the record is not there", "", "", "", ""].map(String::from));
+            continue;
+        };
+        let path = scratch.join(Path::new(record.file).with_extension("table.csv"));
+        fs::write(&path, record.table(&text))?;
+        eprintln!("{}", record.name);
+        let out = scratch.join(record.name);
+        let row = match trace_files(vec![path], Vec::new(), Vec::new(), None, &out) {
+            Err(error) => {
+                [record.name.to_owned(), format!("refused: {error}"), "".into(), "".into(), "".into(), "".into()]
+            }
+            Ok(document) => {
+                let error = &document.error.identification[0];
+                [
+                    record.name.to_owned(),
+                    named(&document),
+                    document.verdict.as_str().to_owned(),
+                    significant(error.before.heading_rmse_deg, 3),
+                    significant(error.after.heading_rmse_deg, 3),
+                    document.noise.iter().map(noise).collect::<Vec<_>>().join("; "),
+                ]
+            }
+        };
+        table.push(row);
+    }
+    Ok(table)
+}
+
+/// The noise of a record in words.
+fn noise(noise: &RecordNoiseEntry) -> String {
+    let mut parts = vec![format!("heading {} deg", significant(noise.heading_sd_deg, 2))];
+    if let (Some(kind), Some(sd)) = (&noise.heading_wander, noise.heading_wander_sd_deg) {
+        let time = noise.heading_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
+        parts.push(format!("lasting error ({kind}) {} deg{time}", significant(sd, 2)));
+    }
+    if let Some(sd) = noise.moment_sd_rudder_deg {
+        let time = noise.moment_correlation_s.map_or_else(String::new, |time| format!(", {} s", significant(time, 2)));
+        parts.push(format!("moment ({}) {} deg{time}", noise.moment, significant(sd, 2)));
+    }
+    if let (Some(sd), Some(frequency)) = (noise.waves_sd_deg, noise.waves_frequency_rad_s) {
+        parts.push(format!("waves {} deg at {} rad/s", significant(sd, 2), significant(frequency, 2)));
+    }
+    parts.join(", ")
 }
 
 /// Keeps report and PNG figures of one case.
@@ -292,85 +438,4 @@ fn of_the_fitted(page: &str) -> String {
         }
     }
     kept.join("\n\n")
-}
-
-/// The wind that a trace without wind columns finds, beside the wind that was measured.
-fn wind(set: &Set) -> Outcome<String> {
-    let mut table = Table::new([
-        Column::left("record"),
-        Column::decimal("measured: mean true wind").unit("m/s"),
-        Column::decimal("from").unit("deg"),
-        Column::decimal("traced: moment as rudder").unit("deg"),
-        Column::decimal("from, modulo 180°").unit("deg"),
-        Column::decimal("difference").unit("deg"),
-        Column::decimal("c_w of the measured wind").unit("deg s²/m²"),
-        Column::decimal("heading: base").unit("deg"),
-        Column::decimal("traced wind").unit("deg"),
-        Column::decimal("measured wind").unit("deg"),
-    ]);
-    let sidecars = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios/measured");
-    for record in set.records {
-        let path = folder().join(set.folder).join(format!("{record}.csv"));
-        let sidecar = sidecars.join(format!("{record}.trial.toml"));
-        let trial = trial::read_with(&path, Some(&sidecar))?.trial;
-        let (speed, from) = mean_wind(&trial).ok_or("the record has wind columns")?;
-        let [base, steady, measured] = wind_fits(&trial)?;
-        let (c, s) = (steady.1[0], steady.1[1]);
-        // w_c cos 2ψ + w_s sin 2ψ = w sin 2(ψ_w − ψ): w_c = w sin 2ψ_w, w_s = −w cos 2ψ_w.
-        let direction = 0.5 * c.atan2(-s);
-        let difference = (direction - from + 0.25 * std::f64::consts::TAU).rem_euclid(std::f64::consts::PI)
-            - 0.25 * std::f64::consts::TAU;
-        table.push([
-            (*record).to_owned(),
-            fixed(speed, 2),
-            fixed(to_deg(from.rem_euclid(std::f64::consts::TAU)), 0),
-            fixed(to_deg(c.hypot(s)), 1),
-            fixed(to_deg(direction.rem_euclid(std::f64::consts::PI)), 0),
-            fixed(to_deg(difference), 0),
-            fixed(to_deg(measured.1[0]), 2),
-            fixed(to_deg(base.0), 2),
-            fixed(to_deg(steady.0), 2),
-            fixed(to_deg(measured.0), 2),
-        ]);
-    }
-    Ok(format!(
-        "### Traced wind beside measured wind\n\nThe base with nothing but a wind moment added: once without the wind columns (steady \
-         wind of unknown strength and direction, found from the heading alone), once with them (c_w U² sin γ). A zig-zag shows a small \
-         part of the circle, so the direction of a steady wind is badly determined and takes up other slow errors; where it \
-         is far from the measured one, it is no wind.\n\n{}\n",
-        table.to_markdown()
-    ))
-}
-
-/// Mean true wind: speed, and direction of the mean vector, rad.
-fn mean_wind(trial: &Trial) -> Option<(f64, f64)> {
-    let (speed, from) = (trial.channel(Channel::WindTrueSpeed)?, trial.channel(Channel::WindTrueFrom)?);
-    let count = speed.len() as f64;
-    let mean = |part: fn(f64) -> f64| speed.iter().zip(from).map(|(u, g)| u * part(*g)).sum::<f64>() / count;
-    let (north, east) = (mean(f64::cos), mean(f64::sin));
-    Some((north.hypot(east), east.atan2(north)))
-}
-
-/// Heading error (rad) and own parameters of the base, of the base with steady wind and of the base with the measured
-/// wind.
-fn wind_fits(trial: &Trial) -> Outcome<[(f64, Vec<f64>); 3]> {
-    let method = identify::output_error::Settings::default().build()?;
-    let first = identify::Identifier::identify(&method, std::slice::from_ref(trial))?.response;
-    let replay = identify::replay::replay(trial, &first).ok_or("the base can be replayed")?;
-    let initial = vec![replay.initial()];
-    let problem = Problem::new(vec![Record::averaged(trial, first.T().abs())], first.inverse_T, first.K_over_T);
-    let base = Structure::base(1, false);
-    let theta = vec![first.inverse_T, first.K_over_T, first.rudder_bias];
-    let plain = problem.fit(&base, &theta, &initial, &Colour::WHITE);
-    let sizes = Sizes::of(&problem.records, first.inverse_T, &problem.replay(&base, &plain.theta, &plain.initial));
-    let error = |fit: &trace::fit::Fit| (fit.rss / problem.observations() as f64).sqrt();
-    let with = |form: &str| -> Outcome<(f64, Vec<f64>)> {
-        let all = candidates::all(&problem.records, &sizes);
-        let wind = all.into_iter().find(|candidate| candidate.term.effect.form() == form);
-        let wind = wind.ok_or_else(|| format!("no candidate {form}"))?;
-        let start = [plain.theta.as_slice(), &wind.starts[0]].concat();
-        let fit = problem.fit(&base.with(wind.term), &start, &plain.initial, &Colour::WHITE);
-        Ok((error(&fit), fit.theta[theta.len()..].to_vec()))
-    };
-    Ok([(error(&plain), Vec::new()), with("steady wind")?, with("measured wind")?])
 }

@@ -1,8 +1,8 @@
 //! What a trace said, and whether it is right.
 
 use ship::angle::from_deg;
-use trace::Analysis;
-use trace::analysis::{Traced, Verdict};
+use trace::document::{EffectEntry, RecordNoiseEntry};
+use trace::{Analysis, Verdict};
 
 use super::truths::Kind;
 
@@ -19,11 +19,11 @@ const NAMELESS: &str = "empirical";
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named {
     /// Identifier.
-    pub id: &'static str,
+    pub id: String,
     /// Form.
-    pub form: &'static str,
+    pub form: String,
     /// Other identifiers that the records cannot tell from it, each once.
-    pub aliases: Vec<&'static str>,
+    pub aliases: Vec<String>,
     /// When it acts, s: the middle of a passing moment, the beginning of a lasting one.
     pub time: Option<f64>,
 }
@@ -33,12 +33,12 @@ pub struct Named {
 pub struct Answer {
     /// Verdict.
     pub verdict: Verdict,
-    /// What was named, in the order of discovery.
+    /// What was named, the most probable first.
     pub named: Vec<Named>,
     /// Whether a random moment is a description of what is left.
     pub noise: bool,
     /// The shape without a name that was proposed.
-    pub shape: Option<&'static str>,
+    pub shape: Option<String>,
     /// Root mean square heading error of the nearest first-order response and of the final model, rad.
     pub heading: [f64; 2],
 }
@@ -86,16 +86,18 @@ impl Judgement {
 impl Answer {
     /// What an analysis says.
     pub fn of(analysis: &Analysis) -> Self {
+        let document = &analysis.document;
+        let is_random = |noise: &RecordNoiseEntry| noise.moment != "none" && noise.describes_what_is_left;
         let base = &analysis.base.diagnostics;
         let (_, nearest) = base.iter().find(|(name, _)| *name == "heading_rmse_deg").expect("output error reports it");
         let errors = || analysis.identification.iter().map(|record| &record.after.errors);
         let square: f64 = errors().map(|errors| errors.rows as f64 * errors.heading.powi(2)).sum();
         let rows: usize = errors().map(|errors| errors.rows).sum();
         Self {
-            verdict: analysis.verdict,
-            named: analysis.effects.iter().map(Named::of).collect(),
-            noise: analysis.randomness.wander.is_some() && analysis.randomness.holds,
-            shape: analysis.empirical.as_ref().and_then(|shape| shape.group.first().copied()),
+            verdict: document.verdict,
+            named: document.effects.iter().map(Named::of).collect(),
+            noise: document.noise.iter().all(is_random),
+            shape: document.unexplained.empirical.as_ref().and_then(|shape| shape.terms.first().cloned()),
             heading: [from_deg(*nearest), (square / rows as f64).sqrt()],
         }
     }
@@ -112,9 +114,10 @@ impl Answer {
         match kind {
             Kind::Nothing => Judgement::Wrong,
             Kind::Listed { right, alias } => {
-                let is_right = |named: &Named| right.contains(&named.id);
-                let is_alias =
-                    |named: &Named| alias.contains(&named.id) || named.aliases.iter().any(|id| right.contains(id));
+                let is_right = |named: &Named| right.contains(&named.id.as_str());
+                let is_alias = |named: &Named| {
+                    alias.contains(&named.id.as_str()) || named.aliases.iter().any(|id| right.contains(&id.as_str()))
+                };
                 if self.named.iter().all(is_right) {
                     Judgement::Right
                 } else if self.named.iter().all(|named| is_right(named) || is_alias(named)) {
@@ -124,13 +127,13 @@ impl Answer {
                 }
             }
             Kind::Unlisted { changes } => {
-                let is_of_ship = |named: &&Named| !OF_TIME.contains(&named.id) && named.id != NAMELESS;
+                let is_of_ship = |named: &&Named| !OF_TIME.contains(&named.id.as_str()) && named.id != NAMELESS;
                 let of_ship: Vec<&Named> = self.named.iter().filter(is_of_ship).collect();
                 let is_near = |named: &Named| {
                     let near = |time: f64| changes.iter().any(|change| (change - time).abs() <= NEAR);
                     named.id == NAMELESS || named.time.is_some_and(near)
                 };
-                let has_alias = |named: &&Named| named.aliases.iter().any(|id| OF_TIME.contains(id));
+                let has_alias = |named: &&Named| named.aliases.iter().any(|id| OF_TIME.contains(&id.as_str()));
                 if !of_ship.is_empty() {
                     if of_ship.iter().all(has_alias) { Judgement::Alias } else { Judgement::Wrong }
                 } else if self.named.iter().all(is_near) {
@@ -146,12 +149,13 @@ impl Answer {
 }
 
 impl Named {
-    fn of(effect: &Traced) -> Self {
-        let time = effect.parameters.iter().find(|fitted| ["t_c", "t_0"].contains(&fitted.parameter.key));
-        let mut aliases: Vec<_> = effect.aliases.iter().map(|(id, _)| *id).filter(|id| *id != effect.id).collect();
+    fn of(effect: &EffectEntry) -> Self {
+        let time = effect.parameters.values().find(|fitted| ["t_c", "t_0"].contains(&fitted.key.as_str()));
+        let mut aliases: Vec<String> = effect.aliases.iter().filter(|id| **id != effect.id).cloned().collect();
         aliases.sort_unstable();
         aliases.dedup();
-        Self { id: effect.id, form: effect.form, aliases, time: time.map(|fitted| fitted.quantity.value) }
+        let time = time.map(|fitted| fitted.quantity.value);
+        Self { id: effect.id.clone(), form: effect.form.clone(), aliases, time }
     }
 }
 
@@ -159,8 +163,9 @@ impl Named {
 mod tests {
     use super::*;
 
-    fn named(id: &'static str, aliases: &[&'static str], time: Option<f64>) -> Named {
-        Named { id, form: "", aliases: aliases.to_vec(), time }
+    fn named(id: &str, aliases: &[&str], time: Option<f64>) -> Named {
+        let aliases = aliases.iter().map(|&id| id.into()).collect();
+        Named { id: id.into(), form: String::new(), aliases, time }
     }
 
     fn answer(verdict: Verdict, named: &[Named]) -> Answer {

@@ -65,7 +65,7 @@ pub fn csv(truths: &[Truth], outcomes: &[Outcome]) -> String {
             text(&|named| named.aliases.join("|")),
             text(&|named| named.time.map_or_else(String::new, |time| fixed(time, 1))),
             answer.map_or("", |answer| if answer.noise { "yes" } else { "no" }).to_owned(),
-            answer.and_then(|answer| answer.shape).unwrap_or_default().to_owned(),
+            answer.and_then(|answer| answer.shape.clone()).unwrap_or_default(),
             significant(heading(0), 4),
             significant(heading(1), 4),
         ]);

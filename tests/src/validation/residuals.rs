@@ -10,11 +10,12 @@ use ship::angle::{DEGREE, from_deg, to_deg};
 use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, SecondOrder, SteeringLag};
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
-use trace::candidates::{self, Sizes};
-use trace::fit::Problem;
-use trace::noise::Colour;
+use trace::candidates;
+use trace::fit::{Effort, Fit, Law, Problem};
+use trace::full::start;
+use trace::model::Structure;
 use trace::record::Record;
-use trace::structure::Structure;
+use trace::{EffectId, Selection};
 
 use super::{Check, INDEPENDENT, Section, Tolerance};
 use crate::records::zig_zag;
@@ -85,7 +86,7 @@ fn lines() -> Vec<Line> {
             [-10.1, -11.3],
             (0, cubic, 0.2006),
         ),
-        line("asymmetry 5 %", Arc::new(PortStarboardAsymmetry), vec![0.05], 0.026, [0.0, 0.0], (0, 1.0, 0.0524)),
+        line("asymmetry 5 %", Arc::new(PortStarboardAsymmetry::Gain), vec![0.05], 0.026, [0.0, 0.0], (0, 1.0, 0.0524)),
         line(
             "drift 0.004 deg/s",
             Arc::new(MomentDrift { reference_time: 0.0 }),
@@ -109,6 +110,9 @@ fn lines() -> Vec<Line> {
 /// Heading noise, deg, of the trials.
 const NOISE: f64 = 0.01;
 
+/// Fits go to the end.
+const EFFORT: Effort = Effort { steps: 60, negligible: 1e-4 };
+
 /// Residual of the base (deg), K (1/s), T (s), residual (deg) and own parameters with the effect added.
 fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let mut parameters = vec![1.0 / line.time, 0.1 / line.time, 0.0];
@@ -120,23 +124,26 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let method = output_error::Settings::default().build().expect("default settings are valid");
     let base = method.identify(std::slice::from_ref(&trial)).expect("a zig-zag").response;
     let replay = identify::replay::replay(&trial, &base).expect("finite");
-    let initial = vec![replay.initial()];
-    let problem = Problem::new(vec![Record::whole(&trial)], base.inverse_T, base.K_over_T);
-    let structure = Structure::base(1, false);
-    let theta = vec![base.inverse_T, base.K_over_T, base.rudder_bias];
-    let sizes = Sizes::of(&problem.records, base.inverse_T, &problem.replay(&structure, &theta, &initial));
-    let all = candidates::all(&problem.records, &sizes);
-    let same = |one: &&candidates::Candidate| {
-        (one.term.effect.id(), one.term.effect.form()) == (line.effect.id(), line.effect.form())
-    };
-    let candidate = all.iter().find(same).expect("a candidate");
-    let fits = candidate.starts.iter().map(|start| {
-        let start = [theta.as_slice(), start].concat();
-        problem.fit(&structure.with(candidate.term.clone()), &start, &initial, &Colour::WHITE)
+    let trials = [trial];
+    let time = candidates::ship_time(&trials, base.K_over_T);
+    let problem = Problem::new(vec![Record::whole(&trials[0])], base.inverse_T, time);
+    let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
+    let all = candidates::all(&problem.records, &trials, time, &selection);
+    let term = all.into_iter().map(|one| one.term).find(|term| term.effect.form() == line.effect.form());
+    let term = term.expect("a candidate");
+    let own = Structure::base(1, time);
+    let structure = own.of(vec![Arc::clone(&term)]);
+    let weights = problem.weights(&Law::white(1, from_deg(NOISE).powi(2)));
+    let starts = [term.priors.iter().map(|prior| prior.mean).collect(), term.neutral()];
+    let fits = starts.map(|values: Vec<f64>| {
+        let theta = start(&own, &base, values.into_iter());
+        problem.fit(&structure, theta, vec![replay.initial()], &weights, EFFORT)
     });
-    let best = fits.min_by(|one, other| one.rss.total_cmp(&other.rss)).expect("at least one start");
-    let rms = to_deg((best.rss / problem.observations() as f64).sqrt());
-    (to_deg(replay.rms()), base.K(), base.T(), rms, best.theta[theta.len()..].to_vec())
+    let height = |fit: &Fit| fit.misfit + fit.penalty;
+    let best = fits.into_iter().min_by(|one, other| height(one).total_cmp(&height(other))).expect("two starts");
+    let square: f64 = best.residual.iter().flatten().map(|e| e * e).sum();
+    let rms = to_deg((square / problem.observations() as f64).sqrt());
+    (to_deg(replay.rms()), base.K(), base.T(), rms, structure.physical(&best.theta)[own.base_count()..].to_vec())
 }
 
 /// The section.

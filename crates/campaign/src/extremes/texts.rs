@@ -157,6 +157,9 @@ rudder_saturation.c3-per-deg2 = 0.0001
 port_starboard_asymmetry.gain-share = 0.05
 
 [[effect]]
+port_starboard_asymmetry.moment-by-drift-s = 0.5
+
+[[effect]]
 moment_drift.rudder-deg-per-s = 0.01
 
 [manoeuvre.turning-circle]
@@ -384,7 +387,6 @@ duration-s = 270.0
 
 [[identifier]]
 [identifier.trace]
-gain = 10.0
-false-discovery = 0.01
-most-effects = 4
+probability = 0.95
+monomials = 4
 ";

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use ::trace::analysis::Verdict;
+use ::trace::Verdict;
 use identify::StopReason;
 
 use super::row::{Bound, Foretold, NamedEffect, Row, TraceAnswer};
@@ -320,7 +320,7 @@ pub const TRACE_COLUMNS: [Column; 8] = [
     },
     number(
         "trace_margin",
-        "gain in BIC of the one missing effect over the best other one, each added alone; null where not one is missing",
+        "log evidence for the one missing effect less that for the best other one; null where not one is missing",
         |row| row.traced.as_ref()?.margin,
         |row, value| answer(row).margin = Some(value),
     ),

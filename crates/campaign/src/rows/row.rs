@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use ::trace::analysis::Verdict;
+use ::trace::Verdict;
 
 /// Best standard deviations an unbiased method can have on a trial (Cramér–Rao), for its own noise and true K and T.
 #[derive(Debug, Clone, Copy, PartialEq)]

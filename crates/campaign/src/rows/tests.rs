@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::design::{CellFacts, Design};
 use crate::folder::ResultFolder;
-use ::trace::analysis::Verdict;
+use ::trace::Verdict;
 use scenario::{MethodName, Words};
 
 fn design() -> Design {

@@ -3,15 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::LazyLock;
 
-use ::trace::analysis::Verdict;
+use ::trace::Verdict;
 
 use crate::design::Design;
 use crate::rows::{NamedEffect, Row};
 use crate::statistics::{Statistic, share};
 use scenario::HULL;
 
-/// Margin in BIC beyond which the right effect has to be named: below, a rival explains the trial nearly as well.
-pub const CLEAR: f64 = 20.0;
+/// Margin in log evidence beyond which the right effect has to be named: below, a rival explains the trial nearly as
+/// well.
+pub const CLEAR: f64 = 10.0;
 
 /// What traces said in one cell.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,7 +39,7 @@ pub struct TraceSummary {
     pub wrong: u64,
     /// Trials in which exactly what is missing was named: all of it and nothing else, or nothing where nothing is.
     pub exact: u64,
-    /// Trials in which the one missing effect is clearly better than any other alone, and those of them in which it was
+    /// Trials in which far more speaks for the one missing effect than for any other, and those of them in which it was
     /// named.
     pub clear: [u64; 2],
     /// Mean expected likelihood ratio.

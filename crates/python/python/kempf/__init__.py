@@ -21,7 +21,7 @@ from ._quantity import Quantity
 from ._record import Record, read
 from ._simulate import Indices, Motion, Simulated, Truth, simulate
 from ._study import StudyResult, run
-from ._trace import Candidate, Effect, Errors, Parameter, TraceResult, trace
+from ._trace import Candidate, Effect, Errors, Parameter, Structure, TraceResult, trace
 
 __all__ = [
     "Candidate",
@@ -43,6 +43,7 @@ __all__ = [
     "RecordEntry",
     "Replay",
     "Simulated",
+    "Structure",
     "StudyResult",
     "TraceResult",
     "Truth",

@@ -38,17 +38,21 @@ class Effect:
 
     #: Identifier, such as ``"nonlinear_damping"``.
     id: str
-    #: Form of its term, such as ``"r|r|"``.
+    #: Most probable form of its term, such as ``"r|r|"``.
     form: str
     #: The equation with it.
     equation: str
-    #: Parameters by their symbols.
+    #: The one record in which it acts.
+    only: Optional[str]
+    #: Parameters by their symbols, averaged over the structures.
     parameters: Mapping[str, Parameter]
-    #: Effects that these records cannot tell from it.
+    #: Effects that these records cannot tell from it: one of the group is there.
     aliases: tuple[str, ...]
-    #: Probability that the ship has it.
+    #: Forms that these records cannot tell from it, each as ``"id (form)"``.
+    alias_forms: tuple[str, ...]
+    #: Probability that it, or one of its group, is there.
     probability: float
-    #: Change of BIC against the best model without it and its aliases; less is better.
+    #: −2 log of the ratio of the evidence with it to that without; negative where it is better.
     delta_bic: float
     p_value: float
     #: The evidence in a sentence.
@@ -68,6 +72,16 @@ class Candidate:
 
 
 @dataclass(frozen=True)
+class Structure:
+    """Effects that may be there together."""
+
+    #: Identifier and form of every effect.
+    effects: tuple[tuple[str, str], ...]
+    #: Probability.
+    weight: float
+
+
+@dataclass(frozen=True)
 class Errors:
     """Heading errors of a record before and after, deg; only the initial state is fitted to a held-out one."""
 
@@ -76,7 +90,7 @@ class Errors:
     held_out: bool
     #: Root mean square of the whole replay with the base.
     before_deg: float
-    #: The same with the final model.
+    #: The same with the average of the structures.
     after_deg: float
 
 
@@ -84,18 +98,22 @@ class Errors:
 class TraceResult(Result):
     """What a first-order ship lacks in these records, and what it is worth."""
 
+    #: The result in one sentence.
+    headline: str
     #: ``"clean"``, ``"traced"`` or ``"unexplained"``.
     verdict: str
-    #: K of the final model, 1/s.
+    #: K averaged over the structures, 1/s.
     K_per_s: Quantity
-    #: T of the final model, s.
+    #: T averaged over the structures, s.
     T_s: Quantity
-    #: Rudder bias of the final model, deg.
+    #: Rudder bias averaged over the structures, deg.
     delta_r_deg: Quantity
-    #: Effects in the order in which they were found.
+    #: Effects that are named, the most probable first.
     effects: tuple[Effect, ...]
     #: Every effect that was looked for.
     candidates: tuple[Candidate, ...]
+    #: Structures, the most probable first.
+    structures: tuple[Structure, ...]
     #: Errors of every record, first of those that were fitted.
     errors: tuple[Errors, ...]
     #: The manoeuvre that would tell most.
@@ -116,6 +134,7 @@ class TraceResult(Result):
             for one in self.errors
         ]
         notes = [f"{one.id}: {symbol} = {value}" for one in self.effects for symbol, value in one.parameters.items()]
+        notes.insert(0, self.headline)
         notes.append(f"K = {self.K_per_s} 1/s, T = {self.T_s} s, δ_r = {self.delta_r_deg} deg")
         notes.extend(f"{one.id} cannot be told from {', '.join(one.aliases)}" for one in self.effects if one.aliases)
         if self.next_trial:
@@ -156,21 +175,19 @@ def trace(
     only: Ids = (),
     without_effect: Ids = (),
     without: Ids = (),
-    own_bias: bool = False,
-    rule: str = "bic",
+    rule: str = "posterior",
 ) -> TraceResult:
-    """Closes the loop on records, as ``study trace`` does: fits a first-order ship, looks at what is left, names the
-    effect that is missing, adds it, and says what it is worth.
+    """Closes the loop on records, as ``study trace`` does: fits a first-order ship, weighs the structures of
+    effects that it may lack, names those that are probable, and says what they are worth.
 
     :param records: one record or several of the same ship, as in :func:`kempf.fit`
-    :param validate: records that are kept from the fit
+    :param validate: records that only judge the result
     :param with_: effects that are in the model whatever the evidence says, by their ids in ``study list effects``
     :param only: exactly these effects and no search
     :param without_effect: effects that are no candidates
     :param without: columns to leave aside: ``"wind"``, ``"speed"``, ``"propeller"``, ``"sway"``
-    :param own_bias: whether every record has a rudder bias of its own
-    :param rule: which of the structures that were tried is believed: ``"bic"``, ``"pastis"``, ``"held-out"``,
-        ``"bagged"``, ``"probability"``, ``"probability-0.9"``
+    :param rule: how structures are weighed: ``"posterior"``, by their likelihood under the priors of the coefficients,
+        or ``"bic"``
 
     Raises :class:`kempf.KempfError` where a record cannot be read, where no first-order ship fits it, and for an effect
     that there is not. Ctrl-C returns at once, and the computation it leaves behind ends by itself.
@@ -180,7 +197,6 @@ def trace(
         only=strings(only),
         without_effect=strings(without_effect),
         without=strings(without),
-        own_bias=own_bias,
         rule=rule,
     )
     native = _kempf.trace(natives(records), natives(validate), asked)
@@ -193,11 +209,16 @@ def _result(native: _kempf.Trace) -> TraceResult:
     model = document["model"]
 
     def effect(entry: Mapping[str, Any]) -> Effect:
-        names = ("id", "form", "equation", "probability", "delta_bic", "p_value", "evidence")
-        parameters = {symbol: Parameter.of(value) for symbol, value in entry["parameters"].items()}
+        names = ("id", "form", "equation", "only", "probability", "delta_bic", "p_value", "evidence")
         return Effect(
-            parameters=parameters, aliases=tuple(entry["alias_forms"]), **{name: entry[name] for name in names}
+            parameters={symbol: Parameter.of(value) for symbol, value in entry["parameters"].items()},
+            aliases=tuple(entry["aliases"]),
+            alias_forms=tuple(entry["alias_forms"]),
+            **{name: entry[name] for name in names},
         )
+
+    def structure(entry: Mapping[str, Any]) -> Structure:
+        return Structure(tuple((one["id"], one["form"]) for one in entry["effects"]), entry["weight"])
 
     def errors(use: str) -> list[Errors]:
         rmse = "heading_rmse_deg"
@@ -208,12 +229,14 @@ def _result(native: _kempf.Trace) -> TraceResult:
 
     names = ("id", "outcome", "probability", "delta_bic", "p_value")
     return TraceResult(
+        headline=document["headline"],
         verdict=document["verdict"],
         K_per_s=Quantity.of(model["K_per_s"]),
         T_s=Quantity.of(model["T_s"]),
         delta_r_deg=Quantity.of(model["delta_r_deg"]),
         effects=tuple(effect(entry) for entry in document["effects"]),
         candidates=tuple(Candidate(**{name: entry[name] for name in names}) for entry in document["candidates"]),
+        structures=tuple(structure(entry) for entry in document["structures"]),
         errors=(*errors("identification"), *errors("validation")),
         next_trial=document["next_trial"],
         _text=native.text,

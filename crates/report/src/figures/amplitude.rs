@@ -5,12 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::{PAD, Reference95, median};
 use crate::axis::{self, Axis};
-use crate::curve::Curve;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample};
-use crate::palette::{BEFORE, INK, Look, Origin, SHORT_DASH};
+use crate::palette::{INK, Look, Origin};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
@@ -39,8 +38,6 @@ pub struct AmplitudePanel {
     pub points: Vec<AmplitudePoint>,
     /// From all records together, with its 95 % interval.
     pub joint: Option<Reference95>,
-    /// What a first-order fit finds in zig-zags of a model, over every horizontal axis, degrees; may be empty.
-    pub model: [Curve; COLUMNS],
 }
 
 /// What [`amplitude`] draws.
@@ -71,8 +68,7 @@ pub fn amplitude(data: &Amplitude, theme: &Theme) -> Figure {
     let all = || data.panels.iter();
     let column = |place: usize| {
         let points = all().flat_map(|panel| panel.points.iter().map(|point| point.amplitudes_deg[place]));
-        let model = all().flat_map(|panel| panel.model[place].finite().map(|(x, _)| x));
-        Side::new(Axis::covering(points.chain(model), BESIDE, Steps::Angle), data.x_titles[place].clone())
+        Side::new(Axis::covering(points, BESIDE, Steps::Angle), data.x_titles[place].clone())
     };
     let rows = all().map(|panel| (Side::new(up(panel), panel.title.clone()), theme.tall(0.3)));
     let panels = sheet.grid(Grid::new((0..COLUMNS).map(column).collect(), rows.collect()));
@@ -82,7 +78,6 @@ pub fn amplitude(data: &Amplitude, theme: &Theme) -> Figure {
         if let Some(joint) = &content.joint {
             joint.horizontal(panel, &mut sheet.scene, theme);
         }
-        panel.line(&mut sheet.scene, content.model[place].pairs(), model(theme));
         let across = |point: &AmplitudePoint| panel.across(point.amplitudes_deg[place]).unwrap_or(f64::NAN);
         let own: Vec<f64> = content.points.iter().map(across).collect();
         let places = asides(&own, 2.0 * theme.marker);
@@ -105,18 +100,11 @@ fn look(data: &Amplitude) -> Look {
     Look { marker: crate::palette::Marker::Circle, ..own }
 }
 
-fn model(theme: &Theme) -> Stroke {
-    Stroke::solid(BEFORE, theme.line).dashed(SHORT_DASH)
-}
-
 fn entries(data: &Amplitude, theme: &Theme) -> Vec<Entry> {
     let own = format!("{}, every record alone, 95 %", data.origin.label());
     let mut entries = vec![Entry::new(Sample::Marker(look(data)), own)];
     if data.panels.iter().any(|panel| panel.joint.is_some()) {
         entries.push(Entry::new(Sample::Line(Stroke::solid(INK, 0.8 * theme.line)), data.joint_name.clone()));
-    }
-    if data.panels.iter().any(|panel| panel.model[0].finite().next().is_some()) {
-        entries.push(Entry::new(Sample::Line(model(theme)), "first-order fit to zig-zags of the model"));
     }
     entries
 }
@@ -126,9 +114,7 @@ fn up(panel: &AmplitudePanel) -> Axis {
     let points = || panel.points.iter().map(|point| point.value);
     let limit = FAR * median(points().map(f64::abs)).unwrap_or(f64::INFINITY);
     let joint = panel.joint.iter().map(|joint| joint.value);
-    let core =
-        points().chain(joint).chain(panel.model[0].finite().map(|(_, y)| y)).filter(|value| value.abs() <= limit);
-    let core: Vec<f64> = core.collect();
+    let core: Vec<f64> = points().chain(joint).filter(|value| value.abs() <= limit).collect();
     let room = axis::range(core.iter().copied()).map_or(0.0, |(lo, hi)| (hi - lo).max(0.2 * limit.min(hi.abs())));
     let (lo, hi) = axis::range(core.iter().copied()).unwrap_or((0.0, 1.0));
     let ends = panel.points.iter().filter_map(|point| point.interval).flatten().filter(|end| end.is_finite());

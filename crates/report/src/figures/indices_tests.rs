@@ -40,7 +40,6 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         title: title.to_owned(),
         points: (0..n.min(12)).map(point).collect(),
         joint: (n > 1).then_some(Reference95 { value: 0.12, band: [0.11, if n == 2 { wild } else { 0.13 }] }),
-        model: [5.0, 6.0].map(|x| Curve { x: if n > 2 { vec![x, 6.0 * x] } else { vec![] }, y: vec![0.11, wild] }),
     };
     let over = Amplitude {
         title: None,

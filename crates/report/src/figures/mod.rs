@@ -37,7 +37,7 @@ pub use derivatives::{Derivatives, MotionCurves, derivatives};
 pub use dots::{Dot, DotColumn, DotPlot, dots};
 pub use ecdf::{Ecdf, EcdfCurve, EcdfPanel, ecdf};
 pub use error_curves::{AxisMark, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
-pub use evidence::{Evidence, EvidenceBar, EvidenceStep, Fate, evidence};
+pub use evidence::{Evidence, EvidenceRow, Fate, evidence};
 pub use heat_map::{HeatMap, HeatPanel, heat_map};
 pub use index_plane::{IndexAnswer, IndexPlane, index_plane};
 pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};

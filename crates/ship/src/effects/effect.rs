@@ -127,6 +127,11 @@ pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
         None
     }
 
+    /// Whether it takes a measured channel into account where there is one.
+    fn uses(&self, channel: Regressor) -> bool {
+        self.needs() == Some(channel)
+    }
+
     /// How it is looked for in records of these manoeuvres; `None` where they cannot hold it, as without its channel.
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal>;
 
@@ -245,75 +250,100 @@ impl EffectReal for Tangent {
 /// The manoeuvres of some records in numbers, from which a proposal follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Manoeuvres {
-    /// Time constant of the base, s, positive and shorter than a tenth of the longest record.
+    /// The time in which the ship sails its length, L/U, s; where these are not known (K/T)^(−1/2) of the base, which is
+    /// about that.
     pub time: f64,
-    /// Root mean square yaw rate, rad/s.
-    pub rate: f64,
     /// Largest rudder angle, rad.
     pub rudder: f64,
     /// Longest record, s.
     pub duration: f64,
     /// Usual time between rows, s.
     pub spacing: f64,
-    /// Mean square speed, m²/s², where all records have it; so are the next three.
-    pub speed_square: Option<f64>,
-    /// Mean square sway velocity, m²/s².
-    pub sway_square: Option<f64>,
-    /// Mean square relative wind speed, m²/s².
+    /// Approach speed, m/s, where all records have a measured speed.
+    pub speed: Option<f64>,
+    /// Approach speed, m/s, where all records have a measured sway velocity.
+    pub sway: Option<f64>,
+    /// Mean square relative wind speed, m²/s², where all records have it.
     pub wind_square: Option<f64>,
-    /// Root mean square, smallest and largest propeller revolutions, 1/s.
-    pub propeller: Option<[f64; 3]>,
+    /// Root mean square propeller revolutions, 1/s, where all records have them and they change.
+    pub propeller: Option<f64>,
     /// First and last time, s, of the record in which an effect that depends on time would act.
     pub span: [f64; 2],
 }
 
-/// An effect that records may lack.
+/// What is expected of one parameter of an effect before any record is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// Expected value, where a fit starts.
+    pub mean: f64,
+    /// Standard deviation; infinite for a parameter that may be anything within its range, zero for one that is not
+    /// fitted.
+    pub sd: f64,
+    /// Smallest value.
+    pub lowest: f64,
+    /// Largest value.
+    pub highest: f64,
+    /// Whether it only shapes the effect and means nothing once the others are neutral.
+    pub is_shape: bool,
+    /// The parameter of the same effect that it is counted from: value and prior are those of the difference.
+    pub beside: Option<usize>,
+}
+
+impl Prior {
+    /// A normal law within the physical range of a parameter.
+    pub fn normal(parameter: &Parameter, mean: f64, sd: f64) -> Self {
+        let Parameter { lowest, highest, .. } = *parameter;
+        Self { mean: mean.clamp(lowest, highest), sd, lowest, highest, is_shape: false, beside: None }
+    }
+
+    /// Any value of a range, equally likely.
+    pub fn uniform([lowest, highest]: [f64; 2]) -> Self {
+        let mean = 0.5 * (lowest + highest);
+        Self { mean, sd: f64::INFINITY, lowest, highest, is_shape: true, beside: None }
+    }
+
+    /// A value that is not fitted.
+    pub fn fixed(value: f64) -> Self {
+        Self { mean: value, sd: 0.0, lowest: value, highest: value, is_shape: true, beside: None }
+    }
+
+    /// The same in another range.
+    #[must_use]
+    pub fn within(self, [lowest, highest]: [f64; 2]) -> Self {
+        Self { lowest, highest, mean: self.mean.clamp(lowest, highest), ..self }
+    }
+
+    /// The same for a parameter that only shapes the effect.
+    #[must_use]
+    pub fn shape(self) -> Self {
+        Self { is_shape: true, ..self }
+    }
+
+    /// Whether it is fitted.
+    pub fn is_fitted(&self) -> bool {
+        self.sd > 0.0
+    }
+}
+
+/// An effect that records may lack, with its constants from the records.
 #[derive(Debug, Clone)]
 pub struct Proposal {
-    /// The effect, with its constants from the records.
+    /// The effect.
     pub effect: Arc<dyn Effect>,
-    /// Parameters that are not fitted but kept at their start.
-    pub held: &'static [usize],
-    /// Smallest values.
-    pub lowest: Vec<f64>,
-    /// Largest values.
-    pub highest: Vec<f64>,
-    /// Sizes against which steps are measured.
-    pub scale: Vec<f64>,
-    /// Where a fit starts; the best end counts. Empty where the start has to be looked for in the residual.
-    pub starts: Vec<Vec<f64>>,
-    /// Parameters of an effect as large as it can be expected: what a record cannot see of this size, it cannot see.
-    pub large: Vec<f64>,
+    /// What is expected of every parameter.
+    pub priors: Vec<Prior>,
 }
 
 impl Proposal {
-    /// An effect within its physical range.
-    pub fn new(effect: impl Effect + 'static, scale: Vec<f64>, starts: Vec<Vec<f64>>, large: Vec<f64>) -> Self {
-        let parameters = effect.parameters();
-        Self {
-            held: &[],
-            lowest: parameters.iter().map(|p| p.lowest).collect(),
-            highest: parameters.iter().map(|p| p.highest).collect(),
-            scale,
-            starts,
-            large,
-            effect: Arc::new(effect),
-        }
+    /// An effect with its priors.
+    pub fn new(effect: impl Effect + 'static, priors: impl Into<Vec<Prior>>) -> Self {
+        Self { effect: Arc::new(effect), priors: priors.into() }
     }
 
-    /// An effect of one parameter, its start and its large value as shares of its scale.
-    pub fn of_one(effect: impl Effect + 'static, scale: f64, start: f64, large: f64) -> Self {
-        let mut proposal = Self::new(effect, vec![scale], Vec::new(), Vec::new());
-        let (lowest, highest) = (proposal.lowest[0], proposal.highest[0]);
-        let bounded = |share: f64| vec![(share * scale).clamp(lowest, highest)];
-        (proposal.starts, proposal.large) = (vec![bounded(start)], bounded(large));
-        proposal
-    }
-
-    /// The same with parameter number `place` in another range.
-    #[must_use]
-    pub fn within(mut self, place: usize, [lowest, highest]: [f64; 2]) -> Self {
-        (self.lowest[place], self.highest[place]) = (lowest, highest);
-        self
+    /// An effect of one parameter with a normal law about its neutral value.
+    pub fn of_one(effect: impl Effect + 'static, sd: f64) -> Self {
+        let parameter = &effect.parameters()[0];
+        let prior = Prior::normal(parameter, parameter.neutral, sd);
+        Self::new(effect, [prior])
     }
 }

@@ -23,7 +23,7 @@ mod transient_disturbance;
 mod wave_yaw;
 mod wind_moment;
 
-pub use effect::{Acts, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Proposal, Scale, SwayCoupling};
+pub use effect::{Acts, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling};
 pub use moment_drift::MomentDrift;
 pub use nonlinear_damping::NonlinearDamping;
 pub use port_starboard_asymmetry::PortStarboardAsymmetry;
@@ -53,18 +53,20 @@ pub fn all() -> Vec<Arc<dyn Effect>> {
         Arc::new(WindMoment::Steady),
         Arc::new(SpeedLoss::Modelled),
         Arc::new(SpeedLoss::Measured { approach_speed: 1.0 }),
+        Arc::new(SpeedLoss::Inflow { approach_speed: 1.0, approach_rate: 1.0 }),
         Arc::new(SpeedLoss::Propeller { approach_rate: 1.0 }),
         Arc::new(SteeringLag::DeadTime),
         Arc::new(SteeringLag::FirstOrder),
         Arc::new(RudderSaturation),
         Arc::new(RudderDeadband::Backlash),
         Arc::new(RudderDeadband::DeadBand),
-        Arc::new(PortStarboardAsymmetry),
+        Arc::new(PortStarboardAsymmetry::Gain),
+        Arc::new(PortStarboardAsymmetry::Drift),
         Arc::new(MomentDrift { reference_time: 0.0 }),
         Arc::new(TransientDisturbance::Passing),
         Arc::new(TransientDisturbance::Lasting { edge: 1.0 }),
         Arc::new(WaveYaw),
-        Arc::new(SwayCouplingMeasured),
+        Arc::new(SwayCouplingMeasured { approach_speed: 1.0 }),
     ]
 }
 
@@ -82,10 +84,14 @@ pub fn named(id: &str, form: &str, constants: &[f64]) -> Option<Arc<dyn Effect>>
     let positive = |constant: &f64| (*constant > 0.0).then_some(*constant);
     Some(match (id, constants) {
         (_, []) => known,
+        ("speed_loss", [speed, rate]) => {
+            Arc::new(SpeedLoss::Inflow { approach_speed: positive(speed)?, approach_rate: positive(rate)? })
+        }
         ("speed_loss", [constant]) if known.needs() == Some(crate::dynamics::Regressor::Speed) => {
             Arc::new(SpeedLoss::Measured { approach_speed: positive(constant)? })
         }
         ("speed_loss", [constant]) => Arc::new(SpeedLoss::Propeller { approach_rate: positive(constant)? }),
+        ("sway_coupling_measured", [speed]) => Arc::new(SwayCouplingMeasured { approach_speed: positive(speed)? }),
         ("moment_drift", [constant]) => Arc::new(MomentDrift { reference_time: *constant }),
         ("transient_disturbance", [constant]) => Arc::new(TransientDisturbance::Lasting { edge: positive(constant)? }),
         _ => return None,

@@ -47,8 +47,7 @@ impl Effect for MomentDrift {
     }
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let from_start = Self { reference_time: about.span[0] };
-        Some(Proposal::of_one(from_start, 0.02 / about.duration, 0.0, 2.0))
+        Some(Proposal::of_one(Self { reference_time: about.span[0] }, 0.02 / about.duration))
     }
 
     fn places(&self) -> Places {

@@ -79,13 +79,16 @@ impl Effect for NonlinearDamping {
         }
     }
 
+    /// Without dimension: r³ within 8, r|r| within 1.2, r² within 0.4.
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { time, rate, .. } = *about;
-        Some(match self {
-            Self::Cubic => Proposal::of_one(*self, 1.0 / (time * rate * rate), 0.05, 1.0),
-            Self::Quadratic => Proposal::of_one(*self, 1.0 / (time * rate), 0.05, 1.0),
-            Self::Square => Proposal::of_one(*self, 1.0 / (time * rate), 0.0, 0.5),
-        })
+        Some(Proposal::of_one(
+            *self,
+            match self {
+                Self::Cubic => 8.0 * about.time,
+                Self::Quadratic => 1.2,
+                Self::Square => 0.4,
+            },
+        ))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! Play between the recorded and the acting rudder.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::number::Real;
 
 /// Backlash or dead band of half-width g.
@@ -47,9 +47,9 @@ impl Effect for RudderDeadband {
     }
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let rudder = about.rudder;
-        let proposal = Proposal::new(*self, vec![0.1 * rudder], vec![vec![0.07 * rudder]], vec![0.15 * rudder]);
-        Some(proposal.within(0, [0.0, (0.5 * rudder).min(0.15)]))
+        let largest = (0.5 * about.rudder).min(PARAMETERS[0].highest);
+        let prior = Prior::normal(&PARAMETERS[0], 0.0, 0.12 * about.rudder);
+        Some(Proposal::new(*self, [prior.within([0.0, largest])]))
     }
 
     fn places(&self) -> Places {

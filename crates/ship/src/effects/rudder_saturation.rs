@@ -36,9 +36,9 @@ impl Effect for RudderSaturation {
         &PARAMETERS
     }
 
+    /// A fifth of the largest rudder lost to stall is much.
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let scale = 0.2 / (about.rudder * about.rudder);
-        Some(Proposal::new(*self, vec![scale], vec![vec![0.0]], vec![scale.min(0.9)]))
+        Some(Proposal::of_one(*self, 0.2 / (about.rudder * about.rudder)))
     }
 
     fn places(&self) -> Places {

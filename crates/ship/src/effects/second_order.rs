@@ -1,6 +1,6 @@
 //! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
 
-use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal, SwayCoupling};
+use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
 use crate::number::Real;
 
 /// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
@@ -32,11 +32,6 @@ const PARAMETERS: [Parameter; 2] = [
     },
 ];
 
-/// Largest T₂ and T₃ that are looked for, in time constants of the base. Beyond, zero and pole are so slow that they
-/// imitate a trend.
-const SLOWEST_POLE: f64 = 1.0;
-const SLOWEST_ZERO: f64 = 2.0;
-
 impl Effect for SecondOrder {
     fn id(&self) -> &'static str {
         "second_order"
@@ -54,13 +49,13 @@ impl Effect for SecondOrder {
         &PARAMETERS
     }
 
+    /// T₂ and T₃ − T₂, which is the effect: hulls have T₂U/L of 0.1 to 0.5 and T₃U/L of 0.3 to 1.
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
         let time = about.time;
-        let starts = [[0.15, 0.4], [0.2, 0.02], [0.4, 1.2]].map(|[t2, t3]| vec![t2 * time, t3 * time]);
-        let (scale, large) = (vec![0.2 * time, 0.5 * time], vec![0.15 * time, 0.5 * time]);
-        let proposal = Proposal::new(*self, scale, starts.into(), large);
-        let shortest = 0.02_f64.max(0.1 * about.spacing);
-        Some(proposal.within(0, [shortest, SLOWEST_POLE * time]).within(1, [-0.5 * time, SLOWEST_ZERO * time]))
+        let shortest = PARAMETERS[0].lowest.max(0.1 * about.spacing).max(0.04 * time);
+        let second = Prior::normal(&PARAMETERS[0], 0.3 * time, 0.2 * time).within([shortest, 2.0 * time]).shape();
+        let lead = Prior::normal(&PARAMETERS[1], 0.0, 0.4 * time);
+        Some(Proposal::new(*self, [second, Prior { beside: Some(0), ..lead }]))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal, Scale};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -16,6 +16,14 @@ pub enum SpeedLoss {
     Measured {
         /// Approach speed U₀, m/s.
         approach_speed: f64,
+    },
+    /// Damping and flow over the rudder from the measured speed, and from the measured revolutions n where there are
+    /// some: a ~ 1 + m_a (q − 1), b ~ (1 + e (q − 1) + e_n (n/n₀ − 1))². The propeller holds up e_n of the flow.
+    Inflow {
+        /// Approach speed U₀, m/s.
+        approach_speed: f64,
+        /// Revolutions n₀ of the approach, 1/s.
+        approach_rate: f64,
     },
     /// The flow over the rudder from the measured propeller revolutions n: b ~ (n/n₀)^m; as it is where there are none.
     Propeller {
@@ -94,12 +102,14 @@ const PROPELLER: [Parameter; 1] = [Parameter {
     highest: 4.0,
     odd: false,
 }];
+const INFLOW: [Parameter; 3] = [
+    Parameter { typical: 1.0, ..MEASURED[0] },
+    Parameter { key: "e", symbol: "e", typical: 0.5, lowest: -0.5, highest: 1.5, ..MEASURED[0] },
+    Parameter { key: "e_n", symbol: "e_n", typical: 0.5, lowest: -0.5, highest: 1.5, ..MEASURED[0] },
+];
 
 /// Speed ratio below which the scaling laws mean nothing; keeps a bad trial step of a search finite.
 const SLOWEST: f64 = 0.05;
-
-/// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
-const PROPELLER_CHANGE: f64 = 0.05;
 
 impl Effect for SpeedLoss {
     fn id(&self) -> &'static str {
@@ -110,6 +120,7 @@ impl Effect for SpeedLoss {
         match self {
             Self::Modelled => "modelled speed",
             Self::Measured { .. } => "measured speed",
+            Self::Inflow { .. } => "inflow share",
             Self::Propeller { .. } => "measured propeller",
         }
     }
@@ -118,6 +129,9 @@ impl Effect for SpeedLoss {
         match self {
             Self::Modelled => "r' = −(q/T) r + (K/T) q^m_b (δ + δ_r), q' = (1 − q)/T_u − c_u r²",
             Self::Measured { .. } => "r' = −(q^m_a/T) r + (K/T) q^m_b (δ + δ_r), q = U/U₀",
+            Self::Inflow { .. } => {
+                "r' = −(1 + m_a (q − 1))/T r + (K/T) (1 + e (q − 1) + e_n (n/n₀ − 1))² (δ + δ_r), q = U/U₀"
+            }
             Self::Propeller { .. } => "r' = −r/T + (K/T) (n/n₀)^m_n (δ + δ_r)",
         }
     }
@@ -126,6 +140,7 @@ impl Effect for SpeedLoss {
         match self {
             Self::Modelled => &MODELLED,
             Self::Measured { .. } => &MEASURED,
+            Self::Inflow { .. } => &INFLOW,
             Self::Propeller { .. } => &PROPELLER,
         }
     }
@@ -134,32 +149,38 @@ impl Effect for SpeedLoss {
         match *self {
             Self::Modelled => Vec::new(),
             Self::Measured { approach_speed: constant } | Self::Propeller { approach_rate: constant } => vec![constant],
+            Self::Inflow { approach_speed, approach_rate } => vec![approach_speed, approach_rate],
         }
     }
 
+    /// Hulls lose c_r r'² of their speed and regain it in T_u U/L of 7 ± 4; where the speed was measured the share of
+    /// the free stream is 0.5 ± 0.25.
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { time, rate, duration, .. } = *about;
+        let time = about.time;
+        let propeller = |mean| match about.propeller {
+            Some(_) => Prior::normal(&INFLOW[2], mean, 0.25),
+            None => Prior::fixed(0.0),
+        };
         match self {
             // A speed that was measured is not modelled.
-            Self::Modelled if about.speed_square.is_some() => None,
+            Self::Modelled if about.speed.is_some() => None,
             Self::Modelled => {
-                let loss = |recovery: f64| 0.2 / (recovery * rate * rate);
-                let at = |times: f64, exponent: f64| vec![loss(times * time), times * time, exponent];
-                let mut proposal = Proposal::new(*self, at(4.0, 1.0), vec![at(2.0, 2.0), at(8.0, 2.0)], at(4.0, 2.0));
-                // The exponent of the rudder force cannot be told from one manoeuvre without a speed: the law of the
-                // free stream.
-                proposal.held = &[2];
-                Some(proposal.within(0, [0.0, loss(0.5 * time)]).within(1, [0.5 * time, 2.0 * duration]))
+                let recovery =
+                    Prior::normal(&MODELLED[1], 7.0 * time, 4.0 * time).within([time, 2.0 * about.duration.max(time)]);
+                let loss = Prior::normal(&MODELLED[0], 0.0, 1.0 * time);
+                Some(Proposal::new(*self, [loss, recovery.shape(), Prior::fixed(Self::FREE_STREAM[1])]))
             }
-            Self::Measured { .. } => {
-                let measured = Self::Measured { approach_speed: about.speed_square?.sqrt() };
-                let scaled = Self::FREE_STREAM.to_vec();
-                Some(Proposal::new(measured, vec![1.0, 1.0], vec![vec![0.0, 0.0], scaled.clone()], scaled))
+            Self::Measured { .. } => None,
+            Self::Inflow { .. } => {
+                let inflow =
+                    Self::Inflow { approach_speed: about.speed?, approach_rate: about.propeller.unwrap_or(1.0) };
+                let own = [Prior::normal(&INFLOW[0], 1.0, 0.3), Prior::normal(&INFLOW[1], 0.5, 0.25)];
+                Some(Proposal::new(inflow, [own[0], own[1], propeller(0.5)]))
             }
+            Self::Propeller { .. } if about.speed.is_some() => None,
             Self::Propeller { .. } => {
-                let [mean, lowest, highest] = about.propeller?;
-                let changes = highest - lowest > PROPELLER_CHANGE * mean;
-                changes.then(|| Proposal::of_one(Self::Propeller { approach_rate: mean }, 1.0, 0.0, 2.0))
+                let prior = Prior::normal(&PROPELLER[0], Self::FREE_STREAM[1], 1.0);
+                Some(Proposal::new(Self::Propeller { approach_rate: about.propeller? }, [prior]))
             }
         }
     }
@@ -171,22 +192,27 @@ impl Effect for SpeedLoss {
     fn needs(&self) -> Option<Regressor> {
         match self {
             Self::Modelled => None,
-            Self::Measured { .. } => Some(Regressor::Speed),
+            Self::Measured { .. } | Self::Inflow { .. } => Some(Regressor::Speed),
             Self::Propeller { .. } => Some(Regressor::Propeller),
         }
+    }
+
+    fn uses(&self, channel: Regressor) -> bool {
+        let also = matches!(self, Self::Inflow { .. }) && channel == Regressor::Propeller;
+        also || self.needs() == Some(channel)
     }
 
     fn states(&self) -> usize {
         match self {
             Self::Modelled => 1,
-            Self::Measured { .. } | Self::Propeller { .. } => 0,
+            _ => 0,
         }
     }
 
     fn shortest_time(&self, p: &[f64]) -> f64 {
         match self {
             Self::Modelled => p[1],
-            Self::Measured { .. } | Self::Propeller { .. } => f64::INFINITY,
+            _ => f64::INFINITY,
         }
     }
 }
@@ -206,7 +232,9 @@ impl<R: Real> Acts<R> for SpeedLoss {
         match self {
             Self::Modelled => {
                 let q = z[0].at_least(SLOWEST);
-                Scale { damping: q, gain: q.powf(p[2]) }
+                // The free stream, whose exponent is not fitted, needs no power.
+                let gain = if p[2] == R::from(Self::FREE_STREAM[1]) { q * q } else { q.powf(p[2]) };
+                Scale { damping: q, gain }
             }
             Self::Measured { approach_speed } => match now.measured.speed {
                 Some(speed) => {
@@ -215,6 +243,13 @@ impl<R: Real> Acts<R> for SpeedLoss {
                 }
                 None => Scale::none(),
             },
+            Self::Inflow { approach_speed, approach_rate } => {
+                let change = |measured: Option<f64>, of: f64| measured.map_or(0.0, |value| value / of - 1.0);
+                let (q, n) =
+                    (change(now.measured.speed, *approach_speed), change(now.measured.propeller, *approach_rate));
+                let flow = (p[1] * q + p[2] * n + 1.0).at_least(SLOWEST);
+                Scale { damping: (p[0] * q + 1.0).at_least(SLOWEST), gain: flow * flow }
+            }
             Self::Propeller { approach_rate } => match now.measured.propeller {
                 Some(rate) => {
                     let q = R::from((rate / approach_rate).max(SLOWEST));

@@ -1,6 +1,6 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::number::Real;
 
 /// Lag between the recorded and the acting rudder.
@@ -64,15 +64,15 @@ impl Effect for SteeringLag {
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
         let Manoeuvres { time, spacing, .. } = *about;
-        let with_start = |start| Proposal::new(*self, vec![0.1 * time], vec![vec![start]], vec![0.3 * time]);
+        let sd = 0.1 * time + 0.2 * spacing;
         Some(match self {
             Self::DeadTime => {
-                let longest = (0.5 * time).max(2.0 * spacing).min(20.0);
-                with_start(0.0).within(0, [-longest, longest])
+                let longest = (4.0 * sd).min(DEAD_TIME[0].highest);
+                Proposal::new(*self, [Prior::normal(&DEAD_TIME[0], 0.0, sd).within([-longest, longest])])
             }
             Self::FirstOrder => {
-                let shortest = SHORTEST_LAG.max(0.1 * spacing);
-                with_start(0.1 * time).within(0, [shortest, (2.0 * time).clamp(0.1, 30.0)])
+                let shortest = SHORTEST_LAG.max(0.25 * spacing);
+                Proposal::new(*self, [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])])
             }
         })
     }

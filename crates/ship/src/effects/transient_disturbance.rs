@@ -1,6 +1,6 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
 use crate::number::Real;
 
@@ -37,6 +37,9 @@ const LASTING: [Parameter; 2] = [MOMENT, INSTANT];
 
 /// Width of an edge as a share of the duration.
 const EDGE: f64 = 0.1;
+
+/// Moment of a strong squall as an angle of the rudder, rad.
+const LARGE: f64 = 0.05;
 
 /// Longest squall that is looked for, as a share of its record.
 const LONGEST: f64 = 0.2;
@@ -86,20 +89,18 @@ impl Effect for TransientDisturbance {
     }
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        let Manoeuvres { duration, spacing, span: [start, end], .. } = *about;
+        let Manoeuvres { spacing, span: [start, end], .. } = *about;
         let length = end - start;
+        let moment = Prior::normal(&MOMENT, 0.0, LARGE);
         if let Self::Lasting { .. } = self {
-            let instants = [start + SOONEST * length, end - SOONEST * length];
-            let lasting = Self::Lasting { edge: EDGE_ROWS * spacing };
-            let large = vec![0.05, 0.5 * (start + end)];
-            return Some(Proposal::new(lasting, vec![0.02, 0.05 * duration], Vec::new(), large).within(1, instants));
+            let instant = Prior::uniform([start + SOONEST * length, end - SOONEST * length]);
+            return Some(Proposal::new(Self::Lasting { edge: EDGE_ROWS * spacing }, [moment, instant]));
         }
-        let scale = vec![0.02, 0.05 * duration, 0.05 * duration];
-        let proposal = Proposal::new(*self, scale, Vec::new(), vec![0.05, 0.5 * (start + end), 0.1 * length]);
         // A squall comes and goes within the record.
         let margin = LONGEST * 0.25 * length;
-        let proposal = proposal.within(1, [start + margin, end - margin]);
-        Some(proposal.within(2, [(3.0 * spacing).max(0.5), LONGEST * length]))
+        let duration = [(3.0 * spacing).max(0.5), LONGEST * length];
+        let place = [Prior::uniform([start + margin, end - margin]), Prior::uniform(duration)];
+        Some(Proposal::new(*self, [moment, place[0], place[1]]))
     }
 
     fn places(&self) -> Places {

@@ -1,6 +1,6 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
 use crate::number::Real;
 
@@ -46,6 +46,9 @@ const MEASURED: [Parameter; 1] = [Parameter {
     odd: false,
 }];
 
+/// Moment of a moderate wind as an angle of the rudder, rad.
+const MODERATE: f64 = 0.025;
+
 impl Effect for WindMoment {
     fn id(&self) -> &'static str {
         "wind_moment"
@@ -78,8 +81,10 @@ impl Effect for WindMoment {
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
         match self {
-            Self::Steady => Some(Proposal::new(*self, vec![0.02, 0.02], vec![vec![0.0, 0.0]], vec![0.03, 0.03])),
-            Self::Measured => Some(Proposal::of_one(*self, 0.02 / about.wind_square?, 0.0, 2.0)),
+            Self::Steady => {
+                Some(Proposal::new(*self, STEADY.each_ref().map(|parameter| Prior::normal(parameter, 0.0, MODERATE))))
+            }
+            Self::Measured => Some(Proposal::of_one(*self, 2.0 * MODERATE / about.wind_square?)),
         }
     }
 

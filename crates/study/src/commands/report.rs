@@ -1,4 +1,4 @@
-//! `study report DIR`: tables and figures of a finished study, from what is stored and nothing else.
+//! `study report DIR`: tables and figures of a finished study or of a trace, from what is stored and nothing else.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -7,19 +7,23 @@ use campaign::folder::ResultFolder;
 use campaign::store::{self, Stored};
 use scenario::failure::Failure;
 
+use super::trace;
 use crate::options::{Common, StudyStyle};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
+use crate::views::trace_document::TRACE;
 
-/// Makes tables, figures and the pages of a finished study where its rows are, or in `--out`; with `open` shows the
-/// page in a browser, which is all that can be done for a folder without rows.
+/// Makes tables, figures and the pages of a finished study or of a trace where it is stored, or in `--out`; with `open`
+/// shows the page in a browser, which is all that can be done for a fit and a prediction.
 pub fn run(rows: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
     let folder = common.out.as_deref().unwrap_or(rows);
-    let is_analysis = ["fit.json", "trace.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
-    if !(open && is_analysis) {
+    let is_page = ["fit.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
+    if rows.join(TRACE).is_file() {
+        trace::show(&ResultFolder::hold(folder)?, rows, &style.style.theme()?, common, &[])?;
+    } else if !(open && is_page) {
         rebuild(rows, style, common)?;
     }
-    if open { show(&(if is_analysis { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
+    if open { show(&(if is_page { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
 }
 
 fn rebuild(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {

@@ -12,7 +12,7 @@ use crate::screen;
 use crate::views::document;
 use crate::views::fit_file::FitFile;
 use crate::views::predict_file::PredictFile;
-use crate::views::trace_file::TraceFile;
+use crate::views::trace_document::TraceDocument;
 
 /// Prints the schema.
 pub fn run(what: Described, common: &Common) -> Result<(), Failure> {
@@ -26,7 +26,7 @@ pub fn schema(what: Described) -> Schema {
         Described::Scenario => scenario::schema::schema(),
         Described::Sidecar => trial::sidecar::schema(),
         Described::Fit => of::<FitFile>(),
-        Described::Trace => of::<TraceFile>(),
+        Described::Trace => of::<TraceDocument>(),
         Described::Predict => of::<PredictFile>(),
         Described::Manifest => of::<Manifest>(),
     }

@@ -1,20 +1,24 @@
-//! `study trace`: close the loop on measured records. The analysis is that of the crate [`mod@trace`]; here its words,
-//! tables, figures and files are made.
+//! `study trace`: close the loop on measured records. The analysis is that of the crate [`mod@trace`]; its document and
+//! curves are written first, and everything else is made from them.
+
+use std::path::Path;
+
+use campaign::folder::ResultFolder;
+use report::Theme;
+use scenario::failure::{Failure, OnPath};
 
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
-use crate::views::trace_file::TraceFile;
-use crate::views::{document, missing_moment, trace_figures, trace_page, trace_tables};
+use crate::views::trace_curves::Curves;
+use crate::views::trace_document::{TRACE, TraceDocument};
+use crate::views::{trace_figures, trace_page, trace_tables};
+use crate::work::steady;
 use crate::work::trace::{settings, trace, without};
-use campaign::folder::ResultFolder;
-use scenario::failure::{Failure, OnPath};
 
-/// What other programs read.
-const TRACE: &str = "trace.json";
-
-/// Analyses the records, prints what was found, writes `trace.json`, `report.md`, `report.html` and figures.
+/// Analyses the records, prints what was found, writes `trace.json`, the curves, `report.md`, `report.html` and
+/// figures.
 ///
 /// Fails when a record cannot be read, and when the base cannot be fitted.
 pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
@@ -23,18 +27,33 @@ pub fn run(request: &TraceRequest, common: &Common) -> Result<(), Failure> {
     let trials = without(request, read_all(&request.trials, &request.reading, &mut warnings)?);
     let others = without(request, read_others(&request.validate, &request.reading, &mut warnings)?);
     warn_of_repetition(&trials, &others, &mut warnings);
-    let report = trace(&trials, &others, &settings(request), common.quiet, &mut warnings)?;
-    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&report.trials, "trace")))?;
-    let path = folder.path().join(TRACE);
-    let document = document::text(&TraceFile::of(&report)).on("describe", &path)?;
-    folder.keep(TRACE, document.as_str())?;
-    for shown in missing_moment::shown(&report) {
-        folder.write(&format!("{}.csv", shown.stem), missing_moment::table(shown.missing))?;
-    }
-    let drawn = trace_figures::draw(&report, &theme, &folder)?;
-    write_page(&folder, &trace_page::page(&report, &drawn))?;
-    let notes = format!("\nresults: {}", path.display());
-    let words = format!("{}\n", trace_page::words(&report));
-    let table = trace_tables::errors(&report);
-    screen::tell(common, &Told { words: [&words, ""], table: &table, notes: &notes, document: &document }, &warnings)
+    let traced = trace(&trials, &others, &settings(request), common.quiet, &mut warnings)?;
+    let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&trials, "trace")))?;
+    traced.write(&folder)?;
+    show(&folder, folder.path(), &theme, common, &warnings)
+}
+
+/// Draws a trace from the `trace.json` and the curves of a folder, into `into`, and tells what it says.
+///
+/// Fails when a file is missing or was not written by this program.
+pub fn show(
+    into: &ResultFolder,
+    from: &Path,
+    theme: &Theme,
+    common: &Common,
+    warnings: &[String],
+) -> Result<(), Failure> {
+    let path = from.join(TRACE);
+    let text = std::fs::read_to_string(&path).on("read", &path)?;
+    let document: TraceDocument = serde_json::from_str(&text)
+        .map_err(|error| Failure::input(format!("{}: {error}; make it again with `study trace`", path.display())))?;
+    let curves = Curves::of(&document, from)?;
+    let drawn = trace_figures::draw(&document, &curves, steady::of_ship(&document.ship).as_ref(), theme, into)?;
+    write_page(into, &trace_page::page(&document, &drawn))?;
+    let notes = format!("\nresults: {}", into.path().join(TRACE).display());
+    let [before, behind] = trace_page::words(&document);
+    let (fitted, judged) = document.errors();
+    let table = trace_tables::errors(&[fitted, judged].concat());
+    let told = Told { words: [&before, &behind], table: &table, notes: &notes, document: &text };
+    screen::tell(common, &told, warnings)
 }

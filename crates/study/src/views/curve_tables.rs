@@ -1,14 +1,15 @@
-//! The curves of figures as CSV, so that anyone can draw them again: `replay.csv`, `residual.csv`, `spectrum.csv` and
-//! `autocorrelation.csv`. They hold the data a figure was handed, of records with more than 4000 rows those that show.
+//! The curves of replays as CSV, so that anyone can draw them again. They hold the data a figure was handed, of records
+//! with more than 4000 rows those that show.
 
 use std::fmt::Write as _;
 
 use campaign::folder::ResultFolder;
 use campaign::store::Stored;
-use report::figures::{RecordFit, Replays, ResidualPanel, ResidualPanels};
+use report::figures::Replays;
 use report::{Curve, Origin};
 use scenario::failure::Failure;
 
+use super::columns::digits;
 use super::drawings::Drawing;
 use super::picture::slug;
 
@@ -18,11 +19,6 @@ type Column<'a> = (String, &'a Curve);
 /// A name as part of the name of a column.
 fn word(origin: &Origin) -> String {
     slug(origin.label()).replace('-', "_")
-}
-
-/// Seven significant digits, as few as are needed.
-fn digits(value: f64) -> String {
-    format!("{value:.6e}").parse::<f64>().map_or_else(|_| String::new(), |value| value.to_string())
 }
 
 fn finite(curve: &Curve) -> impl Iterator<Item = (f64, f64)> {
@@ -60,54 +56,6 @@ pub fn of_replays(replays: &Replays, rudder: Option<&Curve>) -> String {
         columns.push((format!("{name}_residual_deg"), &replay.residual));
     }
     table("t_s", &columns)
-}
-
-/// The same of a record with the models before and after, and the ends of the band of a model.
-pub fn of_record(data: &RecordFit) -> String {
-    let mut columns = vec![("heading_deg".to_owned(), &data.heading), ("rudder_deg".to_owned(), &data.rudder)];
-    for fit in &data.fits {
-        let name = word(&fit.origin);
-        columns.push((format!("{name}_heading_deg"), &fit.heading));
-        columns.push((format!("{name}_residual_deg"), &fit.residual));
-        for (end, curve) in ["lower95", "upper95"].iter().zip(fit.band.iter().flat_map(|band| &band.heading)) {
-            columns.push((format!("{name}_{end}_deg"), curve));
-        }
-    }
-    table("t_s", &columns)
-}
-
-/// What the panels of a residual are called: over time, and over anything else.
-const OF_RESIDUAL: [&str; 3] = ["residual", "spectrum", "autocorrelation"];
-
-/// The residual before and after with what it is drawn over, its spectrum, and its autocorrelation: stems and tables.
-///
-/// The panels are in the order of the figure: over time, heading, yaw rate and rudder; spectrum; autocorrelation.
-pub fn of_residual(data: &ResidualPanels) -> Vec<(&'static str, String)> {
-    let [over_time, heading, yaw_rate, rudder, spectrum, autocorrelation] = &data.panels[..] else {
-        return Vec::new();
-    };
-    // What is drawn over something else is told over time.
-    let over = [(heading, "heading_deg"), (yaw_rate, "yaw_rate_deg_s"), (rudder, "rudder_deg")];
-    let told: Vec<(String, Curve)> = over
-        .iter()
-        .flat_map(|(panel, quantity)| {
-            over_time.curves.iter().zip(&panel.curves).map(move |((origin, time), (_, other))| {
-                (format!("{}_{quantity}", word(origin)), Curve { x: time.x.clone(), y: other.x.clone() })
-            })
-        })
-        .collect();
-    let mut first = columns(over_time, "residual_deg");
-    first.extend(told.iter().map(|(name, curve)| (name.clone(), curve)));
-    let tables = [
-        table("t_s", &first),
-        table("frequency_hz", &columns(spectrum, "power_deg2_per_hz")),
-        table("lag_s", &columns(autocorrelation, "autocorrelation")),
-    ];
-    OF_RESIDUAL.into_iter().zip(tables).collect()
-}
-
-fn columns<'a>(panel: &'a ResidualPanel, quantity: &str) -> Vec<Column<'a>> {
-    panel.curves.iter().map(|(origin, curve)| (format!("{}_{quantity}", word(origin)), curve)).collect()
 }
 
 /// Writes the replays of every showcase beside their figure.

@@ -32,8 +32,6 @@ pub struct Amplitudes {
     pub method: &'static str,
     /// The records that are zig-zags and could be identified.
     pub records: Vec<Alone>,
-    /// Zig-zags of a fitted model, in the order of their amplitude; empty where there is no such model.
-    pub model: Vec<Alone>,
 }
 
 /// Radians a second over radians, as degrees.
@@ -105,14 +103,6 @@ pub fn amplitude(
         let factor = factors(ship)[place];
         let of = |own: &Alone| [own.k, own.t][place].scaled(factor);
         let joint = joint.map(|joint| joint[place].scaled(factor)).filter(|joint| joint.value.is_finite());
-        // Where an index changes its sign it has passed through infinity, and a line would lead through zero.
-        let y: Vec<f64> = all.model.iter().map(|own| of(own).value).collect();
-        let passes = |row: usize| row > 0 && y[row].signum() != y[row - 1].signum();
-        let broken = |values: &[f64]| -> Vec<f64> {
-            let rows = (0..values.len()).flat_map(|row| [passes(row).then_some(f64::NAN), Some(values[row])]);
-            rows.flatten().collect()
-        };
-        let x = |column: usize| all.model.iter().map(|own| to_deg(own.amplitudes[column])).collect::<Vec<f64>>();
         AmplitudePanel {
             title: name(letter, unit),
             points: all
@@ -125,7 +115,6 @@ pub fn amplitude(
                 })
                 .collect(),
             joint: joint.map(|own| Reference95 { value: own.value, band: own.ci95.unwrap_or([own.value; 2]) }),
-            model: [0, 1].map(|column| Curve { x: broken(&x(column)), y: broken(&y) }),
         }
     };
     Amplitude {

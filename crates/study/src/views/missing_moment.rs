@@ -1,105 +1,169 @@
-//! The yaw moment that the base lacks on every fitted record: its table, its figure, and the sentence on it.
+//! The yaw moment that the base lacks on every fitted record: its tables, its figure, and the sentence on it.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use ::trace::analysis::Verdict;
+use ::trace::Verdict;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
 use report::figures::{self, Banded, MomentPanel};
 use report::number::significant;
 use report::{Curve, Figure, Theme, symbol};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
-use super::picture::slug;
-use super::trace_report::TraceReport;
-use crate::records::{file_of, names};
+use super::columns::Columns;
 
 /// Panels of a figure at most.
 const PANELS: usize = 4;
 
-/// The missing moment of one record with the names of its files.
-pub struct Shown<'a> {
-    /// Number of the record.
-    pub number: usize,
-    /// Name of its files without an ending.
-    pub stem: String,
-    /// The moment.
-    pub missing: &'a MissingMoment,
+/// The moment of one record in `trace.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct MissingMomentEntry {
+    /// The record.
+    pub file: String,
+    /// Its name.
+    pub record: String,
+    /// The table of the smoothed moment.
+    pub moment: String,
+    /// The table of the curves over the channels.
+    pub curves: String,
+    /// Root mean square of the moment, as an angle of the rudder.
+    pub rms_rudder_deg: f64,
+    /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
+    pub explanation: Option<String>,
+    /// Whether the verdict is unexplained and no effect lies inside the bands of all curves that show something.
+    pub unlisted: bool,
+    /// Effects inside the bands of all curves that show something.
+    pub inside_all: Vec<String>,
+    /// Curves over the channels, the most likely first.
+    pub over: Vec<PanelEntry>,
 }
 
-/// Every fitted record with enough headings.
-pub fn shown<'a>(report: &'a TraceReport) -> Vec<Shown<'a>> {
-    let slugs = names(report.names.iter().map(|name| slug(name)));
-    let found = report.missing.iter().enumerate().filter_map(|(number, missing)| Some((number, missing.as_ref()?)));
-    found
-        .map(|(number, missing)| Shown { number, stem: format!("missing-moment-{}", slugs[number]), missing })
-        .collect()
+/// One curve.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct PanelEntry {
+    /// The channel.
+    pub channel: String,
+    /// Its column in the tables.
+    pub column: String,
+    /// Share of the variance of its walk that the curve takes away.
+    pub variance_share: Option<f64>,
+    /// Whether the band leaves zero.
+    pub shows: bool,
+    /// Effects inside the band everywhere.
+    pub inside: Vec<String>,
 }
 
-/// Name of a channel in a table, and its values there.
-fn column(over: Over, values: &[f64]) -> (&'static str, Vec<f64>) {
-    let (name, angle) = match over {
+/// Name of a channel in a table, and whether it is an angle.
+fn column(over: Over) -> (&'static str, bool) {
+    match over {
         Over::YawRate => ("yaw_rate_deg_s", true),
         Over::Rudder => ("rudder_deg", true),
         Over::Heading => ("heading_deg", true),
         Over::Speed => ("speed_m_s", false),
         Over::WindFrom => ("wind_relative_from_deg", true),
         Over::Sway => ("sway_m_s", false),
-    };
-    (name, values.iter().map(|&value| if angle { to_deg(value) } else { value }).collect())
+    }
+}
+
+fn shown(over: Over, values: &[f64]) -> Vec<f64> {
+    values.iter().map(|&value| if column(over).1 { to_deg(value) } else { value }).collect()
 }
 
 fn degrees(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values.into_iter().map(to_deg).collect()
 }
 
-/// The rows as CSV: moment with its band, and every channel that was recorded.
-pub fn table(missing: &MissingMoment) -> String {
-    let rows = 0..missing.time.len();
-    let end = |k: usize| degrees(rows.clone().map(|row| missing.interval(row)[k]));
-    let mut columns = vec![
-        ("t_s", missing.time.clone()),
-        ("moment_rudder_deg", degrees(missing.moment.iter().copied())),
-        ("sd_rudder_deg", degrees(missing.sd.iter().copied())),
-        ("lower95_rudder_deg", end(0)),
-        ("upper95_rudder_deg", end(1)),
-    ];
-    columns.extend(missing.channels.iter().map(|(over, values)| column(*over, values)));
-    let mut text = columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",") + "\n";
-    for row in rows {
-        let values: Vec<String> = columns.iter().map(|(_, values)| format!("{:.6}", values[row])).collect();
-        let _ = writeln!(text, "{}", values.join(","));
+/// The rows: moment with its band, what the explanation makes of it, and every channel that was recorded.
+pub fn over_time(missing: &MissingMoment) -> String {
+    let end = |k: usize| degrees((0..missing.time.len()).map(|row| missing.interval(row)[k]));
+    let mut columns = Columns::default();
+    columns.push("t_s", missing.time.clone());
+    columns.push("moment_rudder_deg", degrees(missing.moment.iter().copied()));
+    columns.push("sd_rudder_deg", degrees(missing.sd.iter().copied()));
+    columns.push("lower95_rudder_deg", end(0));
+    columns.push("upper95_rudder_deg", end(1));
+    if let Some(explained) = missing.explained.first() {
+        columns.push("explained_rudder_deg", degrees(explained.iter().copied()));
     }
-    text
+    for (over, values) in &missing.channels {
+        columns.push(column(*over).0, shown(*over, values));
+    }
+    columns.text()
 }
 
-/// The explanation that is drawn: the named effects together, else the best candidate alone.
-fn drawn(report: &TraceReport, missing: &MissingMoment) -> Option<String> {
-    let ids = identifiers(missing, [0])?;
-    Some(if report.analysis.explains_something() { ids } else { format!("best candidate: {ids}") })
+/// The curves over the channels: of each the places, the moment, the half width of its band, and the explanation.
+///
+/// A curve has mean zero over the rows; here it has the mean of the moment.
+pub fn over_channels(missing: &MissingMoment) -> String {
+    let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
+    let mut columns = Columns::default();
+    for panel in &missing.panels {
+        let (name, curve) = (column(panel.over).0, &panel.curve);
+        columns.push(name, shown(panel.over, &curve.x));
+        columns.push(format!("{name}_moment_rudder_deg"), degrees(curve.moment.iter().map(|value| value + mean)));
+        columns.push(format!("{name}_half_width95_rudder_deg"), degrees(curve.half_width.iter().copied()));
+        if let Some(other) = curve.others.first() {
+            columns.push(format!("{name}_explained_rudder_deg"), degrees(other.iter().map(|value| value + mean)));
+        }
+    }
+    columns.text()
 }
 
 /// Effects of some explanations, every one once.
-fn identifiers(missing: &MissingMoment, places: impl IntoIterator<Item = usize>) -> Option<String> {
-    let mut ids: Vec<&str> = Vec::new();
-    for place in places {
-        for (id, _) in missing.explanations.get(place).into_iter().flat_map(|one| &one.effects) {
-            if !ids.contains(id) {
-                ids.push(id);
-            }
+fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
+    let mut ids: Vec<String> = Vec::new();
+    for (id, _) in places.iter().filter_map(|place| missing.explanations.get(*place)).flat_map(|one| &one.effects) {
+        if !ids.iter().any(|known| known == id) {
+            ids.push((*id).to_owned());
         }
     }
-    (!ids.is_empty()).then(|| ids.join(", "))
+    ids
 }
 
-fn title_of(over: Over) -> String {
-    match over {
-        Over::YawRate => format!("yaw rate {} [°/s]", symbol("r")),
-        Over::Rudder => format!("rudder {} [°]", symbol("δ")),
-        Over::Heading => format!("heading {} [°]", symbol("ψ")),
-        Over::Speed => format!("speed {} [m/s]", symbol("U")),
-        Over::WindFrom => String::from("relative wind from [° off the bow]"),
-        Over::Sway => format!("sway velocity {} [m/s]", symbol("v")),
+/// The entry of a record of this file and name, whose tables have this stem.
+pub fn entry(
+    missing: &MissingMoment,
+    [file, name, stem]: [&str; 3],
+    verdict: Verdict,
+    explains: bool,
+) -> MissingMomentEntry {
+    let shows = |panel: &&Panel| panel.share.is_some() && !panel.curve.holds_nothing();
+    let telling = || missing.panels.iter().filter(shows);
+    let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
+    let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
+    let ids = effects(missing, &[0]).join(", ");
+    let explanation = if explains { ids.clone() } else { format!("best candidate: {ids}") };
+    let of_panel = |panel: &Panel| PanelEntry {
+        channel: panel.over.as_str().to_owned(),
+        column: column(panel.over).0.to_owned(),
+        variance_share: panel.share,
+        shows: !panel.curve.holds_nothing(),
+        inside: effects(missing, &panel.inside),
+    };
+    let square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;
+    MissingMomentEntry {
+        file: file.to_owned(),
+        record: name.to_owned(),
+        moment: format!("{stem}.csv"),
+        curves: format!("{stem}-curves.csv"),
+        rms_rudder_deg: to_deg(square.sqrt()),
+        explanation: (!ids.is_empty()).then_some(explanation),
+        unlisted: verdict == Verdict::Unexplained && inside.is_empty() && telling().next().is_some(),
+        inside_all: effects(missing, &inside),
+        over: missing.panels.iter().map(of_panel).collect(),
+    }
+}
+
+/// Title of an axis over a channel.
+fn title_of(column: &str) -> String {
+    match column {
+        "yaw_rate_deg_s" => format!("yaw rate {} [°/s]", symbol("r")),
+        "rudder_deg" => format!("rudder {} [°]", symbol("δ")),
+        "heading_deg" => format!("heading {} [°]", symbol("ψ")),
+        "speed_m_s" => format!("speed {} [m/s]", symbol("U")),
+        "sway_m_s" => format!("sway velocity {} [m/s]", symbol("v")),
+        _ => String::from("relative wind from [° off the bow]"),
     }
 }
 
@@ -111,148 +175,68 @@ fn percent(share: Option<f64>) -> String {
     }
 }
 
-/// The figure of one record.
-pub fn figure(report: &TraceReport, shown: &Shown, theme: &Theme) -> Figure {
-    let missing = shown.missing;
-    let known = drawn(report, missing);
-    let over_time = |values: Vec<f64>| Curve::new(missing.time.clone(), values);
-    let end = |k: usize| over_time(degrees((0..missing.time.len()).map(|row| missing.interval(row)[k])));
-    let of_known = |curves: &[Vec<f64>]| known.as_ref().and(curves.first().cloned());
+/// A table that was read.
+type Table = BTreeMap<String, Vec<f64>>;
+
+/// A column of a table; empty where there is none.
+fn values(table: &Table, name: &str) -> Vec<f64> {
+    table.get(name).cloned().unwrap_or_default()
+}
+
+/// The figure of one record, from its tables over time and over the channels.
+pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[Table; 2], theme: &Theme) -> Figure {
+    let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
+    let known = entry.explanation.as_ref();
+    let of_panel = |panel: &PanelEntry| {
+        let name = &panel.column;
+        let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
+        let over = |y: Vec<f64>| Curve::new(values(channels, name), y);
+        let (moment, half) = (of("moment"), of("half_width95"));
+        let edge = |side: f64| over(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
+        MomentPanel {
+            x_title: title_of(name),
+            head: if panel.shows { percent(panel.variance_share) } else { "zero lies inside the band".into() },
+            rows: Curve::new(values(time, name), values(time, "moment_rudder_deg")),
+            curve: Banded {
+                middle: over(moment.clone()),
+                lower: edge(-1.0),
+                upper: edge(1.0),
+                known: known.map(|_| over(of("explained"))),
+            },
+        }
+    };
     let data = figures::MissingMoment {
-        title: Some(format!("{}: yaw moment that the base lacks", report.names[shown.number])),
+        title: Some(format!("{}: yaw moment that the base lacks", entry.record)),
         time: Banded {
-            middle: over_time(degrees(missing.moment.iter().copied())),
-            lower: end(0),
-            upper: end(1),
-            known: of_known(&missing.explained).map(|values| over_time(degrees(values))),
+            middle: over_time("moment_rudder_deg"),
+            lower: over_time("lower95_rudder_deg"),
+            upper: over_time("upper95_rudder_deg"),
+            known: known.map(|_| over_time("explained_rudder_deg")),
         },
-        panels: missing.panels.iter().take(PANELS).map(|panel| moment_panel(missing, panel, known.is_some())).collect(),
-        known,
+        panels: entry.over.iter().take(PANELS).map(of_panel).collect(),
+        known: known.cloned(),
     };
     figures::missing_moment(&data, theme)
 }
 
-fn moment_panel(missing: &MissingMoment, panel: &Panel, known: bool) -> MomentPanel {
-    let (_, rows) = missing
-        .channels
-        .iter()
-        .find(|(over, _)| *over == panel.over)
-        .map_or_else(|| ("", Vec::new()), |(over, values)| column(*over, values));
-    let (_, x) = column(panel.over, &panel.curve.x);
-    // A curve has mean zero over the rows; it is drawn where they are.
-    let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
-    let curve =
-        |values: &mut dyn Iterator<Item = f64>| Curve::new(x.clone(), degrees(values.map(|value| value + mean)));
-    let edges = || panel.curve.moment.iter().zip(&panel.curve.half_width);
-    let others = panel.curve.others.first().filter(|_| known);
-    MomentPanel {
-        x_title: title_of(panel.over),
-        head: match panel.curve.holds_nothing() {
-            true => String::from("zero lies inside the band"),
-            false => percent(panel.share),
-        },
-        rows: Curve::new(rows, degrees(missing.moment.iter().copied())),
-        curve: Banded {
-            middle: curve(&mut panel.curve.moment.iter().copied()),
-            lower: curve(&mut edges().map(|(m, half)| m - half)),
-            upper: curve(&mut edges().map(|(m, half)| m + half)),
-            known: others.map(|other| curve(&mut other.iter().copied())),
-        },
-    }
-}
-
-/// Curves that are not zero throughout, the most likely first.
-fn telling(missing: &MissingMoment) -> impl Iterator<Item = &Panel> + Clone {
-    missing.panels.iter().filter(|panel| panel.share.is_some() && !panel.curve.holds_nothing())
-}
-
-/// Explanations inside the bands of all curves that tell something.
-fn inside_all(missing: &MissingMoment) -> Vec<usize> {
-    let holds = |place: &usize| telling(missing).all(|panel| panel.inside.contains(place));
-    (0..missing.explanations.len()).filter(holds).collect()
-}
-
-/// Whether something is left unexplained and has the shape of no effect on the list.
-fn is_unlisted(report: &TraceReport, missing: &MissingMoment) -> bool {
-    let shows = telling(missing).next().is_some();
-    shows && report.analysis.verdict == Verdict::Unexplained && inside_all(missing).is_empty()
-}
-
 /// What is said of the moment of one record.
-pub fn sentence(report: &TraceReport, shown: &Shown) -> String {
-    let missing = shown.missing;
-    let mean_square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;
-    let (name, size) = (&report.names[shown.number], significant(to_deg(mean_square.sqrt()), 2));
+pub fn sentence(entry: &MissingMomentEntry) -> String {
+    let (name, size) = (&entry.record, significant(entry.rms_rudder_deg, 2));
     let begin = format!("{name}: the base lacks a yaw moment of {size}° of rudder (rms)");
-    let Some(best) = telling(missing).next() else {
+    let telling = || entry.over.iter().filter(|panel| panel.shows && panel.variance_share.is_some());
+    let Some(best) = telling().next() else {
         return format!("{begin}; over no channel does its curve leave the band about zero.");
     };
-    let list = |places: &[usize]| {
-        identifiers(missing, places.iter().copied()).unwrap_or_else(|| String::from("no effect on the list"))
-    };
-    let (over, share) = (best.over.as_str(), percent(best.share));
+    let list = |ids: &[String]| if ids.is_empty() { "no effect on the list".to_owned() } else { ids.join(", ") };
+    let (over, share) = (&best.channel, percent(best.variance_share));
     let mut text = format!(
         "{begin}; its curve over the {over} {share} of its variance, and inside the band: {}",
         list(&best.inside)
     );
-    let count = telling(missing).count();
+    let count = telling().count();
     if count > 1 {
-        let _ = write!(
-            text,
-            "; inside the bands of all {count} channels that show something: {}",
-            list(&inside_all(missing))
-        );
+        let _ =
+            write!(text, "; inside the bands of all {count} channels that show something: {}", list(&entry.inside_all));
     }
-    text + if is_unlisted(report, missing) { ". Unlisted, looks like this." } else { "." }
-}
-
-/// The moment of one record in `trace.json`.
-#[derive(Debug, Serialize, schemars::JsonSchema)]
-pub struct MissingMomentEntry {
-    /// The record.
-    file: String,
-    /// The table of the smoothed moment.
-    moment: String,
-    /// Whether the verdict is unexplained and no effect lies inside the bands of all curves that show something.
-    unlisted: bool,
-    /// Curves over the channels, the most likely first.
-    over: Vec<PanelEntry>,
-}
-
-/// One curve.
-#[derive(Debug, Serialize, schemars::JsonSchema)]
-pub struct PanelEntry {
-    channel: &'static str,
-    /// Share of the variance of its walk that the curve takes away.
-    variance_share: Option<f64>,
-    /// Whether the band leaves zero.
-    shows: bool,
-    /// Effects inside the band everywhere.
-    inside: Vec<&'static str>,
-}
-
-/// The entries of all records.
-pub fn entries(report: &TraceReport) -> Vec<MissingMomentEntry> {
-    let of_panel = |missing: &MissingMoment, panel: &Panel| {
-        let mut inside: Vec<&'static str> = Vec::new();
-        let effects = panel.inside.iter().flat_map(|&place| &missing.explanations[place].effects);
-        effects.for_each(|(id, _)| {
-            if !inside.contains(id) {
-                inside.push(id)
-            }
-        });
-        PanelEntry {
-            channel: panel.over.as_str(),
-            variance_share: panel.share,
-            shows: !panel.curve.holds_nothing(),
-            inside,
-        }
-    };
-    let entry = |one: Shown| MissingMomentEntry {
-        file: file_of(&report.trials[one.number]).0.to_owned(),
-        moment: format!("{}.csv", one.stem),
-        unlisted: is_unlisted(report, one.missing),
-        over: one.missing.panels.iter().map(|panel| of_panel(one.missing, panel)).collect(),
-    };
-    shown(report).into_iter().map(entry).collect()
+    text + if entry.unlisted { ". Unlisted, looks like this." } else { "." }
 }

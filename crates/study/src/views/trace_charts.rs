@@ -96,6 +96,12 @@ const SMALLEST: f64 = 1.0;
 /// Points of a curve of theory.
 const POINTS: usize = 80;
 
+/// Support from which an effect is named: even odds among a dozen candidates become nineteen to one.
+const ODDS: f64 = 10.0;
+
+/// Rows of a usual record, whose logarithm every parameter pays.
+const ROWS: f64 = 300.0;
+
 /// Numbers of parameters whose power is drawn.
 const PARAMETERS: [u32; 3] = [1, 2, 3];
 
@@ -119,10 +125,8 @@ pub fn power(lines: &[TraceSummary]) -> Option<Power> {
         .filter(|series| !series.points.is_empty())
         .collect();
     let largest = series.iter().flat_map(|series| &series.points).map(|point| point.0).reduce(f64::max)?;
-    let trace = ::trace::Settings::default().thresholds;
     let theory = PARAMETERS.map(|freedom| {
-        // ln n of a record of 300 rows.
-        let limit = trace.gain + f64::from(freedom) * 300f64.ln();
+        let limit = ODDS + f64::from(freedom) * ROWS.ln();
         let sizes: Vec<f64> =
             (0..POINTS).map(|k| SMALLEST * (largest / SMALLEST).powf(k as f64 / (POINTS - 1) as f64)).collect();
         let power: Vec<f64> = sizes.iter().map(|&size| 100.0 * exceeds(freedom, size, limit)).collect();

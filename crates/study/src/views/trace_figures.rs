@@ -1,30 +1,31 @@
-//! Figures of an analysis: every record with the model before and after, the residuals from several sides, the moment
-//! that the base lacks, and the candidates with the threshold.
+//! Figures of a trace, from its document and its curves: every record with the model before and after, errors on
+//! records that were not fitted, the evidence, the moment that the base lacks, and the residuals from several sides.
 
-use ::trace::analysis::{Analysis, Judged, OnRecord, Outcome, Step, StepOnRecord};
 use ::trace::diagnostics::{Line, Series, autocorrelation, spectrum};
-use ::trace::replay_errors::replayed_zigzag;
+use ::trace::document::{BeforeAfter, Outcome};
+use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
+use campaign::curves::curve;
+use campaign::folder::ResultFolder;
 use identify::replay::Replay;
+use predict::known::Seen;
+use predict::steady::SteadyCurve;
 use rayon::prelude::*;
 use report::figures::{
-    self, Evidence, EvidenceBar, EvidenceStep, Fate, Fit, FitBand, OvershootReplays, RecordFit, ReplayedOvershoot,
-    Replays, ResidualPanel, ResidualPanels,
+    self, Dot, DotColumn, DotPlot, Evidence, EvidenceRow, Fate, Fit, FitBand, OvershootReplays, RecordFit, Reference95,
+    ReplayedOvershoot, ResidualPanel, ResidualPanels, Scale,
 };
+use report::number::significant;
 use report::{Curve, Figure, Origin, Theme};
+use scenario::failure::Failure;
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
-use super::curve_tables;
-use super::index_figures;
-use super::missing_moment;
-use super::picture::{first_failure, slug, write_figure};
+use super::picture::{first_failure, write_figure};
 use super::predict_figures::steady;
-use super::trace_page;
-use super::trace_report::TraceReport;
-use crate::records::names;
-use campaign::curves::curve;
-use campaign::folder::ResultFolder;
-use scenario::failure::Failure;
+use super::trace_curves::{Curves, TracedRecord};
+use super::trace_document::{RecordEntry, TraceDocument, slugs, suffix};
+use super::trace_tables::{horizon, term};
+use super::{index_figures, missing_moment};
 
 /// Lags of the autocorrelation, at least where the record has them and at most.
 const LAGS: [usize; 2] = [60, 4000];
@@ -32,125 +33,230 @@ const LAGS: [usize; 2] = [60, 4000];
 /// Lines of a spectrum whose frequencies differ by no more than this factor are averaged into one.
 const LINE: f64 = 1.06;
 
-/// Stem, caption and what is drawn.
-type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
-
-/// Draws everything into `folder` and returns stems and captions.
-pub fn draw(report: &TraceReport, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
-    let analysis = &report.analysis;
-    let trials: Vec<&Trial> = report.trials.iter().chain(&report.others).collect();
-    let judged: Vec<&Judged> = analysis.identification.iter().chain(&analysis.validation).collect();
-    // Two names may make one slug.
-    let slugs = names(report.names.iter().map(|name| slug(name)));
-    let curves: Vec<(RecordFit, Option<ResidualPanels>)> = trials
-        .par_iter()
-        .zip(&judged)
-        .enumerate()
-        .map(|(number, (&trial, &judged))| {
-            let (name, held_out) = (&report.names[number], number >= report.trials.len());
-            // Held-out records are judged, not studied.
-            let residual = (!held_out).then(|| residual(trial, judged, name));
-            (record(trial, judged, trace_page::title(judged, name, held_out)), residual)
-        })
-        .collect();
-    let mut drawings: Vec<Drawing> = Vec::new();
-    let suffix = |number: usize| if number == 0 { String::new() } else { format!("-{}", slugs[number]) };
-    for (number, (record, residual)) in curves.iter().enumerate() {
-        folder.write(&format!("replay{}.csv", suffix(number)), curve_tables::of_record(record))?;
-        for (stem, table) in residual.iter().flat_map(curve_tables::of_residual) {
-            folder.write(&format!("{stem}{}.csv", suffix(number)), table)?;
-        }
-    }
-    for (number, (&trial, &judged)) in trials.iter().zip(&judged).enumerate() {
-        let name = &report.names[number];
-        let suffix = suffix(number);
-        let (record, residual) = &curves[number];
-        let title = record.title.as_deref().unwrap_or_default();
-        let caption = format!("{title}: heading, residual and rudder, with the 95 % band of the model after.");
-        drawings.push((format!("record{suffix}"), caption, Box::new(move || figures::record_fit(record, theme))));
-        let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
-        let of_record = name.clone();
-        let draw = move || {
-            let models = [(Origin::Before, &judged.before), (Origin::After, &judged.after)];
-            let fits = models.map(|(origin, on)| index_figures::phase_of(origin, &on.replay)).into();
-            figures::phase_plane(&index_figures::phase_plane(of_record.clone(), trial, fits), theme)
-        };
-        drawings.push((format!("phase{suffix}"), caption, Box::new(draw)));
-        if let Some(steps) = steps(analysis, number, trial, name) {
-            let caption = format!(
-                "{name}: the recorded rudder replayed with the base and after every effect that was added; in `report.html` each \
-                 can be switched off and on."
-            );
-            drawings.push((format!("steps{suffix}"), caption, Box::new(move || figures::replays(&steps, theme))));
-        }
-        let Some(residual) = residual else { continue };
-        let caption = format!(
-            "{name}: the residual against heading, yaw rate, rudder and time, its spectrum and autocorrelation."
-        );
-        drawings.push((
-            format!("residual{suffix}"),
-            caption,
-            Box::new(move || figures::residual_panels(residual, theme)),
-        ));
-    }
-    for shown in missing_moment::shown(report) {
-        let caption = missing_moment::sentence(report, &shown);
-        let stem = shown.stem.clone();
-        let draw = move || missing_moment::figure(report, &shown, theme);
-        drawings.push((stem, caption, Box::new(draw)));
-    }
-    drawings.extend(of_the_ship(report, theme));
-    let caption = "Above: the error of the heading on the fitted records after every effect that was added, in the order \
-                   of discovery, and on held-out records. Below: what every other candidate would gain beside them; colours \
-                   say what became of it.";
-    drawings.push((String::from("candidates"), caption.into(), Box::new(move || candidates(report, theme))));
-    first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
-    Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
+/// Where a figure stands in the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// A fitted record.
+    Record,
+    /// Records that were not fitted.
+    HeldOut,
+    /// What the effects rest on.
+    Evidence,
+    /// The moment that the base lacks.
+    Moment,
+    /// All else.
+    Further,
 }
 
-/// Figures of the model and not of a record: steady turns, K and T over the amplitude, overshoots.
-fn of_the_ship<'a>(report: &'a TraceReport, theme: &'a Theme) -> Vec<Drawing<'a>> {
-    let mut drawings: Vec<Drawing> = Vec::new();
-    if let Some((curves, seen)) = &report.steady {
+/// A figure that was drawn.
+pub struct Drawn {
+    /// Where it stands.
+    pub part: Part,
+    /// Stem of its files.
+    pub stem: String,
+    /// What is to be seen.
+    pub caption: String,
+}
+
+/// A figure to draw.
+type Drawing<'a> = (Drawn, Box<dyn Fn(&Theme) -> Figure + Sync + Send + 'a>);
+
+fn drawing<'a>(
+    part: Part,
+    stem: impl Into<String>,
+    caption: impl Into<String>,
+    draw: impl Fn(&Theme) -> Figure + Sync + Send + 'a,
+) -> Drawing<'a> {
+    (Drawn { part, stem: stem.into(), caption: caption.into() }, Box::new(draw))
+}
+
+/// Draws everything into `folder`; `turns` are the steady turns of the model. Fails when a file cannot be written.
+pub fn draw(
+    document: &TraceDocument,
+    curves: &Curves,
+    turns: Option<&(Vec<SteadyCurve>, Seen)>,
+    theme: &Theme,
+    folder: &ResultFolder,
+) -> Result<Vec<Drawn>, Failure> {
+    let names: Vec<String> = document.records.iter().map(|record| record.name.clone()).collect();
+    let mut drawings = of_the_trace(document, curves, turns);
+    let (fitted, judged) = document.errors();
+    let errors = fitted.iter().chain(judged.iter().filter(|one| one.used == "held out")).map(|one| one.errors);
+    for (number, ((entry, record), errors)) in document.records.iter().zip(&curves.records).zip(errors).enumerate() {
+        drawings.extend(of_record(entry, record, errors, &suffix(&names, number)));
+    }
+    for (entry, tables) in document.missing_moment.iter().zip(&curves.moments) {
+        let number = names.iter().position(|name| *name == entry.record).unwrap_or(0);
+        let stem = format!("missing-moment-{}", slugs(&names)[number]);
+        let draw = move |theme: &Theme| missing_moment::figure(entry, tables, theme);
+        drawings.push(drawing(Part::Moment, stem, missing_moment::sentence(entry), draw));
+    }
+    first_failure(drawings.par_iter().map(|(drawn, draw)| write_figure(&draw(theme), folder, &drawn.stem)))?;
+    Ok(drawings.into_iter().map(|(drawn, _)| drawn).collect())
+}
+
+/// Figures of all records together, and of the model.
+fn of_the_trace<'a>(
+    document: &'a TraceDocument,
+    curves: &'a Curves,
+    turns: Option<&'a (Vec<SteadyCurve>, Seen)>,
+) -> Vec<Drawing<'a>> {
+    let mut drawings = Vec::new();
+    if let Some(data) = held_out(document) {
+        let caption = "Error of the heading on records that were not fitted, before and after: of the whole replay, \
+                       and of replays that begin anew every 20 and 60 s.";
+        drawings.push(drawing(Part::HeldOut, "held-out", caption, move |theme| figures::dots(&data, theme)));
+    }
+    let caption =
+        "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.";
+    let data = evidence(document);
+    drawings.push(drawing(Part::Evidence, "evidence", caption, move |theme| figures::evidence(&data, theme)));
+    let rows = overshoots(document, curves);
+    if !rows.is_empty() {
+        let caption = "Overshoots of the records and of the replays of their rudder before and after, with the \
+                       limits of IMO MSC.137(76) where one is for this zig-zag.";
+        let title = Some(String::from("Overshoots of the records and of their replays"));
+        let data = OvershootReplays { title, rows };
+        let draw = move |theme: &Theme| figures::overshoot_replays(&data, theme);
+        drawings.push(drawing(Part::Further, "overshoots", caption, draw));
+    }
+    if let Some((curves, seen)) = turns {
         let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the \
                        records cannot tell from it; grey: the range of the records.";
-        let draw = move || figures::steady_curves(&steady(curves, *seen), theme);
-        drawings.push((String::from("steady"), caption.to_owned(), Box::new(draw)));
-    }
-    if let Some(all) = &report.amplitudes {
-        let caption = "K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag, \
-                       and what such a fit finds in zig-zags of the model.";
-        let base = &report.analysis.base;
-        let title = format!("{} records", all.records.len());
-        let data = index_figures::amplitude(title, all, Some([base.K(), base.T()]), report.ship);
-        drawings.push((
-            String::from("amplitude"),
-            caption.to_owned(),
-            Box::new(move || figures::amplitude(&data, theme)),
-        ));
-    }
-    let rows = overshoot_rows(report);
-    if !rows.is_empty() {
-        let caption = "Overshoots of the records and of the replays of their rudder before and after, with the limits of \
-                       IMO MSC.137(76) where one is for this zig-zag.";
-        let data =
-            OvershootReplays { title: Some(String::from("Overshoots of the records and of their replays")), rows };
-        let draw = move || figures::overshoot_replays(&data, theme);
-        drawings.push((String::from("overshoots"), caption.to_owned(), Box::new(draw)));
+        let draw = move |theme: &Theme| figures::steady_curves(&steady(curves, *seen), theme);
+        drawings.push(drawing(Part::Further, "steady", caption, draw));
     }
     drawings
 }
 
+/// Figures of a record. Held-out records are judged, not studied.
+fn of_record<'a>(
+    entry: &'a RecordEntry,
+    record: &'a TracedRecord,
+    errors: &BeforeAfter,
+    suffix: &str,
+) -> Vec<Drawing<'a>> {
+    let name = &entry.name;
+    let ratio = significant(errors.after.heading_rmse_deg / errors.before.heading_rmse_deg, 2);
+    let held = if entry.held_out { ", held out" } else { "" };
+    let data = record_fit(record, errors, format!("{name}{held}: heading error after / before {ratio}"));
+    let caption = format!("{name}{held}: heading, residual and rudder, with the 95 % band of the model after.");
+    let part = if entry.held_out { Part::HeldOut } else { Part::Record };
+    let mut drawings =
+        vec![drawing(part, format!("record{suffix}"), caption, move |theme| figures::record_fit(&data, theme))];
+    let caption = format!("{name}: yaw rate against heading, with the replays of the model before and after.");
+    let draw = move |theme: &Theme| {
+        let fits = models(record).map(|(origin, replay)| index_figures::phase_of(origin, replay)).into();
+        figures::phase_plane(&index_figures::phase_plane(name.clone(), &record.trial, fits), theme)
+    };
+    drawings.push(drawing(Part::Further, format!("phase{suffix}"), caption, draw));
+    if !entry.held_out {
+        let caption = format!(
+            "{name}: the residual against time, heading, yaw rate and rudder, its spectrum and autocorrelation."
+        );
+        let draw = move |theme: &Theme| figures::residual_panels(&residual(record, name), theme);
+        drawings.push(drawing(Part::Further, format!("residual{suffix}"), caption, draw));
+    }
+    drawings
+}
+
+fn models(record: &TracedRecord) -> [(Origin, &Replay); 2] {
+    let [before, after] = &record.replays;
+    [(Origin::Before, before), (Origin::After, after)]
+}
+
+/// A record with the models before and after.
+fn record_fit(record: &TracedRecord, errors: &BeforeAfter, title: String) -> RecordFit {
+    let (trial, after) = (&record.trial, &record.replays[1]);
+    // The ends of the band about some headings.
+    let about = |middle: &dyn Fn(usize) -> f64| -> Option<[Curve; 2]> {
+        let end = |side: f64, band: &[f64]| -> Vec<f64> {
+            band.iter().enumerate().map(|(row, half)| middle(row) + side * half).collect()
+        };
+        record.band.as_ref().map(|band| [-1.0, 1.0].map(|side| curve(&after.time, &end(side, band))))
+    };
+    let band = about(&|row| after.heading[row]).zip(about(&|_| 0.0));
+    let fit = |((origin, replay), rms): ((Origin, &Replay), f64)| Fit {
+        band: if origin == Origin::After {
+            band.clone().map(|(heading, residual)| FitBand { heading, residual })
+        } else {
+            None
+        },
+        origin,
+        heading: curve(&replay.time, &replay.heading),
+        residual: curve(&replay.time, &replay.residual),
+        rms_deg: Some(rms),
+    };
+    let sizes = [errors.before.heading_rmse_deg, errors.after.heading_rmse_deg];
+    RecordFit {
+        title: Some(title),
+        heading: curve(trial.time(), trial.heading()),
+        rudder: curve(trial.time(), trial.rudder()),
+        fits: models(record).into_iter().zip(sizes).map(fit).collect(),
+    }
+}
+
+/// Errors on records that were not fitted; `None` where there are none.
+fn held_out(document: &TraceDocument) -> Option<DotPlot> {
+    let (_, judged) = document.errors();
+    let column = |x_title: String, of: &dyn Fn(&::trace::document::ErrorsEntry) -> Option<f64>| {
+        let row = |errors: &BeforeAfter| -> Vec<Dot> {
+            let pairs = [(Origin::Before, &errors.before), (Origin::After, &errors.after)];
+            let dot = |(origin, own)| Some(Dot { origin, x: of(own)?, interval: None, hollow: false });
+            pairs.into_iter().filter_map(dot).collect()
+        };
+        let rows = judged.iter().map(|one| row(one.errors)).collect();
+        // From zero, so that a ratio can be seen.
+        let reference = Some(Reference95 { value: 0.0, band: [0.0; 2] });
+        DotColumn { x_title, scale: Scale::Linear, reference, limit: None, rows }
+    };
+    let mut columns = vec![column(String::from("whole replay [°]"), &|own| Some(own.heading_rmse_deg))];
+    columns.extend(HORIZONS.map(|length| column(format!("every {length:.0} s [°]"), &move |own| horizon(own, length))));
+    (!judged.is_empty()).then(|| DotPlot {
+        title: Some(String::from("Error of the heading on records that were not fitted")),
+        names: judged.iter().map(|one| format!("{}, {}", one.name, one.used)).collect(),
+        columns,
+        ..DotPlot::default()
+    })
+}
+
+/// Every effect with its probability and support: the named ones first, then the others by their probability.
+fn evidence(document: &TraceDocument) -> Evidence {
+    let trace = &document.trace;
+    let named = trace.effects.iter().map(|one| EvidenceRow {
+        name: term(&one.id, &one.form, one.only.as_ref()),
+        probability: one.probability,
+        support: Some(-one.delta_bic),
+        fate: Fate::Added,
+    });
+    let others = trace.candidates.iter().filter(|one| trace.effects.iter().all(|effect| effect.id != one.id));
+    let mut others: Vec<EvidenceRow> = others
+        .map(|one| {
+            let best = one.forms.iter().max_by(|own, other| own.probability.total_cmp(&other.probability));
+            EvidenceRow {
+                name: best.map_or_else(|| one.id.clone(), |best| term(&one.id, &best.form, best.only.as_ref())),
+                probability: one.probability,
+                support: one.delta_bic.map(|change| -change),
+                fate: match one.outcome {
+                    Outcome::Added => Fate::Added,
+                    Outcome::Alias => Fate::Alias,
+                    Outcome::Rejected => Fate::Rejected,
+                    Outcome::NotObservable => Fate::NotObservable,
+                },
+            }
+        })
+        .collect();
+    others.sort_by(|one, other| other.probability.total_cmp(&one.probability));
+    Evidence { title: Some(document.title()), rows: named.chain(others).collect() }
+}
+
 /// The first two overshoots of every zig-zag, which are those that have a limit.
-fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
-    let analysis = &report.analysis;
-    let trials = report.trials.iter().chain(&report.others);
-    let judged = analysis.identification.iter().chain(&analysis.validation);
+fn overshoots(document: &TraceDocument, curves: &Curves) -> Vec<ReplayedOvershoot> {
     let mut rows = Vec::new();
-    for (((trial, judged), name), ship) in trials.zip(judged).zip(&report.names).zip(&report.sailed_by) {
+    for (entry, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
         let Ok(measured) = ZigZag::of(trial) else { continue };
-        let replays = [&judged.before, &judged.after].map(|on| replayed_zigzag(trial, &on.replay));
-        let limits: Vec<_> = ship.map(|ship| imo::criteria(&measured, ship)).unwrap_or_default();
+        let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
+        let limits: Vec<_> = entry.particulars().map(|ship| imo::criteria(&measured, ship)).unwrap_or_default();
         for (number, word) in [(0, "first"), (1, "second")] {
             let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
             let Some(angle) = of(&measured) else { continue };
@@ -159,7 +265,7 @@ fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
             });
             let [before, after] = replays.each_ref().map(|replay| replay.as_ref().and_then(of));
             rows.push(ReplayedOvershoot {
-                label: format!("{name}, {word}"),
+                label: format!("{}, {word}", entry.name),
                 measured: Some(angle),
                 before,
                 after,
@@ -170,124 +276,63 @@ fn overshoot_rows(report: &TraceReport) -> Vec<ReplayedOvershoot> {
     rows
 }
 
-/// A record with the models before and after.
-fn record(trial: &Trial, judged: &Judged, title: String) -> RecordFit {
-    let fit = |origin: Origin, on: &OnRecord| {
-        let Replay { time, heading, residual, .. } = &on.replay;
-        Fit {
-            origin,
-            heading: curve(time, heading),
-            residual: curve(time, residual),
-            rms_deg: Some(to_deg(on.errors.heading)),
-            band: None,
-        }
-    };
-    // The ends of the band about some headings.
-    let about = |middle: &dyn Fn(usize) -> f64| -> Option<[Curve; 2]> {
-        let OnRecord { replay, band, .. } = &judged.after;
-        let end = |side: f64, band: &[f64]| -> Vec<f64> {
-            band.iter().enumerate().map(|(row, half)| middle(row) + side * half).collect()
-        };
-        band.as_ref().map(|band| [-1.0, 1.0].map(|side| curve(&replay.time, &end(side, band))))
-    };
-    let (before, after) = (&judged.before, &judged.after);
-    let band = about(&|row| after.replay.heading[row]).zip(about(&|_| 0.0));
-    let band = band.map(|(heading, residual)| FitBand { heading, residual });
-    RecordFit {
-        title: Some(title),
-        heading: curve(trial.time(), trial.heading()),
-        rudder: curve(trial.time(), trial.rudder()),
-        fits: vec![fit(Origin::Before, before), Fit { band, ..fit(Origin::After, after) }],
-    }
-}
-
-/// A fitted record with the replays of all steps; `None` for a held-out record, and where nothing was added.
-fn steps(analysis: &Analysis, place: usize, trial: &Trial, name: &str) -> Option<Replays> {
-    let replay = |(number, step): (usize, &Step)| {
-        let StepOnRecord { time, heading, residual } = step.records.get(place)?;
-        let label = step.added.map_or_else(|| String::from("base"), |(id, ..)| format!("+ {id}"));
-        let square: f64 = residual.iter().map(|left| left * left).sum();
-        Some(figures::Replay {
-            origin: Origin::Series { label, number },
-            heading: curve(time, heading),
-            residual: curve(time, residual),
-            rms_deg: Some(to_deg((square / residual.len() as f64).sqrt())),
-        })
-    };
-    let replays: Vec<figures::Replay> = analysis.steps.iter().enumerate().filter_map(replay).collect();
-    let record = curve(trial.time(), trial.heading());
-    (replays.len() > 1).then(|| Replays { title: Some(name.to_owned()), record, truth: None, replays })
-}
-
 /// The residual before and after from all sides.
-fn residual(trial: &Trial, judged: &Judged, name: &str) -> ResidualPanels {
-    let first = trial.time().partition_point(|&t| t < judged.before.replay.time[0]);
-    let models = [(Origin::Before, &judged.before.replay), (Origin::After, &judged.after.replay)];
+fn residual(record: &TracedRecord, name: &str) -> ResidualPanels {
+    let trial: &Trial = &record.trial;
+    let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
     let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
-    let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| ResidualPanel {
+    let panel = |x_title: &str, y_title: &str, of: &dyn Fn(&Replay) -> Curve| ResidualPanel {
         x_title: x_title.to_owned(),
-        y_title: String::from("residual [°]"),
+        y_title: y_title.to_owned(),
         logarithmic: false,
         joined: false,
         of_frequency: false,
         mark: None,
-        curves: models
-            .iter()
-            .map(|(origin, replayed)| (origin.clone(), thinned_pairs(x(replayed), degrees(&replayed.residual))))
-            .collect(),
+        curves: models(record).map(|(origin, replay)| (origin, of(replay))).into(),
         band: None,
     };
-    let rudder = |replayed: &Replay| degrees(&trial.rudder()[first..first + replayed.time.len()]);
-    let series = |replayed: &Replay| Series::new(&replayed.time, &degrees(&replayed.residual), trial.sampling_period());
+    let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
+        panel(x_title, "residual [°]", &|replay| thinned(x(replay), degrees(&replay.residual)))
+    };
+    let series = |replay: &Replay| Series::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
-    let lines = ResidualPanel {
-        x_title: String::from("frequency [Hz]"),
-        y_title: String::from("power [°²/Hz]"),
-        logarithmic: true,
-        joined: true,
-        of_frequency: true,
-        mark: period.map(f64::recip),
-        curves: models.iter().map(|(origin, replayed)| (origin.clone(), power(&series(replayed)))).collect(),
-        band: None,
-    };
-    let rows = series(models[0].1).values.len();
+    let rows = series(&record.replays[0]).values.len();
     let band = 1.96 / (rows as f64).sqrt();
-    let correlations = ResidualPanel {
-        x_title: String::from("lag [s]"),
-        y_title: String::from("autocorrelation"),
-        logarithmic: false,
-        joined: true,
-        of_frequency: false,
-        mark: period,
-        curves: models
-            .iter()
-            .map(|(origin, replayed)| {
-                let series = series(replayed);
-                // A little more than a period, which shows at its lag what the manoeuvre repeats.
-                let wanted = period.map_or(rows / 3, |period| (1.1 * period / series.spacing) as usize);
-                let points = autocorrelation(&series, wanted.clamp(LAGS[0], LAGS[1]).min(rows / 2)).into_iter();
-                let (lags, values): (Vec<f64>, Vec<f64>) =
-                    points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
-                (origin.clone(), Curve::new(lags, values))
-            })
-            .collect(),
-        band: Some([-band, band]),
+    let lags = |replay: &Replay| {
+        let series = series(replay);
+        // A little more than a period, which shows at its lag what the manoeuvre repeats.
+        let wanted = period.map_or(rows / 3, |period| (1.1 * period / series.spacing) as usize);
+        let points = autocorrelation(&series, wanted.clamp(LAGS[0], LAGS[1]).min(rows / 2)).into_iter();
+        let (lags, values): (Vec<f64>, Vec<f64>) =
+            points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
+        Curve::new(lags, values)
     };
     ResidualPanels {
         title: Some(name.to_owned()),
         panels: vec![
-            against("time [s]", &|replayed| replayed.time.clone()),
-            against("heading [°]", &|replayed| degrees(&replayed.heading)),
-            against("yaw rate [°/s]", &|replayed| degrees(&replayed.yaw_rate)),
-            against("rudder [°]", &rudder),
-            lines,
-            correlations,
+            against("time [s]", &|replay| replay.time.clone()),
+            against("heading [°]", &|replay| degrees(&replay.heading)),
+            against("yaw rate [°/s]", &|replay| degrees(&replay.yaw_rate)),
+            against("rudder [°]", &|replay| degrees(&trial.rudder()[first..first + replay.time.len()])),
+            ResidualPanel {
+                logarithmic: true,
+                joined: true,
+                of_frequency: true,
+                mark: period.map(f64::recip),
+                ..panel("frequency [Hz]", "power [°²/Hz]", &|replay| power(&series(replay)))
+            },
+            ResidualPanel {
+                joined: true,
+                mark: period,
+                band: Some([-band, band]),
+                ..panel("lag [s]", "autocorrelation", &lags)
+            },
         ],
     }
 }
 
 /// Points of a cloud, not more than a figure can show.
-fn thinned_pairs(x: Vec<f64>, y: Vec<f64>) -> Curve {
+fn thinned(x: Vec<f64>, y: Vec<f64>) -> Curve {
     let step = x.len().div_ceil(1500).max(1);
     let every = |values: Vec<f64>| values.into_iter().step_by(step).collect::<Vec<f64>>();
     Curve::new(every(x), every(y))
@@ -313,48 +358,4 @@ fn power(residual: &Series) -> Curve {
     });
     let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
     Curve::new(x, y)
-}
-
-/// The way of the model and the candidates beside it.
-fn candidates(report: &TraceReport, theme: &Theme) -> Figure {
-    let analysis = &report.analysis;
-    let only = |name: Option<&String>| name.map_or_else(String::new, |name| format!(", {name}"));
-    let steps = analysis.steps.iter().map(|step| EvidenceStep {
-        name: step.added.map_or_else(
-            || String::from("base"),
-            |(id, form, record)| format!("+ {id} ({form}){}", only(record.map(|record| &report.names[record.0]))),
-        ),
-        fitted_deg: to_deg(step.fitted),
-        held_out_deg: step.held_out.map(to_deg),
-    });
-    let mut bars: Vec<EvidenceBar> = analysis
-        .candidates
-        .iter()
-        .filter_map(|one| {
-            let gain = one.evidence?.gain;
-            Some(EvidenceBar {
-                name: format!("{} ({}){}", one.id, one.form, only(one.only.as_ref())),
-                gain,
-                threshold: one.needed,
-                fate: match one.outcome {
-                    Outcome::Added => return None,
-                    Outcome::Alias => Fate::Alias,
-                    Outcome::Rejected => Fate::Rejected,
-                    Outcome::NotObservable => Fate::NotObservable,
-                },
-            })
-        })
-        .collect();
-    bars.sort_by(|one, other| other.gain.total_cmp(&one.gain));
-    // What came back later is not gone.
-    let is_gone = |sentence: &str| {
-        !analysis.effects.iter().any(|effect| sentence.starts_with(&format!("{} ({}) ", effect.id, effect.form)))
-    };
-    let data = Evidence {
-        title: Some(report.names[..report.trials.len()].join(", ")),
-        steps: steps.collect(),
-        bars,
-        dropped: analysis.refused.iter().filter(|sentence| is_gone(sentence)).cloned().collect(),
-    };
-    figures::evidence(&data, theme)
 }

@@ -1,130 +1,102 @@
-//! Tables of one analysis: errors, overshoots, parameters, candidates and planned trials.
+//! Tables of a trace, from its document alone.
 
-use std::fmt::Write as _;
-
-use ::trace::analysis::{Fitted, Prospect};
-use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
-use ::trace::structure::TermName;
-use report::number::{self, MISSING, optional, significant, uncertain};
+use ::trace::document::{ErrorsEntry, Outcome, ParameterEntry, RecordNoiseEntry, TermEntry};
+use ::trace::replay_errors::HORIZONS;
+use report::number::{self, MISSING, fixed, optional, significant, uncertain};
 use report::{Column, Table};
 use ship::angle::to_deg;
-use ship::effects::Parameter;
-use trial::{Quantity, ZigZag};
+use trial::Quantity;
 
-use super::trace_report::TraceReport;
-use super::trace_scales::prime;
+use super::trace_document::{RecordErrors, TraceDocument};
 
-/// A parameter in degrees where its unit holds radians, and that unit; none where it is a plain number.
-pub fn in_degrees(fitted: &Fitted) -> (Quantity, String) {
+/// A quantity in degrees where its unit holds radians, and that unit. Frequencies stay in radians.
+fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String) {
     let degree = to_deg(1.0);
-    let Parameter { symbol, unit, .. } = *fitted.parameter;
     let factor = match unit {
+        _ if symbol == "ω₀" => return (quantity, unit.to_owned()),
         unit if unit.contains("/rad²") => degree.powi(-2),
         unit if unit.contains("/rad") => degree.recip(),
         unit if unit.starts_with("rad") => degree,
         _ => 1.0,
     };
-    // Frequencies stay in radians.
-    let (factor, unit) = match symbol {
-        "ω₀" => (1.0, unit.to_owned()),
-        _ => (factor, unit.replace("rad", "deg")),
-    };
-    (fitted.quantity.scaled(factor), unit)
+    (quantity.scaled(factor), unit.replace("rad", "deg"))
 }
 
-/// Errors before and after on every record.
-pub fn errors(report: &TraceReport) -> Table {
-    let mut columns = vec![Column::left("record"), Column::left("use"), Column::left("model")];
+/// A parameter as text: its symbol, value and unit.
+pub fn value(parameter: &ParameterEntry) -> String {
+    let (quantity, unit) = in_degrees(&parameter.symbol, parameter.quantity, &parameter.unit);
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    format!("{} = {}{unit}", parameter.symbol, uncertain(quantity.value, quantity.sd))
+}
+
+/// A symbol without dimension: "n₃′/T′" of "n₃/T".
+fn primed(symbol: &str) -> String {
+    let part = |part: &str| if part == "1" { part.to_owned() } else { format!("{part}′") };
+    symbol.split('/').map(part).collect::<Vec<String>>().join("/")
+}
+
+/// An effect with its form and the one record in which it acts.
+pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
+    let only = only.map_or_else(String::new, |only| format!(", {only}"));
+    format!("{id} ({form}{only})")
+}
+
+/// Named effects with their parameters.
+pub fn effects(document: &TraceDocument) -> Table {
+    let mut table = Table::new([
+        Column::left("effect"),
+        Column::decimal("probability"),
+        Column::decimal("ΔBIC"),
+        Column::left("parameters"),
+        Column::left("not told from"),
+    ]);
+    for effect in &document.trace.effects {
+        let asked = if effect.asked { ", asked for" } else { "" };
+        let parameters: Vec<String> = effect.parameters.values().map(value).collect();
+        table.push([
+            format!("{}{asked}", term(&effect.id, &effect.form, effect.only.as_ref())),
+            fixed(effect.probability, 3),
+            fixed(effect.delta_bic, 1),
+            parameters.join(", "),
+            if effect.alias_forms.is_empty() { MISSING.into() } else { effect.alias_forms.join(", ") },
+        ]);
+    }
+    table
+}
+
+/// Errors before and after on some records.
+pub fn errors(records: &[RecordErrors]) -> Table {
+    let mut columns = ["record", "use", "model"].map(Column::left).to_vec();
     columns.push(Column::decimal("heading").unit("deg"));
     columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
     columns.push(Column::decimal("yaw rate").unit("deg/s"));
     columns.push(Column::decimal("overshoots").unit("deg"));
+    columns.push(Column::decimal("after/before"));
     columns.push(Column::decimal("band covers").unit("%"));
+    columns.push(Column::decimal("band width").unit("deg"));
     let mut table = Table::new(columns);
-    let analysis = &report.analysis;
-    let fitted = analysis.identification.iter().map(|judged| (judged, "fitted"));
-    let uses = fitted.chain(analysis.validation.iter().map(|judged| (judged, "held out")));
-    let left_out = analysis.left_out.iter().zip(&report.names);
-    let left_out = left_out.filter_map(|(judged, name)| Some(((judged.as_ref()?, "left out"), name)));
-    for ((judged, used), name) in uses.zip(&report.names).chain(left_out) {
-        let own = judged.own_moment.as_ref().map(|own| ("after, own moment", own));
-        for (model, on) in [("before", &judged.before), ("after", &judged.after)].into_iter().chain(own) {
-            let errors = &on.errors;
-            let mut cells =
-                if model == "before" { vec![name.clone(), used.to_owned()] } else { vec![String::new(); 2] };
-            cells.push(model.to_owned());
-            let numbers =
-                [Some(errors.heading)].into_iter().chain(errors.horizon).chain([errors.yaw_rate, errors.overshoot]);
-            cells.extend(
-                numbers.map(|value| value.map_or_else(|| MISSING.into(), |value| significant(to_deg(value), 3))),
-            );
-            cells.push(optional(on.coverage().map(|share| 100.0 * share), 1));
+    let three = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(value, 3));
+    for RecordErrors { name, used, errors } in records {
+        let ratio = errors.after.heading_rmse_deg / errors.before.heading_rmse_deg;
+        let models = [("before", &errors.before, None), ("after", &errors.after, Some(ratio))];
+        for (model, own, ratio) in models {
+            let head = if model == "before" { [*name, *used] } else { ["", ""] };
+            let mut cells = [head[0], head[1], model].map(String::from).to_vec();
+            cells.push(three(Some(own.heading_rmse_deg)));
+            cells.extend(HORIZONS.map(|length| three(horizon(own, length))));
+            cells.extend([own.yaw_rate_rmse_deg_s, own.overshoot_error_deg].map(three));
+            cells.push(optional(ratio, 2));
+            cells.push(optional(own.band_coverage_95.map(|share| 100.0 * share), 1));
+            cells.push(three(own.band_width_95_deg));
             table.push(cells);
         }
     }
     table
 }
 
-/// Overshoots and period of the records and of both replays.
-pub fn overshoots(report: &TraceReport) -> Option<Table> {
-    let mut table = Table::new([
-        Column::left("record"),
-        Column::left("heading"),
-        Column::left("overshoots [deg]"),
-        Column::decimal("period").unit("s"),
-    ]);
-    let analysis = &report.analysis;
-    let trials = report.trials.iter().chain(&report.others);
-    let judged = analysis.identification.iter().chain(&analysis.validation);
-    for ((trial, judged), name) in trials.zip(judged).zip(&report.names) {
-        let Ok(measured) = ZigZag::of(trial) else { continue };
-        table.push(zigzag_cells(name, "measured", &measured));
-        for (label, on) in [("before", &judged.before), ("after", &judged.after)] {
-            if let Some(zigzag) = replayed_zigzag(trial, &on.replay) {
-                table.push(zigzag_cells("", label, &zigzag));
-            }
-        }
-    }
-    (!table.rows.is_empty()).then_some(table)
-}
-
-fn zigzag_cells(name: &str, label: &str, zigzag: &ZigZag) -> [String; 4] {
-    let angles: Vec<String> =
-        zigzag.swings().map(|swing| optional(swing.map(|overshoot| to_deg(overshoot.angle.value)), 2)).collect();
-    [name.to_owned(), label.to_owned(), angles.join(", "), optional(zigzag.period.map(|period| period.value), 1)]
-}
-
-/// K, T and every parameter with its interval.
-pub fn parameters(report: &TraceReport) -> Table {
-    let analysis = &report.analysis;
-    let remarks = analysis.parameters.iter().any(|fitted| fitted.at_bound);
-    let mut columns = ["parameter", "value", "95 % interval", "unit"].map(Column::left).to_vec();
-    columns.extend(report.ship.iter().flat_map(|_| ["prime", "95 % interval", "unit"].map(Column::left)));
-    columns.push(Column::left("record"));
-    columns.extend(remarks.then(|| Column::left("remark")));
-    let mut table = Table::new(columns);
-    let three = |Quantity { value, sd, ci95 }: Quantity, unit: String| [uncertain(value, sd), interval(ci95), unit];
-    let none = || [MISSING.to_owned(), MISSING.to_owned(), String::new()];
-    let mut push = |symbol: &str, own: [String; 3], prime: [String; 3], record: Option<String>, at_bound: bool| {
-        let remark = remarks.then(|| if at_bound { "at its bound".to_owned() } else { String::new() });
-        let record = record.unwrap_or_else(|| MISSING.into());
-        let prime = report.ship.map(|_| prime);
-        let cells = [symbol.to_owned()].into_iter().chain(own).chain(prime.into_iter().flatten());
-        table.push(cells.chain([record]).chain(remark));
-    };
-    let ([k, t], [k_ends, t_ends, _]) = (analysis.indices, analysis.indices_at_bound());
-    for (symbol, quantity, unit, dimension, ends) in [("K", k, "1/s", [-1, 0], k_ends), ("T", t, "s", [1, 0], t_ends)] {
-        let own = [uncertain(quantity.value, quantity.sd), number::interval(quantity.ci95), unit.to_owned()];
-        let prime = report.ship.map(|ship| three(quantity.scaled(ship.prime(dimension)), "1".into()));
-        push(symbol, own, prime.unwrap_or_else(none), None, ends);
-    }
-    for fitted in &analysis.parameters {
-        let (quantity, unit) = in_degrees(fitted);
-        let prime = report.ship.and_then(|ship| prime(fitted, ship)).map(|(_, quantity, unit)| three(quantity, unit));
-        let prime = prime.unwrap_or_else(none);
-        push(fitted.parameter.symbol, three(quantity, unit), prime, fitted.only.clone(), fitted.at_bound);
-    }
-    table
+/// Error of replays that are restarted every so many seconds, deg.
+pub fn horizon(errors: &ErrorsEntry, length: f64) -> Option<f64> {
+    *errors.horizon_rmse_deg.get(&format!("{length:.0}"))?
 }
 
 /// An interval, whatever its size.
@@ -135,76 +107,147 @@ fn interval(ends: Option<[f64; 2]>) -> String {
     }
 }
 
+/// K, T, δ_r and every parameter of the most probable structure.
+pub fn parameters(document: &TraceDocument) -> Table {
+    let model = &document.trace.model;
+    let remarks = model.parameters.iter().any(|parameter| parameter.at_bound);
+    let is_prime = model.indices.prime.is_some();
+    let mut columns = ["parameter", "value", "95 % interval", "unit"].map(Column::left).to_vec();
+    columns.extend(is_prime.then(|| ["prime", "value", "95 % interval"].map(Column::left)).into_iter().flatten());
+    columns.push(Column::left("record"));
+    columns.extend(remarks.then(|| Column::left("remark")));
+    let mut table = Table::new(columns);
+    let mut push = |symbol: &str, (own, unit): (Quantity, String), prime: Option<Quantity>, rest: [&str; 2]| {
+        let mut cells = vec![symbol.to_owned(), uncertain(own.value, own.sd), interval(own.ci95), unit];
+        let prime = prime.map(|prime| [primed(symbol), uncertain(prime.value, prime.sd), interval(prime.ci95)]);
+        let prime = prime.unwrap_or_else(|| [MISSING, MISSING, MISSING].map(String::from));
+        cells.extend(is_prime.then_some(prime).into_iter().flatten());
+        cells.extend(rest.into_iter().take(1 + usize::from(remarks)).map(String::from));
+        table.push(cells);
+    };
+    let (indices, prime) = (&model.indices, model.indices.prime.as_ref());
+    push("K", (indices.K_per_s, "1/s".into()), prime.map(|prime| prime.K), [MISSING, ""]);
+    push("T", (indices.T_s, "s".into()), prime.map(|prime| prime.T), [MISSING, ""]);
+    push("δ_r", (indices.delta_r_deg, "deg".into()), None, [MISSING, ""]);
+    // The average above stands for the rudder bias of all records.
+    for own in model.parameters.iter().filter(|own| own.symbol != "δ_r" || own.only.is_some()) {
+        let shown = in_degrees(&own.symbol, own.quantity, &own.unit);
+        let rest = [own.only.as_deref().unwrap_or(MISSING), if own.at_bound { "at its bound" } else { "" }];
+        push(&own.symbol, shown, own.prime.as_ref().map(|prime| prime.quantity), rest);
+    }
+    table
+}
+
 /// What became of every candidate.
-pub fn candidates(report: &TraceReport) -> Table {
+pub fn candidates(document: &TraceDocument) -> Table {
     let mut table = Table::new([
         Column::left("candidate"),
         Column::left("form"),
         Column::left("outcome"),
         Column::decimal("probability"),
-        Column::decimal("ΔBIC alone"),
-        Column::decimal("ΔBIC in the end"),
+        Column::decimal("ΔBIC"),
         Column::left("p"),
-        Column::decimal("visible ΔBIC at most"),
+        Column::decimal("visibility"),
     ]);
-    for one in &report.analysis.candidates {
-        let signed = |gain: f64| number::fixed(-gain, 1);
-        let mut form = one.form.to_owned();
-        if let Some(only) = &one.only {
-            let _ = write!(form, ", {only}");
+    let two = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(value, 2));
+    for one in &document.trace.candidates {
+        if one.forms.is_empty() {
+            let why = one.reason.as_ref().map_or_else(String::new, |reason| format!(": {reason}"));
+            let outcome = format!("{}{why}", outcome(one.outcome));
+            let rest = [fixed(one.probability, 3), optional(one.delta_bic, 1), two(one.p_value), MISSING.into()];
+            table.push([one.id.clone(), MISSING.into(), outcome].into_iter().chain(rest));
         }
-        let outcome = match (one.outcome, one.reason) {
-            (outcome, Some(reason)) => format!("{}: {reason}", outcome.as_str()),
-            (outcome, None) => outcome.as_str().to_owned(),
-        };
-        table.push([
-            one.id.to_owned(),
-            form,
-            outcome,
-            number::fixed(one.probability, 3),
-            one.gain_alone.map_or_else(|| MISSING.into(), signed),
-            one.evidence.map_or_else(|| MISSING.into(), |evidence| signed(evidence.gain)),
-            one.evidence.map_or_else(|| MISSING.into(), |evidence| significant(evidence.p_value, 2)),
-            one.visibility.map_or_else(|| MISSING.into(), |visibility| significant(-visibility, 3)),
-        ]);
+        for (number, own) in one.forms.iter().enumerate() {
+            let only = own.only.as_ref().map_or_else(String::new, |only| format!(", {only}"));
+            table.push([
+                if number == 0 { one.id.clone() } else { String::new() },
+                format!("{}{only}", own.form),
+                outcome(own.outcome).to_owned(),
+                fixed(own.probability, 3),
+                optional(own.delta_bic, 1),
+                two(own.p_value),
+                two(own.visibility),
+            ]);
+        }
     }
     table
 }
 
-/// The structures that the records cannot tell apart.
-pub fn structures(report: &TraceReport) -> Table {
-    let mut table = Table::new([Column::left("structure"), Column::decimal("probability"), Column::decimal("ΔBIC")]);
-    for one in report.analysis.weights.alike() {
-        let term = |&(id, form, only): &TermName| {
-            let only = only.map_or_else(String::new, |only| format!(", {}", report.names[only.0]));
-            format!("{id} ({form}{only})")
-        };
-        let terms: Vec<String> = one.terms.iter().map(term).collect();
+fn outcome(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::NotObservable => "not observable",
+        other => other.as_str(),
+    }
+}
+
+/// Structures of less probability are not told.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// The structures with their probabilities.
+pub fn structures(document: &TraceDocument) -> Table {
+    let mut table =
+        Table::new([Column::left("structure"), Column::decimal("probability"), Column::left("in the average")]);
+    for one in document.trace.structures.iter().filter(|one| one.member || one.weight > NEGLIGIBLE) {
+        let of = |own: &TermEntry| term(&own.id, &own.form, own.only.as_ref());
+        let terms: Vec<String> = one.effects.iter().map(of).collect();
         let name = if terms.is_empty() { "the base alone".into() } else { terms.join(" + ") };
-        table.push([name, number::fixed(one.weight, 3), number::fixed(one.bic, 1)]);
+        table.push([name, fixed(one.weight, 3), if one.member { "yes" } else { "no" }.into()]);
     }
     table
 }
 
-/// What every planned trial would tell.
-pub fn prospects(prospects: &[Prospect]) -> Table {
+/// The noise of every fitted record.
+pub fn noise(document: &TraceDocument) -> Table {
     let mut table = Table::new([
-        Column::left("manoeuvre"),
-        Column::right("separated"),
-        Column::right("revealed"),
-        Column::decimal("information"),
-        Column::decimal("standard deviations").unit("%"),
+        Column::left("record"),
+        Column::decimal("heading, white").unit("deg"),
+        Column::left("beside it"),
+        Column::left("headings left out at").unit("s"),
     ]);
-    for prospect in prospects {
-        let pairs = prospect.separated.len() + prospect.still_alike.len();
-        let hidden = prospect.revealed.len() + prospect.still_hidden.len();
+    for own in &document.trace.noise {
+        let name = document.records.iter().find(|record| record.file == own.file).map_or(&own.file, |one| &one.name);
+        let beside = coloured(own);
+        let times: Vec<String> = own.outliers_s.iter().map(|time| fixed(*time, 1)).collect();
         table.push([
-            prospect.name.clone(),
-            format!("{} of {pairs}", prospect.separated.len()),
-            format!("{} of {hidden}", prospect.revealed.len()),
-            number::fixed(prospect.information, 1),
-            optional(prospect.sharpening.map(|change| 100.0 * (change.exp() - 1.0)), 0),
+            name.clone(),
+            significant(own.heading_sd_deg, 2),
+            if beside.is_empty() { MISSING.into() } else { beside.join(", ") },
+            if times.is_empty() { MISSING.into() } else { times.join(", ") },
         ]);
     }
     table
+}
+
+/// What there is beside the white noise of a record, in words.
+pub fn coloured(own: &RecordNoiseEntry) -> Vec<String> {
+    let two = |value: Option<f64>| significant(value.unwrap_or(f64::NAN), 2);
+    let size = two(own.moment_sd_rudder_deg);
+    let moment = match own.moment.as_str() {
+        "white" => Some(format!("a white yaw moment of {size}° of rudder in the mean of a second")),
+        "ornstein-uhlenbeck" => {
+            let time = two(own.moment_correlation_s);
+            Some(format!("gusts of {size}° of rudder that last about {time} s"))
+        }
+        "walk" => Some(format!("a yaw moment that wanders by {size}° of rudder in a second")),
+        _ => None,
+    };
+    let heading = own.heading_wander_sd_deg.map(|sd| {
+        let whose = if own.heading_wander.as_deref() == Some("model") { "model" } else { "compass" };
+        let time = two(own.heading_correlation_s);
+        format!("an error of the {whose} of {}° that lasts about {time} s", significant(sd, 2))
+    });
+    let waves = own
+        .waves_sd_deg
+        .map(|sd| format!("waves of {}° at {} rad/s", significant(sd, 2), two(own.waves_frequency_rad_s)));
+    [moment, heading, waves].into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_letter_has_its_prime() {
+        assert_eq!(["1/T", "K/T", "n₃/T", "T₂"].map(primed), ["1/T′", "K′/T′", "n₃′/T′", "T₂′"]);
+    }
 }

@@ -5,5 +5,5 @@ pub mod fit;
 mod planned;
 pub mod predict;
 pub mod simulate;
-mod steady;
+pub mod steady;
 pub mod trace;

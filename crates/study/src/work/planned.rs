@@ -53,7 +53,7 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
 
 /// The fitted ship in one manoeuvre, with the sampling and the rudder rate of the records; `None` where it does not
 /// come to the end of it.
-pub fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
+fn sailed(analysis: &Analysis, records: &[Trial], manoeuvre: Manoeuvre) -> Option<Trial> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let mut simulation = Simulation::new(Vessel::response(analysis.ship()), manoeuvre);
     simulation.gear = SteeringGear::with_rate(rudder_rate(&records[0]));

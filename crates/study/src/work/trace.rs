@@ -1,17 +1,35 @@
-//! A trace: the analysis of the crate [`trace`](mod@::trace), and what is said about it beside it.
+//! A trace: the analysis of the crate [`trace`](mod@::trace), what is known of the ship beside it, and the files that
+//! everything shown is made from.
 
-use ::trace::{Settings, TraceError};
-use scenario::failure::Failure;
+use ::trace::{Analysis, Settings, TraceError};
+use campaign::folder::ResultFolder;
+use campaign::known::{self, Shown};
+use scenario::failure::{Failure, OnPath};
 use trial::{Channel, Trial};
 
-use super::{alone, planned, steady};
+use super::planned;
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
 use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, Together};
-use crate::views::trace_report::TraceReport;
-use crate::views::trace_scales;
-use campaign::known::{self, Shown};
+use crate::views::trace_document::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
+use crate::views::{document, missing_moment, trace_curves};
+
+/// A trace before it is written: its document, and the tables of its curves under the names of their files.
+pub struct Traced {
+    /// `trace.json`.
+    pub document: TraceDocument,
+    tables: Vec<(String, String)>,
+}
+
+impl Traced {
+    /// Writes document and tables. Fails when a file cannot be written.
+    pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
+        let text = document::text(&self.document).on("describe", &folder.path().join(TRACE))?;
+        folder.keep(TRACE, text)?;
+        self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))
+    }
+}
 
 /// Analyses the records together; `others` are held out.
 ///
@@ -23,50 +41,92 @@ pub fn trace(
     settings: &Settings,
     quiet: bool,
     warnings: &mut Vec<String>,
-) -> Result<TraceReport, Failure> {
-    let sailed_by = records.iter().chain(others).map(Trial::particulars).collect();
+) -> Result<Traced, Failure> {
     let together = scales::together(records, others)?;
     let busy = progress::busy("tracing", quiet);
     let analysis = ::trace::trace(&together.trials, &together.others, settings);
     busy.finish_and_clear();
-    let analysis = analysis.map_err(|error| {
-        let first = file_of(&records[0]).0;
-        let why = match error {
-            TraceError::Base(_) | TraceError::Replay { .. } => {
-                "; the record cannot be traced because no base model fits it"
-            }
-            TraceError::Asked { .. } => "; leave it out of the request",
-            TraceError::Settings(_) => "",
-        };
-        Failure::input(format!("{first}: {error}{why}"))
-    })?;
-    let scales = trace_scales::compared(&analysis, &together);
-    let scaled = together.sentence();
-    let Together { trials, others, .. } = together;
-    let planned = planned::trials(&analysis, &trials);
+    let analysis = analysis.map_err(|error| refused(&records[0], &error))?;
+    let scales = together.sentence();
+    let Together { trials, others: held_out, .. } = together;
     let shown = Shown::of(&trials).with_motion();
     warn_of_no_track(&shown, warnings);
-    let known = known::of_analysis(&analysis, &shown);
-    Ok(TraceReport {
-        names: names(trials.iter().chain(&others).map(Trial::name)),
-        ship: scales::particulars(&trials),
-        sailed_by,
-        amplitudes: alone::of_analysis(&analysis, &trials),
-        steady: steady::of_ship(&known),
-        known,
-        scaled,
+    let all = records.iter().chain(others);
+    let names = names(trials.iter().chain(&held_out).map(Trial::name));
+    let entry = |((number, own), name): ((usize, &Trial), &String)| RecordEntry {
+        name: name.clone(),
+        file: file_of(own).0.to_owned(),
+        held_out: number >= trials.len(),
+        curves: format!("replay{}.csv", suffix(&names, number)),
+        length_m: own.particulars().map(|ship| ship.length),
+        speed_m_s: own.particulars().map(|ship| ship.speed),
+    };
+    let entries: Vec<RecordEntry> = all.enumerate().zip(&names).map(entry).collect();
+    let comparisons = analysis.identification.iter().chain(&analysis.validation);
+    let mut tables: Vec<(String, String)> = entries
+        .iter()
+        .zip(trials.iter().chain(&held_out).zip(comparisons))
+        .map(|(entry, (trial, comparison))| (entry.curves.clone(), trace_curves::table(trial, comparison)))
+        .collect();
+    let mut moments = Vec::new();
+    for (number, missing) in analysis.missing_moments().iter().enumerate() {
+        let Some(missing) = missing else { continue };
+        let stem = format!("missing-moment-{}", slugs(&names)[number]);
+        let words = [entries[number].file.as_str(), &names[number], &stem];
+        let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
+        let entry = missing_moment::entry(missing, words, analysis.document.verdict, explains);
+        tables.push((entry.moment.clone(), missing_moment::over_time(missing)));
+        tables.push((entry.curves.clone(), missing_moment::over_channels(missing)));
+        moments.push(entry);
+    }
+    let document = TraceDocument {
+        ship: known::of_analysis(&analysis, &shown),
+        records: entries,
+        missing_moment: moments,
         scales,
-        prospects: analysis.prospects(&planned),
-        missing: analysis.missing_moments(),
-        trials,
-        others,
-        analysis,
-    })
+        trace: ::trace::Document { next_trial: next_trial(&analysis, &trials), ..analysis.document },
+    };
+    Ok(Traced { document, tables })
+}
+
+/// Why there is no trace of some records.
+fn refused(first: &Trial, error: &TraceError) -> Failure {
+    let why = match error {
+        TraceError::Base(_) | TraceError::Replay { .. } => {
+            "; the record cannot be traced because no base model fits it"
+        }
+        TraceError::Asked { .. } => "; leave it out of the request",
+        TraceError::Settings(_) => "",
+    };
+    Failure::input(format!("{}: {error}{why}", file_of(first).0))
+}
+
+/// The trial that would tell most, in one sentence.
+fn next_trial(analysis: &Analysis, trials: &[Trial]) -> String {
+    let prospects = analysis.prospects(&planned::trials(analysis, trials));
+    let Some(best) = prospects.first() else {
+        return String::from("None of the standard manoeuvres can be steered with the fitted model.");
+    };
+    let pairs = |pairs: &[[String; 2]]| -> String {
+        pairs.iter().map(|[one, other]| format!("{one} from {other}")).collect::<Vec<_>>().join(", ")
+    };
+    let gains = [(pairs(&best.separated), "separate"), (best.revealed.join(", "), "show")];
+    let gains: Vec<String> =
+        gains.iter().filter(|(what, _)| !what.is_empty()).map(|(what, verb)| format!("{verb} {what}")).collect();
+    let gains = match gains.as_slice() {
+        [] => String::from("tells most of the standard manoeuvres"),
+        gains => format!("would {}", gains.join(" and ")),
+    };
+    let limits = match best.still_alike.as_slice() {
+        [] => String::new(),
+        alike => format!("; it would not separate {}", pairs(alike)),
+    };
+    format!("A {} {gains}{limits}.", best.name)
 }
 
 /// How the records of a request are analysed.
 pub fn settings(request: &TraceRequest) -> Settings {
-    Settings { own_bias: request.own_bias, rule: request.rule, wanted: request.wanted(), ..Settings::default() }
+    Settings { rule: request.rule, selection: request.selection(), ..Settings::default() }
 }
 
 /// The records of a request without the channels that are withheld.

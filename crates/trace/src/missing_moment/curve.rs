@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::smoother::{Column, Filter, Rows, STATES};
-use crate::fit::minimum;
+use crate::minimum::minimum;
 
 /// Inner knots, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];

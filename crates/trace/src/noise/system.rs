@@ -25,6 +25,45 @@ pub(crate) struct System {
     pub initial: Matrix,
 }
 
+impl System {
+    /// The heading of a sample path at the observed rows, from standard normal numbers.
+    pub(crate) fn sample(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
+        let roots: Vec<Matrix> = self.steps.iter().map(|(_, added)| root(added)).collect();
+        let draw = |root: &Matrix, normal: &mut dyn FnMut() -> f64| -> Vector {
+            let numbers: Vector = std::array::from_fn(|_| normal());
+            std::array::from_fn(|i| (0..MOST).map(|j| root[i][j] * numbers[j]).sum())
+        };
+        let mut state = draw(&root(&self.initial), normal);
+        let mut path = Vec::with_capacity(self.of_row.len());
+        for (row, &step) in self.of_row.iter().enumerate() {
+            if row > 0 {
+                let added = draw(&roots[step], normal);
+                state = std::array::from_fn(|i| {
+                    added[i] + (0..MOST).map(|j| self.steps[step].0[i][j] * state[j]).sum::<f64>()
+                });
+            }
+            path.push((0..MOST).map(|i| self.observe[i] * state[i]).sum());
+        }
+        path
+    }
+}
+
+/// A lower triangle L with L Lᵀ = a covariance that may be singular.
+fn root(covariance: &Matrix) -> Matrix {
+    let mut l = [[0.0; MOST]; MOST];
+    for i in 0..MOST {
+        for j in 0..=i {
+            let sum: f64 = covariance[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = match (i == j, l[j][j] > 0.0) {
+                (true, _) => sum.max(0.0).sqrt(),
+                (false, true) => sum / l[j][j],
+                (false, false) => 0.0,
+            };
+        }
+    }
+    l
+}
+
 /// Fᵀ x.
 pub(crate) fn transposed(f: &Matrix, x: &Vector) -> Vector {
     std::array::from_fn(|j| (0..MOST).map(|i| f[i][j] * x[i]).sum())

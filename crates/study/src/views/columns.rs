@@ -1,0 +1,66 @@
+//! Named columns of numbers as CSV: the curves of figures, so that anyone can draw them again, and the program too.
+
+use std::collections::BTreeMap;
+
+/// Columns of one length, each with its name and unit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Columns(Vec<(String, Vec<f64>)>);
+
+/// Seven significant digits, as few as are needed; empty for what is no number.
+pub fn digits(value: f64) -> String {
+    let shown = format!("{value:.6e}").parse::<f64>().ok().filter(|value| value.is_finite());
+    shown.map_or_else(String::new, |value| value.to_string())
+}
+
+impl Columns {
+    /// Adds a column on the right.
+    pub fn push(&mut self, name: impl Into<String>, values: Vec<f64>) {
+        self.0.push((name.into(), values));
+    }
+
+    /// The table. The first column has all of its digits, the others seven.
+    pub fn text(&self) -> String {
+        let names: Vec<&str> = self.0.iter().map(|(name, _)| name.as_str()).collect();
+        let rows = self.0.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+        let cell = |place: usize, row: usize| match self.0[place].1.get(row) {
+            Some(value) if place == 0 => value.to_string(),
+            value => digits(value.copied().unwrap_or(f64::NAN)),
+        };
+        let line = |row: usize| (0..self.0.len()).map(|place| cell(place, row)).collect::<Vec<_>>().join(",");
+        [names.join(",")].into_iter().chain((0..rows).map(line)).map(|line| line + "\n").collect()
+    }
+
+    /// Columns of a table by their names; an empty cell is NaN. `None` where a cell is no number or a row is short.
+    pub fn read(text: &str) -> Option<BTreeMap<String, Vec<f64>>> {
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next()?.split(',').collect();
+        let mut columns = vec![Vec::new(); names.len()];
+        for line in lines {
+            let mut cells = line.split(',');
+            for column in &mut columns {
+                let cell = cells.next()?;
+                column.push(if cell.is_empty() { f64::NAN } else { cell.parse().ok()? });
+            }
+        }
+        Some(names.into_iter().map(String::from).zip(columns).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read() {
+        let mut columns = Columns::default();
+        columns.push("t_s", vec![0.0, 0.1 + 0.2]);
+        columns.push("heading_deg", vec![f64::NAN, -1.0 / 3.0]);
+        let text = columns.text();
+        assert_eq!(text, "t_s,heading_deg\n0,\n0.30000000000000004,-0.3333333\n");
+        let read = Columns::read(&text).expect("it was written so");
+        assert_eq!(read["t_s"], [0.0, 0.1 + 0.2]);
+        assert!(read["heading_deg"][0].is_nan() && read["heading_deg"][1] == -0.333_333_3);
+        assert_eq!(Columns::read("a,b\n1\n"), None);
+        assert_eq!(Columns::read("a,b\n1,x\n"), None);
+    }
+}

@@ -1,0 +1,112 @@
+//! The curves of a trace beside `trace.json`: every record with the replays before and after, and the moment that the
+//! base lacks. They are written after the analysis, and figures are drawn from what is read back.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use ::trace::judge::RecordComparison;
+use identify::replay::Replay;
+use scenario::failure::{Failure, OnPath};
+use ship::angle::{from_deg, to_deg};
+use trial::{Channel, Columns as Channels, Origin, Trial};
+
+use super::columns::Columns;
+use super::trace_document::{RecordEntry, TraceDocument};
+
+/// A record with what the models make of it.
+pub struct TracedRecord {
+    /// The record.
+    pub trial: Trial,
+    /// Its rudder replayed through the base and through the average of the structures.
+    pub replays: [Replay; 2],
+    /// Half the width of the 95 % band of the second at its rows, rad.
+    pub band: Option<Vec<f64>>,
+}
+
+/// All curves of a trace.
+pub struct Curves {
+    /// The records, in their order.
+    pub records: Vec<TracedRecord>,
+    /// Tables of the missing moments: over time, and over the channels.
+    pub moments: Vec<[BTreeMap<String, Vec<f64>>; 2]>,
+}
+
+/// What the models before and after are called in columns.
+const MODELS: [&str; 2] = ["before", "after"];
+
+/// The table of a record.
+pub fn table(trial: &Trial, comparison: &RecordComparison) -> String {
+    let mut columns = Columns::default();
+    let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
+    columns.push("t_s", trial.time().to_vec());
+    columns.push("heading_deg", degrees(trial.heading()));
+    columns.push("rudder_deg", degrees(trial.rudder()));
+    if let Some(rate) = trial.yaw_rate() {
+        columns.push("yaw_rate_deg_s", degrees(rate));
+    }
+    // A replay begins with the first heading.
+    let first = trial.observed_rows().next().unwrap_or(0);
+    let rows = |values: &[f64]| [vec![f64::NAN; first], degrees(values)].concat();
+    for (model, on) in MODELS.iter().zip([&comparison.before, &comparison.after]) {
+        let Replay { heading, yaw_rate, residual, .. } = &on.replay;
+        let quantities = [("heading_deg", heading), ("yaw_rate_deg_s", yaw_rate), ("residual_deg", residual)];
+        for (quantity, values) in quantities {
+            columns.push(format!("{model}_{quantity}"), rows(values));
+        }
+    }
+    if let Some(band) = &comparison.after.band {
+        columns.push("after_half_width95_deg", rows(band));
+    }
+    columns.text()
+}
+
+/// The record of a table. `None` where the table is not one of [`table`].
+fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
+    let columns = Columns::read(text)?;
+    let radians = |name: &str| columns.get(name).map(|all| all.iter().copied().map(from_deg).collect::<Vec<f64>>());
+    let time = columns.get("t_s")?.clone();
+    let channels = [
+        (Channel::Heading, radians("heading_deg")),
+        (Channel::Rudder, radians("rudder_deg")),
+        (Channel::YawRate, radians("yaw_rate_deg_s")),
+    ];
+    let channels = channels.into_iter().filter_map(|(channel, values)| Some((channel, values?))).collect();
+    let replayed = radians("before_heading_deg")?;
+    let first = replayed.iter().position(|heading| heading.is_finite())?;
+    let last = replayed.iter().rposition(|heading| heading.is_finite())?;
+    let rows = |name: String| radians(&name).map(|all| all[first..=last].to_vec());
+    let replay = |model: &str| {
+        Some(Replay {
+            time: time[first..=last].to_vec(),
+            heading: rows(format!("{model}_heading_deg"))?,
+            yaw_rate: rows(format!("{model}_yaw_rate_deg_s"))?,
+            residual: rows(format!("{model}_residual_deg"))?,
+        })
+    };
+    let replays = [replay(MODELS[0])?, replay(MODELS[1])?];
+    let band = rows(String::from("after_half_width95_deg"));
+    let origin = Origin::Measured { file: entry.file.clone(), sha256: String::new() };
+    let trial = Trial::new(&entry.name, origin, Channels { time, channels, unknown: Vec::new() }).ok()?;
+    Some(TracedRecord { trial, replays, band })
+}
+
+/// Reads a file of a trace. Fails when it is not there or not what the analysis wrote.
+fn read<T>(folder: &Path, name: &str, parse: impl FnOnce(&str) -> Option<T>) -> Result<T, Failure> {
+    let path = folder.join(name);
+    let text = std::fs::read_to_string(&path).on("read", &path)?;
+    let again = "this is no table of a trace; make it again with `study trace`";
+    parse(&text).ok_or_else(|| Failure::input(format!("{}: {again}", path.display())))
+}
+
+impl Curves {
+    /// The curves that a document names, from the files in its folder.
+    ///
+    /// Fails when one cannot be read.
+    pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
+        let records = document.records.iter().map(|entry| read(folder, &entry.curves, |text| record(entry, text)));
+        let moments = document.missing_moment.iter().map(|entry| {
+            Ok([read(folder, &entry.moment, Columns::read)?, read(folder, &entry.curves, Columns::read)?])
+        });
+        Ok(Self { records: records.collect::<Result<_, _>>()?, moments: moments.collect::<Result<_, Failure>>()? })
+    }
+}

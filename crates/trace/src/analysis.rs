@@ -1,0 +1,345 @@
+//! The whole analysis of some records of one ship: a pipeline of stages, each a function of what the last one made.
+//!
+//! prepare → base → full fit → noise → structures → judge → document
+
+use std::borrow::Cow;
+
+use identify::{Estimate, maximum_likelihood};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use ship::{Regressor, Response, effects};
+use trial::Trial;
+
+use crate::average::Average;
+use crate::base::Base;
+use crate::candidates::{self, Candidate};
+use crate::diagnostics::{self, Series, Signature, Whiteness};
+use crate::document::Document;
+use crate::empirical::{self, Empirical};
+use crate::fit::{Fit, Problem};
+use crate::full::{self, Full};
+use crate::innovations::Innovations;
+use crate::judge::{After, RecordComparison, ReplayResult, before, starts};
+use crate::left_out::leave_one_out;
+use crate::record::Record;
+use crate::report;
+use crate::selection::Selection;
+use crate::settings::{Settings, TraceError};
+use crate::structures::{self, Structures};
+
+/// The result: what is said of the records, and what it was said from.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// What is said.
+    pub document: Document,
+    /// The base of constant K and T: no first-order response is nearer to the records.
+    pub base: Estimate,
+    /// Records that were fitted.
+    pub identification: Vec<RecordComparison>,
+    /// Records that were not.
+    pub validation: Vec<RecordComparison>,
+    /// Each of several records as if it had been held out, where none was. `None` where the others have no base or no
+    /// finite replay.
+    pub left_out: Vec<Option<RecordComparison>>,
+    /// The structures with their probabilities.
+    pub structures: Structures,
+    /// The full model and the noise that it leaves.
+    pub full: Full,
+    pub(crate) problem: Problem,
+    pub(crate) candidates: Vec<Candidate>,
+}
+
+/// Records without the readings of their compass that belong to no ship, and the times, s, of these.
+fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
+    let of = |trial: &Trial| {
+        maximum_likelihood::spikes(std::slice::from_ref(trial)).map_or_else(|_| Vec::new(), |mut all| all.remove(0))
+    };
+    let readings: Vec<Vec<f64>> = trials.par_iter().map(of).collect();
+    let kept = match readings.iter().all(Vec::is_empty) {
+        true => Cow::Borrowed(trials),
+        false => trials.iter().zip(&readings).map(|(trial, out)| trial.clone().without_readings(out)).collect(),
+    };
+    (kept, readings)
+}
+
+/// Why an effect that was asked for cannot be in the model.
+fn refuse_lacking(candidates: &[Candidate], selection: &Selection) -> Result<(), TraceError> {
+    let is_there = |id: &&crate::EffectId| candidates.iter().any(|one| one.term.effect.id() == id.as_str());
+    let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
+    let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
+    let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
+    let reason = match forms.iter().any(|form| form.is_random()) {
+        true => "it is a kind of noise, which is looked for in every record",
+        false => lacking.unwrap_or("the records leave no place for it"),
+    };
+    Err(TraceError::Asked { effect, reason })
+}
+
+/// Analyses records of one ship. `validation` records only judge: nothing else depends on them.
+///
+/// Readings of the compass that belong to no ship are left out of all records, and listed. Fails when a setting is out
+/// of its range, when an effect that was asked for cannot be in the model, and when the base cannot be fitted or
+/// replayed.
+///
+/// ```
+/// # let mut table = String::from("t_s,heading_deg,rudder_deg\n");
+/// # let (mut psi, mut r, mut delta, mut order) = (0.0_f64, 0.0_f64, 0.0_f64, 1.0_f64);
+/// # for t in 0..300 {
+/// #     table += &format!("{t},{psi},{delta}\n");
+/// #     let next = (delta + 5.0 * order).clamp(-20.0, 20.0);
+/// #     for k in 0..100 {
+/// #         r += 0.01 * (0.1 * (delta + 0.01 * f64::from(k) * (next - delta)) - r - 0.5 * r * r * r) / 16.0;
+/// #         psi += 0.01 * r;
+/// #     }
+/// #     order = if psi * order > 20.0 { -order } else { order };
+/// #     delta = next;
+/// # }
+/// # let read = trial::reader::read_bytes("run.csv".as_ref(), table.as_bytes(), None, None)?;
+/// // A zig-zag of a ship whose damping grows with the cube of its yaw rate.
+/// let analysis = kempf_trace::trace(&[read.trial], &[], &kempf_trace::Settings::default())?;
+/// assert_eq!(analysis.document.effects[0].id, "nonlinear_damping");
+/// let errors = &analysis.identification[0];
+/// assert!(errors.after.errors.heading < 0.5 * errors.before.errors.heading);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Result<Analysis, TraceError> {
+    settings.check()?;
+    let (trials, outliers) = without_spikes(trials);
+    let (validation, _) = without_spikes(validation);
+    let base = Base::of(&trials)?;
+    let response = base.estimate.response;
+    let time = candidates::ship_time(&trials, response.K_over_T);
+    let records: Vec<Record> = trials.iter().map(|trial| Record::averaged(trial, time)).collect();
+    let mut candidates = candidates::all(&records, &trials, time, &settings.selection);
+    refuse_lacking(&candidates, &settings.selection)?;
+    candidates.extend(empirical::candidates(&records, &trials, time).take(settings.monomials));
+    let problem = Problem::new(records, response.inverse_T, time);
+    let with_waves = settings.selection.allows("wave_yaw");
+    let fulls = full::fit(&problem, &base, &candidates, with_waves);
+    let (full, structures) =
+        structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
+    let members = structures.members();
+    let identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
+    let judged = held_out(&validation, &base, &full, &members, time)?;
+    let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
+    let left_out = if is_folded { leave_one_out(&trials, &problem, &full, &structures) } else { Vec::new() };
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &candidates);
+    let whiteness = [|one: &RecordComparison| one.before.clone(), |one: &RecordComparison| one.after.clone()]
+        .map(|when: fn(&RecordComparison) -> ReplayResult| whiteness(&identification, &trials, when));
+    let said = report::Said {
+        trials: &trials,
+        settings,
+        base: &base,
+        full: &full,
+        structures: &structures,
+        candidates: &candidates,
+        identification: &identification,
+        validation: (&validation, &judged),
+        left_out: &left_out,
+        remainder: &remainder,
+        whiteness,
+        outliers: &outliers,
+        problem: &problem,
+    };
+    let document = said.document();
+    Ok(Analysis {
+        document,
+        base: base.estimate,
+        identification,
+        validation: judged,
+        left_out,
+        structures,
+        full,
+        problem,
+        candidates,
+    })
+}
+
+/// Base and average on the records that were fitted.
+fn fitted(
+    trials: &[Trial],
+    base: &Base,
+    full: &Full,
+    members: &[(f64, &Fit)],
+    thorough: bool,
+    time: f64,
+) -> Result<Vec<RecordComparison>, TraceError> {
+    let response = &base.estimate.response;
+    let of = |(number, trial): (usize, &Trial)| {
+        let record = Record::whole(trial);
+        let before = before(trial, &record, response, thorough)?;
+        let is_base = members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
+        let after = After { members, law: &full.law, known: Some(number), time };
+        let mut after = after.on(trial, &record, &starts(trial, response), thorough)?;
+        if is_base {
+            // Nothing is added: the base stays what it is.
+            let band = after.band;
+            after = ReplayResult { band, ..before.clone() };
+        }
+        Ok(RecordComparison { name: trial.name().to_owned(), before, after })
+    };
+    trials.par_iter().enumerate().map(of).collect()
+}
+
+/// Base and average on records that were not fitted.
+fn held_out(
+    trials: &[Trial],
+    base: &Base,
+    full: &Full,
+    members: &[(f64, &Fit)],
+    time: f64,
+) -> Result<Vec<RecordComparison>, TraceError> {
+    let of = |trial: &Trial| {
+        let record = Record::whole(trial);
+        let before = before(trial, &record, &base.estimate.response, true)?;
+        let mut starts = starts(trial, &base.estimate.response);
+        starts.push(before.replay.initial());
+        let after = After { members, law: &full.law, known: None, time }.on(trial, &record, &starts, true)?;
+        Ok(RecordComparison { name: trial.name().to_owned(), before, after })
+    };
+    trials.par_iter().map(of).collect()
+}
+
+fn whiteness(all: &[RecordComparison], trials: &[Trial], when: fn(&RecordComparison) -> ReplayResult) -> Whiteness {
+    let series = all.iter().zip(trials).map(|(one, trial)| {
+        let ReplayResult { replay, .. } = when(one);
+        Series::new(&replay.time, &replay.residual, trial.sampling_period())
+    });
+    diagnostics::whiteness(&series.collect::<Vec<_>>())
+}
+
+/// What the structures leave.
+#[derive(Debug, Clone)]
+pub struct Remainder {
+    /// Whether the law describes it.
+    pub holds: bool,
+    /// Where it is, where it is more than noise.
+    pub signature: Option<Signature>,
+    /// A term without a name that would carry some of it.
+    pub empirical: Option<Empirical>,
+}
+
+/// Share of the error of the base above which a rest that is no noise counts as unexplained.
+const UNEXPLAINED: f64 = 0.3;
+
+/// Standard deviations of the white noise below which a rest is too small to be looked at.
+const SMALL: f64 = 1.5;
+
+impl Remainder {
+    fn new(
+        problem: &Problem,
+        full: &Full,
+        structures: &Structures,
+        identification: &[RecordComparison],
+        trials: &[Trial],
+        candidates: &[Candidate],
+    ) -> Self {
+        let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
+        let holds = Innovations::of(problem, &best.fit.residual, &full.law).agree();
+        let square = |of: fn(&RecordComparison) -> &ReplayResult| {
+            identification.iter().map(|one| of(one).errors.heading.powi(2) * of(one).errors.rows as f64).sum::<f64>()
+        };
+        let share = (square(|one| &one.after) / square(|one| &one.before)).sqrt();
+        let is_noise = holds && !full.law.is_of_model();
+        let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
+        let white =
+            full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
+        let is_small = square(|one| &one.after) / rows < SMALL * SMALL * white.fold(0.0, f64::max);
+        if is_noise || is_small || share < UNEXPLAINED {
+            return Self { holds, signature: None, empirical: None };
+        }
+        let worst = (0..identification.len()).max_by(|&one, &other| {
+            let error = |number: usize| identification[number].after.errors.heading;
+            error(one).total_cmp(&error(other))
+        });
+        let signature = worst.map(|number| {
+            let ReplayResult { replay, .. } = &identification[number].after;
+            let first = trials[number].observed_rows().next().unwrap_or(0);
+            let rows = first..first + replay.time.len();
+            let (heading, rudder) = (&trials[number].heading()[rows.clone()], &trials[number].rudder()[rows]);
+            diagnostics::signature(
+                number,
+                &replay.time,
+                &replay.residual,
+                heading,
+                rudder,
+                trials[number].sampling_period(),
+            )
+        });
+        Self { holds, signature, empirical: empirical::best(problem, full, best, trials, candidates) }
+    }
+}
+
+/// A structure that the records cannot tell from the best, as a prediction takes it: without what belongs to one record.
+#[derive(Debug, Clone)]
+pub struct Plausible {
+    /// Probability among these.
+    pub weight: f64,
+    /// The ship.
+    pub response: Response,
+    /// Places among its parameters of those that were fitted.
+    pub fitted: Vec<usize>,
+    /// Covariance of these; `None` where the records do not tell them apart.
+    pub covariance: Option<DMatrix<f64>>,
+}
+
+impl Analysis {
+    /// The members of the average as predictions take them.
+    pub fn plausible(&self) -> Vec<Plausible> {
+        let of = |(weight, fit): (f64, &Fit)| {
+            let (structure, theta) = fit.structure.alone(None, &fit.theta);
+            let entries = structure.entries();
+            let own = fit.kept_covariance(None).map(|kept| {
+                // What is counted from another parameter has the sum of both.
+                let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].prior.is_fitted()).collect();
+                let mut all = DMatrix::zeros(theta.len(), theta.len());
+                for (i, &one) in fitted.iter().enumerate() {
+                    for (j, &other) in fitted.iter().enumerate() {
+                        all[(one, other)] = kept[(i, j)];
+                    }
+                }
+                let all = structure.physical_covariance(&all);
+                DMatrix::from_fn(fitted.len(), fitted.len(), |i, j| all[(fitted[i], fitted[j])])
+            });
+            Plausible {
+                weight,
+                response: structure.response(None, &theta),
+                fitted: (0..entries.len()).filter(|&k| entries[k].prior.is_fitted()).collect(),
+                covariance: own,
+            }
+        };
+        self.structures.members().into_iter().map(of).collect()
+    }
+
+    /// The ship of every member of the average, without what belongs to the weather of one record.
+    pub fn average(&self) -> Average {
+        let members = self.structures.members();
+        Average {
+            members: members.iter().map(|(weight, fit)| (*weight, fit.structure.response(None, &fit.theta))).collect(),
+        }
+    }
+
+    /// The ship of the most probable structure.
+    pub fn ship(&self) -> Response {
+        let members = self.structures.members();
+        members.first().map_or_else(
+            || Response::first_order_ship(self.base.response),
+            |(_, fit)| fit.structure.response(None, &fit.theta),
+        )
+    }
+
+    /// Root mean square yaw rate with which the fitted records begin, rad/s.
+    pub fn initial_yaw_rate(&self) -> f64 {
+        let squares = self.identification.iter().map(|one| one.after.replay.initial()[1].powi(2));
+        (squares.sum::<f64>() / self.identification.len() as f64).sqrt()
+    }
+
+    /// The average on a further trial, in a calm and perfectly recorded, from the best initial state near `start`: its
+    /// band is that of the errors of parameters and structures alone. `None` when no replay is finite.
+    pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
+        let members = self.structures.members();
+        let calm = crate::fit::Law::white(1, 1e-16);
+        let after = After { members: &members, law: &calm, known: None, time: self.problem.time };
+        after.on(trial, &Record::whole(trial), &[start], true).ok()
+    }
+}

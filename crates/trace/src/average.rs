@@ -1,0 +1,95 @@
+//! Structures that the records cannot tell apart, as one prediction: the mean of their replays, or the median where one
+//! of them runs away.
+
+use identify::replay::Replay;
+use ship::Response;
+
+use crate::record::Record;
+use crate::replay_errors::{HORIZONS, full, restarted};
+
+/// A replay this many times as far from the record as the median of all runs away.
+const RUNS_AWAY: f64 = 3.0;
+
+/// Responses with their weights, replayed together.
+#[derive(Debug, Clone)]
+pub struct Average {
+    /// Weights, which sum to one, and responses.
+    pub members: Vec<(f64, Response)>,
+}
+
+/// What an average does on a record.
+#[derive(Debug, Clone)]
+pub struct Replayed {
+    /// The full replay.
+    pub replay: Replay,
+    /// The full replay of every member.
+    pub members: Vec<Replay>,
+    /// Residual of the replays restarted every 20 and 60 s, rad.
+    pub windows: [Option<Vec<f64>>; HORIZONS.len()],
+}
+
+impl Average {
+    /// Replays every member from its best initial state near one of the `starts`. `None` when none is finite.
+    pub fn replay(&self, record: &Record, starts: &[[f64; 2]], with_windows: bool) -> Option<Replayed> {
+        let found: Vec<(f64, &Response, Replay)> = self
+            .members
+            .iter()
+            .filter_map(|(weight, response)| Some((*weight, response, full(response, record, starts)?)))
+            .collect();
+        let weights: Vec<f64> = found.iter().map(|(weight, ..)| *weight).collect();
+        let errors: Vec<f64> = found.iter().map(|(.., replay)| replay.rms()).collect();
+        let combine = combination(&weights, &errors)?;
+        let of = |signal: fn(&Replay) -> &[f64]| {
+            let columns: Vec<&[f64]> = found.iter().map(|(.., replay)| signal(replay)).collect();
+            combine(&columns)
+        };
+        let [heading, yaw_rate] = [of(|replay| &replay.heading), of(|replay| &replay.yaw_rate)];
+        let residual = record.heading.iter().zip(&heading).map(|(measured, own)| measured - own).collect();
+        let windows = HORIZONS.map(|length| {
+            if !with_windows {
+                return None;
+            }
+            let all: Option<Vec<Vec<f64>>> = found
+                .iter()
+                .map(|(_, response, replay)| restarted(response, record, replay.initial(), length))
+                .collect();
+            let all = all?;
+            let columns: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
+            let mean = combine(&columns);
+            Some(record.heading.iter().zip(mean).map(|(measured, own)| measured - own).collect())
+        });
+        let replay = Replay { time: record.time.clone(), heading, yaw_rate, residual };
+        Some(Replayed { replay, members: found.into_iter().map(|(.., replay)| replay).collect(), windows })
+    }
+}
+
+/// Mean, or weighted median where one member runs away.
+fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64]]) -> Vec<f64> + use<'a>> {
+    let rows = (!weights.is_empty()).then_some(())?;
+    let () = rows;
+    let mut sorted = errors.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let runs_away = sorted[sorted.len() - 1] > RUNS_AWAY * sorted[sorted.len() / 2];
+    let total: f64 = weights.iter().sum();
+    Some(move |columns: &[&[f64]]| {
+        let rows = columns[0].len();
+        (0..rows)
+            .map(|row| match runs_away {
+                true => median(weights, columns, row, total),
+                false => weights.iter().zip(columns).map(|(weight, column)| weight * column[row]).sum::<f64>() / total,
+            })
+            .collect()
+    })
+}
+
+fn median(weights: &[f64], columns: &[&[f64]], row: usize, total: f64) -> f64 {
+    let mut values: Vec<(f64, f64)> =
+        columns.iter().zip(weights).map(|(column, weight)| (column[row], *weight)).collect();
+    values.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut sum = 0.0;
+    let found = values.iter().find(|(_, weight)| {
+        sum += weight;
+        sum >= 0.5 * total
+    });
+    found.map_or(f64::NAN, |(value, _)| *value)
+}

@@ -1,0 +1,43 @@
+//! The base: the best first-order response to the records, and its replays.
+
+use identify::replay::{Replay, replay};
+use identify::{Estimate, Identifier, output_error};
+use trial::Trial;
+
+use crate::settings::TraceError;
+
+/// The base of some records.
+#[derive(Debug, Clone)]
+pub struct Base {
+    /// K, T and δ_r by `output-error`, which is global in 1/T.
+    pub estimate: Estimate,
+    /// Its replay of every record.
+    pub replays: Vec<Replay>,
+}
+
+impl Base {
+    /// Fits the base.
+    pub fn of(trials: &[Trial]) -> Result<Self, TraceError> {
+        let method = output_error::Settings::default().build().expect("default settings are valid");
+        let estimate = method.identify(trials)?;
+        let replayed = |trial: &Trial| {
+            replay(trial, &estimate.response).ok_or_else(|| TraceError::Replay { trial: trial.name().to_owned() })
+        };
+        let replays = trials.iter().map(replayed).collect::<Result<_, _>>()?;
+        Ok(Self { estimate, replays })
+    }
+
+    /// Heading (rad) and yaw rate (rad/s) with which the replays begin.
+    pub fn initial(&self) -> Vec<[f64; 2]> {
+        self.replays.iter().map(Replay::initial).collect()
+    }
+
+    /// Mean square of what it leaves of all records, rad².
+    pub fn mean_square(&self) -> f64 {
+        let (sum, rows) = self.replays.iter().fold((0.0, 0.0), |(sum, rows), replay| {
+            let count = replay.observed().count() as f64;
+            (sum + replay.rms().powi(2) * count, rows + count)
+        });
+        sum / rows
+    }
+}

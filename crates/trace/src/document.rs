@@ -1,0 +1,392 @@
+//! What a trace says, as `trace.json` holds it: written from here, read back by reports, predictions and Python.
+//!
+//! Angles are in degrees where a name says so; parameters of effects are in SI units and radians.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use trial::Quantity;
+
+/// Name of the schema.
+pub const SCHEMA: &str = "trace/3";
+
+/// What the analysis says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Nothing is missing.
+    Clean,
+    /// What is missing has a name, and what is left is noise.
+    Traced,
+    /// Structure is left that no candidate carries.
+    Unexplained,
+}
+
+impl Verdict {
+    /// All verdicts.
+    pub const ALL: [Self; 3] = [Self::Clean, Self::Traced, Self::Unexplained];
+
+    /// The word used in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Clean => "clean",
+            Self::Traced => "traced",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// What became of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It is named.
+    Added,
+    /// It is one of a group that is named together.
+    Alias,
+    /// The records speak against it, or do not need it.
+    Rejected,
+    /// The records could not show it.
+    NotObservable,
+}
+
+impl Outcome {
+    /// The word used in files.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Added => "added",
+            Self::Alias => "alias",
+            Self::Rejected => "rejected",
+            Self::NotObservable => "not_observable",
+        }
+    }
+}
+
+/// K, T and δ_r.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[expect(non_snake_case, reason = "K and T are the symbols of the field")]
+pub struct Indices {
+    /// K, 1/s.
+    pub K_per_s: Quantity,
+    /// T, s.
+    pub T_s: Quantity,
+    /// δ_r, deg.
+    pub delta_r_deg: Quantity,
+    /// K' and T', where length and speed of the ship are known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prime: Option<PrimeIndices>,
+}
+
+/// K' = K L/U and T' = T U/L.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[expect(non_snake_case, reason = "K and T are the symbols of the field")]
+pub struct PrimeIndices {
+    /// K'.
+    pub K: Quantity,
+    /// T'.
+    pub T: Quantity,
+}
+
+/// A parameter, averaged over the structures that have it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ParameterEntry {
+    /// Name in files.
+    pub key: String,
+    /// Symbol, as in the equation.
+    pub symbol: String,
+    /// Value, standard deviation and 95 % interval.
+    #[serde(flatten)]
+    pub quantity: Quantity,
+    /// Unit.
+    pub unit: String,
+    /// The same without dimension, where length and speed of the ship are known and it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub prime: Option<PrimeEntry>,
+    /// The one record it belongs to.
+    pub only: Option<String>,
+    /// Whether it ends at an end of its range; left out where it does not.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub at_bound: bool,
+}
+
+/// A number without dimension; angles in radians.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct PrimeEntry {
+    /// Value, standard deviation and 95 % interval.
+    #[serde(flatten)]
+    pub quantity: Quantity,
+    /// Unit: 1, or one of angles.
+    pub unit: String,
+}
+
+/// Whether a flag is left out.
+pub fn is_false(flag: &bool) -> bool {
+    !flag
+}
+
+/// An effect in a form, in all records or in one.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct TermEntry {
+    /// Identifier.
+    pub id: String,
+    /// Form.
+    pub form: String,
+    /// The one record in which it acts.
+    pub only: Option<String>,
+}
+
+/// An effect that is named.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct EffectEntry {
+    /// Identifier.
+    pub id: String,
+    /// Most probable form.
+    pub form: String,
+    /// Equation.
+    pub equation: String,
+    /// The one record in which it acts.
+    pub only: Option<String>,
+    /// Whether it is in the model on request; left out where it was found.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub asked: bool,
+    /// Effects that the records cannot tell from it: one of the group is there.
+    pub aliases: Vec<String>,
+    /// Forms that the records cannot tell from it.
+    pub alias_forms: Vec<String>,
+    /// Its parameters by their symbols.
+    pub parameters: BTreeMap<String, ParameterEntry>,
+    /// Probability that it, or one of its group, is there.
+    pub probability: f64,
+    /// −2 log of the ratio of the evidence with it to that without: negative where it is better.
+    pub delta_bic: f64,
+    /// Probability of sizes as far from neutral by chance, beside all other candidates (χ²).
+    pub p_value: f64,
+    /// One sentence on it.
+    pub evidence: String,
+}
+
+/// An effect of the list.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct CandidateEntry {
+    /// Identifier.
+    pub id: String,
+    /// What became of its best form.
+    pub outcome: Outcome,
+    /// Probability that it is there in any form and record.
+    pub probability: f64,
+    /// As that of an effect, for the best form.
+    pub delta_bic: Option<f64>,
+    /// As that of an effect, for the best form.
+    pub p_value: Option<f64>,
+    /// Why it is no candidate.
+    pub reason: Option<String>,
+    /// Its forms.
+    pub forms: Vec<FormEntry>,
+}
+
+/// An effect in one form.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct FormEntry {
+    /// Form.
+    pub form: String,
+    /// The one record in which it would act.
+    pub only: Option<String>,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Probability that it is there.
+    pub probability: f64,
+    /// As that of an effect.
+    pub delta_bic: Option<f64>,
+    /// As that of an effect.
+    pub p_value: Option<f64>,
+    /// Expected square of its size over its error beside all other candidates.
+    pub visibility: Option<f64>,
+}
+
+/// A structure with its probability.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct StructureEntry {
+    /// Its terms.
+    pub effects: Vec<TermEntry>,
+    /// Probability.
+    pub weight: f64,
+    /// Its parameters, base first.
+    pub parameters: Vec<ParameterEntry>,
+    /// Whether it is a member of the average.
+    pub member: bool,
+}
+
+/// What the probabilities rest on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct PriorEntry {
+    /// Forms among the candidates, those of every record counted.
+    pub candidates: usize,
+    /// Prior probability of an effect.
+    pub probability: f64,
+    /// Prior probability of a moment that depends on time, in one record.
+    pub probability_of_time: f64,
+    /// Probability from which an effect is named.
+    pub named_from: f64,
+    /// How structures were weighed.
+    pub rule: String,
+}
+
+/// What is left.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct UnexplainedEntry {
+    /// Whether there is structure.
+    pub present: bool,
+    /// Where it is.
+    pub signature: Option<String>,
+    /// A term that would carry some of it.
+    pub empirical: Option<EmpiricalEntry>,
+}
+
+/// A term without a name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct EmpiricalEntry {
+    /// The best, and those that the records cannot tell from it.
+    pub terms: Vec<String>,
+    /// Equation of the best.
+    pub equation: String,
+    /// Its parameters.
+    pub parameters: Vec<ParameterEntry>,
+    /// As that of an effect.
+    pub delta_bic: f64,
+    /// Root mean square heading error with it.
+    pub heading_rmse_deg: f64,
+}
+
+/// Errors on all records.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ErrorEntry {
+    /// Records that were fitted.
+    pub identification: Vec<BeforeAfter>,
+    /// Records that were held out: nothing else in the document depends on them.
+    pub validation: Vec<BeforeAfter>,
+    /// Every record left out in turn, where there are several and none was held out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub leave_one_out: Vec<BeforeAfter>,
+}
+
+/// One record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct BeforeAfter {
+    /// Its file.
+    pub file: String,
+    /// The best first-order response.
+    pub before: ErrorsEntry,
+    /// The average of the structures.
+    pub after: ErrorsEntry,
+}
+
+/// Errors of one model on one record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ErrorsEntry {
+    /// Full replay.
+    pub heading_rmse_deg: f64,
+    /// Full replay, where the yaw rate was measured.
+    pub yaw_rate_rmse_deg_s: Option<f64>,
+    /// Mean absolute error of the overshoot angles.
+    pub overshoot_error_deg: Option<f64>,
+    /// Replays restarted every so many seconds.
+    pub horizon_rmse_deg: BTreeMap<String, Option<f64>>,
+    /// Share of the headings inside the 95 % band of the full replay.
+    pub band_coverage_95: Option<f64>,
+    /// Mean width of that band.
+    pub band_width_95_deg: Option<f64>,
+}
+
+/// Residual before and after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ResidualEntry {
+    /// Of the base.
+    pub before: WhitenessEntry,
+    /// Of the average.
+    pub after: WhitenessEntry,
+}
+
+/// Whiteness of a residual.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct WhitenessEntry {
+    /// Lag-1 autocorrelation.
+    pub lag1_autocorrelation: f64,
+    /// Probability of autocorrelations as large in a white residual (Ljung and Box 1978).
+    pub whiteness_p: f64,
+}
+
+/// The noise of one record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct RecordNoiseEntry {
+    /// Its file.
+    pub file: String,
+    /// Standard deviation of the white noise of a reading.
+    pub heading_sd_deg: f64,
+    /// Standard deviation of a heading error that lasts.
+    pub heading_wander_sd_deg: Option<f64>,
+    /// How long it lasts.
+    pub heading_correlation_s: Option<f64>,
+    /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite that
+    /// of the ship).
+    pub heading_wander: Option<String>,
+    /// `none`, `white`, `ornstein-uhlenbeck` or `walk`.
+    pub moment: String,
+    /// Standard deviation of gusts, of the mean of a white moment over one second, of what a walk adds in one second.
+    pub moment_sd_rudder_deg: Option<f64>,
+    /// Correlation time of gusts.
+    pub moment_correlation_s: Option<f64>,
+    /// Standard deviation of waves.
+    pub waves_sd_deg: Option<f64>,
+    /// Frequency of waves.
+    pub waves_frequency_rad_s: Option<f64>,
+    /// Whether the innovations are white, of one variance, and without a surprise.
+    pub describes_what_is_left: bool,
+    /// Times of readings of the compass that belong to no ship and were left out.
+    pub outliers_s: Vec<f64>,
+}
+
+/// The augmented model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ModelEntry {
+    /// Equations of the named effects.
+    pub equations: Vec<String>,
+    /// K, T and δ_r, averaged over the structures.
+    #[serde(flatten)]
+    pub indices: Indices,
+    /// All parameters of the most probable structure.
+    pub parameters: Vec<ParameterEntry>,
+}
+
+/// A trace.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Document {
+    /// `trace/3`.
+    #[schemars(extend("const" = "trace/3"))]
+    pub schema: String,
+    /// The result in one sentence.
+    pub headline: String,
+    /// `clean`, `traced` or `unexplained`.
+    pub verdict: Verdict,
+    /// K, T and δ_r of the base fitted alone.
+    pub base: Indices,
+    /// What is named, the most probable first.
+    pub effects: Vec<EffectEntry>,
+    /// Every effect of the list and what became of it.
+    pub candidates: Vec<CandidateEntry>,
+    /// The structures, the most probable first.
+    pub structures: Vec<StructureEntry>,
+    /// What the probabilities rest on.
+    pub prior: PriorEntry,
+    /// What is left.
+    pub unexplained: UnexplainedEntry,
+    /// Errors before and after on every record.
+    pub error: ErrorEntry,
+    /// Whiteness of the residual before and after.
+    pub residual: ResidualEntry,
+    /// The noise of every fitted record.
+    pub noise: Vec<RecordNoiseEntry>,
+    /// The trial that would tell most.
+    pub next_trial: String,
+    /// The augmented model.
+    pub model: ModelEntry,
+}

@@ -1,0 +1,273 @@
+//! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect
+//! carries; and such with magnitudes, against which named effects can be held.
+
+use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use ship::{EffectReal, Regressor};
+
+use std::sync::Arc;
+
+use trial::Trial;
+
+use crate::candidates::{Candidate, manoeuvres, mean_square};
+use crate::fit::{Effort, Problem};
+use crate::full::Full;
+use crate::model::Term;
+use crate::record::Record;
+use crate::structures::Member;
+
+/// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Monomial {
+    /// Which one.
+    pub powers: &'static Powers,
+    /// Sizes of r (rad/s), δ (rad), ψ (rad) and U (m/s).
+    pub size: [f64; 4],
+}
+
+/// One monomial of the library.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Powers {
+    /// Exponents of r, δ, ψ and U.
+    pub of: [i32; 4],
+    /// Whether one factor of the power of r, δ and ψ is a magnitude.
+    pub magnitude: [bool; 3],
+    /// The monomial, as it is written.
+    pub form: &'static str,
+    /// The equation.
+    pub equation: &'static str,
+}
+
+macro_rules! library {
+    ($($form:literal = $of:expr),* $(,)?) => {
+        library![$($form = $of, [false; 3]);*]
+    };
+    ($($form:literal = $of:expr, $magnitude:expr);* $(;)?) => {
+        &[$(Powers {
+            of: $of,
+            magnitude: $magnitude,
+            form: $form,
+            equation: concat!("T r' + r = K (δ + δ_r + c ", $form, ")"),
+        }),*]
+    };
+}
+
+/// Monomials up to the third degree that no named effect is.
+pub const LIBRARY: &[Powers] = library![
+    "ψ" = [0, 0, 1, 0],
+    "ψ²" = [0, 0, 2, 0],
+    "ψ³" = [0, 0, 3, 0],
+    "δ²" = [0, 2, 0, 0],
+    "rδ" = [1, 1, 0, 0],
+    "rψ" = [1, 0, 1, 0],
+    "δψ" = [0, 1, 1, 0],
+    "r²δ" = [2, 1, 0, 0],
+    "rδ²" = [1, 2, 0, 0],
+    "r²ψ" = [2, 0, 1, 0],
+    "rψ²" = [1, 0, 2, 0],
+    "δ²ψ" = [0, 2, 1, 0],
+    "δψ²" = [0, 1, 2, 0],
+    "rδψ" = [1, 1, 1, 0],
+    "U" = [0, 0, 0, 1],
+    "rU" = [1, 0, 0, 1],
+    "δU" = [0, 1, 0, 1],
+    "ψU" = [0, 0, 1, 1],
+];
+
+/// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
+/// show what a rule names where much is on offer.
+pub const WITH_MAGNITUDES: &[Powers] = library![
+    "|ψ|" = [0, 0, 1, 0], [false, false, true];
+    "|r|" = [1, 0, 0, 0], [true, false, false];
+    "ψ|ψ|" = [0, 0, 2, 0], [false, false, true];
+    "δ|δ|" = [0, 2, 0, 0], [false, true, false];
+    "δ|ψ|" = [0, 1, 1, 0], [false, false, true];
+    "ψ|δ|" = [0, 1, 1, 0], [false, true, false];
+    "|δ||ψ|" = [0, 1, 1, 0], [false, true, true];
+    "r|ψ|" = [1, 0, 1, 0], [false, false, true];
+    "ψ|r|" = [1, 0, 1, 0], [true, false, false];
+    "|r||ψ|" = [1, 0, 1, 0], [true, false, true];
+    "r|δ|" = [1, 1, 0, 0], [false, true, false];
+    "δ|r|" = [1, 1, 0, 0], [true, false, false];
+    "|r||δ|" = [1, 1, 0, 0], [true, true, false];
+    "|ψ|³" = [0, 0, 3, 0], [false, false, true];
+    "|δ|³" = [0, 3, 0, 0], [false, true, false];
+    "|r|³" = [3, 0, 0, 0], [true, false, false];
+    "δψ|ψ|" = [0, 1, 2, 0], [false, false, true];
+    "ψ²|δ|" = [0, 1, 2, 0], [false, true, false];
+    "ψ|δ||ψ|" = [0, 1, 2, 0], [false, true, true];
+    "δ²|ψ|" = [0, 2, 1, 0], [false, false, true];
+    "δψ|δ|" = [0, 2, 1, 0], [false, true, false];
+    "δ|δ||ψ|" = [0, 2, 1, 0], [false, true, true];
+    "rψ|ψ|" = [1, 0, 2, 0], [false, false, true];
+    "ψ²|r|" = [1, 0, 2, 0], [true, false, false];
+    "ψ|r||ψ|" = [1, 0, 2, 0], [true, false, true];
+    "rδ|δ|" = [1, 2, 0, 0], [false, true, false];
+    "δ²|r|" = [1, 2, 0, 0], [true, false, false];
+    "δ|r||δ|" = [1, 2, 0, 0], [true, true, false];
+    "r²|ψ|" = [2, 0, 1, 0], [false, false, true];
+    "rψ|r|" = [2, 0, 1, 0], [true, false, false];
+    "r|r||ψ|" = [2, 0, 1, 0], [true, false, true];
+    "r²|δ|" = [2, 1, 0, 0], [false, true, false];
+    "rδ|r|" = [2, 1, 0, 0], [true, false, false];
+    "r|r||δ|" = [2, 1, 0, 0], [true, true, false];
+    "rδ|ψ|" = [1, 1, 1, 0], [false, false, true];
+    "rψ|δ|" = [1, 1, 1, 0], [false, true, false];
+    "r|δ||ψ|" = [1, 1, 1, 0], [false, true, true];
+    "δψ|r|" = [1, 1, 1, 0], [true, false, false];
+    "δ|r||ψ|" = [1, 1, 1, 0], [true, false, true];
+    "ψ|r||δ|" = [1, 1, 1, 0], [true, true, false];
+    "|r||δ||ψ|" = [1, 1, 1, 0], [true, true, true];
+];
+
+/// Every monomial of both lists.
+pub fn all() -> impl Iterator<Item = &'static Powers> {
+    LIBRARY.iter().chain(WITH_MAGNITUDES)
+}
+
+/// The terms that some monomials are on records which have the channels they need.
+fn terms(
+    records: &[Record],
+    trials: &[Trial],
+    time: f64,
+    list: impl Iterator<Item = &'static Powers>,
+) -> impl Iterator<Item = Arc<Term>> {
+    let about = manoeuvres(records, trials, time, &records[0]);
+    let rms = |values: &mut dyn Iterator<Item = f64>| {
+        let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
+        (square / count.max(1) as f64).sqrt().max(1e-9)
+    };
+    let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
+    let speed = mean_square(records, Record::speed).map(f64::sqrt);
+    let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
+    list.filter(move |powers| speed.is_some() || powers.of[3] == 0).filter_map(move |powers| {
+        let Proposal { effect, priors } = Monomial { powers, size }.proposal(&about)?;
+        Some(Arc::new(Term { effect, only: None, priors }))
+    })
+}
+
+/// Prior odds of a term without a name.
+const LOG_ODDS: f64 = -4.0;
+
+/// Every monomial as a candidate.
+pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Iterator<Item = Candidate> {
+    terms(records, trials, time, all()).map(|term| Candidate { term, log_odds: LOG_ODDS })
+}
+
+/// A term without a name that carries what no named effect does.
+#[derive(Debug, Clone)]
+pub struct Empirical {
+    /// The best, and those that the records cannot tell from it.
+    pub group: Vec<&'static str>,
+    /// Equation of the best.
+    pub equation: &'static str,
+    /// Its coefficient and standard deviation, rad.
+    pub coefficient: (f64, Option<f64>),
+    /// Gain in the log of the evidence.
+    pub gain: f64,
+    /// Root mean square heading error with it, rad.
+    pub error: f64,
+}
+
+/// Gain in the log of the evidence from which a term without a name is proposed, and within which two are alike.
+const BELIEVED: f64 = 5.0;
+const ALIKE: f64 = 3.0;
+
+/// The monomial that improves a structure most; `None` where none does so clearly.
+pub fn best(
+    problem: &Problem,
+    full: &Full,
+    member: &Member,
+    trials: &[Trial],
+    candidates: &[Candidate],
+) -> Option<Empirical> {
+    let weights = problem.weights(&full.law);
+    let known: Vec<&str> = candidates.iter().map(|one| one.term.effect.form()).collect();
+    let fit = |term: Arc<Term>| {
+        let mut all = member.fit.structure.terms.clone();
+        all.push(Arc::clone(&term));
+        let theta = [member.fit.theta.as_slice(), &[0.0]].concat();
+        (term, problem.fit(&member.fit.structure.of(all), theta, member.fit.initial.clone(), &weights, Effort::FINE))
+    };
+    let proposed = terms(&problem.records, trials, problem.time, LIBRARY.iter());
+    let mut fits: Vec<_> = proposed.filter(|term| !known.contains(&term.effect.form())).map(fit).collect();
+    fits.sort_by(|one, other| other.1.evidence.total_cmp(&one.1.evidence));
+    let (term, first) = fits.first().filter(|(_, fit)| fit.evidence > member.fit.evidence + BELIEVED)?;
+    let alike = fits.iter().filter(|(_, fit)| fit.evidence > first.evidence - ALIKE);
+    let place = first.theta.len() - 1;
+    let sd = first.covariance().map(|all| all[(place, place)].max(0.0).sqrt());
+    let (square, rows) = first.residual.iter().flatten().fold((0.0, 0), |(sum, n), e| (sum + e * e, n + 1));
+    Some(Empirical {
+        group: alike.map(|(term, _)| term.effect.form()).collect(),
+        equation: term.effect.equation(),
+        coefficient: (first.theta[place], sd),
+        gain: first.evidence - member.fit.evidence,
+        error: (square / f64::from(rows)).sqrt(),
+    })
+}
+
+/// The coefficient of a term without a name: a rudder angle, for factors in units of their own size.
+pub const COEFFICIENT: Parameter = Parameter {
+    key: "c",
+    symbol: "c",
+    unit: "rad",
+    neutral: 0.0,
+    typical: 0.02,
+    lowest: -10.0,
+    highest: 10.0,
+    odd: false,
+};
+
+const PARAMETERS: [Parameter; 1] = [COEFFICIENT];
+
+impl Effect for Monomial {
+    fn id(&self) -> &'static str {
+        "empirical"
+    }
+
+    fn form(&self) -> &'static str {
+        self.powers.form
+    }
+
+    fn equation(&self) -> &'static str {
+        self.powers.equation
+    }
+
+    fn parameters(&self) -> &'static [Parameter] {
+        &PARAMETERS
+    }
+
+    fn constants(&self) -> Vec<f64> {
+        self.size.into()
+    }
+
+    fn sees_heading(&self) -> bool {
+        self.powers.of[2] > 0
+    }
+
+    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+        Some(Proposal::of_one(*self, 0.05))
+    }
+
+    fn places(&self) -> Places {
+        Places::MOMENT
+    }
+
+    fn needs(&self) -> Option<Regressor> {
+        (self.powers.of[3] > 0).then_some(Regressor::Speed)
+    }
+}
+
+impl<R: EffectReal> Acts<R> for Monomial {
+    fn yaw_acceleration(&self, p: &[R], _z: &[R], now: &Now<R>) -> R {
+        let speed = R::from(now.measured.speed.unwrap_or(0.0));
+        let factors = [now.yaw_rate, now.rudder, now.heading, speed];
+        let power = |k: usize| {
+            let (x, exponent) = (factors[k] / self.size[k], self.powers.of[k]);
+            match self.powers.magnitude.get(k) {
+                Some(true) => x.powi(exponent - 1) * x.abs(),
+                _ => x.powi(exponent),
+            }
+        };
+        (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
+    }
+}

@@ -1,0 +1,95 @@
+//! The full model: base and every candidate together, fitted at once, and the noise that it leaves.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use ship::FirstOrder;
+
+use crate::base::Base;
+use crate::candidates::{Candidate, is_variant};
+use crate::fit::{Effort, Fit, Law, Problem, Weights};
+use crate::law::{self, Found};
+use crate::model::{Structure, Term};
+use crate::transient;
+
+/// Standard deviation of the noise of the first fit, as a share of what the base leaves.
+const FIRST: f64 = 0.1;
+
+/// The full model of some records.
+#[derive(Debug, Clone)]
+pub struct Full {
+    /// The fit; its terms are the candidates of the same place.
+    pub fit: Fit,
+    /// The noise.
+    pub law: Law,
+    /// How much better waves explain what is left, in −2 log of the likelihood with the price of their parameters.
+    pub waves_gain: f64,
+    /// Log of the prior odds of every term.
+    pub log_odds: Vec<f64>,
+}
+
+/// Fits the full model, once for every noise that may be the right one: that of all which stands still in time, that
+/// beside moments that come at an instant, and, where one of these is a random moment, that of an error of the heading.
+pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves: bool) -> Vec<Full> {
+    let (late, known): (Vec<&Candidate>, Vec<&Candidate>) = candidates
+        .iter()
+        .filter(|one| !is_variant(one.term.effect.as_ref()))
+        .partition(|one| one.term.effect.has_instant());
+    let own = Structure::base(problem.records.len(), problem.time);
+    let structure = own.of(known.iter().map(|one| Arc::clone(&one.term)).collect());
+    let first = Law::white(problem.records.len(), (FIRST * FIRST) * base.mean_square());
+    let fit = physics(problem, base, &structure, &problem.weights(&first));
+    let ask = |fit: &Fit, from: &Law, among: law::Among| law::of(problem, fit, &from.variance, with_waves, among);
+    let lasting = ask(&fit, &first, law::Among::All);
+
+    // Moments that come at an instant enter where they explain most beside everything else.
+    let mut log_odds: Vec<f64> = known.iter().map(|one| one.log_odds).collect();
+    let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
+    let weights = problem.weights(&lasting.law);
+    for candidate in late {
+        if let Some(place) = transient::place(problem, &fit, &weights, &candidate.term) {
+            theta.extend(place);
+            terms.push(Arc::clone(&candidate.term));
+            log_odds.push(candidate.log_odds);
+        }
+    }
+    let structure = own.of(terms);
+    let of =
+        |law: &Law| problem.fit(&structure, theta.clone(), fit.initial.clone(), &problem.weights(law), Effort::COARSE);
+    let known_law = lasting.law.clone();
+    let whole = of(&known_law);
+    let beside = ask(&whole, &lasting.law, law::Among::All);
+    let mut laws = vec![beside];
+    let again = |found: &Found| ask(&whole, &found.law, law::Among::OfHeading);
+    if !laws[0].law.is_alike(&lasting.law) {
+        laws.push(lasting);
+    }
+    if laws.iter().any(|found| found.law.is_random_moment()) {
+        laws.push(again(&laws[0]));
+    }
+    let fitted = |law: &Law| if law.is_alike(&known_law) { whole.clone() } else { of(law) };
+    laws.into_par_iter()
+        .map(|Found { law, waves_gain }| Full { fit: fitted(&law), law, waves_gain, log_odds: log_odds.clone() })
+        .collect()
+}
+
+/// The full model without moments that come at an instant, from two starts.
+fn physics(problem: &Problem, base: &Base, structure: &Structure, weights: &Weights) -> Fit {
+    let starts: [fn(&Term) -> Vec<f64>; 2] =
+        [|term| term.priors.iter().map(|prior| prior.mean).collect(), Term::neutral];
+    let fits = starts.par_iter().map(|values| {
+        let theta = start(structure, &base.estimate.response, structure.terms.iter().flat_map(|term| values(term)));
+        problem.fit(structure, theta, base.initial(), weights, Effort { steps: 4, ..Effort::COARSE })
+    });
+    let height = |fit: &Fit| fit.misfit + fit.penalty;
+    let fits: Vec<Fit> = fits.collect();
+    fits.into_iter().min_by(|one, other| height(one).total_cmp(&height(other))).expect("two starts")
+}
+
+/// θ of the base with the values of terms behind it.
+pub fn start(structure: &Structure, response: &FirstOrder, of_terms: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut theta = vec![response.inverse_T, response.K_over_T, response.rudder_bias];
+    theta.resize(structure.base_count(), 0.0);
+    theta.extend(of_terms);
+    theta
+}

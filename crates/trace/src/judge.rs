@@ -1,0 +1,130 @@
+//! Models against records: errors of the recorded rudder replayed, before and after, on the records that were fitted
+//! and on others. Nothing is fitted here but initial states.
+
+use identify::replay::{Replay, replay};
+use ship::{FirstOrder, Response};
+use trial::Trial;
+
+use crate::average::{Average, Replayed};
+use crate::band;
+use crate::fit::{Fit, Law};
+use crate::record::Record;
+use crate::replay_errors::{Errors, HORIZONS, overshoot_error, root_mean_square};
+use crate::settings::TraceError;
+
+/// A model on one record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReplayResult {
+    /// Replay.
+    pub replay: Replay,
+    /// Errors.
+    pub errors: Errors,
+    /// Half the width of the 95 % band of a reading at every row of the replay, rad; `None` where it was not asked for
+    /// and where the records do not tell the parameters apart.
+    pub band: Option<Vec<f64>>,
+}
+
+impl ReplayResult {
+    /// Share of the measured headings that lie inside the band.
+    pub fn coverage(&self) -> Option<f64> {
+        let pairs = self.replay.residual.iter().zip(self.band.as_ref()?).filter(|(residual, _)| residual.is_finite());
+        let (inside, rows) = pairs.fold((0usize, 0usize), |(inside, rows), (residual, half)| {
+            (inside + usize::from(residual.abs() <= *half), rows + 1)
+        });
+        (rows > 0).then(|| inside as f64 / rows as f64)
+    }
+
+    /// Mean width of the band, rad.
+    pub fn width(&self) -> Option<f64> {
+        let band = self.band.as_ref().filter(|band| !band.is_empty())?;
+        Some(2.0 * band.iter().sum::<f64>() / band.len() as f64)
+    }
+}
+
+/// One record with the models before and after.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordComparison {
+    /// Name.
+    pub name: String,
+    /// Base.
+    pub before: ReplayResult,
+    /// Average of the structures.
+    pub after: ReplayResult,
+}
+
+/// Heading (rad) and yaw rate (rad/s) with which a record may begin: as the base has it, without yaw rate, as measured.
+pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
+    let Some(first) = trial.observed_rows().next() else { return Vec::new() };
+    let heading = trial.heading()[first];
+    let mut starts = vec![[heading, 0.0]];
+    starts.extend(replay(trial, base).map(|replay| replay.initial()));
+    starts.extend(trial.yaw_rate().map(|rate| rate[first]).filter(|rate| rate.is_finite()).map(|rate| [heading, rate]));
+    starts
+}
+
+/// The base on a record: in closed form, which neither sign of T disturbs.
+pub fn before(trial: &Trial, record: &Record, base: &FirstOrder, thorough: bool) -> Result<ReplayResult, TraceError> {
+    let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
+    let replay = replay(trial, base).ok_or_else(refuse)?;
+    let average = Average { members: vec![(1.0, Response::first_order_ship(*base))] };
+    let windows = match thorough {
+        true => average.replay(record, &[replay.initial()], true).map(|replayed| replayed.windows),
+        false => None,
+    };
+    Ok(result(trial, replay, windows.unwrap_or_default(), thorough))
+}
+
+/// Members of an average on a record, `known` being its number among those that were fitted.
+pub struct After<'a> {
+    /// Structures with their weights.
+    pub members: &'a [(f64, &'a Fit)],
+    /// The noise.
+    pub law: &'a Law,
+    /// Number of the record among the fitted ones.
+    pub known: Option<usize>,
+    /// Time of the ship L/U, s.
+    pub time: f64,
+}
+
+impl After<'_> {
+    /// Replays the average on a record from initial states near the `starts`.
+    pub fn on(
+        &self,
+        trial: &Trial,
+        record: &Record,
+        starts: &[[f64; 2]],
+        thorough: bool,
+    ) -> Result<ReplayResult, TraceError> {
+        let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
+        let responses =
+            self.members.iter().map(|(weight, fit)| (*weight, fit.structure.response(self.known, &fit.theta)));
+        let average = Average { members: responses.collect() };
+        let mut all = starts.to_vec();
+        if let Some(number) = self.known {
+            all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
+        }
+        let Replayed { replay, windows, members } = average.replay(record, &all, thorough).ok_or_else(refuse)?;
+        let band = thorough.then(|| band::of(self, trial, &replay, &members)).flatten();
+        Ok(ReplayResult { band, ..result(trial, replay, windows, thorough) })
+    }
+}
+
+/// Errors of a replay.
+fn result(trial: &Trial, replay: Replay, windows: [Option<Vec<f64>>; HORIZONS.len()], thorough: bool) -> ReplayResult {
+    let first = trial.observed_rows().next().unwrap_or(0);
+    let rows = replay.observed().count();
+    let finite = |values: &[f64]| -> Vec<f64> { values.iter().copied().filter(|x| x.is_finite()).collect() };
+    let yaw_rate = trial.yaw_rate().filter(|_| thorough).and_then(|measured| {
+        let differences: Vec<f64> =
+            measured[first..].iter().zip(&replay.yaw_rate).map(|(one, own)| one - own).collect();
+        root_mean_square(&finite(&differences))
+    });
+    let errors = Errors {
+        heading: replay.rms(),
+        rows,
+        yaw_rate,
+        overshoot: if thorough { overshoot_error(trial, &replay) } else { None },
+        horizon: windows.map(|residual| root_mean_square(&finite(&residual?))),
+    };
+    ReplayResult { replay, errors, band: None }
+}

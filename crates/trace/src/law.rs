@@ -1,0 +1,219 @@
+//! The noise of the records: what the full model leaves, as the one law that explains it best.
+//!
+//! Every kind of colour is tried; its level is that of largest marginal likelihood, in which all unknowns of the full
+//! model are integrated out to first order, so that what they have taken from the residual is given back:
+//!
+//! −2 log p = Σ n log σ² + Σ log S + J + log det(XᵀX/σ² + P).
+//!
+//! A colour pays log n for each of its parameters (Schwarz 1978). The law is common to all structures: what a structure
+//! without an effect leaves is never taken for weather.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::fit::{Fit, Law, Linear, Normal2, Problem, Weights, curvature, deviation};
+use crate::minimum::minimum;
+use crate::noise::{COMPASS, Colour, GUSTS, SMOOTH, Wander};
+use crate::waves;
+
+/// No heading is believed to be better than this, rad: a thousandth of a degree.
+const FINEST: f64 = 1.75e-5;
+
+/// Share of the rows whose rudder bends most, by which the error of the rudder between rows is judged.
+const BENT: f64 = 0.05;
+
+/// Levels of a colour that are tried: variance of the heading that it leaves, in units of that of a row.
+const LEVELS: [f64; 2] = [1e-2, 1e9];
+const GRID: usize = 6;
+
+/// Levels at which every kind of colour is tried, and the kinds whose level is then found.
+const ROUGH: i32 = 4;
+const FINALISTS: usize = 3;
+
+/// How often the size of the noise is found anew for a colour.
+const ROUNDS: usize = 2;
+
+/// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral of
+/// the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
+fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
+    let of = |record: &crate::record::Record| {
+        let mut bends: Vec<f64> = record.rudder().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+        bends.sort_by(|one, other| other.total_cmp(one));
+        let most = ((bends.len() as f64 * BENT) as usize).max(1);
+        let square = bends.iter().take(most).sum::<f64>() / most as f64;
+        (gain * problem.time * record.rudder_spacing * square.sqrt() / 16.0).max(FINEST).powi(2)
+    };
+    problem.records.iter().map(of).collect()
+}
+
+/// The full fit as the law sees it.
+struct Ground<'a> {
+    problem: &'a Problem,
+    linear: Linear,
+    /// Precision of what is expected of the unknowns, and where they stand beside it.
+    prior: Vec<(f64, f64)>,
+    floors: Vec<f64>,
+}
+
+/// A law with its −2 log of the marginal likelihood.
+struct Judged {
+    law: Law,
+    height: f64,
+}
+
+impl Ground<'_> {
+    /// The sizes of the noise of all records under a colour, from `start`.
+    fn judge(&self, colour: Colour, start: &[f64]) -> Judged {
+        let ones = vec![1.0; start.len()];
+        let mut law = Law { colour, variance: start.to_vec(), power: ones.clone() };
+        let unit = Law { colour, variance: ones.clone(), power: ones };
+        let weights = self.problem.weights(&unit);
+        // Of every record by itself, under unit variance: the sums for other sizes follow.
+        let blocks: Vec<Normal2> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
+        let mut height = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let Some((next, value)) = self.round(&law, &blocks, &weights) else { break };
+            law.variance = next;
+            height = value;
+        }
+        Judged { law, height }
+    }
+
+    fn of_record(&self, record: usize, weights: &Weights) -> Normal2 {
+        let alone = Linear { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
+        let own = Weights { whiteners: vec![weights.whiteners[record].clone()], scale: vec![weights.scale[record]] };
+        alone.normal(&own)
+    }
+
+    /// New sizes and the height at the old ones.
+    fn round(&self, law: &Law, blocks: &[Normal2], weights: &Weights) -> Option<(Vec<f64>, f64)> {
+        let n = self.linear.unknowns;
+        let (mut matrix, mut gradient) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        for (block, variance) in blocks.iter().zip(&law.variance) {
+            matrix += &block.matrix / *variance;
+            gradient += &block.gradient / *variance;
+        }
+        let mut penalty = 0.0;
+        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
+            matrix[(k, k)] += precision;
+            gradient[k] -= precision * beside;
+            penalty += precision * beside * beside;
+        }
+        let factor = matrix.cholesky()?;
+        let step = factor.solve(&gradient);
+        let inverse = factor.inverse();
+        let mut height = factor.ln_determinant() + penalty - step.dot(&gradient);
+        let mut sizes = Vec::with_capacity(blocks.len());
+        for (record, (block, variance)) in blocks.iter().zip(&law.variance).enumerate() {
+            let rows = self.linear.blocks[record].residual.len() as f64;
+            height += rows * variance.ln() + weights.whiteners[record].log_variance + block.squares[0] / variance;
+            let left = block.squares[0] - 2.0 * step.dot(&block.gradient) + step.dot(&(&block.matrix * &step));
+            let taken = (inverse.component_mul(&block.matrix)).sum() / variance;
+            sizes.push((left.max(0.0) / (rows - taken).max(0.2 * rows)).max(self.floors[record]));
+        }
+        height.is_finite().then_some((sizes, height))
+    }
+
+    /// Some kinds of colour at their best levels: all are tried roughly, the best few finely.
+    fn levels(&self, kinds: Vec<Wander>, white: &Law) -> Vec<Judged> {
+        let at = |kind: Wander, log: f64| {
+            let colour = Colour { wander: Some((kind, log.exp())), ..white.colour };
+            self.judge(colour, &white.variance)
+        };
+        let [low, high] = LEVELS.map(f64::ln);
+        let roughly = |kind: Wander| {
+            let levels = (0..ROUGH).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(ROUGH));
+            (levels.map(|log| at(kind, log).height).fold(f64::INFINITY, f64::min), kind)
+        };
+        let mut all: Vec<(f64, Wander)> = kinds.into_par_iter().map(roughly).collect();
+        all.sort_by(|one, other| one.0.total_cmp(&other.0));
+        all.truncate(FINALISTS);
+        all.into_par_iter().map(|(_, kind)| at(kind, minimum(low, high, GRID, |log| at(kind, log).height).0)).collect()
+    }
+}
+
+/// Which kinds of colour are tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Among {
+    /// All.
+    All,
+    /// Errors of the heading, no random moment.
+    OfHeading,
+}
+
+impl Among {
+    fn kinds(self) -> Vec<Wander> {
+        let gusts = (0..GUSTS.len()).map(Wander::OrnsteinUhlenbeck);
+        let moments = [Wander::White, Wander::Walk].into_iter().chain(gusts);
+        let heading = (0..COMPASS.len()).map(Wander::Compass).chain((0..SMOOTH.len()).map(Wander::Smooth));
+        match self {
+            Self::All => moments.chain(heading).collect(),
+            Self::OfHeading => heading.collect(),
+        }
+    }
+}
+
+/// A law, and the fall of −2 log p with the waves in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The law.
+    pub law: Law,
+    /// How much better waves explain what is left, with the price of their parameters.
+    pub waves_gain: f64,
+}
+
+/// The law of what a fit leaves; `variance` are sizes to begin with, rad².
+pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, among: Among) -> Found {
+    let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
+    let entries = fit.structure.entries();
+    let fitted = entries.iter().zip(&fit.theta).filter(|(entry, _)| entry.prior.is_fitted());
+    let prior = fitted.map(|(entry, value)| {
+        let precision = curvature(entry.prior);
+        (precision, deviation(entry.prior, *value) / precision.sqrt())
+    });
+    let ground = Ground { problem, linear, prior: prior.collect(), floors: floors(problem, fit.theta[1]) };
+    let white = ground.judge(Colour::WHITE, variance);
+    let log_n = (problem.observations() as f64).ln();
+    let price = |judged: &Judged| judged.height + judged.law.colour.freedom() as f64 * log_n;
+    let coloured =
+        ground.levels(among.kinds(), &white.law).into_iter().min_by(|one, other| price(one).total_cmp(&price(other)));
+    let mut best = coloured.filter(|other| price(other) < price(&white)).unwrap_or(white);
+    let mut waves_gain = 0.0;
+    if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
+        let colours = [
+            Some(Colour { waves: Some(sea), wander: None }),
+            best.law.colour.wander.map(|_| Colour { waves: Some(sea), ..best.law.colour }),
+        ];
+        for colour in colours.into_iter().flatten() {
+            let option = ground.judge(colour, &best.law.variance);
+            if price(&option) < price(&best) {
+                waves_gain += price(&best) - price(&option);
+                best = option;
+            }
+        }
+    }
+    Found { law: best.law.of_model(problem), waves_gain }
+}
+
+/// Smallest smooth error of a model, as a share of the standard deviation of the heading: no response is nearer to a
+/// hull.
+const OF_MODEL: f64 = 0.02;
+
+/// Independent readings for every length that the ship sails, where the noise holds the error of a model.
+const TOLD_PER_TIME: f64 = 3.0;
+
+impl Law {
+    /// A smooth error that is no smaller than that of any model.
+    fn of_model(mut self, problem: &Problem) -> Self {
+        let Some((Wander::Smooth(_), level)) = self.colour.wander else { return self };
+        for ((variance, power), record) in self.variance.iter_mut().zip(&mut self.power).zip(&problem.records) {
+            let rows = record.observed.len() as f64;
+            let heading = || record.observed.iter().map(|&row| record.heading[row]);
+            let mean = heading().sum::<f64>() / rows;
+            let square = heading().map(|psi| (psi - mean).powi(2)).sum::<f64>() / rows;
+            *variance = variance.max(OF_MODEL * OF_MODEL * square / level);
+            *power = (TOLD_PER_TIME * record.duration() / problem.time / rows).min(1.0);
+        }
+        self
+    }
+}

@@ -1,0 +1,71 @@
+//! The missing moment of every fitted record, with the models that may explain it.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use ship::FirstOrder;
+use ship::effects::Prior;
+
+use crate::analysis::Analysis;
+use crate::candidates::is_variant;
+use crate::fit::Effort;
+use crate::full::start;
+use crate::missing_moment::{Explanation, MissingMoment};
+use crate::model::{Structure, TermName};
+
+/// Smallest heading noise that a smoother starts from, rad.
+const FINEST: f64 = 1.75e-5;
+
+impl Analysis {
+    /// The yaw moment that a base of constant K and T lacks on every fitted record; `None` for a record of too few
+    /// headings.
+    ///
+    /// Explanations are first the average of the structures, where it is more than the base, then every candidate alone
+    /// on the base, the most probable first.
+    pub fn missing_moments(&self) -> Vec<Option<MissingMoment>> {
+        let FirstOrder { inverse_T, K_over_T, rudder_bias } = self.base.response;
+        let own = Structure::base(self.problem.records.len(), self.problem.time);
+        let weights = self.problem.weights(&self.full.law);
+        let initial: Vec<[f64; 2]> = self.identification.iter().map(|one| one.before.replay.initial()).collect();
+        let theta = |values: &mut dyn Iterator<Item = f64>| start(&own, &self.base.response, values);
+        let base = self.problem.residual(&own, &theta(&mut std::iter::empty()), &initial);
+        let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
+        let mut alone: Vec<_> = self.candidates.iter().filter(|one| !is_variant(one.term.effect.as_ref())).collect();
+        alone.sort_by(|one, other| probable(&other.term.name()).total_cmp(&probable(&one.term.name())));
+        let fits: Vec<(TermName, Vec<Vec<f64>>)> = alone
+            .par_iter()
+            .filter(|one| !one.term.effect.has_instant())
+            .map(|one| {
+                let structure = own.of(vec![Arc::clone(&one.term)]);
+                let mut values = one.term.priors.iter().map(|prior: &Prior| prior.mean);
+                let fit = self.problem.fit(&structure, theta(&mut values), initial.clone(), &weights, Effort::COARSE);
+                (one.term.name(), fit.residual)
+            })
+            .collect();
+        let model = self.structures.members();
+        let of = |number: usize| {
+            let difference =
+                |residual: &[f64]| base[number].iter().zip(residual).map(|(base, own)| base - own).collect();
+            let mut explanations = Vec::new();
+            if let Some((_, best)) = model.first().filter(|(_, fit)| !fit.structure.terms.is_empty()) {
+                let acting = best.structure.terms.iter().filter(|term| term.only.is_none_or(|only| only == number));
+                let effects = acting.map(|term| (term.effect.id(), term.effect.form())).collect();
+                let rows = self.problem.records[number].observed.len();
+                let mut mean = vec![0.0; rows];
+                for (weight, fit) in &model {
+                    mean.iter_mut().zip(&fit.residual[number]).for_each(|(sum, e)| *sum += weight * e);
+                }
+                explanations.push(Explanation { effects, heading: difference(&mean) });
+            }
+            let here = fits.iter().filter(|((_, _, only), _)| only.is_none_or(|only| only == number));
+            explanations.extend(here.map(|((id, form, _), residual)| Explanation {
+                effects: vec![(*id, *form)],
+                heading: difference(&residual[number]),
+            }));
+            let sd = self.full.law.variance[number].sqrt().max(FINEST);
+            let response = FirstOrder { inverse_T, K_over_T, rudder_bias };
+            MissingMoment::new(&self.problem.records[number], &response, sd, explanations)
+        };
+        (0..self.problem.records.len()).into_par_iter().map(of).collect()
+    }
+}

@@ -1,0 +1,138 @@
+//! Quantities that are averages over structures: each structure has a normal law, and a weight.
+
+use statrs::distribution::{ContinuousCDF, Normal};
+use trial::Quantity;
+
+/// Halvings of an interval in which a quantile lies.
+const HALVINGS: usize = 100;
+
+/// Normal laws with their weights, which sum to one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mixture {
+    /// Weight, mean and standard deviation.
+    pub parts: Vec<(f64, f64, f64)>,
+}
+
+impl Mixture {
+    /// Mean and standard deviation of the mixture, with the interval between its 2.5 % and 97.5 % quantiles. Without an
+    /// error where one of the parts has none.
+    pub fn quantity(&self) -> Quantity {
+        let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
+        let mean = self.parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
+        let square = |(weight, own, sd): &(f64, f64, f64)| weight * (sd * sd + (own - mean).powi(2));
+        let sd = (self.parts.iter().map(square).sum::<f64>() / total).sqrt();
+        if !sd.is_finite() {
+            return Quantity::bare(mean);
+        }
+        let interval = [0.025, 0.975].map(|probability| self.quantile(probability));
+        Quantity { value: mean, sd: Some(sd), ci95: Some(interval) }
+    }
+
+    /// Value below which the mixture lies with a probability.
+    pub fn quantile(&self, probability: f64) -> f64 {
+        let reach = |sign: f64| move |(_, mean, sd): &(f64, f64, f64)| mean + sign * 10.0 * sd;
+        let low = self.parts.iter().map(reach(-1.0)).fold(f64::INFINITY, f64::min);
+        let high = self.parts.iter().map(reach(1.0)).fold(f64::NEG_INFINITY, f64::max);
+        bisect(low, high, |x| self.below(x) < probability)
+    }
+
+    /// Probability of less than `x`.
+    pub fn below(&self, x: f64) -> f64 {
+        let law = Normal::standard();
+        let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
+        let part = |(weight, mean, sd): &(f64, f64, f64)| match *sd > 0.0 {
+            true => weight * law.cdf((x - mean) / sd),
+            false if x > *mean => *weight,
+            false => 0.0,
+        };
+        self.parts.iter().map(part).sum::<f64>() / total
+    }
+}
+
+/// The place at which `is_below` ends.
+fn bisect(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if is_below(middle) { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// A pair (denominator, numerator) in one structure: weight, values, variances and covariance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// Weight.
+    pub weight: f64,
+    /// Denominator and its variance.
+    pub denominator: (f64, f64),
+    /// Numerator and its variance.
+    pub numerator: (f64, f64),
+    /// Their covariance.
+    pub covariance: f64,
+}
+
+/// The ratio numerator over denominator of the most probable structure, with the interval over all of them.
+///
+/// P(b/a < k) is that of b − k a < 0, which is normal in every structure (Fieller 1954). There is no interval where the
+/// denominator may be zero: where its own 95 % interval holds zero.
+pub fn ratio(pairs: &[Pair]) -> Quantity {
+    let best = pairs.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
+    let Some(best) = best else { return Quantity::bare(f64::NAN) };
+    let value = best.numerator.0 / best.denominator.0;
+    let parts =
+        pairs.iter().map(|pair| (pair.weight, pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).collect();
+    let denominator = Mixture { parts };
+    let below = denominator.below(0.0);
+    if !(below < 0.025 || below > 0.975) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
+        return Quantity::bare(value);
+    }
+    let sign = if below < 0.5 { 1.0 } else { -1.0 };
+    let is_below = |k: f64| {
+        let part = |pair: &Pair| {
+            let mean = sign * (pair.numerator.0 - k * pair.denominator.0);
+            let variance = pair.numerator.1 - 2.0 * k * pair.covariance + k * k * pair.denominator.1;
+            (pair.weight, mean, variance.max(0.0).sqrt())
+        };
+        Mixture { parts: pairs.iter().map(part).collect() }.below(0.0)
+    };
+    let spread = |pair: &Pair| {
+        let own = pair.numerator.0 / pair.denominator.0;
+        let variance = pair.numerator.1 - 2.0 * own * pair.covariance + own * own * pair.denominator.1;
+        (own, variance.max(0.0).sqrt() / pair.denominator.0.abs())
+    };
+    let total: f64 = pairs.iter().map(|pair| pair.weight).sum();
+    let mean = pairs.iter().map(|pair| pair.weight * spread(pair).0).sum::<f64>() / total;
+    let square = pairs.iter().map(|pair| pair.weight * (spread(pair).1.powi(2) + (spread(pair).0 - mean).powi(2)));
+    let sd = (square.sum::<f64>() / total).sqrt();
+    let reach = 40.0 * sd + 1e-12;
+    let interval = [0.025, 0.975].map(|probability| bisect(mean - reach, mean + reach, |k| is_below(k) < probability));
+    Quantity { value, sd: Some(sd), ci95: Some(interval) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mixture_of_one_is_normal() {
+        let one = Mixture { parts: vec![(1.0, 2.0, 0.5)] }.quantity();
+        let [low, high] = one.ci95.expect("a law");
+        assert!((low - 1.02).abs() < 1e-3 && (high - 2.98).abs() < 1e-3 && one.sd == Some(0.5));
+        let two = Mixture { parts: vec![(0.5, 0.0, 0.1), (0.5, 1.0, 0.1)] }.quantity();
+        let [low, high] = two.ci95.expect("a law");
+        assert!(low < -0.1 && high > 1.1 && (two.value - 0.5).abs() < 1e-12);
+    }
+
+    /// Far from zero the interval of a ratio is that of the delta method; near zero there is none.
+    #[test]
+    fn a_ratio_has_an_interval_away_from_zero() {
+        let pair = |a: f64| Pair { weight: 1.0, denominator: (a, 1e-6), numerator: (0.5, 4e-6), covariance: 0.0 };
+        let found = ratio(&[pair(1.0)]);
+        let sd = (4e-6 + 0.25e-6_f64).sqrt();
+        let [low, high] = found.ci95.expect("a = 1 ± 0.001");
+        assert!((found.value - 0.5).abs() < 1e-12 && ((high - low) / (2.0 * 1.96 * sd) - 1.0).abs() < 1e-2);
+        assert_eq!(ratio(&[pair(0.001)]).ci95, None);
+        let negative = ratio(&[pair(-1.0)]).ci95.expect("a = −1 ± 0.001");
+        assert!((negative[0] + high).abs() < 1e-6 && (negative[1] + low).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,93 @@
+//! Which effects are named: those whose probability is high enough, and groups of which one is there.
+
+use crate::model::TermName;
+use crate::selection::Selection;
+use crate::structures::Structures;
+
+/// Probability below which an effect is no member of a group, and a form no alternative.
+const SMALLEST: f64 = 0.05;
+
+/// Most effects of a group.
+const LARGEST_GROUP: usize = 3;
+
+/// Share of the doubt about one effect that is left to a group: a group has more chances.
+const GROUP: f64 = 0.6;
+
+/// An effect that is named, or a group of which one is there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Named {
+    /// Its most probable form.
+    pub term: TermName,
+    /// The other effects of its group, each in its most probable form.
+    pub aliases: Vec<TermName>,
+    /// Other forms of it that are probable.
+    pub forms: Vec<TermName>,
+    /// Probability that it, or one of the group, is there.
+    pub probability: f64,
+}
+
+/// An effect with the one record in which it acts.
+type Key = (&'static str, Option<usize>);
+
+/// The effects that are named, the most probable first; those that were asked for are.
+pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<Named> {
+    let mut keys: Vec<(Key, f64)> = Vec::new();
+    for name in structures.probabilities.keys() {
+        let key = (name.0, name.2);
+        if keys.iter().all(|(other, _)| *other != key) {
+            keys.push((key, structures.of_effect(key.0, key.1)));
+        }
+    }
+    keys.sort_by(|(one, p), (other, q)| q.total_cmp(p).then(one.cmp(other)));
+    let is_named = |(key, p): &(Key, f64)| *p >= threshold || selection.asks_for(key.0) && *p > 0.0;
+    let (certain, open): (Vec<_>, Vec<_>) = keys.into_iter().partition(is_named);
+    let mut all: Vec<Named> =
+        certain.iter().map(|(key, p)| Named { aliases: Vec::new(), ..one(structures, *key, *p) }).collect();
+    let mut open: Vec<Key> = open.into_iter().filter(|(_, p)| *p >= SMALLEST).map(|(key, _)| key).collect();
+    while let Some((group, probability)) = group(structures, &open, threshold) {
+        open.retain(|key| !group.contains(key));
+        let mut named = one(structures, group[0], probability);
+        named.aliases = group[1..].iter().map(|key| one(structures, *key, 0.0).term).collect();
+        all.push(named);
+    }
+    all
+}
+
+/// An effect in its most probable form.
+fn one(structures: &Structures, (id, only): Key, probability: f64) -> Named {
+    let of = |name: &&TermName| name.0 == id && name.2 == only;
+    let mut forms: Vec<(TermName, f64)> =
+        structures.probabilities.keys().filter(of).map(|name| (*name, structures.probabilities[name])).collect();
+    forms.sort_by(|(one, p), (other, q)| q.total_cmp(p).then(one.cmp(other)));
+    let others = forms[1..].iter().filter(|(_, p)| *p >= SMALLEST).map(|(name, _)| *name).collect();
+    Named { term: forms[0].0, aliases: Vec::new(), forms: others, probability }
+}
+
+/// The smallest group of effects of which one is there, the most probable of them first.
+fn group(structures: &Structures, open: &[Key], threshold: f64) -> Option<(Vec<Key>, f64)> {
+    let union = |group: &[Key]| -> f64 {
+        let has = |(id, only): &Key, terms: &[TermName]| terms.iter().any(|name| name.0 == *id && name.2 == *only);
+        structures
+            .weighed_names()
+            .filter(|(_, names)| group.iter().any(|key| has(key, names)))
+            .map(|(weight, _)| weight)
+            .sum::<f64>()
+            .clamp(0.0, 1.0)
+    };
+    let mut group = vec![*open.first()?];
+    while group.len() < LARGEST_GROUP {
+        let own = union(&group);
+        let with = |key: &Key| union(&[group.as_slice(), &[*key]].concat());
+        let others = open.iter().filter(|key| !group.contains(key));
+        let next = others.max_by(|one, other| with(one).total_cmp(&with(other)))?;
+        let probability = with(next);
+        if probability - own < SMALLEST {
+            return None;
+        }
+        group.push(*next);
+        if 1.0 - probability <= GROUP * (1.0 - threshold) {
+            return Some((group, probability));
+        }
+    }
+    None
+}

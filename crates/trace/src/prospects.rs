@@ -1,0 +1,125 @@
+//! What another trial would tell: which aliases it would separate and which blind spots it would reveal.
+
+use std::collections::HashMap;
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use trial::Trial;
+
+use crate::analysis::Analysis;
+use crate::document::Outcome;
+use crate::fit::{Law, Problem};
+use crate::model::TermName;
+use crate::record::Record;
+
+/// Expected square of a size over its error from which an effect can be told from all others.
+const TOLD: f64 = 20.0;
+
+/// What another trial would tell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prospect {
+    /// The manoeuvre.
+    pub name: String,
+    /// Rivals (the named effect, the other one) that this trial together with the records would tell apart.
+    pub separated: Vec<[String; 2]>,
+    /// Rivals it would not.
+    pub still_alike: Vec<[String; 2]>,
+    /// Effects that the records could not show and this trial would.
+    pub revealed: Vec<String>,
+    /// Effects that stay hidden.
+    pub still_hidden: Vec<String>,
+    /// Σ log(1 + expected squared size over error) of all candidates: what decides between trials that settle as many.
+    pub information: f64,
+}
+
+impl Analysis {
+    /// What each of some planned trials would tell beside the records, best first.
+    ///
+    /// A planned trial is a record of the fitted ship itself, made by the caller; only its rudder and its times count.
+    pub fn prospects(&self, planned: &[(String, Trial)]) -> Vec<Prospect> {
+        let mut prospects: Vec<Prospect> =
+            planned.par_iter().filter_map(|(name, trial)| self.prospect(name, trial)).collect();
+        let rank = |prospect: &Prospect| prospect.separated.len() + prospect.revealed.len();
+        prospects.sort_by(|one, other| rank(other).cmp(&rank(one)).then(other.information.total_cmp(&one.information)));
+        prospects
+    }
+
+    fn prospect(&self, name: &str, trial: &Trial) -> Option<Prospect> {
+        let seen = self.seen_with(trial)?;
+        let of = |id: &str, form: &str| {
+            seen.iter()
+                .filter(|((own, other, _), _)| *own == id && *other == form)
+                .map(|(_, seen)| *seen)
+                .fold(0.0, f64::max)
+        };
+        let label = |id: &str, form: &str| format!("{id} ({form})");
+        let mut prospect = Prospect {
+            name: name.to_owned(),
+            separated: Vec::new(),
+            still_alike: Vec::new(),
+            revealed: Vec::new(),
+            still_hidden: Vec::new(),
+            information: seen.values().map(|seen| seen.ln_1p()).sum(),
+        };
+        for effect in &self.document.effects {
+            for other in &effect.alias_forms {
+                let (id, form) =
+                    other.split_once(" (").map_or((other.as_str(), ""), |(id, form)| (id, form.trim_end_matches(')')));
+                let told = of(&effect.id, &effect.form).min(of(id, form)) > TOLD;
+                let pair = [label(&effect.id, &effect.form), other.clone()];
+                if told { prospect.separated.push(pair) } else { prospect.still_alike.push(pair) }
+            }
+        }
+        for candidate in &self.document.candidates {
+            for form in
+                candidate.forms.iter().filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none())
+            {
+                let own = label(&candidate.id, &form.form);
+                if of(&candidate.id, &form.form) > TOLD {
+                    prospect.revealed.push(own)
+                } else {
+                    prospect.still_hidden.push(own)
+                }
+            }
+        }
+        Some(prospect)
+    }
+
+    /// Expected squared size over error of every candidate of the ship, from the records and another trial.
+    fn seen_with(&self, trial: &Trial) -> Option<HashMap<TermName, f64>> {
+        let full = &self.full.fit;
+        let (structure, theta) = full.structure.alone(None, &full.theta);
+        let record = Record::averaged(trial, self.problem.time);
+        let problem = Problem::new(vec![record], theta[0], self.problem.time);
+        let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
+        let law = Law { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
+        let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
+        let normal = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
+        let known = full.kept_covariance(None)?.try_inverse()?;
+        let count = known.nrows();
+        let mut precision = normal.matrix;
+        precision.view_mut((0, 0), (count, count)).zip_apply(&known, |own, known| *own += known);
+        let covariance = regular(precision)?;
+        let mut seen = HashMap::new();
+        let entries = structure.entries();
+        let mut unknown = 0..;
+        let places: Vec<Option<usize>> =
+            entries.iter().map(|entry| entry.prior.is_fitted().then(|| unknown.next()).flatten()).collect();
+        for (term, range) in structure.terms.iter().zip(structure.ranges()) {
+            let own = range.zip(&term.priors).zip(term.neutral()).filter_map(|((place, prior), neutral)| {
+                let place = places[place].filter(|_| !prior.is_shape)?;
+                Some((prior.sd.powi(2) + (prior.mean - neutral).powi(2)) / covariance[(place, place)])
+            });
+            seen.insert(term.name(), own.fold(0.0, f64::max));
+        }
+        Some(seen)
+    }
+}
+
+/// Inverse of a precision that may lack an unknown.
+fn regular(mut precision: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    for k in 0..precision.nrows() {
+        precision[(k, k)] += 1e-12 * precision[(k, k)] + f64::MIN_POSITIVE;
+    }
+    Some(precision.cholesky()?.inverse())
+}

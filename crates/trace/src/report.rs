@@ -1,0 +1,456 @@
+//! The document of a trace, from what its stages made. Nothing is fitted here.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+use ship::angle::to_deg;
+use ship::effects::{self, Effect};
+use ship::particulars::prime_unit;
+use ship::{Particulars, Regressor};
+use trial::{Quantity, Trial};
+
+use crate::analysis::Remainder;
+use crate::base::Base;
+use crate::candidates::{Candidate, PROBABILITY, PROBABILITY_OF_TIME};
+use crate::diagnostics::{Signature, Whiteness};
+use crate::document::*;
+use crate::fit::{Fit, Problem};
+use crate::full::Full;
+use crate::judge::{RecordComparison, ReplayResult};
+use crate::mixture::{Mixture, Pair, ratio};
+use crate::model::TermName;
+use crate::naming::{Named, named};
+use crate::noise::Wander;
+use crate::replay_errors::HORIZONS;
+use crate::settings::Settings;
+use crate::structures::Structures;
+use crate::words;
+
+/// Everything that is said something about.
+pub struct Said<'a> {
+    /// Fitted records.
+    pub trials: &'a [Trial],
+    /// Settings.
+    pub settings: &'a Settings,
+    /// Base.
+    pub base: &'a Base,
+    /// Full model.
+    pub full: &'a Full,
+    /// Structures.
+    pub structures: &'a Structures,
+    /// Candidates.
+    pub candidates: &'a [Candidate],
+    /// Comparisons on fitted records.
+    pub identification: &'a [RecordComparison],
+    /// Held-out records with their comparisons.
+    pub validation: (&'a [Trial], &'a [RecordComparison]),
+    /// Comparisons on records left out in turn.
+    pub left_out: &'a [Option<RecordComparison>],
+    /// What is left.
+    pub remainder: &'a Remainder,
+    /// Whiteness before and after.
+    pub whiteness: [Whiteness; 2],
+    /// Readings that were left out of the fitted records, s.
+    pub outliers: &'a [Vec<f64>],
+    /// The records as they were fitted.
+    pub problem: &'a Problem,
+}
+
+/// Squared size over its error below which a candidate cannot be seen.
+const SEEN: f64 = 4.0;
+
+/// Structures that are listed.
+const LISTED: usize = 20;
+
+impl Said<'_> {
+    /// The document.
+    pub fn document(&self) -> Document {
+        let named = named(self.structures, self.settings.probability, &self.settings.selection);
+        let effects = self.effects(&named);
+        let signature = self.remainder.signature.as_ref();
+        let verdict = match (signature, effects.is_empty()) {
+            (Some(_), _) => Verdict::Unexplained,
+            (None, true) => Verdict::Clean,
+            (None, false) => Verdict::Traced,
+        };
+        let error = self.errors();
+        let indices = self.indices();
+        Document {
+            schema: SCHEMA.into(),
+            headline: words::headline(verdict, &effects, &error),
+            verdict,
+            base: self.base_indices(),
+            candidates: self.candidates(&named),
+            structures: self.listed(),
+            prior: PriorEntry {
+                candidates: self.candidates.len(),
+                probability: PROBABILITY,
+                probability_of_time: PROBABILITY_OF_TIME,
+                named_from: self.settings.probability,
+                rule: self.settings.rule.as_str().into(),
+            },
+            unexplained: UnexplainedEntry {
+                present: signature.is_some(),
+                signature: signature.map(|own| words::signature(own, self.name_of(own))),
+                empirical: self.empirical(),
+            },
+            residual: ResidualEntry { before: entry(self.whiteness[0]), after: entry(self.whiteness[1]) },
+            noise: self.noise(),
+            next_trial: String::new(),
+            model: ModelEntry {
+                equations: match effects.is_empty() {
+                    true => vec!["T r' + r = K (δ + δ_r)".into()],
+                    false => effects.iter().map(|effect| effect.equation.clone()).collect(),
+                },
+                indices,
+                parameters: self.structures.all.first().map_or_else(Vec::new, |best| self.parameters(&best.fit)),
+            },
+            error,
+            effects,
+        }
+    }
+
+    fn name_of(&self, signature: &Signature) -> &str {
+        self.trials[signature.record].name()
+    }
+
+    fn ship(&self) -> Option<Particulars> {
+        self.trials.iter().find_map(Trial::particulars)
+    }
+
+    fn only(&self, only: Option<usize>) -> Option<String> {
+        only.map(|number| self.trials[number].name().to_owned())
+    }
+
+    fn with_prime(&self, [k, t, bias]: [Quantity; 3]) -> Indices {
+        let prime =
+            self.ship().map(|ship| PrimeIndices { K: k.scaled(ship.prime([-1, 0])), T: t.scaled(ship.prime([1, 0])) });
+        Indices { K_per_s: k, T_s: t, delta_r_deg: bias.scaled(to_deg(1.0)), prime }
+    }
+
+    fn base_indices(&self) -> Indices {
+        let base = &self.base.estimate;
+        self.with_prime([base.K(), base.T(), base.rudder_bias()])
+    }
+
+    /// K, T and δ_r averaged over the structures.
+    fn indices(&self) -> Indices {
+        let members = self.structures.members();
+        let covariances: Vec<Option<DMatrix<f64>>> = members.iter().map(|(_, fit)| fit.covariance()).collect();
+        let pairs: Vec<Pair> = members
+            .iter()
+            .zip(&covariances)
+            .map(|((weight, fit), covariance)| {
+                let of = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
+                let (denominator, numerator) = ((fit.theta[0], of(0, 0)), (fit.theta[1], of(1, 1)));
+                Pair { weight: *weight, denominator, numerator, covariance: of(0, 1) }
+            })
+            .collect();
+        let one = |pair: &Pair| Pair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
+        let (k, t) = (ratio(&pairs), ratio(&pairs.iter().map(one).collect::<Vec<_>>()));
+        let parts = members.iter().zip(&covariances).map(|((weight, fit), covariance)| {
+            (*weight, fit.theta[2], covariance.as_ref().map_or(f64::INFINITY, |all| all[(2, 2)].max(0.0).sqrt()))
+        });
+        self.with_prime([k, t, Mixture { parts: parts.collect() }.quantity()])
+    }
+
+    /// All parameters of a structure as its effects take them.
+    fn parameters(&self, fit: &Fit) -> Vec<ParameterEntry> {
+        let covariance = fit.covariance().map(|all| fit.structure.physical_covariance(&all));
+        let values = fit.structure.physical(&fit.theta);
+        let entries = fit.structure.entries();
+        let of = |(place, value): (usize, &f64)| {
+            let sd = covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
+            let quantity = match entries[place].prior.is_fitted() {
+                true => Mixture { parts: vec![(1.0, *value, sd)] }.quantity(),
+                false => Quantity::bare(*value),
+            };
+            let at_bound = entries[place].ends_at(fit.theta[place]);
+            self.parameter(entries[place].parameter, quantity, entries[place].only, at_bound)
+        };
+        values.iter().enumerate().map(of).collect()
+    }
+
+    fn parameter(
+        &self,
+        parameter: &effects::Parameter,
+        quantity: Quantity,
+        only: Option<usize>,
+        at_bound: bool,
+    ) -> ParameterEntry {
+        let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
+            quantity: quantity.scaled(ship.prime(parameter.dimension())),
+            unit: prime_unit(parameter.unit),
+        });
+        let only = self.only(only);
+        let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
+        ParameterEntry { key, symbol, quantity, unit, prime, only, at_bound }
+    }
+
+    /// Parameters of a term, averaged over the structures that have it.
+    fn of_term(&self, name: TermName) -> BTreeMap<String, ParameterEntry> {
+        let has = |fit: &Fit| fit.structure.terms.iter().position(|term| term.name() == name);
+        let fits: Vec<(f64, &Fit, usize)> = self
+            .structures
+            .members()
+            .into_iter()
+            .filter_map(|(weight, fit)| Some((weight, fit, has(fit)?)))
+            .chain(self.structures.all.iter().filter_map(|one| Some((1e-9 * one.weight, &one.fit, has(&one.fit)?))))
+            .collect();
+        let Some((_, first, place)) = fits.first() else { return BTreeMap::new() };
+        let term = &first.structure.terms[*place];
+        let covariances: Vec<Option<DMatrix<f64>>> = fits
+            .iter()
+            .map(|(_, fit, _)| fit.covariance().map(|all| fit.structure.physical_covariance(&all)))
+            .collect();
+        let of = |k: usize| {
+            let parts = fits.iter().zip(&covariances).map(|((weight, fit, place), covariance)| {
+                let at = fit.structure.ranges()[*place].start + k;
+                let sd = covariance.as_ref().map_or(f64::INFINITY, |all| all[(at, at)].max(0.0).sqrt());
+                (*weight, fit.structure.physical(&fit.theta)[at], sd)
+            });
+            let mixture = Mixture { parts: parts.collect() };
+            let entry = &first.structure.entries()[first.structure.ranges()[*place].start + k];
+            let quantity = match entry.prior.is_fitted() {
+                true => mixture.quantity(),
+                false => Quantity::bare(mixture.parts[0].1),
+            };
+            let ends = entry.ends_at(first.theta[first.structure.ranges()[*place].start + k]);
+            self.parameter(entry.parameter, quantity, entry.only, ends)
+        };
+        (0..term.priors.len()).map(of).map(|entry| (entry.symbol.clone(), entry)).collect()
+    }
+
+    fn effects(&self, named: &[Named]) -> Vec<EffectEntry> {
+        let entry = |one: &Named| {
+            let (id, form, only) = one.term;
+            let support = self.structures.support_of(id, only);
+            let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
+            aliases.dedup();
+            let alias_forms =
+                one.aliases.iter().chain(&one.forms).map(|(id, form, _)| format!("{id} ({form})")).collect();
+            let asked = self.settings.selection.asks_for(id);
+            EffectEntry {
+                id: id.into(),
+                form: form.into(),
+                equation: equation(id, form, self.candidates).into(),
+                only: self.only(only),
+                asked,
+                alias_forms,
+                parameters: self.of_term(one.term),
+                probability: one.probability,
+                delta_bic: -2.0 * support.gain,
+                p_value: support.p_value,
+                evidence: words::evidence(one, support.gain, asked, self.trials),
+                aliases,
+            }
+        };
+        let mut effects: Vec<EffectEntry> = named.iter().map(entry).collect();
+        effects.extend(self.waves());
+        effects
+    }
+
+    /// Waves are named where the noise holds a narrow band.
+    fn waves(&self) -> Option<EffectEntry> {
+        let sea = self.full.law.colour.waves?;
+        let own = effects::WaveYaw;
+        let sd = sea.sd * self.full.law.variance[0].sqrt();
+        let values = [sd, sea.frequency, sea.damping];
+        let parameters = own.parameters().iter().zip(values).map(|(parameter, value)| {
+            (parameter.symbol.into(), self.parameter(parameter, Quantity::bare(value), None, false))
+        });
+        let gain = self.full.waves_gain;
+        Some(EffectEntry {
+            id: own.id().into(),
+            form: own.form().into(),
+            equation: own.equation().into(),
+            only: None,
+            asked: self.settings.selection.asks_for(own.id()),
+            aliases: Vec::new(),
+            alias_forms: Vec::new(),
+            parameters: parameters.collect(),
+            probability: 1.0 / (1.0 + (-0.5 * gain).exp() * (1.0 - PROBABILITY) / PROBABILITY),
+            delta_bic: -gain,
+            p_value: (-0.5 * gain).exp().min(1.0),
+            evidence: words::waves(sd, sea.frequency),
+        })
+    }
+
+    fn candidates(&self, named: &[Named]) -> Vec<CandidateEntry> {
+        let mut ids: Vec<&'static str> = Vec::new();
+        for effect in effects::all() {
+            if !ids.contains(&effect.id()) {
+                ids.push(effect.id());
+            }
+        }
+        ids.into_iter().map(|id| self.candidate(id, named)).collect()
+    }
+
+    fn candidate(&self, id: &'static str, named: &[Named]) -> CandidateEntry {
+        let own = self.candidates.iter().filter(|one| one.term.effect.id() == id);
+        let forms: Vec<FormEntry> = own.map(|one| self.form(one.term.name(), named)).collect();
+        let is_sea = id == effects::WaveYaw.id();
+        let sea = self.full.law.colour.waves.is_some();
+        let excluded = !self.settings.selection.allows(id);
+        let reason = match (forms.is_empty(), excluded) {
+            (_, true) => Some("excluded on request"),
+            (true, false) if !is_sea => {
+                let needs = effects::all().into_iter().filter(|form| form.id() == id).find_map(|form| form.needs());
+                Some(needs.map_or("the records leave no place for it", Regressor::lacking))
+            }
+            _ => None,
+        };
+        let rank = |outcome: Outcome| match outcome {
+            Outcome::Added => 0,
+            Outcome::Alias => 1,
+            Outcome::Rejected => 2,
+            Outcome::NotObservable => 3,
+        };
+        let best = forms.iter().min_by(|one, other| {
+            rank(one.outcome).cmp(&rank(other.outcome)).then(other.probability.total_cmp(&one.probability))
+        });
+        let probability = match is_sea {
+            true => f64::from(u8::from(sea)),
+            false => self.structures.anywhere(id),
+        };
+        let outcome = match (is_sea && !excluded, sea) {
+            (true, true) => Outcome::Added,
+            (true, false) => Outcome::Rejected,
+            _ => best.map_or(Outcome::NotObservable, |best| best.outcome),
+        };
+        CandidateEntry {
+            id: id.into(),
+            outcome,
+            probability,
+            delta_bic: best.and_then(|best| best.delta_bic),
+            p_value: best.and_then(|best| best.p_value),
+            reason: reason.map(String::from),
+            forms,
+        }
+    }
+
+    fn form(&self, name: TermName, named: &[Named]) -> FormEntry {
+        let (_, form, only) = name;
+        let visibility = self.structures.visibility.get(&name).copied();
+        let outcome = if named.iter().any(|one| one.term == name) {
+            Outcome::Added
+        } else if named.iter().any(|one| one.aliases.contains(&name) || one.forms.contains(&name)) {
+            Outcome::Alias
+        } else if visibility.is_some_and(|seen| seen < SEEN) {
+            Outcome::NotObservable
+        } else {
+            Outcome::Rejected
+        };
+        let support = self.structures.support.get(&name);
+        FormEntry {
+            form: form.into(),
+            only: self.only(only),
+            outcome,
+            probability: self.structures.probabilities.get(&name).map_or(0.0, |own| own.clamp(0.0, 1.0)),
+            delta_bic: support.map(|own| -2.0 * own.gain.clamp(-1e6, 1e6)),
+            p_value: support.map(|own| own.p_value),
+            visibility,
+        }
+    }
+
+    fn listed(&self) -> Vec<StructureEntry> {
+        let members = self.structures.members().len();
+        let term = |(id, form, only): TermName| TermEntry { id: id.into(), form: form.into(), only: self.only(only) };
+        let of = |(number, one): (usize, &crate::structures::Member)| StructureEntry {
+            effects: one.fit.structure.terms.iter().map(|own| term(own.name())).collect(),
+            weight: one.weight,
+            parameters: self.parameters(&one.fit),
+            member: number < members,
+        };
+        self.structures.all.iter().take(LISTED).enumerate().map(of).collect()
+    }
+
+    fn empirical(&self) -> Option<EmpiricalEntry> {
+        let own = self.remainder.empirical.as_ref()?;
+        let (value, sd) = own.coefficient;
+        let ci95 = sd.map(|sd| [value - 1.96 * sd, value + 1.96 * sd]);
+        Some(EmpiricalEntry {
+            terms: own.group.iter().map(|form| String::from(*form)).collect(),
+            equation: own.equation.into(),
+            parameters: vec![self.parameter(&crate::empirical::COEFFICIENT, Quantity { value, sd, ci95 }, None, false)],
+            delta_bic: -2.0 * own.gain,
+            heading_rmse_deg: to_deg(own.error),
+        })
+    }
+
+    fn errors(&self) -> ErrorEntry {
+        let pairs = |trials: &[Trial], all: &[Option<&RecordComparison>]| -> Vec<BeforeAfter> {
+            let both = trials.iter().zip(all).filter_map(|(trial, one)| Some((trial, (*one)?)));
+            both.map(|(trial, one)| BeforeAfter {
+                file: words::file_of(trial),
+                before: errors_of(&one.before),
+                after: errors_of(&one.after),
+            })
+            .collect()
+        };
+        ErrorEntry {
+            identification: pairs(self.trials, &self.identification.iter().map(Some).collect::<Vec<_>>()),
+            validation: pairs(self.validation.0, &self.validation.1.iter().map(Some).collect::<Vec<_>>()),
+            leave_one_out: pairs(self.trials, &self.left_out.iter().map(Option::as_ref).collect::<Vec<_>>()),
+        }
+    }
+
+    fn noise(&self) -> Vec<RecordNoiseEntry> {
+        let law = &self.full.law;
+        let gain = self.structures.all.first().map_or(self.base.estimate.response.K_over_T, |best| best.fit.theta[1]);
+        let longest = self.problem.longest();
+        let of = |(number, trial): (usize, &Trial)| {
+            let variance = law.variance[number];
+            let reading = variance * self.problem.records[number].full_readings as f64;
+            let wander = law.colour.wander;
+            let heading = wander.filter(|(kind, _)| kind.is_of_heading());
+            let moment = wander.filter(|(kind, _)| !kind.is_of_heading());
+            let correlation = wander.and_then(|(kind, _)| kind.correlation(longest));
+            RecordNoiseEntry {
+                file: words::file_of(trial),
+                heading_sd_deg: to_deg(reading.sqrt()),
+                heading_wander_sd_deg: heading.map(|(_, level)| to_deg((level * variance).sqrt())),
+                heading_correlation_s: heading.and(correlation),
+                heading_wander: heading.map(|_| if law.is_of_model() { "model" } else { "compass" }.into()),
+                moment: match moment {
+                    Some((Wander::White, _)) => "white",
+                    Some((Wander::OrnsteinUhlenbeck(_), _)) => "ornstein-uhlenbeck",
+                    Some((Wander::Walk, _)) => "walk",
+                    _ => "none",
+                }
+                .into(),
+                moment_sd_rudder_deg: moment
+                    .map(|(kind, level)| to_deg(kind.size(level * variance, longest) / gain.abs())),
+                moment_correlation_s: moment.and(correlation),
+                waves_sd_deg: law.colour.waves.map(|sea| to_deg(sea.sd * variance.sqrt())),
+                waves_frequency_rad_s: law.colour.waves.map(|sea| sea.frequency),
+                describes_what_is_left: self.remainder.holds,
+                outliers_s: self.outliers[number].clone(),
+            }
+        };
+        self.trials.iter().enumerate().map(of).collect()
+    }
+}
+
+fn entry(own: Whiteness) -> WhitenessEntry {
+    WhitenessEntry { lag1_autocorrelation: own.lag1, whiteness_p: own.p_value }
+}
+
+fn errors_of(on: &ReplayResult) -> ErrorsEntry {
+    let errors = &on.errors;
+    let horizon = HORIZONS.iter().zip(errors.horizon);
+    ErrorsEntry {
+        heading_rmse_deg: to_deg(errors.heading),
+        yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
+        overshoot_error_deg: errors.overshoot.map(to_deg),
+        horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
+        band_coverage_95: on.coverage(),
+        band_width_95_deg: on.width().map(to_deg),
+    }
+}
+
+/// The equation of an effect in a form.
+fn equation(id: &str, form: &str, candidates: &[Candidate]) -> &'static str {
+    let own = candidates.iter().map(|one| &one.term.effect).find(|own| own.id() == id && own.form() == form);
+    own.map_or("", |own| own.equation())
+}

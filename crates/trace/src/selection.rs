@@ -1,0 +1,122 @@
+//! What a user wants to be in the model, or kept out of it, whatever the evidence says.
+
+use identify::settings::SettingsError;
+use ship::effects;
+
+use crate::model::Term;
+
+/// Identifier of an effect on the list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EffectId(&'static str);
+
+impl EffectId {
+    /// The effect of this name; `None` where there is none.
+    pub fn find(name: &str) -> Option<Self> {
+        effects::all().iter().map(|effect| effect.id()).find(|id| *id == name).map(Self)
+    }
+
+    /// Every effect once, in the order of reports.
+    pub fn all() -> Vec<Self> {
+        let mut ids: Vec<Self> = Vec::new();
+        for id in effects::all().iter().map(|effect| Self(effect.id())) {
+            if !ids.contains(&id) {
+                ids.push(id);
+            }
+        }
+        ids
+    }
+
+    /// The name.
+    pub fn as_str(self) -> &'static str {
+        self.0
+    }
+}
+
+/// Effects that are in the model on request, effects that are no candidates, and whether others are looked for.
+///
+/// An effect that was asked for is fitted in the form of lowest BIC, judged and replayed like any other, and never
+/// dropped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// In the model whatever the evidence says.
+    pub with: Vec<EffectId>,
+    /// No candidates.
+    pub without: Vec<EffectId>,
+    /// Whether effects that were not asked for are looked for.
+    pub search: bool,
+}
+
+impl Default for Selection {
+    fn default() -> Self {
+        Self { with: Vec::new(), without: Vec::new(), search: true }
+    }
+}
+
+impl Selection {
+    /// Exactly these effects and no search.
+    pub fn only(with: Vec<EffectId>) -> Self {
+        Self { with, without: Vec::new(), search: false }
+    }
+
+    /// A search that has these effects alone on its menu.
+    pub fn among(menu: &[EffectId]) -> Self {
+        let without = EffectId::all().into_iter().filter(|id| !menu.contains(id)).collect();
+        Self { with: Vec::new(), without, search: true }
+    }
+
+    /// Refuses an effect that is asked for and excluded at once.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        match self.with.iter().find(|id| self.without.contains(id)) {
+            Some(both) => {
+                let expected = "an effect that is not asked for at the same time";
+                Err(SettingsError::new("without-effect", both.as_str(), expected))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Whether an effect was asked for.
+    pub fn asks_for(&self, id: &str) -> bool {
+        self.with.iter().any(|asked| asked.as_str() == id)
+    }
+
+    /// Whether a term was asked for and stays.
+    pub fn keeps(&self, term: &Term) -> bool {
+        self.asks_for(term.effect.id())
+    }
+
+    /// Whether an effect may be in the model.
+    pub fn allows(&self, id: &str) -> bool {
+        self.asks_for(id) || self.search && !self.without.iter().any(|excluded| excluded.as_str() == id)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn id(name: &str) -> EffectId {
+        EffectId::find(name).expect("on the list")
+    }
+
+    #[test]
+    fn effects_are_known_by_name() {
+        assert_eq!(EffectId::find("wind"), None);
+        let all = EffectId::all();
+        assert!(all.len() == 12 && all.iter().all(|one| EffectId::find(one.as_str()) == Some(*one)), "{all:?}");
+    }
+
+    #[test]
+    fn what_is_asked_for_is_allowed_and_what_is_excluded_is_not() {
+        let usual = Selection { with: vec![id("speed_loss")], without: vec![id("wind_moment")], search: true };
+        assert_eq!(usual.check(), Ok(()));
+        assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| usual.allows(id)), [true, false, true]);
+        let few = Selection::among(&[id("speed_loss")]);
+        assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| few.allows(id)), [true, false, false]);
+        assert!(few.with.is_empty() && few.search && few.check().is_ok());
+        let only = Selection::only(vec![id("speed_loss")]);
+        assert_eq!(["speed_loss", "wind_moment", "wave_yaw"].map(|id| only.allows(id)), [true, false, false]);
+        let both = Selection { without: vec![id("speed_loss")], ..usual };
+        assert_eq!(both.check().map_err(|error| error.found), Err(String::from("speed_loss")));
+    }
+}
