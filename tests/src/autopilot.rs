@@ -15,12 +15,12 @@ pub struct Record {
 }
 
 /// HAKUSAN: the yaw rate, taken to be in 0.001 deg/s, adds up to the heading; the rudder is taken to be in 0.01 deg.
-/// America Maru: heading and rudder are taken to be in deg, the rudder positive to port.
+/// America Maru: heading and rudder are taken to be in deg. Both rudders are taken to be positive to port.
 pub const ALL: [Record; 2] = [
     Record {
         name: "HAKUSAN",
         file: "hakusan.txt",
-        row: |numbers, heading| Some([heading + 1e-3 * numbers.first()?, 1e-2 * numbers.get(3)?]),
+        row: |numbers, heading| Some([heading + 1e-3 * numbers.first()?, -1e-2 * numbers.get(3)?]),
     },
     Record {
         name: "America Maru",

@@ -22,10 +22,12 @@ use crate::innovations::Innovations;
 use crate::judge::{After, RecordComparison, ReplayResult, before, starts};
 use crate::left_out::leave_one_out;
 use crate::record::Record;
+use crate::replay_errors::Errors;
 use crate::report;
-use crate::selection::Selection;
+use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::structures::{self, Structures};
+use crate::weights::Law;
 
 /// The result: what is said of the records, and what it was said from.
 #[derive(Debug, Clone)]
@@ -64,7 +66,7 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
 
 /// Why an effect that was asked for cannot be in the model.
 fn refuse_lacking(candidates: &[Candidate], selection: &Selection) -> Result<(), TraceError> {
-    let is_there = |id: &&crate::EffectId| candidates.iter().any(|one| one.term.effect.id() == id.as_str());
+    let is_there = |id: &&EffectId| candidates.iter().any(|one| one.term.effect.id() == id.as_str());
     let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
     let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
@@ -119,7 +121,8 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let (full, structures) =
         structures::choose(&problem, fulls, &candidates, &settings.selection, settings.rule, base.mean_square());
     let members = structures.members();
-    let identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
+    let mut identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
+    let no_nearer = keep_nearest(&mut identification);
     let judged = held_out(&validation, &base, &full, &members, time)?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let left_out = if is_folded { leave_one_out(&trials, &problem, &full, &structures) } else { Vec::new() };
@@ -139,6 +142,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         remainder: &remainder,
         whiteness,
         outliers: &outliers,
+        no_nearer,
         problem: &problem,
     };
     let document = said.document();
@@ -179,6 +183,27 @@ fn fitted(
         Ok(RecordComparison { name: trial.name().to_owned(), before, after })
     };
     trials.par_iter().enumerate().map(of).collect()
+}
+
+/// Errors of all records together, squared, before and after.
+fn squares(all: &[RecordComparison]) -> [f64; 2] {
+    let square = |errors: &Errors| errors.heading.powi(2) * errors.rows as f64;
+    let before = all.iter().map(|one| square(&one.before.errors)).sum();
+    [before, all.iter().map(|one| square(&one.after.errors)).sum()]
+}
+
+/// Where the average is no nearer to the fitted records than the base, the replay stays that of the base: a random
+/// moment describes the records, which no replay foresees. Whether that is so.
+fn keep_nearest(all: &mut [RecordComparison]) -> bool {
+    let [before, after] = squares(all);
+    let no_nearer = after > before;
+    if no_nearer {
+        for one in all {
+            let band = one.after.band.take();
+            one.after = ReplayResult { band, ..one.before.clone() };
+        }
+    }
+    no_nearer
 }
 
 /// Base and average on records that were not fitted.
@@ -236,15 +261,13 @@ impl Remainder {
     ) -> Self {
         let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
         let holds = Innovations::of(problem, &best.fit.residual, &full.law).agree();
-        let square = |of: fn(&RecordComparison) -> &ReplayResult| {
-            identification.iter().map(|one| of(one).errors.heading.powi(2) * of(one).errors.rows as f64).sum::<f64>()
-        };
-        let share = (square(|one| &one.after) / square(|one| &one.before)).sqrt();
+        let [before, after] = squares(identification);
+        let share = (after / before).sqrt();
         let is_noise = holds && !full.law.is_of_model();
         let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
         let white =
             full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
-        let is_small = square(|one| &one.after) / rows < SMALL * SMALL * white.fold(0.0, f64::max);
+        let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
         if is_noise || is_small || share < UNEXPLAINED {
             return Self { holds, signature: None, empirical: None };
         }
@@ -338,7 +361,7 @@ impl Analysis {
     /// band is that of the errors of parameters and structures alone. `None` when no replay is finite.
     pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
-        let calm = crate::fit::Law::white(1, 1e-16);
+        let calm = Law::white(1, 1e-16);
         let after = After { members: &members, law: &calm, known: None, time: self.problem.time };
         after.on(trial, &Record::whole(trial), &[start], true).ok()
     }

@@ -65,8 +65,9 @@ impl Average {
 
 /// Mean, or weighted median where one member runs away.
 fn combination<'a>(weights: &'a [f64], errors: &[f64]) -> Option<impl Fn(&[&[f64]]) -> Vec<f64> + use<'a>> {
-    let rows = (!weights.is_empty()).then_some(())?;
-    let () = rows;
+    if weights.is_empty() {
+        return None;
+    }
     let mut sorted = errors.to_vec();
     sorted.sort_by(f64::total_cmp);
     let runs_away = sorted[sorted.len() - 1] > RUNS_AWAY * sorted[sorted.len() / 2];

@@ -107,7 +107,7 @@ impl Drawn {
         let state = [column(count), column(count + 1)];
         let inverse = Matrix2::from_fn(|i, j| dot(&state[i], &state[j])).try_inverse()?;
         let covariance = fit.kept_covariance(after.known)?;
-        let law = crate::fit::Law {
+        let law = crate::weights::Law {
             colour: after.law.colour,
             variance: vec![variance],
             power: vec![after.known.map_or(1.0, |number| after.law.power[number])],

@@ -20,7 +20,7 @@ pub const PROBABILITY: f64 = 0.1;
 pub const PROBABILITY_OF_MOTION: f64 = 0.5;
 
 /// The same of a moment that depends on time, in one record: it resembles chance.
-pub const PROBABILITY_OF_TIME: f64 = 0.003;
+pub const PROBABILITY_OF_TIME: f64 = 0.001;
 
 /// An effect in one form that records may lack.
 #[derive(Debug, Clone)]

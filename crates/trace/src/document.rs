@@ -5,7 +5,12 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use ship::angle::to_deg;
 use trial::Quantity;
+
+use crate::diagnostics::Whiteness;
+use crate::judge::ReplayResult;
+use crate::replay_errors::HORIZONS;
 
 /// Name of the schema.
 pub const SCHEMA: &str = "trace/3";
@@ -260,6 +265,9 @@ pub struct EmpiricalEntry {
 /// Errors on all records.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ErrorEntry {
+    /// Why the replay after is that before, where the structures are no nearer to the fitted records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kept_base: Option<String>,
     /// Records that were fitted.
     pub identification: Vec<BeforeAfter>,
     /// Records that were held out: nothing else in the document depends on them.
@@ -389,4 +397,25 @@ pub struct Document {
     pub next_trial: String,
     /// The augmented model.
     pub model: ModelEntry,
+}
+
+impl From<Whiteness> for WhitenessEntry {
+    fn from(own: Whiteness) -> Self {
+        Self { lag1_autocorrelation: own.lag1, whiteness_p: own.p_value }
+    }
+}
+
+impl From<&ReplayResult> for ErrorsEntry {
+    fn from(on: &ReplayResult) -> Self {
+        let errors = &on.errors;
+        let horizon = HORIZONS.iter().zip(errors.horizon);
+        Self {
+            heading_rmse_deg: to_deg(errors.heading),
+            yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
+            overshoot_error_deg: errors.overshoot.map(to_deg),
+            horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
+            band_coverage_95: on.coverage(),
+            band_width_95_deg: on.width().map(to_deg),
+        }
+    }
 }

@@ -135,3 +135,105 @@ pub fn conditional(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&Rem
                 .sum::<f64>()
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+    use rand_distr::StandardNormal;
+
+    use super::*;
+
+    /// y = X θ + e with unit noise, one unknown that is always there and some candidates with normal priors.
+    struct Linear {
+        x: DMatrix<f64>,
+        y: DVector<f64>,
+        mean: Vec<f64>,
+        sd: Vec<f64>,
+    }
+
+    impl Linear {
+        fn drawn(generator: &mut ChaCha8Rng, candidates: usize) -> Self {
+            let mut draw = || -> f64 { generator.sample(StandardNormal) };
+            let mut x = DMatrix::from_fn(40, candidates + 1, |_, _| draw());
+            // Neighbours are alike, as effects of one manoeuvre are.
+            for k in 1..=candidates {
+                let other = x.column(k - 1).into_owned();
+                x.column_mut(k).axpy(0.8, &other, 0.6);
+            }
+            let theta = DVector::from_fn(candidates + 1, |_, _| 0.4 * draw());
+            let y = &x * theta + DVector::from_fn(40, |_, _| draw());
+            let mean = (0..candidates).map(|_| 0.3 * draw()).collect();
+            let sd = (0..candidates).map(|_| 0.3 + draw().abs()).collect();
+            Self { x, y, mean, sd }
+        }
+
+        /// Posterior precision and mean of the unknown that is always there, and of some candidates.
+        fn posterior(&self, kept: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+            let columns: Vec<usize> = [0].into_iter().chain(kept.iter().map(|k| k + 1)).collect();
+            let x = self.x.select_columns(&columns);
+            let (mut matrix, mut right) = (x.transpose() * &x, x.transpose() * &self.y);
+            for (place, &k) in kept.iter().enumerate() {
+                matrix[(place + 1, place + 1)] += self.sd[k].powi(-2);
+                right[place + 1] += self.mean[k] * self.sd[k].powi(-2);
+            }
+            let mean = matrix.clone().cholesky().expect("positive").solve(&right);
+            (matrix, mean)
+        }
+
+        /// Log of the marginal likelihood with some candidates, by a fit of its own.
+        fn evidence(&self, kept: &[usize]) -> f64 {
+            let (precision, mean) = self.posterior(kept);
+            let columns: Vec<usize> = [0].into_iter().chain(kept.iter().map(|k| k + 1)).collect();
+            let residual = &self.y - self.x.select_columns(&columns) * &mean;
+            let penalty: f64 = kept
+                .iter()
+                .enumerate()
+                .map(|(place, &k)| ((mean[place + 1] - self.mean[k]) / self.sd[k]).powi(2) + 2.0 * self.sd[k].ln())
+                .sum();
+            let determinant = precision.cholesky().expect("positive").ln_determinant();
+            -0.5 * (residual.norm_squared() + penalty + determinant)
+        }
+
+        fn removable(&self, mean: &DVector<f64>, k: usize) -> Removable {
+            let log_prior = -0.5 * ((self.mean[k] / self.sd[k]).powi(2) + std::f64::consts::TAU.ln()) - self.sd[k].ln();
+            Removable { sizes: vec![(k + 1, mean[k + 1])], shapes: Vec::new(), log_prior, log_odds: 0.0 }
+        }
+    }
+
+    /// Of 200 random linear problems every subset has the evidence that a fit of its own gives it.
+    #[test]
+    fn subsets_have_the_evidence_of_their_own_fits() {
+        let mut generator = ChaCha8Rng::seed_from_u64(29);
+        for number in 0..200 {
+            let count = 2 + number % 5;
+            let problem = Linear::drawn(&mut generator, count);
+            let all: Vec<usize> = (0..count).collect();
+            let (precision, mean) = problem.posterior(&all);
+            let covariance = precision.cholesky().expect("positive").inverse();
+            let removable: Vec<Removable> = all.iter().map(|&k| problem.removable(&mean, k)).collect();
+            let found = subsets(&covariance, &removable);
+            let full = problem.evidence(&all);
+            for (subset, log) in found.iter().enumerate() {
+                let kept: Vec<usize> = all.iter().copied().filter(|k| subset >> k & 1 == 1).collect();
+                let own = problem.evidence(&kept) - full;
+                assert!((log - own).abs() < 1e-6 * (1.0 + own.abs()), "{number}, {kept:?}: {log} and {own}");
+            }
+        }
+    }
+
+    /// Where the others go when one is taken away is where their own fit ends.
+    #[test]
+    fn what_is_left_moves_to_its_own_fit() {
+        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        let problem = Linear::drawn(&mut generator, 4);
+        let (precision, mean) = problem.posterior(&[0, 1, 2, 3]);
+        let covariance = precision.cholesky().expect("positive").inverse();
+        let out = [problem.removable(&mean, 1), problem.removable(&mean, 3)];
+        let moved = conditional(&covariance, &mean, &out.iter().collect::<Vec<_>>());
+        let (_, own) = problem.posterior(&[0, 2]);
+        for (found, expected) in [(moved[0], own[0]), (moved[1], own[1]), (moved[3], own[2])] {
+            assert!((found - expected).abs() < 1e-9, "{found} and {expected}");
+        }
+        assert!(moved[2].abs() < 1e-9 && moved[4].abs() < 1e-9);
+    }
+}

@@ -4,17 +4,16 @@
 //! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the filter W that makes the noise of a record
 //! white. Unknowns are the fitted entries of θ in order, then heading and yaw rate at the beginning of every record.
 
-use lanes::column::dot;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use ship::Tangent;
 use ship::effects::Prior;
-use ship::number::DIRECTIONS;
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use crate::linear::{Linear, NormalEquations, tangents};
 use crate::model::{Structure, headings};
-use crate::noise::{Colour, RecordNoise, Wander, Whitener};
+use crate::noise::RecordNoise;
 use crate::record::Record;
+use crate::weights::{Law, Weights};
 
 /// How far a fit is driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,52 +34,6 @@ impl Effort {
 /// First damping, and the number of dampings that are tried before a point counts as a minimum.
 const DAMPING: f64 = 1e-3;
 const MOST_DAMPINGS: usize = 8;
-
-/// The law of the noise: one colour for all records, a size for each.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Law {
-    /// Colour, in units of the white noise of a row.
-    pub colour: Colour,
-    /// Variance of the white noise of a full row of every record, rad².
-    pub variance: Vec<f64>,
-    /// Power to which the likelihood of every record is raised: below one where the noise holds the error of a model,
-    /// which more rows do not average out (coarsened posterior; Miller and Dunson 2019).
-    pub power: Vec<f64>,
-}
-
-impl Law {
-    /// Whether it holds a smooth error of a model that is not quite that of the ship.
-    pub fn is_of_model(&self) -> bool {
-        matches!(self.colour.wander, Some((Wander::Smooth(_), _)))
-    }
-
-    /// Whether it holds a random moment.
-    pub fn is_random_moment(&self) -> bool {
-        self.colour.wander.is_some_and(|(kind, _)| !kind.is_of_heading())
-    }
-
-    /// Whether two laws are of one kind and about of one size.
-    pub fn is_alike(&self, other: &Self) -> bool {
-        let kind = |law: &Self| (law.colour.wander.map(|(kind, _)| kind), law.colour.waves.is_some());
-        let size = |(one, two): (&f64, &f64)| (one / two).ln().abs() < 0.4;
-        kind(self) == kind(other) && self.variance.iter().zip(&other.variance).all(size)
-    }
-
-    /// −½ (Σ n log σ² + Σ log S): log of the density of the noise but for its exponent.
-    pub fn log_normaliser(&self, problem: &Problem) -> f64 {
-        let weights = problem.weights(self);
-        let of = |(number, record): (usize, &Record)| {
-            let rows = record.observed.len() as f64;
-            self.power[number] * (rows * self.variance[number].ln() + weights.whiteners[number].log_variance)
-        };
-        -0.5 * problem.records.iter().enumerate().map(of).sum::<f64>()
-    }
-
-    /// White noise of one variance, rad².
-    pub fn white(records: usize, variance: f64) -> Self {
-        Self { colour: Colour::WHITE, variance: vec![variance; records], power: vec![1.0; records] }
-    }
-}
 
 /// The records that are fitted together.
 #[derive(Debug, Clone)]
@@ -206,123 +159,6 @@ impl Problem {
     }
 }
 
-/// Residual and sensitivities of one record.
-#[derive(Debug, Clone)]
-pub struct Block {
-    /// Measured less replayed heading, rad.
-    pub residual: Vec<f64>,
-    /// Unknowns that act, each with the change of the heading.
-    pub columns: Vec<(usize, Vec<f64>)>,
-}
-
-/// Replays one record with derivatives by some variables: their unknown, and their place in θ and behind it.
-fn tangents(
-    structure: &Structure,
-    record: &Record,
-    number: usize,
-    theta: &[f64],
-    initial: [f64; 2],
-    variables: &[(usize, usize)],
-) -> Block {
-    let rows = record.observed.len();
-    let constant: Vec<Tangent> = theta.iter().chain(&initial).map(|&value| Tangent::from(value)).collect();
-    let pass = |variables: &[(usize, usize)]| {
-        let mut point = constant.clone();
-        for (direction, &(_, place)) in variables.iter().enumerate() {
-            point[place] = Tangent::variable(point[place].value, direction);
-        }
-        let (theta, initial) = point.split_at(theta.len());
-        let response = structure.response(Some(number), theta);
-        let (mut residual, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
-        headings(&response, record, [initial[0], initial[1]], |row, heading| {
-            residual[row] = record.heading[record.observed[row]] - heading.value;
-            columns.iter_mut().zip(heading.by).for_each(|(column, by)| column[row] = by);
-        });
-        (residual, columns)
-    };
-    let passes: Vec<_> = variables.par_chunks(DIRECTIONS).map(pass).collect();
-    let residual = passes[0].0.clone();
-    let columns = passes.into_iter().flat_map(|(_, columns)| columns);
-    Block { residual, columns: variables.iter().map(|(unknown, _)| *unknown).zip(columns).collect() }
-}
-
-/// Residual and sensitivities of all records.
-#[derive(Debug, Clone)]
-pub struct Linear {
-    /// One block a record.
-    pub blocks: Vec<Block>,
-    /// Number of unknowns.
-    pub unknowns: usize,
-}
-
-/// Filters of all records, and one over the standard deviation of their rows.
-#[derive(Debug, Clone)]
-pub struct Weights {
-    /// Filters.
-    pub whiteners: Vec<Whitener>,
-    /// One over the standard deviation of the noise of a row, 1/rad.
-    pub scale: Vec<f64>,
-}
-
-impl Weights {
-    /// Makes columns of one record white and of unit variance.
-    pub fn apply(&self, record: usize, columns: &mut [&mut Vec<f64>]) {
-        self.whiteners[record].apply(columns);
-        let scale = self.scale[record];
-        columns.iter_mut().flat_map(|column| column.iter_mut()).for_each(|x| *x *= scale);
-    }
-
-    /// Σ |W e|²/σ² of a residual.
-    pub fn misfit(&self, residual: &[Vec<f64>]) -> f64 {
-        let of = |(record, residual): (usize, &Vec<f64>)| {
-            let mut white = residual.clone();
-            self.apply(record, &mut [&mut white]);
-            dot(&white, &white)
-        };
-        residual.iter().enumerate().map(of).sum()
-    }
-}
-
-/// XᵀX and Xᵀe of weighed sensitivities.
-#[derive(Debug, Clone)]
-pub struct Normal2 {
-    /// XᵀX.
-    pub matrix: DMatrix<f64>,
-    /// Xᵀe.
-    pub gradient: DVector<f64>,
-    /// |e|² of every record.
-    pub squares: Vec<f64>,
-}
-
-impl Linear {
-    /// Normal equations under weights.
-    pub fn normal(&self, weights: &Weights) -> Normal2 {
-        let mut normal = Normal2 {
-            matrix: DMatrix::zeros(self.unknowns, self.unknowns),
-            gradient: DVector::zeros(self.unknowns),
-            squares: Vec::with_capacity(self.blocks.len()),
-        };
-        for (record, block) in self.blocks.iter().enumerate() {
-            let Block { mut residual, mut columns } = block.clone();
-            let mut all: Vec<&mut Vec<f64>> = columns.iter_mut().map(|(_, column)| column).collect();
-            all.push(&mut residual);
-            weights.apply(record, &mut all);
-            for (k, (i, one)) in columns.iter().enumerate() {
-                for (j, other) in &columns[..=k] {
-                    let product = dot(one, other);
-                    normal.matrix[(*i, *j)] += product;
-                    if i != j {
-                        normal.matrix[(*j, *i)] += product;
-                    }
-                }
-                normal.gradient[*i] += dot(one, &residual);
-            }
-            normal.squares.push(dot(&residual, &residual));
-        }
-        normal
-    }
-}
-
 /// Where a fit stands.
 struct Point {
     theta: Vec<f64>,
@@ -413,7 +249,7 @@ impl System {
 
     fn new(problem: &Problem, structure: &Structure, point: &Point, weights: &Weights) -> Self {
         let linear = problem.linear(structure, &point.theta, &point.initial);
-        let Normal2 { matrix: mut precision, mut gradient, .. } = linear.normal(weights);
+        let NormalEquations { matrix: mut precision, mut gradient, .. } = linear.normal(weights);
         let entries = structure.entries();
         let fitted = entries.iter().zip(&point.theta).filter(|(entry, _)| entry.prior.is_fitted());
         let priors: Vec<(Prior, f64)> = fitted.map(|(entry, &value)| (entry.prior, value)).collect();

@@ -7,10 +7,11 @@ use ship::FirstOrder;
 
 use crate::base::Base;
 use crate::candidates::{Candidate, is_variant};
-use crate::fit::{Effort, Fit, Law, Problem, Weights};
+use crate::fit::{Effort, Fit, Problem};
 use crate::law::{self, Found};
 use crate::model::{Structure, Term};
 use crate::transient;
+use crate::weights::{Law, Weights};
 
 /// Standard deviation of the noise of the first fit, as a share of what the base leaves.
 const FIRST: f64 = 0.1;
@@ -29,7 +30,8 @@ pub struct Full {
 }
 
 /// Fits the full model, once for every noise that may be the right one: that of all which stands still in time, that
-/// beside moments that come at an instant, and, where one of these is a random moment, that of an error of the heading.
+/// beside moments that come at an instant, where one of these is a random moment that of an error of the heading, and
+/// that of a base to which nothing is added.
 pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves: bool) -> Vec<Full> {
     let (late, known): (Vec<&Candidate>, Vec<&Candidate>) = candidates
         .iter()
@@ -68,9 +70,28 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
         laws.push(again(&laws[0]));
     }
     let fitted = |law: &Law| if law.is_alike(&known_law) { whole.clone() } else { of(law) };
-    laws.into_par_iter()
+    let mut fulls: Vec<Full> = laws
+        .into_par_iter()
         .map(|Found { law, waves_gain }| Full { fit: fitted(&law), law, waves_gain, log_odds: log_odds.clone() })
-        .collect()
+        .collect();
+    let nothing = nothing(problem, base, with_waves);
+    if fulls.iter().all(|full| !full.law.is_alike(&nothing.law)) {
+        fulls.push(nothing);
+    }
+    fulls
+}
+
+/// The base alone with the noise that it leaves: what the records are if nothing is missing but weather is there.
+fn nothing(problem: &Problem, base: &Base, with_waves: bool) -> Full {
+    let own = Structure::base(problem.records.len(), problem.time);
+    let law = Law::white(problem.records.len(), base.mean_square());
+    let theta = start(&own, &base.estimate.response, std::iter::empty());
+    let of = |theta: Vec<f64>, initial: Vec<[f64; 2]>, law: &Law| {
+        problem.fit(&own, theta, initial, &problem.weights(law), Effort::FINE)
+    };
+    let fit = of(theta, base.initial(), &law);
+    let Found { law, waves_gain } = law::of(problem, &fit, &law.variance, with_waves, law::Among::All);
+    Full { fit: of(fit.theta, fit.initial, &law), law, waves_gain, log_odds: Vec::new() }
 }
 
 /// The full model without moments that come at an instant, from two starts.

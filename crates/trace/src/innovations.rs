@@ -4,7 +4,8 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 use crate::diagnostics::{self, Series};
-use crate::fit::{Law, Problem};
+use crate::fit::Problem;
+use crate::weights::Law;
 
 /// Probability below which innovations are not those of the noise model.
 const IMPROBABLE: f64 = 1e-4;
@@ -23,8 +24,8 @@ impl Innovations {
     pub fn of(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Self {
         let weights = problem.weights(law);
         let white: Vec<Vec<f64>> = residual
-            .to_vec()
-            .into_iter()
+            .iter()
+            .cloned()
             .enumerate()
             .map(|(record, mut residual)| {
                 weights.apply(record, &mut [&mut residual]);

@@ -7,10 +7,11 @@ use trial::Trial;
 
 use crate::average::{Average, Replayed};
 use crate::band;
-use crate::fit::{Fit, Law};
+use crate::fit::Fit;
 use crate::record::Record;
 use crate::replay_errors::{Errors, HORIZONS, overshoot_error, root_mean_square};
 use crate::settings::TraceError;
+use crate::weights::Law;
 
 /// A model on one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,7 +105,7 @@ impl After<'_> {
             all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
         }
         let Replayed { replay, windows, members } = average.replay(record, &all, thorough).ok_or_else(refuse)?;
-        let band = thorough.then(|| band::of(self, trial, &replay, &members)).flatten();
+        let band = band::of(self, trial, &replay, &members);
         Ok(ReplayResult { band, ..result(trial, replay, windows, thorough) })
     }
 }

@@ -11,10 +11,12 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::fit::{Fit, Law, Linear, Normal2, Problem, Weights, curvature, deviation};
+use crate::fit::{Fit, Problem, curvature, deviation};
+use crate::linear::{Linear, NormalEquations};
 use crate::minimum::minimum;
 use crate::noise::{COMPASS, Colour, GUSTS, SMOOTH, Wander};
 use crate::waves;
+use crate::weights::{Law, Weights};
 
 /// No heading is believed to be better than this, rad: a thousandth of a degree.
 const FINEST: f64 = 1.75e-5;
@@ -69,7 +71,7 @@ impl Ground<'_> {
         let unit = Law { colour, variance: ones.clone(), power: ones };
         let weights = self.problem.weights(&unit);
         // Of every record by itself, under unit variance: the sums for other sizes follow.
-        let blocks: Vec<Normal2> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
+        let blocks: Vec<NormalEquations> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
         let mut height = f64::INFINITY;
         for _ in 0..ROUNDS {
             let Some((next, value)) = self.round(&law, &blocks, &weights) else { break };
@@ -79,14 +81,14 @@ impl Ground<'_> {
         Judged { law, height }
     }
 
-    fn of_record(&self, record: usize, weights: &Weights) -> Normal2 {
+    fn of_record(&self, record: usize, weights: &Weights) -> NormalEquations {
         let alone = Linear { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
         let own = Weights { whiteners: vec![weights.whiteners[record].clone()], scale: vec![weights.scale[record]] };
         alone.normal(&own)
     }
 
     /// New sizes and the height at the old ones.
-    fn round(&self, law: &Law, blocks: &[Normal2], weights: &Weights) -> Option<(Vec<f64>, f64)> {
+    fn round(&self, law: &Law, blocks: &[NormalEquations], weights: &Weights) -> Option<(Vec<f64>, f64)> {
         let n = self.linear.unknowns;
         let (mut matrix, mut gradient) = (DMatrix::zeros(n, n), DVector::zeros(n));
         for (block, variance) in blocks.iter().zip(&law.variance) {

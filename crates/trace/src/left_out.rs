@@ -5,12 +5,13 @@ use rayon::prelude::*;
 use trial::Trial;
 
 use crate::base::Base;
-use crate::fit::{Effort, Fit, Law, Problem};
+use crate::fit::{Effort, Fit, Problem};
 use crate::full::Full;
 use crate::judge::{After, RecordComparison, before, starts};
 use crate::model::Structure;
 use crate::record::Record;
 use crate::structures::{Member, Structures};
+use crate::weights::Law;
 
 /// Structures that take part.
 const MOST: usize = 4;

@@ -15,6 +15,7 @@ pub mod innovations;
 pub mod judge;
 pub mod law;
 mod left_out;
+pub mod linear;
 mod minimum;
 mod missing;
 pub mod missing_moment;
@@ -31,6 +32,7 @@ pub mod settings;
 pub mod structures;
 pub mod transient;
 pub mod waves;
+pub mod weights;
 mod words;
 
 pub use analysis::{Analysis, trace};
@@ -38,5 +40,7 @@ pub use document::{Document, Verdict};
 pub use selection::{EffectId, Selection};
 pub use settings::{Rule, Settings, TraceError};
 
+#[cfg(test)]
+mod analysis_tests;
 #[cfg(test)]
 mod synthetic;

@@ -83,7 +83,7 @@ pub fn ratio(pairs: &[Pair]) -> Quantity {
         pairs.iter().map(|pair| (pair.weight, pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).collect();
     let denominator = Mixture { parts };
     let below = denominator.below(0.0);
-    if !(below < 0.025 || below > 0.975) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
+    if (0.025..=0.975).contains(&below) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
         return Quantity::bare(value);
     }
     let sign = if below < 0.5 { 1.0 } else { -1.0 };

@@ -19,7 +19,7 @@ use crate::record::Record;
 
 mod system;
 
-pub(crate) use system::{MOST, Matrix, System, propagate, transposed};
+pub(crate) use system::{MOST, Matrix, System, propagate, transposed, van_loan};
 use system::{Vector, joint};
 
 /// What the filter does with a row: gain, log S, weight.
@@ -171,26 +171,6 @@ impl Drift {
             .collect();
         Self { states: generator.nrows(), beginning, steps, of_row }
     }
-}
-
-/// Transition and added covariance over h for white noise of the given intensity on the last state (Van Loan 1978).
-pub(crate) fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix) {
-    let m = generator.nrows();
-    let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
-    block.view_mut((0, 0), (m, m)).copy_from(&(-generator * h));
-    block[(m - 1, 2 * m - 1)] = h;
-    block.view_mut((m, m), (m, m)).copy_from(&(generator.transpose() * h));
-    let exponential = block.exp();
-    let transition = exponential.view((m, m), (m, m)).transpose();
-    let added = &transition * exponential.view((0, m), (m, m)) * intensity;
-    let mut result = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
-    for i in 0..m {
-        for j in 0..m {
-            result.0[i][j] = transition[(i, j)];
-            result.1[i][j] = 0.5 * (added[(i, j)] + added[(j, i)]);
-        }
-    }
-    result
 }
 
 /// What is the same for every intensity of the noise of one record.

@@ -1,6 +1,6 @@
 //! What another trial would tell: which aliases it would separate and which blind spots it would reveal.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -8,9 +8,10 @@ use trial::Trial;
 
 use crate::analysis::Analysis;
 use crate::document::Outcome;
-use crate::fit::{Law, Problem};
+use crate::fit::Problem;
 use crate::model::TermName;
 use crate::record::Record;
+use crate::weights::Law;
 
 /// Expected square of a size over its error from which an effect can be told from all others.
 const TOLD: f64 = 20.0;
@@ -86,7 +87,7 @@ impl Analysis {
     }
 
     /// Expected squared size over error of every candidate of the ship, from the records and another trial.
-    fn seen_with(&self, trial: &Trial) -> Option<HashMap<TermName, f64>> {
+    fn seen_with(&self, trial: &Trial) -> Option<BTreeMap<TermName, f64>> {
         let full = &self.full.fit;
         let (structure, theta) = full.structure.alone(None, &full.theta);
         let record = Record::averaged(trial, self.problem.time);
@@ -100,7 +101,7 @@ impl Analysis {
         let mut precision = normal.matrix;
         precision.view_mut((0, 0), (count, count)).zip_apply(&known, |own, known| *own += known);
         let covariance = regular(precision)?;
-        let mut seen = HashMap::new();
+        let mut seen = BTreeMap::new();
         let entries = structure.entries();
         let mut unknown = 0..;
         let places: Vec<Option<usize>> =

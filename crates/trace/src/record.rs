@@ -288,7 +288,7 @@ mod tests {
         let heading = time.iter().enumerate().map(|(k, t)| if k % 4 == 1 { f64::NAN } else { 0.01 * t }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
         let record = Record::averaged(&of_columns(time, heading, rudder), 10.0);
-        assert_eq!((record.full_readings, record.readings.iter().sum::<usize>()), (4, 4500));
+        assert_eq!((record.full_readings, record.readings.iter().sum::<usize>()), (9, 4500));
         for (&time, &heading) in record.time.iter().zip(&record.heading) {
             assert!((heading - 0.01 * time).abs() < 1e-12);
         }
@@ -301,7 +301,7 @@ mod tests {
         let heading = time.iter().enumerate().map(|(k, t)| if k % 10 == 0 { 0.01 * t } else { f64::NAN }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
         let record = Record::averaged(&of_columns(time, heading, rudder), 16.0);
-        assert_eq!((record.full_readings, record.observed.len(), record.rudder().len()), (1, 601, 6001));
+        assert_eq!((record.full_readings, record.observed.len(), record.rudder().len()), (1, 601, 2001));
         assert!(record.observed.iter().all(|&row| record.readings[row] == 1));
     }
 

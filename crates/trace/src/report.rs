@@ -16,12 +16,11 @@ use crate::diagnostics::{Signature, Whiteness};
 use crate::document::*;
 use crate::fit::{Fit, Problem};
 use crate::full::Full;
-use crate::judge::{RecordComparison, ReplayResult};
+use crate::judge::RecordComparison;
 use crate::mixture::{Mixture, Pair, ratio};
 use crate::model::TermName;
 use crate::naming::{Named, named};
 use crate::noise::Wander;
-use crate::replay_errors::HORIZONS;
 use crate::settings::Settings;
 use crate::structures::Structures;
 use crate::words;
@@ -52,6 +51,8 @@ pub struct Said<'a> {
     pub whiteness: [Whiteness; 2],
     /// Readings that were left out of the fitted records, s.
     pub outliers: &'a [Vec<f64>],
+    /// Whether the structures replay the fitted records no nearer than the base.
+    pub no_nearer: bool,
     /// The records as they were fitted.
     pub problem: &'a Problem,
 }
@@ -94,7 +95,7 @@ impl Said<'_> {
                 signature: signature.map(|own| words::signature(own, self.name_of(own))),
                 empirical: self.empirical(),
             },
-            residual: ResidualEntry { before: entry(self.whiteness[0]), after: entry(self.whiteness[1]) },
+            residual: ResidualEntry { before: self.whiteness[0].into(), after: self.whiteness[1].into() },
             noise: self.noise(),
             next_trial: String::new(),
             model: ModelEntry {
@@ -120,6 +121,11 @@ impl Said<'_> {
 
     fn only(&self, only: Option<usize>) -> Option<String> {
         only.map(|number| self.trials[number].name().to_owned())
+    }
+
+    fn equation(&self, id: &str, form: &str) -> &'static str {
+        let own = self.candidates.iter().map(|one| &one.term.effect).find(|own| own.id() == id && own.form() == form);
+        own.map_or("", |own| own.equation())
     }
 
     fn with_prime(&self, [k, t, bias]: [Quantity; 3]) -> Indices {
@@ -233,7 +239,7 @@ impl Said<'_> {
             EffectEntry {
                 id: id.into(),
                 form: form.into(),
-                equation: equation(id, form, self.candidates).into(),
+                equation: self.equation(id, form).into(),
                 only: self.only(only),
                 asked,
                 alias_forms,
@@ -383,12 +389,13 @@ impl Said<'_> {
             let both = trials.iter().zip(all).filter_map(|(trial, one)| Some((trial, (*one)?)));
             both.map(|(trial, one)| BeforeAfter {
                 file: words::file_of(trial),
-                before: errors_of(&one.before),
-                after: errors_of(&one.after),
+                before: (&one.before).into(),
+                after: (&one.after).into(),
             })
             .collect()
         };
         ErrorEntry {
+            kept_base: self.no_nearer.then(|| words::NO_NEARER.into()),
             identification: pairs(self.trials, &self.identification.iter().map(Some).collect::<Vec<_>>()),
             validation: pairs(self.validation.0, &self.validation.1.iter().map(Some).collect::<Vec<_>>()),
             leave_one_out: pairs(self.trials, &self.left_out.iter().map(Option::as_ref).collect::<Vec<_>>()),
@@ -430,27 +437,4 @@ impl Said<'_> {
         };
         self.trials.iter().enumerate().map(of).collect()
     }
-}
-
-fn entry(own: Whiteness) -> WhitenessEntry {
-    WhitenessEntry { lag1_autocorrelation: own.lag1, whiteness_p: own.p_value }
-}
-
-fn errors_of(on: &ReplayResult) -> ErrorsEntry {
-    let errors = &on.errors;
-    let horizon = HORIZONS.iter().zip(errors.horizon);
-    ErrorsEntry {
-        heading_rmse_deg: to_deg(errors.heading),
-        yaw_rate_rmse_deg_s: errors.yaw_rate.map(to_deg),
-        overshoot_error_deg: errors.overshoot.map(to_deg),
-        horizon_rmse_deg: horizon.map(|(length, error)| (format!("{length:.0}"), error.map(to_deg))).collect(),
-        band_coverage_95: on.coverage(),
-        band_width_95_deg: on.width().map(to_deg),
-    }
-}
-
-/// The equation of an effect in a form.
-fn equation(id: &str, form: &str, candidates: &[Candidate]) -> &'static str {
-    let own = candidates.iter().map(|one| &one.term.effect).find(|own| own.id() == id && own.form() == form);
-    own.map_or("", |own| own.equation())
 }

@@ -107,27 +107,3 @@ pub fn wandering(level: f64, seed: u64) -> Trial {
     }
     of_columns(calm.time().to_vec(), measured, calm.rudder().to_vec())
 }
-
-/// A record of a ship that is another one from a time (s) on: it goes on with the heading and the yaw rate it has then.
-pub fn changing(before: &Response, after: &Response, at: f64) -> Trial {
-    let plan = Plan::default();
-    let whole = record(before, plan);
-    let (time, rudder) = (whole.time(), whole.rudder());
-    let signal = Polyline::new(time.to_vec(), rudder.to_vec()).expect("times increase");
-    let change = time.partition_point(|&t| t < at);
-    let mut heading = vec![0.0; time.len()];
-    let mut state = vec![0.0; before.dimension()];
-    before.approach(0.0, 0.0, &mut state);
-    let mut then = [0.0; 2];
-    replay(before, &Recorded::rudder(&signal), &time[..=change], 0.05, &mut state, |row, motion| {
-        (heading[row], then) = (motion.heading, [motion.heading, motion.yaw_rate]);
-    });
-    after.approach(then[0], then[1], &mut state);
-    replay(after, &Recorded::rudder(&signal), &time[change..], 0.05, &mut state, |row, motion| {
-        heading[change + row] = motion.heading;
-    });
-    let noise = Normal::new(0.0, from_deg(plan.noise_deg)).expect("a standard deviation");
-    let mut generator = ChaCha8Rng::seed_from_u64(plan.seed);
-    heading.iter_mut().for_each(|value| *value += noise.sample(&mut generator));
-    of_columns(time.to_vec(), heading, rudder.to_vec())
-}

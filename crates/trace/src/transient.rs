@@ -5,8 +5,9 @@ use lanes::column::dot;
 use nalgebra::DVector;
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Problem, System, Weights};
+use crate::fit::{Fit, Problem, System};
 use crate::model::Term;
+use crate::weights::Weights;
 
 /// Lengths of the boxes as shares of the record.
 const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];

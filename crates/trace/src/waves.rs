@@ -3,8 +3,9 @@
 
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::{Law, Problem};
+use crate::fit::Problem;
 use crate::noise::Colour;
+use crate::weights::Law;
 
 /// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.
 const FASTER: f64 = 5.0;

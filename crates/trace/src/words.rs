@@ -7,6 +7,9 @@ use crate::diagnostics::Signature;
 use crate::document::{BeforeAfter, EffectEntry, ErrorEntry, Verdict};
 use crate::naming::Named;
 
+/// Why the replay of the base is kept.
+pub const NO_NEARER: &str = "the structures replay the records no nearer than the base: a random moment describes them, which no replay foresees";
+
 /// Name of the file of a trial, or of the trial.
 pub fn file_of(trial: &Trial) -> String {
     match trial.origin() {

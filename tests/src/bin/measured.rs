@@ -224,8 +224,8 @@ deviations; without dimension where length and speed are known.";
 const CLOSED_LOOP: &str = "## Full scale, under autopilot
 
 No zig-zags: what a trace makes of a ship that an autopilot keeps on its course in a seaway. Neither file says its units. Assumed are
-0.001 deg/s for the yaw rate of HAKUSAN, whose sum is the heading, and 0.01 deg for its rudder; degrees, one row a second and a rudder
-positive to port for America Maru.";
+0.001 deg/s for the yaw rate of HAKUSAN, whose sum is the heading, and 0.01 deg for its rudder; degrees and one row a second for
+America Maru; rudders positive to port.";
 
 const KEPT_REPORTS: &str = "## Reports\n\nWhole, with figures:\n\n";
 
@@ -369,7 +369,11 @@ fn closed_loop(scratch: &Path) -> Outcome<Table> {
         let out = scratch.join(record.name);
         let row = match trace_files(vec![path], Vec::new(), Vec::new(), None, &out) {
             Err(error) => {
-                [record.name.to_owned(), format!("refused: {error}"), "".into(), "".into(), "".into(), "".into()]
+                // Without the name of a file that is gone when this is read.
+                let error = error.to_string();
+                let reason = error.split_once(".csv: ").map_or(error.as_str(), |(_, reason)| reason);
+                let refused = format!("refused: {reason}");
+                [record.name.to_owned(), refused, String::new(), String::new(), String::new(), String::new()]
             }
             Ok(document) => {
                 let error = &document.error.identification[0];

@@ -11,10 +11,11 @@ use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetr
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
-use trace::fit::{Effort, Fit, Law, Problem};
+use trace::fit::{Effort, Fit, Problem};
 use trace::full::start;
 use trace::model::Structure;
 use trace::record::Record;
+use trace::weights::Law;
 use trace::{EffectId, Selection};
 
 use super::{Check, INDEPENDENT, Section, Tolerance};

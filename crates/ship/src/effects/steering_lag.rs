@@ -72,7 +72,10 @@ impl Effect for SteeringLag {
             }
             Self::FirstOrder => {
                 let shortest = SHORTEST_LAG.max(0.25 * spacing);
-                Proposal::new(*self, [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])])
+                Proposal::new(
+                    *self,
+                    [Prior::normal(&FIRST_ORDER[0], 0.0, sd).within([shortest, FIRST_ORDER[0].highest])],
+                )
             }
         })
     }

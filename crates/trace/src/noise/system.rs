@@ -1,5 +1,6 @@
 //! What wanders and waves as one linear system over the observed rows of a record.
 
+use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
 /// Most states: heading, rate, moment, and two of the waves.
@@ -111,6 +112,26 @@ pub(crate) fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matri
     for i in 0..N {
         for j in 0..N {
             result[i][j] = q[i][j] + (0..N).map(|k| half[i][k] * f[j][k]).sum::<f64>();
+        }
+    }
+    result
+}
+
+/// Transition and added covariance over h for white noise of the given intensity on the last state (Van Loan 1978).
+pub(crate) fn van_loan(generator: &DMatrix<f64>, intensity: f64, h: f64) -> (Matrix, Matrix) {
+    let m = generator.nrows();
+    let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
+    block.view_mut((0, 0), (m, m)).copy_from(&(-generator * h));
+    block[(m - 1, 2 * m - 1)] = h;
+    block.view_mut((m, m), (m, m)).copy_from(&(generator.transpose() * h));
+    let exponential = block.exp();
+    let transition = exponential.view((m, m), (m, m)).transpose();
+    let added = &transition * exponential.view((0, m), (m, m)) * intensity;
+    let mut result = ([[0.0; MOST]; MOST], [[0.0; MOST]; MOST]);
+    for i in 0..m {
+        for j in 0..m {
+            result.0[i][j] = transition[(i, j)];
+            result.1[i][j] = 0.5 * (added[(i, j)] + added[(j, i)]);
         }
     }
     result

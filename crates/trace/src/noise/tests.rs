@@ -74,9 +74,9 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
         let colours = [
             Colour { wander: Some((Wander::White, 50.0)), waves: None },
             Colour { wander: Some((Wander::Walk, 400.0)), waves: None },
-            Colour { wander: Some((Wander::OrnsteinUhlenbeck(3), 80.0)), waves: None },
-            Colour { wander: Some((Wander::Compass(5), 9.0)), waves: None },
-            Colour { wander: Some((Wander::Compass(4), 2.0)), waves: Some(waves) },
+            Colour { wander: Some((Wander::OrnsteinUhlenbeck(2), 80.0)), waves: None },
+            Colour { wander: Some((Wander::Compass(3), 9.0)), waves: None },
+            Colour { wander: Some((Wander::Compass(2), 2.0)), waves: Some(waves) },
             Colour { wander: None, waves: Some(waves) },
             Colour { wander: Some((Wander::Walk, 100.0)), waves: Some(waves) },
         ];

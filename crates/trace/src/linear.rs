@@ -1,0 +1,100 @@
+//! Residual and sensitivities of the records, and their normal equations.
+
+use lanes::column::dot;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+use ship::Tangent;
+use ship::number::DIRECTIONS;
+
+use crate::model::{Structure, headings};
+use crate::record::Record;
+use crate::weights::Weights;
+
+/// Residual and sensitivities of one record.
+#[derive(Debug, Clone)]
+pub struct Block {
+    /// Measured less replayed heading, rad.
+    pub residual: Vec<f64>,
+    /// Unknowns that act, each with the change of the heading.
+    pub columns: Vec<(usize, Vec<f64>)>,
+}
+
+/// Replays one record with derivatives by some variables: their unknown, and their place in θ and behind it.
+pub fn tangents(
+    structure: &Structure,
+    record: &Record,
+    number: usize,
+    theta: &[f64],
+    initial: [f64; 2],
+    variables: &[(usize, usize)],
+) -> Block {
+    let rows = record.observed.len();
+    let constant: Vec<Tangent> = theta.iter().chain(&initial).map(|&value| Tangent::from(value)).collect();
+    let pass = |variables: &[(usize, usize)]| {
+        let mut point = constant.clone();
+        for (direction, &(_, place)) in variables.iter().enumerate() {
+            point[place] = Tangent::variable(point[place].value, direction);
+        }
+        let (theta, initial) = point.split_at(theta.len());
+        let response = structure.response(Some(number), theta);
+        let (mut residual, mut columns) = (vec![0.0; rows], vec![vec![0.0; rows]; variables.len()]);
+        headings(&response, record, [initial[0], initial[1]], |row, heading| {
+            residual[row] = record.heading[record.observed[row]] - heading.value;
+            columns.iter_mut().zip(heading.by).for_each(|(column, by)| column[row] = by);
+        });
+        (residual, columns)
+    };
+    let passes: Vec<_> = variables.par_chunks(DIRECTIONS).map(pass).collect();
+    let residual = passes[0].0.clone();
+    let columns = passes.into_iter().flat_map(|(_, columns)| columns);
+    Block { residual, columns: variables.iter().map(|(unknown, _)| *unknown).zip(columns).collect() }
+}
+
+/// Residual and sensitivities of all records.
+#[derive(Debug, Clone)]
+pub struct Linear {
+    /// One block a record.
+    pub blocks: Vec<Block>,
+    /// Number of unknowns.
+    pub unknowns: usize,
+}
+
+/// XᵀX and Xᵀe of weighed sensitivities.
+#[derive(Debug, Clone)]
+pub struct NormalEquations {
+    /// XᵀX.
+    pub matrix: DMatrix<f64>,
+    /// Xᵀe.
+    pub gradient: DVector<f64>,
+    /// |e|² of every record.
+    pub squares: Vec<f64>,
+}
+
+impl Linear {
+    /// Normal equations under weights.
+    pub fn normal(&self, weights: &Weights) -> NormalEquations {
+        let mut normal = NormalEquations {
+            matrix: DMatrix::zeros(self.unknowns, self.unknowns),
+            gradient: DVector::zeros(self.unknowns),
+            squares: Vec::with_capacity(self.blocks.len()),
+        };
+        for (record, block) in self.blocks.iter().enumerate() {
+            let Block { mut residual, mut columns } = block.clone();
+            let mut all: Vec<&mut Vec<f64>> = columns.iter_mut().map(|(_, column)| column).collect();
+            all.push(&mut residual);
+            weights.apply(record, &mut all);
+            for (k, (i, one)) in columns.iter().enumerate() {
+                for (j, other) in &columns[..=k] {
+                    let product = dot(one, other);
+                    normal.matrix[(*i, *j)] += product;
+                    if i != j {
+                        normal.matrix[(*j, *i)] += product;
+                    }
+                }
+                normal.gradient[*i] += dot(one, &residual);
+            }
+            normal.squares.push(dot(&residual, &residual));
+        }
+        normal
+    }
+}

@@ -1,0 +1,199 @@
+//! A quadratic approximation of the posterior of the full model, from which any terms may be taken.
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use super::Support;
+use crate::evidence::{MOST, Removable, conditional, subsets};
+use crate::fit::{System, deviation, log_normaliser};
+use crate::model::Structure;
+
+/// Structures that are refitted a round, and the log of the odds against the best beyond which none is.
+const REFITS: usize = 4;
+pub(super) const HOPELESS: f64 = 5.0;
+
+/// Structures with one term more that are refitted a round.
+const ADDITIONS: usize = 2;
+
+/// A quadratic approximation of the posterior of the full model, and what may be taken from it.
+pub(super) struct Quadratic {
+    pub covariance: DMatrix<f64>,
+    pub mean: DVector<f64>,
+    pub removable: Vec<Removable>,
+    /// Whether a term has its sizes at the end of their range and would leave it: it is out.
+    pinned: Vec<bool>,
+    /// Whether an unknown is free, and not that of a size that is out.
+    pub free: Vec<bool>,
+}
+
+impl Quadratic {
+    /// Round a point of the full structure.
+    pub fn new(system: &System, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
+        let entries = structure.entries();
+        let unknown: Vec<Option<usize>> = {
+            let mut next = 0..;
+            entries.iter().map(|entry| entry.prior.is_fitted().then(|| next.next()).flatten()).collect()
+        };
+        let count = system.gradient.len();
+        let mut at = DVector::zeros(count);
+        unknown.iter().zip(theta).for_each(|(place, value)| {
+            if let Some(place) = place {
+                at[*place] = *value;
+            }
+        });
+        let factor = system.precision.clone().cholesky()?;
+        let mut covariance = factor.inverse();
+        let mut mean = &at + factor.solve(&system.gradient);
+        let ranges = structure.ranges();
+        let mut pinned = vec![false; ranges.len()];
+        let removable = |mean: &DVector<f64>, number: usize| {
+            let (term, range) = (&structure.terms[number], ranges[number].clone());
+            let neutral = term.neutral();
+            let mut own =
+                Removable { sizes: Vec::new(), shapes: Vec::new(), log_prior: 0.0, log_odds: log_odds[number] };
+            for (k, place) in range.enumerate() {
+                let prior = term.priors[k];
+                let Some(unknown) = unknown[place] else { continue };
+                own.log_prior += log_normaliser(prior);
+                if prior.is_shape {
+                    own.log_prior -= 0.5 * deviation(prior, theta[place]).powi(2);
+                    own.shapes.push(unknown);
+                } else {
+                    own.log_prior -= 0.5 * deviation(prior, neutral[k]).powi(2);
+                    own.sizes.push((unknown, mean[unknown] - neutral[k]));
+                }
+            }
+            own
+        };
+        // A size that would leave its range at its neutral end is no size.
+        for _ in 0..ranges.len() {
+            let leaves = |number: &usize| {
+                let term = &structure.terms[*number];
+                let own = ranges[*number].clone().zip(&term.priors).zip(term.neutral());
+                !pinned[*number]
+                    && own.into_iter().any(|((place, prior), neutral)| {
+                        let value = unknown[place].map_or(neutral, |unknown| mean[unknown]);
+                        !prior.is_shape && (prior.lowest == neutral && value < neutral)
+                    })
+            };
+            let Some(worst) = (0..ranges.len()).filter(leaves).min_by(|&one, &other| {
+                let depth = |number: usize| {
+                    removable(&mean, number)
+                        .sizes
+                        .iter()
+                        .map(|&(k, distance)| distance / covariance[(k, k)].sqrt())
+                        .fold(0.0, f64::min)
+                };
+                depth(one).total_cmp(&depth(other))
+            }) else {
+                break;
+            };
+            let out = removable(&mean, worst);
+            pinned[worst] = true;
+            mean = conditional(&covariance, &mean, &[&out]);
+            condition(&mut covariance, &out);
+        }
+        let removable: Vec<Removable> = (0..ranges.len()).map(|number| removable(&mean, number)).collect();
+        let mut free = vec![true; count];
+        for (own, _) in removable.iter().zip(&pinned).filter(|(_, pinned)| **pinned) {
+            let own: &Removable = own;
+            own.sizes.iter().for_each(|(unknown, _)| free[*unknown] = false);
+        }
+        Some(Self { covariance, mean, removable, pinned, free })
+    }
+
+    /// What speaks for every term, from the log weights of all subsets: the gain is that of its effect in any form;
+    /// `effects` says which terms are forms of one.
+    fn support(&self, kept: &[usize], weights: &[f64], effects: &[(&str, Option<usize>)]) -> Vec<Support> {
+        let of = |number: usize| {
+            let own = &self.removable[number];
+            let places: Vec<usize> = own.sizes.iter().map(|(unknown, _)| *unknown).collect();
+            let distance = DVector::from_iterator(places.len(), own.sizes.iter().map(|(_, distance)| *distance));
+            let matrix = DMatrix::from_fn(places.len(), places.len(), |i, j| self.covariance[(places[i], places[j])]);
+            let square = matrix.cholesky().map_or(0.0, |factor| distance.dot(&factor.solve(&distance)));
+            let law = ChiSquared::new(places.len().max(1) as f64).expect("degrees of freedom");
+            if !kept.contains(&number) {
+                return Support { gain: 0.0, p_value: 1.0 };
+            }
+            let alike: usize = kept
+                .iter()
+                .enumerate()
+                .filter(|(_, other)| effects[**other] == effects[number])
+                .map(|(bit, _)| 1 << bit)
+                .sum();
+            let highest = |with: bool| {
+                let all = weights.iter().enumerate().filter(|(subset, _)| (subset & alike != 0) == with);
+                all.map(|(_, weight)| *weight).fold(f64::NEG_INFINITY, f64::max)
+            };
+            Support { gain: highest(true) - highest(false) - own.log_odds, p_value: law.sf(square) }
+        };
+        (0..self.removable.len()).map(of).collect()
+    }
+
+    /// The best subsets of terms and what speaks for every term: at most sixteen terms take part. Beside the best of all
+    /// subsets the best are looked at that have one term more than `about`: a step so far from here is badly foretold,
+    /// and only a fit tells.
+    pub fn best(&self, about: &[bool], effects: &[(&str, Option<usize>)]) -> (Vec<Vec<bool>>, Vec<Support>) {
+        let free: Vec<usize> = (0..self.removable.len()).filter(|&k| !self.pinned[k]).collect();
+        let (kept, covariance, removable) = self.fewer(free);
+        let weights = subsets(&covariance, &removable);
+        let chosen = |subset: usize| {
+            let mut chosen = vec![false; self.removable.len()];
+            kept.iter().enumerate().for_each(|(bit, &k)| chosen[k] = subset >> bit & 1 == 1);
+            chosen
+        };
+        let by_weight = |one: &usize, other: &usize| weights[*other].total_cmp(&weights[*one]);
+        let mut order: Vec<usize> = (0..weights.len()).collect();
+        if order.len() > REFITS {
+            order.select_nth_unstable_by(REFITS - 1, by_weight);
+            order.truncate(REFITS);
+        }
+        order.sort_by(by_weight);
+        let least = weights[order[0]] - HOPELESS;
+        order.retain(|subset| weights[*subset] > least);
+        let own: usize = kept.iter().enumerate().filter(|(_, k)| about[**k]).map(|(bit, _)| 1 << bit).sum();
+        let mut more: Vec<usize> = (0..kept.len())
+            .map(|bit| own | 1 << bit)
+            .filter(|subset| *subset != own && !order.contains(subset))
+            .collect();
+        more.sort_by(by_weight);
+        order.extend(more.into_iter().take(ADDITIONS));
+        (order.into_iter().map(chosen).collect(), self.support(&kept, &weights, effects))
+    }
+
+    /// The terms that matter most, with what is left of the posterior when the others are taken away.
+    fn fewer(&self, mut kept: Vec<usize>) -> (Vec<usize>, DMatrix<f64>, Vec<Removable>) {
+        let mut covariance = self.covariance.clone();
+        let mut mean = self.mean.clone();
+        let mut removable = self.removable.clone();
+        while kept.len() > MOST {
+            let loss =
+                |&k: &usize| subsets(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_odds;
+            let place = (0..kept.len()).max_by(|&i, &j| loss(&kept[i]).total_cmp(&loss(&kept[j]))).expect("many");
+            let out = removable[kept.remove(place)].clone();
+            let moved = conditional(&covariance, &mean, &[&out]);
+            condition(&mut covariance, &out);
+            for &k in &kept {
+                removable[k]
+                    .sizes
+                    .iter_mut()
+                    .for_each(|(unknown, distance)| *distance += moved[*unknown] - mean[*unknown]);
+            }
+            mean = moved;
+        }
+        let own = kept.iter().map(|&k| removable[k].clone()).collect();
+        (kept, covariance, own)
+    }
+}
+
+/// Takes what the sizes of a candidate leave open from a covariance.
+fn condition(covariance: &mut DMatrix<f64>, out: &Removable) {
+    for &(unknown, _) in &out.sizes {
+        let column: DVector<f64> = covariance.column(unknown).into();
+        let variance = column[unknown];
+        if variance > 0.0 {
+            *covariance -= &column * column.transpose() / variance;
+            covariance[(unknown, unknown)] = 1e-12 * variance;
+        }
+    }
+}

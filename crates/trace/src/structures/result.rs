@@ -1,0 +1,82 @@
+//! What weighed structures say.
+
+use super::{MEMBERS, Member, Structures, Support, names};
+use crate::candidates::PROBABILITY;
+use crate::fit::Fit;
+use crate::model::TermName;
+
+impl Structures {
+    /// The members of the average with their weights, which sum to one.
+    pub fn members(&self) -> Vec<(f64, &Fit)> {
+        let least = self.all.first().map_or(0.0, |one| one.weight) / MEMBERS;
+        let kept: Vec<&Member> = self.all.iter().filter(|one| one.weight >= least).collect();
+        let total: f64 = kept.iter().map(|one| one.weight).sum();
+        kept.iter().map(|one| (one.weight / total, &one.fit)).collect()
+    }
+
+    /// Shares the weight with structures under other laws, each with the odds of its law against that of these.
+    pub(super) fn share_with(&mut self, others: Vec<(f64, Structures)>) {
+        let total = 1.0 + others.iter().map(|(odds, _)| odds).sum::<f64>();
+        self.all.iter_mut().for_each(|one| one.weight /= total);
+        for (odds, other) in others {
+            for (name, seen) in &other.visibility {
+                self.visibility.entry(*name).or_insert(*seen);
+                self.probabilities.entry(*name).or_insert(0.0);
+            }
+            for (name, support) in &other.support {
+                self.support.entry(*name).or_insert(*support);
+            }
+            self.others.extend(other.weighed_names().map(|(weight, names)| (weight * odds / total, names)));
+        }
+        for probability in self.probabilities.values_mut() {
+            *probability = 0.0;
+        }
+        for (weight, names) in self.weighed_names().collect::<Vec<_>>() {
+            for name in names {
+                *self.probabilities.entry(name).or_default() += weight;
+            }
+        }
+    }
+
+    /// Probability of an effect in any form, in all records or in one.
+    pub fn of_effect(&self, id: &str, only: Option<usize>) -> f64 {
+        let has = |names: &[TermName]| names.iter().any(|name| name.0 == id && name.2 == only);
+        self.weighed_names().filter(|(_, names)| has(names)).map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
+    }
+}
+
+impl Structures {
+    /// Mean square of what the most probable structure leaves that has nothing but the ship in it, rad².
+    pub(super) fn mean_square_of_ship(&self) -> f64 {
+        let is_ship = |one: &&Member| one.fit.structure.terms.iter().all(|term| !term.effect.is_of_time());
+        let residual = self.all.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
+        let (sum, rows) = residual.fold((0.0, 0.0), |(sum, rows), e| (sum + e * e, rows + 1.0));
+        if rows > 0.0 { sum / rows } else { f64::INFINITY }
+    }
+
+    /// What speaks for the best form of an effect.
+    pub fn support_of(&self, id: &str, only: Option<usize>) -> Support {
+        let own = self.support.iter().filter(|(name, _)| name.0 == id && name.2 == only).map(|(_, own)| *own);
+        let none = Support { gain: 0.0, p_value: 1.0 };
+        let mut best = own.max_by(|one, other| one.gain.total_cmp(&other.gain)).unwrap_or(none);
+        // The structures that were refitted know better than the approximation.
+        let probability = self.of_effect(id, only).clamp(1e-12, 1.0 - 1e-12);
+        if probability > 0.5 {
+            best.gain = best.gain.max((probability / (1.0 - probability)).ln() - PROBABILITY.ln());
+        }
+        best.gain = best.gain.clamp(-1e6, 1e6);
+        best
+    }
+
+    /// Probability of an effect in any form and any record.
+    pub fn anywhere(&self, id: &str) -> f64 {
+        let has = |names: &[TermName]| names.iter().any(|name| name.0 == id);
+        self.weighed_names().filter(|(_, names)| has(names)).map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
+    }
+
+    /// Weights of all structures with the names of their terms.
+    pub fn weighed_names(&self) -> impl Iterator<Item = (f64, Vec<TermName>)> + '_ {
+        let own = self.all.iter().map(|one| (one.weight, names(&one.fit.structure)));
+        own.chain(self.others.iter().cloned())
+    }
+}
