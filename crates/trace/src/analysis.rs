@@ -293,7 +293,7 @@ impl Remainder {
     }
 }
 
-/// A structure that the records cannot tell from the best, as a prediction takes it: without what belongs to one record.
+/// A structure that the records cannot tell from the best, as a prediction takes it: without what is of one record.
 #[derive(Debug, Clone)]
 pub struct Plausible {
     /// Probability among these.

@@ -67,7 +67,7 @@ fn two_effects_are_named_together() {
 #[test]
 fn a_random_moment_is_no_effect_of_the_ship() {
     for seed in 1..4 {
-        let analysis = traced(&[wandering(3.0, seed)]);
+        let analysis = traced(&[wandering(30.0, seed)]);
         let ship = ["second_order", "nonlinear_damping", "speed_loss", "rudder_saturation", "port_starboard_asymmetry"];
         assert!(named(&analysis).iter().all(|id| !ship.contains(id)), "seed {seed}: {:?}", named(&analysis));
     }

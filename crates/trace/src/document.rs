@@ -334,8 +334,8 @@ pub struct RecordNoiseEntry {
     pub heading_wander_sd_deg: Option<f64>,
     /// How long it lasts.
     pub heading_correlation_s: Option<f64>,
-    /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite that
-    /// of the ship).
+    /// What a heading error that lasts is: `compass` (first order) or `model` (smooth, of a model that is not quite the
+    /// ship).
     pub heading_wander: Option<String>,
     /// `none`, `white`, `ornstein-uhlenbeck` or `walk`.
     pub moment: String,

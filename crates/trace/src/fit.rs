@@ -65,6 +65,16 @@ impl Problem {
         self.records.iter().map(Record::duration).fold(0.0, f64::max)
     }
 
+    /// −½ (Σ n log σ² + Σ log S): log of the density of the noise of a law but for its exponent.
+    pub fn log_normaliser(&self, law: &Law) -> f64 {
+        let whiteners = self.weights(law).whiteners;
+        let of = |(number, record): (usize, &Record)| {
+            let rows = record.observed.len() as f64;
+            law.power[number] * (rows * law.variance[number].ln() + whiteners[number].log_variance)
+        };
+        -0.5 * self.records.iter().enumerate().map(of).sum::<f64>()
+    }
+
     /// The filters of all records under a law.
     pub fn weights(&self, law: &Law) -> Weights {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(&law.colour)).collect();

@@ -80,7 +80,7 @@ struct Stage<'a> {
 }
 
 /// Weighs the structures under every law, and keeps the law that explains the records best: by the evidence of its
-/// structures; but where physics under an error of the heading explains what the base leaves, no random moment does.
+/// structures; but where physics beside a smooth error of the model explains what the base leaves, no other law does.
 pub fn choose(
     problem: &Problem,
     fulls: Vec<Full>,
@@ -95,7 +95,7 @@ pub fn choose(
         .map(|full| {
             let structures = weigh(problem, &full, candidates, selection, rule);
             let height = structures.all.first().map_or(f64::NEG_INFINITY, |best| best.height - best.weight.ln());
-            let own = full.law.log_normaliser(problem) - price * full.law.colour.freedom() as f64;
+            let own = problem.log_normaliser(&full.law) - price * full.law.colour.freedom() as f64;
             (height + own, full, structures)
         })
         .collect();
@@ -104,7 +104,7 @@ pub fn choose(
     });
     let is_physical = |(_, full, structures): &(f64, Full, Structures)| {
         let left = structures.mean_square_of_ship() / base;
-        !full.law.is_random_moment() && left < if astray { PARTLY * PARTLY } else { PHYSICS * PHYSICS }
+        full.law.is_of_model() && left < if astray { PARTLY * PARTLY } else { PHYSICS * PHYSICS }
     };
     let physical = weighed.iter().any(is_physical);
     let mut kept: Vec<(f64, Full, Structures)> =
@@ -121,7 +121,7 @@ pub fn choose(
 const PHYSICS: f64 = 0.4;
 
 /// The same where a random moment is further from the records than the base.
-const PARTLY: f64 = 0.5;
+const PARTLY: f64 = 0.7;
 
 /// Error of the base times this beyond which a random moment has taken the place of physics.
 const ASTRAY: f64 = 2.0;

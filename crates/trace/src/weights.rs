@@ -2,9 +2,7 @@
 
 use lanes::column::dot;
 
-use crate::fit::Problem;
 use crate::noise::{Colour, Wander, Whitener};
-use crate::record::Record;
 
 /// The law of the noise: one colour for all records, a size for each.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,16 +32,6 @@ impl Law {
         let kind = |law: &Self| (law.colour.wander.map(|(kind, _)| kind), law.colour.waves.is_some());
         let size = |(one, two): (&f64, &f64)| (one / two).ln().abs() < 0.4;
         kind(self) == kind(other) && self.variance.iter().zip(&other.variance).all(size)
-    }
-
-    /// −½ (Σ n log σ² + Σ log S): log of the density of the noise but for its exponent.
-    pub fn log_normaliser(&self, problem: &Problem) -> f64 {
-        let weights = problem.weights(self);
-        let of = |(number, record): (usize, &Record)| {
-            let rows = record.observed.len() as f64;
-            self.power[number] * (rows * self.variance[number].ln() + weights.whiteners[number].log_variance)
-        };
-        -0.5 * problem.records.iter().enumerate().map(of).sum::<f64>()
     }
 
     /// White noise of one variance, rad².

@@ -250,8 +250,8 @@ impl EffectReal for Tangent {
 /// The manoeuvres of some records in numbers, from which a proposal follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Manoeuvres {
-    /// The time in which the ship sails its length, L/U, s; where these are not known (K/T)^(−1/2) of the base, which is
-    /// about that.
+    /// The time in which the ship sails its length, L/U, s; where these are not known (K/T)^(−1/2) of the base, about
+    /// that.
     pub time: f64,
     /// Largest rudder angle, rad.
     pub rudder: f64,
