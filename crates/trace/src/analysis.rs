@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use ship::{Regressor, Response, effects};
 use trial::Trial;
 
-use crate::average::Average;
+use crate::average::{After, Average};
 use crate::base::Base;
 use crate::candidates::{self, Candidate};
 use crate::diagnostics::{self, Series, Signature, Whiteness};
@@ -19,7 +19,7 @@ use crate::empirical::{self, Empirical};
 use crate::fit::{Fit, Problem};
 use crate::full::{self, Full};
 use crate::innovations::Innovations;
-use crate::judge::{After, RecordComparison, ReplayResult, before, starts};
+use crate::judge::{RecordComparison, ReplayResult, before, starts};
 use crate::left_out::leave_one_out;
 use crate::record::Record;
 use crate::replay_errors::Errors;

@@ -4,8 +4,10 @@
 use identify::replay::Replay;
 use ship::Response;
 
+use crate::fit::Fit;
 use crate::record::Record;
 use crate::replay_errors::{HORIZONS, full, restarted};
+use crate::weights::Law;
 
 /// A replay this many times as far from the record as the median of all runs away.
 const RUNS_AWAY: f64 = 3.0;
@@ -15,6 +17,18 @@ const RUNS_AWAY: f64 = 3.0;
 pub struct Average {
     /// Weights, which sum to one, and responses.
     pub members: Vec<(f64, Response)>,
+}
+
+/// Members of an average on a record, `known` being its number among those that were fitted.
+pub struct After<'a> {
+    /// Structures with their weights.
+    pub members: &'a [(f64, &'a Fit)],
+    /// The noise.
+    pub law: &'a Law,
+    /// Number of the record among the fitted ones.
+    pub known: Option<usize>,
+    /// Time of the ship L/U, s.
+    pub time: f64,
 }
 
 /// What an average does on a record.

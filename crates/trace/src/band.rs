@@ -15,8 +15,8 @@ use rand_distr::StandardNormal;
 use ship::Polyline;
 use trial::Trial;
 
+use crate::average::After;
 use crate::fit::{Fit, Problem};
-use crate::judge::After;
 use crate::noise::System;
 use crate::record::Record;
 

@@ -291,7 +291,8 @@ impl System {
         step.iter().all(|x| x.is_finite()).then_some((step, gain))
     }
 
-    /// Log of the marginal likelihood up to what all structures share (Laplace), with the part of a normal law that lies
+    /// Log of the marginal likelihood up to what all structures share (Laplace), with the part of a normal law that
+    /// lies
     /// beyond the end of a range left out.
     fn evidence(&self, point: &Point) -> f64 {
         let Some(factor) = self.precision.clone().cholesky() else { return f64::NEG_INFINITY };

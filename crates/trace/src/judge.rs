@@ -5,13 +5,11 @@ use identify::replay::{Replay, replay};
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use crate::average::{Average, Replayed};
+use crate::average::{After, Average, Replayed};
 use crate::band;
-use crate::fit::Fit;
 use crate::record::Record;
 use crate::replay_errors::{Errors, HORIZONS, overshoot_error, root_mean_square};
 use crate::settings::TraceError;
-use crate::weights::Law;
 
 /// A model on one record.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,18 +71,6 @@ pub fn before(trial: &Trial, record: &Record, base: &FirstOrder, thorough: bool)
         false => None,
     };
     Ok(result(trial, replay, windows.unwrap_or_default(), thorough))
-}
-
-/// Members of an average on a record, `known` being its number among those that were fitted.
-pub struct After<'a> {
-    /// Structures with their weights.
-    pub members: &'a [(f64, &'a Fit)],
-    /// The noise.
-    pub law: &'a Law,
-    /// Number of the record among the fitted ones.
-    pub known: Option<usize>,
-    /// Time of the ship L/U, s.
-    pub time: f64,
 }
 
 impl After<'_> {

@@ -4,10 +4,11 @@
 use rayon::prelude::*;
 use trial::Trial;
 
+use crate::average::After;
 use crate::base::Base;
 use crate::fit::{Effort, Fit, Problem};
 use crate::full::Full;
-use crate::judge::{After, RecordComparison, before, starts};
+use crate::judge::{RecordComparison, before, starts};
 use crate::model::Structure;
 use crate::record::Record;
 use crate::structures::{Member, Structures};

@@ -37,7 +37,8 @@ pub enum Wander {
     /// ε' = −ε/τ + w, added to the heading that is read: a compass whose errors last for a time τ, this one of
     /// [`COMPASS`].
     Compass(usize),
-    /// ε'' + 2ε'/τ + ε/τ² = w, added to the heading: a smooth error that lasts for a time τ, this one of [`SMOOTH`]. It is
+    /// ε'' + 2ε'/τ + ε/τ² = w, added to the heading: a smooth error that lasts for a time τ, this one of [`SMOOTH`].
+    /// It is
     /// what a model leaves that is not quite that of the ship.
     Smooth(usize),
 }

@@ -111,7 +111,8 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
     (!pairs.is_empty()).then(|| pairs.iter().sum::<f64>() / pairs.len() as f64)
 }
 
-/// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the window;
+/// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the
+/// window;
 /// the memory of the effects goes on. `None` when a window holds too few headings.
 pub fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();

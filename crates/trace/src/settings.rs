@@ -40,7 +40,8 @@ pub struct Settings {
     pub monomials: usize,
     /// Effects that are in the model on request, and effects that are no candidates.
     pub selection: Selection,
-    /// Whether errors of restarted replays, bands and records left out in turn are computed; a benchmark may do without.
+    /// Whether errors of restarted replays, bands and records left out in turn are computed; a benchmark may do
+    /// without.
     pub thorough: bool,
 }
 

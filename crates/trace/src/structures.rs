@@ -180,7 +180,8 @@ impl Stage<'_> {
         self.refit(&quadratic, &hopeful, &at);
     }
 
-    /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike, and
+    /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike,
+    /// and
     /// only a fit tells them apart.
     fn swap(&mut self, top: &Fit) {
         let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().map(|one| &one.term));

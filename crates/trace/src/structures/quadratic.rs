@@ -130,7 +130,8 @@ impl Quadratic {
         (0..self.removable.len()).map(of).collect()
     }
 
-    /// The best subsets of terms and what speaks for every term: at most sixteen terms take part. Beside the best of all
+    /// The best subsets of terms and what speaks for every term: at most sixteen terms take part. Beside the best of
+    /// all
     /// subsets the best are looked at that have one term more than `about`: a step so far from here is badly foretold,
     /// and only a fit tells.
     pub fn best(&self, about: &[bool], effects: &[(&str, Option<usize>)]) -> (Vec<Vec<bool>>, Vec<Support>) {
