@@ -19,6 +19,8 @@ use crate::settings::Rule;
 use crate::weights::Weights;
 use quadratic::{HOPELESS, Quadratic};
 
+pub use quadratic::Support;
+
 /// Structures whose fit is driven to the end.
 const POLISHED: usize = 8;
 
@@ -55,15 +57,6 @@ pub struct Structures {
     pub support: BTreeMap<TermName, Support>,
     /// Structures under other laws of the noise: their names and weights.
     others: Vec<(f64, Vec<TermName>)>,
-}
-
-/// What speaks for a candidate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Support {
-    /// Log evidence of the best structure with it less that of the best without it.
-    pub gain: f64,
-    /// Probability of sizes as far from neutral by chance, beside all other candidates.
-    pub p_value: f64,
 }
 
 /// The stage with what it needs.

@@ -93,7 +93,8 @@ fn a_trace_is_told_without_dimension() {
     let run = desk.run(&["trace", "ship.csv", "model.csv", "--out", "traced", "--paper", "85"]);
     assert!(run.is_done().out.contains("one analysis in prime time"), "{}", run.out);
     let trace = desk.json("traced/trace.json");
-    assert!((value(&trace["model"]["prime"]["K"]) - 1.2224).abs() < 2e-3, "{}", trace["model"]);
+    // Records of one amplitude do not exclude a stall, which goes with a larger K.
+    assert!((value(&trace["model"]["prime"]["K"]) - 1.2224).abs() < 5e-2, "{}", trace["model"]);
     let parameters = trace["model"]["parameters"].as_array().expect("a list");
     let inverse = parameters.iter().find(|one| one["key"] == "inverse_T").expect("part of the base");
     assert_eq!(inverse["prime"]["unit"], "1");

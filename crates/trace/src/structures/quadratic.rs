@@ -3,7 +3,6 @@
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::Support;
 use crate::evidence::{MOST, Removable, conditional, subsets};
 use crate::fit::{System, deviation, log_normaliser};
 use crate::model::Structure;
@@ -14,6 +13,15 @@ pub(super) const HOPELESS: f64 = 5.0;
 
 /// Structures with one term more that are refitted a round.
 const ADDITIONS: usize = 2;
+
+/// What speaks for a candidate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Support {
+    /// Log evidence of the best structure with it less that of the best without it.
+    pub gain: f64,
+    /// Probability of sizes as far from neutral by chance, beside all other candidates.
+    pub p_value: f64,
+}
 
 /// A quadratic approximation of the posterior of the full model, and what may be taken from it.
 pub(super) struct Quadratic {
