@@ -18,8 +18,10 @@ use crate::selection::Selection;
 use crate::settings::Rule;
 use crate::weights::Weights;
 use quadratic::{HOPELESS, Quadratic};
+use result::names;
 
 pub use quadratic::Support;
+pub use result::{Member, Structures};
 
 /// Structures whose fit is driven to the end.
 const POLISHED: usize = 8;
@@ -29,35 +31,6 @@ const SMALL_DELAY: f64 = 0.3;
 
 /// Rounds of weighing, round the best structure of the last.
 const ROUNDS: usize = 2;
-
-/// Odds against the best within which structures are members of the average.
-const MEMBERS: f64 = 20.0;
-
-/// A refitted structure with its weight among all.
-#[derive(Debug, Clone)]
-pub struct Member {
-    /// The fit.
-    pub fit: Fit,
-    /// Probability.
-    pub weight: f64,
-    /// Log of evidence and prior odds.
-    pub height: f64,
-}
-
-/// Structures with their probabilities, the most probable first.
-#[derive(Debug, Clone)]
-pub struct Structures {
-    /// All that were refitted.
-    pub all: Vec<Member>,
-    /// Probability of every candidate, by its name.
-    pub probabilities: BTreeMap<TermName, f64>,
-    /// Expected |size/error|² of every candidate beside all others: what cannot be seen is not observable.
-    pub visibility: BTreeMap<TermName, f64>,
-    /// What speaks for every candidate.
-    pub support: BTreeMap<TermName, Support>,
-    /// Structures under other laws of the noise: their names and weights.
-    others: Vec<(f64, Vec<TermName>)>,
-}
 
 /// The stage with what it needs.
 struct Stage<'a> {
@@ -371,8 +344,4 @@ impl Stage<'_> {
         }
         Structures { all, probabilities, visibility, support, others: Vec::new() }
     }
-}
-
-fn names(structure: &Structure) -> Vec<TermName> {
-    structure.terms.iter().map(|term| term.name()).collect()
 }

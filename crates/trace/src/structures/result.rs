@@ -1,9 +1,45 @@
 //! What weighed structures say.
 
-use super::{MEMBERS, Member, Structures, Support, names};
+use std::collections::BTreeMap;
+
+use super::quadratic::Support;
 use crate::candidates::PROBABILITY;
 use crate::fit::Fit;
-use crate::model::TermName;
+use crate::model::{Structure, TermName};
+
+/// Odds against the best within which structures are members of the average.
+const MEMBERS: f64 = 20.0;
+
+/// A refitted structure with its weight among all.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// The fit.
+    pub fit: Fit,
+    /// Probability.
+    pub weight: f64,
+    /// Log of evidence and prior odds.
+    pub height: f64,
+}
+
+/// Structures with their probabilities, the most probable first.
+#[derive(Debug, Clone)]
+pub struct Structures {
+    /// All that were refitted.
+    pub all: Vec<Member>,
+    /// Probability of every candidate, by its name.
+    pub probabilities: BTreeMap<TermName, f64>,
+    /// Expected |size/error|² of every candidate beside all others: what cannot be seen is not observable.
+    pub visibility: BTreeMap<TermName, f64>,
+    /// What speaks for every candidate.
+    pub support: BTreeMap<TermName, Support>,
+    /// Structures under other laws of the noise: their names and weights.
+    pub(super) others: Vec<(f64, Vec<TermName>)>,
+}
+
+/// Names of the terms of a structure.
+pub(super) fn names(structure: &Structure) -> Vec<TermName> {
+    structure.terms.iter().map(|term| term.name()).collect()
+}
 
 impl Structures {
     /// The members of the average with their weights, which sum to one.
