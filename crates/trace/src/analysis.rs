@@ -13,16 +13,15 @@ use trial::Trial;
 use crate::average::{After, Average};
 use crate::base::Base;
 use crate::candidates::{self, Candidate};
-use crate::diagnostics::{self, Series, Signature, Whiteness};
+use crate::diagnostics::{self, Series, Whiteness};
 use crate::document::Document;
-use crate::empirical::{self, Empirical};
+use crate::empirical;
 use crate::fit::{Fit, Problem};
 use crate::full::{self, Full};
-use crate::innovations::Innovations;
 use crate::judge::{RecordComparison, ReplayResult, before, starts};
 use crate::left_out::leave_one_out;
 use crate::record::Record;
-use crate::replay_errors::Errors;
+use crate::remainder::{Remainder, squares};
 use crate::report;
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
@@ -185,13 +184,6 @@ fn fitted(
     trials.par_iter().enumerate().map(of).collect()
 }
 
-/// Errors of all records together, squared, before and after.
-fn squares(all: &[RecordComparison]) -> [f64; 2] {
-    let square = |errors: &Errors| errors.heading.powi(2) * errors.rows as f64;
-    let before = all.iter().map(|one| square(&one.before.errors)).sum();
-    [before, all.iter().map(|one| square(&one.after.errors)).sum()]
-}
-
 /// Where the average is no nearer to the fitted records than the base, the replay stays that of the base: a random
 /// moment describes the records, which no replay foresees. Whether that is so.
 fn keep_nearest(all: &mut [RecordComparison]) -> bool {
@@ -231,66 +223,6 @@ fn whiteness(all: &[RecordComparison], trials: &[Trial], when: fn(&RecordCompari
         Series::new(&replay.time, &replay.residual, trial.sampling_period())
     });
     diagnostics::whiteness(&series.collect::<Vec<_>>())
-}
-
-/// What the structures leave.
-#[derive(Debug, Clone)]
-pub struct Remainder {
-    /// Whether the law describes it.
-    pub holds: bool,
-    /// Where it is, where it is more than noise.
-    pub signature: Option<Signature>,
-    /// A term without a name that would carry some of it.
-    pub empirical: Option<Empirical>,
-}
-
-/// Share of the error of the base above which a rest that is no noise counts as unexplained.
-const UNEXPLAINED: f64 = 0.3;
-
-/// Standard deviations of the white noise below which a rest is too small to be looked at.
-const SMALL: f64 = 1.5;
-
-impl Remainder {
-    fn new(
-        problem: &Problem,
-        full: &Full,
-        structures: &Structures,
-        identification: &[RecordComparison],
-        trials: &[Trial],
-        candidates: &[Candidate],
-    ) -> Self {
-        let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
-        let holds = Innovations::of(problem, &best.fit.residual, &full.law).agree();
-        let [before, after] = squares(identification);
-        let share = (after / before).sqrt();
-        let is_noise = holds && !full.law.is_of_model();
-        let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
-        let white =
-            full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
-        let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
-        if is_noise || is_small || share < UNEXPLAINED {
-            return Self { holds, signature: None, empirical: None };
-        }
-        let worst = (0..identification.len()).max_by(|&one, &other| {
-            let error = |number: usize| identification[number].after.errors.heading;
-            error(one).total_cmp(&error(other))
-        });
-        let signature = worst.map(|number| {
-            let ReplayResult { replay, .. } = &identification[number].after;
-            let first = trials[number].observed_rows().next().unwrap_or(0);
-            let rows = first..first + replay.time.len();
-            let (heading, rudder) = (&trials[number].heading()[rows.clone()], &trials[number].rudder()[rows]);
-            diagnostics::signature(
-                number,
-                &replay.time,
-                &replay.residual,
-                heading,
-                rudder,
-                trials[number].sampling_period(),
-            )
-        });
-        Self { holds, signature, empirical: empirical::best(problem, full, best, trials, candidates) }
-    }
 }
 
 /// A structure that the records cannot tell from the best, as a prediction takes it: without what is of one record.

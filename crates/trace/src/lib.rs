@@ -25,6 +25,7 @@ pub mod naming;
 pub mod noise;
 pub mod prospects;
 pub mod record;
+mod remainder;
 pub mod replay_errors;
 mod report;
 pub mod selection;

@@ -9,7 +9,6 @@ use ship::particulars::prime_unit;
 use ship::{Particulars, Regressor};
 use trial::{Quantity, Trial};
 
-use crate::analysis::Remainder;
 use crate::base::Base;
 use crate::candidates::{Candidate, PROBABILITY, PROBABILITY_OF_TIME};
 use crate::diagnostics::{Signature, Whiteness};
@@ -21,6 +20,7 @@ use crate::mixture::{Mixture, Pair, ratio};
 use crate::model::TermName;
 use crate::naming::{Named, named};
 use crate::noise::Wander;
+use crate::remainder::Remainder;
 use crate::settings::Settings;
 use crate::structures::Structures;
 use crate::words;
