@@ -122,12 +122,16 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let members = structures.members();
     let mut identification = fitted(&trials, &base, &full, &members, settings.thorough, time)?;
     let no_nearer = keep_nearest(&mut identification);
-    let judged = held_out(&validation, &base, &full, &members, time)?;
+    let unseen = After { members: &members, law: &full.law, known: None, time };
+    let judged: Vec<RecordComparison> =
+        validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let left_out = if is_folded { leave_one_out(&trials, &problem, &full, &structures) } else { Vec::new() };
     let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &candidates);
-    let whiteness = [|one: &RecordComparison| one.before.clone(), |one: &RecordComparison| one.after.clone()]
-        .map(|when: fn(&RecordComparison) -> ReplayResult| whiteness(&identification, &trials, when));
+    let whiteness = [
+        whiteness(identification.iter().map(|one| &one.before), &trials),
+        whiteness(identification.iter().map(|one| &one.after), &trials),
+    ];
     let said = report::Said {
         trials: &trials,
         settings,
@@ -198,30 +202,10 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
     no_nearer
 }
 
-/// Base and average on records that were not fitted.
-fn held_out(
-    trials: &[Trial],
-    base: &Base,
-    full: &Full,
-    members: &[(f64, &Fit)],
-    time: f64,
-) -> Result<Vec<RecordComparison>, TraceError> {
-    let of = |trial: &Trial| {
-        let record = Record::whole(trial);
-        let before = before(trial, &record, &base.estimate.response, true)?;
-        let mut starts = starts(trial, &base.estimate.response);
-        starts.push(before.replay.initial());
-        let after = After { members, law: &full.law, known: None, time }.on(trial, &record, &starts, true)?;
-        Ok(RecordComparison { name: trial.name().to_owned(), before, after })
-    };
-    trials.par_iter().map(of).collect()
-}
-
-fn whiteness(all: &[RecordComparison], trials: &[Trial], when: fn(&RecordComparison) -> ReplayResult) -> Whiteness {
-    let series = all.iter().zip(trials).map(|(one, trial)| {
-        let ReplayResult { replay, .. } = when(one);
-        Series::new(&replay.time, &replay.residual, trial.sampling_period())
-    });
+fn whiteness<'a>(all: impl Iterator<Item = &'a ReplayResult>, trials: &[Trial]) -> Whiteness {
+    let series = all
+        .zip(trials)
+        .map(|(one, trial)| Series::new(&one.replay.time, &one.replay.residual, trial.sampling_period()));
     diagnostics::whiteness(&series.collect::<Vec<_>>())
 }
 
@@ -243,25 +227,13 @@ impl Analysis {
     pub fn plausible(&self) -> Vec<Plausible> {
         let of = |(weight, fit): (f64, &Fit)| {
             let (structure, theta) = fit.structure.alone(None, &fit.theta);
-            let entries = structure.entries();
-            let own = fit.kept_covariance(None).map(|kept| {
+            let fitted = structure.fitted();
+            let covariance = fit.kept_covariance(None).map(|kept| {
                 // What is counted from another parameter has the sum of both.
-                let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].prior.is_fitted()).collect();
-                let mut all = DMatrix::zeros(theta.len(), theta.len());
-                for (i, &one) in fitted.iter().enumerate() {
-                    for (j, &other) in fitted.iter().enumerate() {
-                        all[(one, other)] = kept[(i, j)];
-                    }
-                }
-                let all = structure.physical_covariance(&all);
+                let all = structure.physical_covariance(&structure.spread(&kept));
                 DMatrix::from_fn(fitted.len(), fitted.len(), |i, j| all[(fitted[i], fitted[j])])
             });
-            Plausible {
-                weight,
-                response: structure.response(None, &theta),
-                fitted: (0..entries.len()).filter(|&k| entries[k].prior.is_fitted()).collect(),
-                covariance: own,
-            }
+            Plausible { weight, response: structure.response(None, &theta), fitted, covariance }
         };
         self.structures.members().into_iter().map(of).collect()
     }

@@ -97,8 +97,7 @@ impl Problem {
 
     /// Residual and sensitivities at a point.
     pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
-        let entries = structure.entries();
-        let fitted: Vec<usize> = (0..entries.len()).filter(|&k| entries[k].prior.is_fitted()).collect();
+        let (entries, fitted) = (structure.entries(), structure.fitted());
         let unknowns = fitted.len() + 2 * self.records.len();
         let of = |(number, record): (usize, &Record)| {
             let state = fitted.len() + 2 * number;
@@ -130,7 +129,7 @@ impl Problem {
     ) -> Fit {
         let entries = structure.entries();
         let mut point = Point::new(self, structure, theta, initial, weights);
-        let mut system = System::new(self, structure, &point, weights);
+        let mut system = System::at(self, structure, &point.theta, &point.initial, weights);
         let mut damping = DAMPING;
         for _ in 0..effort.steps {
             let mut next = None;
@@ -151,13 +150,13 @@ impl Problem {
             let Some(next) = next else { break };
             let gained = point.value - next.value;
             point = next;
-            system = System::new(self, structure, &point, weights);
+            system = System::at(self, structure, &point.theta, &point.initial, weights);
             if gained < effort.negligible {
                 break;
             }
         }
         Fit {
-            evidence: system.evidence(&point),
+            evidence: system.evidence(point.value),
             structure: structure.clone(),
             misfit: point.misfit,
             penalty: point.value - point.misfit,
@@ -254,14 +253,14 @@ impl System {
         initial: &[[f64; 2]],
         weights: &Weights,
     ) -> Self {
-        Self::new(problem, structure, &Point::new(problem, structure, theta.into(), initial.into(), weights), weights)
+        Self::of(&problem.linear(structure, theta, initial), structure, theta, weights)
     }
 
-    fn new(problem: &Problem, structure: &Structure, point: &Point, weights: &Weights) -> Self {
-        let linear = problem.linear(structure, &point.theta, &point.initial);
+    /// The same from residual and sensitivities there.
+    pub fn of(linear: &Linear, structure: &Structure, theta: &[f64], weights: &Weights) -> Self {
         let NormalEquations { matrix: mut precision, mut gradient, .. } = linear.normal(weights);
         let entries = structure.entries();
-        let fitted = entries.iter().zip(&point.theta).filter(|(entry, _)| entry.prior.is_fitted());
+        let fitted = entries.iter().zip(theta).filter(|(entry, _)| entry.prior.is_fitted());
         let priors: Vec<(Prior, f64)> = fitted.map(|(entry, &value)| (entry.prior, value)).collect();
         let mut held = vec![false; linear.unknowns];
         for (k, &(prior, value)) in priors.iter().enumerate() {
@@ -291,10 +290,9 @@ impl System {
         step.iter().all(|x| x.is_finite()).then_some((step, gain))
     }
 
-    /// Log of the marginal likelihood up to what all structures share (Laplace), with the part of a normal law that
-    /// lies
-    /// beyond the end of a range left out.
-    fn evidence(&self, point: &Point) -> f64 {
+    /// Log of the marginal likelihood up to what all structures share (Laplace), from the value of J. The part of a
+    /// normal law that lies beyond the end of a range is left out.
+    fn evidence(&self, value: f64) -> f64 {
         let Some(factor) = self.precision.clone().cholesky() else { return f64::NEG_INFINITY };
         let constants: f64 =
             self.priors[self.priors.len() - self.of_terms..].iter().map(|(prior, _)| log_normaliser(*prior)).sum();
@@ -313,7 +311,7 @@ impl System {
             }
         };
         let ends: f64 = self.priors.iter().enumerate().map(inside).sum();
-        -0.5 * point.value + constants + volume + ends
+        -0.5 * value + constants + volume + ends
     }
 }
 
@@ -339,22 +337,10 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Places in θ of the fitted entries.
-    pub fn fitted(&self) -> Vec<usize> {
-        let entries = self.structure.entries();
-        (0..entries.len()).filter(|&k| entries[k].prior.is_fitted()).collect()
-    }
-
     /// Covariance of all entries of θ; zero for those that are not fitted. `None` when they cannot be told apart.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();
-        let fitted = self.fitted();
-        let mut covariance = DMatrix::zeros(self.theta.len(), self.theta.len());
-        for (i, &one) in fitted.iter().enumerate() {
-            for (j, &other) in fitted.iter().enumerate() {
-                covariance[(one, other)] = inverse[(i, j)];
-            }
-        }
+        let covariance = self.structure.spread(&inverse);
         covariance.iter().all(|x| x.is_finite()).then_some(covariance)
     }
 

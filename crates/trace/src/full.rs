@@ -48,8 +48,9 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
     let mut log_odds: Vec<f64> = known.iter().map(|one| one.log_odds).collect();
     let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
     let weights = problem.weights(&lasting.law);
-    for candidate in late {
-        if let Some(place) = transient::place(problem, &fit, &weights, &candidate.term) {
+    let moments: Vec<&Term> = late.iter().map(|one| one.term.as_ref()).collect();
+    for (candidate, place) in late.iter().zip(transient::places(problem, &fit, &weights, &moments)) {
+        if let Some(place) = place {
             theta.extend(place);
             terms.push(Arc::clone(&candidate.term));
             log_odds.push(candidate.log_odds);

@@ -74,6 +74,16 @@ pub fn before(trial: &Trial, record: &Record, base: &FirstOrder, thorough: bool)
 }
 
 impl After<'_> {
+    /// Base and average on a record that neither was fitted to.
+    pub fn compared(&self, trial: &Trial, base: &FirstOrder) -> Result<RecordComparison, TraceError> {
+        let record = Record::whole(trial);
+        let before = before(trial, &record, base, true)?;
+        let mut starts = starts(trial, base);
+        starts.push(before.replay.initial());
+        let after = self.on(trial, &record, &starts, true)?;
+        Ok(RecordComparison { name: trial.name().to_owned(), before, after })
+    }
+
     /// Replays the average on a record from initial states near the `starts`.
     pub fn on(
         &self,

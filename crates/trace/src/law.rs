@@ -35,8 +35,7 @@ const FINALISTS: usize = 3;
 /// How often the size of the noise is found anew for a colour.
 const ROUNDS: usize = 2;
 
-/// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral
-/// of
+/// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral of
 /// the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
 fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
     let of = |record: &crate::record::Record| {

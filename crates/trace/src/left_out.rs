@@ -8,9 +8,8 @@ use crate::average::After;
 use crate::base::Base;
 use crate::fit::{Effort, Fit, Problem};
 use crate::full::Full;
-use crate::judge::{RecordComparison, before, starts};
+use crate::judge::RecordComparison;
 use crate::model::Structure;
-use crate::record::Record;
 use crate::structures::{Member, Structures};
 use crate::weights::Law;
 
@@ -46,15 +45,8 @@ pub fn leave_one_out(
             .map(|(height, fit)| ((height - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
             .collect();
-        let trial = &trials[left];
-        let record = Record::whole(trial);
-        let response = &base.estimate.response;
-        let before = before(trial, &record, response, true).ok()?;
-        let mut starts = starts(trial, response);
-        starts.push(before.replay.initial());
-        let after = After { members: &members, law: &law, known: None, time: problem.time };
-        let after = after.on(trial, &record, &starts, true).ok()?;
-        Some(RecordComparison { name: trial.name().to_owned(), before, after })
+        let unseen = After { members: &members, law: &law, known: None, time: problem.time };
+        unseen.compared(&trials[left], &base.estimate.response).ok()
     };
     (0..trials.len()).into_par_iter().map(fold).collect()
 }

@@ -141,6 +141,31 @@ impl Structure {
         entries
     }
 
+    /// Places in θ of the fitted entries: unknown k of a fit is the entry at place k of these.
+    pub fn fitted(&self) -> Vec<usize> {
+        let entries = self.entries();
+        (0..entries.len()).filter(|&place| entries[place].prior.is_fitted()).collect()
+    }
+
+    /// The unknown of a fit that every entry of θ is; `None` for one that is not fitted.
+    pub fn unknowns(&self) -> Vec<Option<usize>> {
+        let mut unknowns = vec![None; self.count()];
+        self.fitted().into_iter().enumerate().for_each(|(unknown, place)| unknowns[place] = Some(unknown));
+        unknowns
+    }
+
+    /// Covariance of all entries of θ from that of the fitted ones; zero for the others.
+    pub fn spread(&self, fitted: &DMatrix<f64>) -> DMatrix<f64> {
+        let places = self.fitted();
+        let mut all = DMatrix::zeros(self.count(), self.count());
+        for (i, &one) in places.iter().enumerate() {
+            for (j, &other) in places.iter().enumerate() {
+                all[(one, other)] = fitted[(i, j)];
+            }
+        }
+        all
+    }
+
     /// Whether the response depends on the direction in which the record begins.
     pub fn sees_heading(&self) -> bool {
         self.terms.iter().any(|term| term.effect.sees_heading())

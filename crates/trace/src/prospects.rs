@@ -102,10 +102,7 @@ impl Analysis {
         precision.view_mut((0, 0), (count, count)).zip_apply(&known, |own, known| *own += known);
         let covariance = regular(precision)?;
         let mut seen = BTreeMap::new();
-        let entries = structure.entries();
-        let mut unknown = 0..;
-        let places: Vec<Option<usize>> =
-            entries.iter().map(|entry| entry.prior.is_fitted().then(|| unknown.next()).flatten()).collect();
+        let places = structure.unknowns();
         for (term, range) in structure.terms.iter().zip(structure.ranges()) {
             let own = range.zip(&term.priors).zip(term.neutral()).filter_map(|((place, prior), neutral)| {
                 let place = places[place].filter(|_| !prior.is_shape)?;

@@ -42,7 +42,8 @@ struct Stage<'a> {
     rule: Rule,
     known: BTreeMap<Vec<TermName>, Member>,
     visibility: BTreeMap<TermName, f64>,
-    support: BTreeMap<TermName, Support>,
+    /// The last approximation: what speaks for every term is read off it in the end.
+    latest: Option<Quadratic>,
 }
 
 /// Weighs the structures under every law, and keeps the law that explains the records best: by the evidence of its
@@ -103,12 +104,11 @@ fn weigh(problem: &Problem, full: &Full, candidates: &[Candidate], selection: &S
         rule,
         known: BTreeMap::new(),
         visibility: BTreeMap::new(),
-        support: BTreeMap::new(),
+        latest: None,
     };
     let none = vec![false; full.fit.structure.terms.len()];
     if none.is_empty() {
-        let height = stage.height(&full.fit);
-        stage.known.insert(Vec::new(), Member { fit: full.fit.clone(), weight: 1.0, height });
+        stage.keep(vec![full.fit.clone()]);
         return stage.result();
     }
     stage.look((full.fit.theta.clone(), full.fit.initial.clone()), &none);
@@ -140,14 +140,12 @@ impl Stage<'_> {
         if self.visibility.is_empty() {
             self.visibility = self.visibility(&quadratic);
         }
-        let effects: Vec<_> = structure.terms.iter().map(|term| (term.effect.id(), term.only)).collect();
-        let (hopeful, support) = quadratic.best(about, &effects);
-        self.support = structure.terms.iter().map(|term| term.name()).zip(support).collect();
-        self.refit(&quadratic, &hopeful, &at);
+        let hopeful = quadratic.best(about);
+        self.fit_all(hopeful.iter().map(|chosen| self.start(&quadratic, chosen, &at)).collect());
+        self.latest = Some(quadratic);
     }
 
-    /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike,
-    /// and
+    /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike, and
     /// only a fit tells them apart.
     fn swap(&mut self, top: &Fit) {
         let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().map(|one| &one.term));
@@ -172,6 +170,11 @@ impl Stage<'_> {
             .filter(|(own, ..)| !self.known.contains_key(&names(own)))
             .map(|(own, theta, initial)| self.problem.fit(&own, theta, initial, &self.weights, Effort::COARSE))
             .collect();
+        self.keep(fits);
+    }
+
+    /// Keeps fits in the place of others of the same structures.
+    fn keep(&mut self, fits: Vec<Fit>) {
         for fit in fits {
             let height = self.height(&fit);
             self.known.insert(names(&fit.structure), Member { fit, weight: 0.0, height });
@@ -191,10 +194,7 @@ impl Stage<'_> {
                 self.problem.fit(&structure, theta, initial, &self.weights, Effort::FINE)
             })
             .collect();
-        for fit in fits {
-            let height = self.height(&fit);
-            self.known.insert(names(&fit.structure), Member { fit, weight: 0.0, height });
-        }
+        self.keep(fits);
     }
 
     /// Which terms of the full model a fit has.
@@ -232,12 +232,6 @@ impl Stage<'_> {
             (term.name(), seen.fold(0.0, f64::max))
         };
         self.full.fit.structure.terms.iter().zip(&quadratic.removable).map(of).collect()
-    }
-
-    /// Refits subsets of the full model that are not known yet.
-    fn refit(&mut self, quadratic: &Quadratic, chosen: &[Vec<bool>], at: &(Vec<f64>, Vec<[f64; 2]>)) {
-        let fresh = chosen.iter().map(|chosen| self.start(quadratic, chosen, at)).collect();
-        self.fit_all(fresh);
     }
 
     /// A subset with the start that the quadratic approximation gives it.
@@ -325,7 +319,11 @@ impl Stage<'_> {
     }
 
     fn result(self) -> Structures {
-        let Self { visibility, support, .. } = self;
+        let terms = &self.full.fit.structure.terms;
+        let effects: Vec<_> = terms.iter().map(|term| (term.effect.id(), term.only)).collect();
+        let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
+        let support = terms.iter().map(|term| term.name()).zip(support).collect();
+        let visibility = self.visibility;
         let mut all: Vec<Member> = self.known.into_values().filter(|one| one.height.is_finite()).collect();
         all.sort_by(|one, other| {
             other

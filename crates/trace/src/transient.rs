@@ -2,10 +2,11 @@
 //! are tried at every place with the response of the base in closed form, beside all unknowns of the full model.
 
 use lanes::column::dot;
-use nalgebra::DVector;
+use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 
 use crate::fit::{Fit, Problem, System};
+use crate::linear::Linear;
 use crate::model::Term;
 use crate::weights::Weights;
 
@@ -15,13 +16,25 @@ const LENGTHS: [f64; 4] = [1.0 / 40.0, 1.0 / 20.0, 1.0 / 10.0, 1.0 / 5.0];
 /// Time between steps that are tried, as a share of the record.
 const BETWEEN_STEPS: f64 = 1.0 / 80.0;
 
-/// The best place of a passing moment (m, t_c, d) or of one that stays (m, t₀) on top of a fit.
-pub fn place(problem: &Problem, fit: &Fit, weights: &Weights, term: &Term) -> Option<Vec<f64>> {
+/// The best place of every one of some moments on top of a fit, (m, t_c, d) of one that passes and (m, t₀) of one that
+/// stays; `None` where the unknowns of the fit cannot be told apart.
+pub fn places(problem: &Problem, fit: &Fit, weights: &Weights, terms: &[&Term]) -> Vec<Option<Vec<f64>>> {
+    let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
+    let system = System::of(&linear, &fit.structure, &fit.theta, weights);
+    let Some(factor) = system.precision.clone().cholesky() else { return vec![None; terms.len()] };
+    terms.iter().map(|term| place(problem, fit, weights, term, (&linear, &system, &factor))).collect()
+}
+
+/// The best place of one moment beside a linearised fit.
+fn place(
+    problem: &Problem,
+    fit: &Fit,
+    weights: &Weights,
+    term: &Term,
+    (linear, system, factor): (&Linear, &System, &Cholesky<f64, Dyn>),
+) -> Option<Vec<f64>> {
     let number = term.only.unwrap_or(0);
     let record = &problem.records[number];
-    let system = System::at(problem, &fit.structure, &fit.theta, &fit.initial, weights);
-    let factor = system.precision.clone().cholesky()?;
-    let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
     let mut block = linear.blocks[number].clone();
     let mut all: Vec<&mut Vec<f64>> = block.columns.iter_mut().map(|(_, column)| column).collect();
     all.push(&mut block.residual);

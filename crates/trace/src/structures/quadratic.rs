@@ -37,11 +37,7 @@ pub(super) struct Quadratic {
 impl Quadratic {
     /// Round a point of the full structure.
     pub fn new(system: &System, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
-        let entries = structure.entries();
-        let unknown: Vec<Option<usize>> = {
-            let mut next = 0..;
-            entries.iter().map(|entry| entry.prior.is_fitted().then(|| next.next()).flatten()).collect()
-        };
+        let unknown = structure.unknowns();
         let count = system.gradient.len();
         let mut at = DVector::zeros(count);
         unknown.iter().zip(theta).for_each(|(place, value)| {
@@ -112,17 +108,18 @@ impl Quadratic {
 
     /// What speaks for every term, from the log weights of all subsets: the gain is that of its effect in any form;
     /// `effects` says which terms are forms of one.
-    fn support(&self, kept: &[usize], weights: &[f64], effects: &[(&str, Option<usize>)]) -> Vec<Support> {
+    pub fn support(&self, effects: &[(&str, Option<usize>)]) -> Vec<Support> {
+        let (kept, weights) = self.weighed();
         let of = |number: usize| {
+            if !kept.contains(&number) {
+                return Support { gain: 0.0, p_value: 1.0 };
+            }
             let own = &self.removable[number];
             let places: Vec<usize> = own.sizes.iter().map(|(unknown, _)| *unknown).collect();
             let distance = DVector::from_iterator(places.len(), own.sizes.iter().map(|(_, distance)| *distance));
             let matrix = DMatrix::from_fn(places.len(), places.len(), |i, j| self.covariance[(places[i], places[j])]);
             let square = matrix.cholesky().map_or(0.0, |factor| distance.dot(&factor.solve(&distance)));
             let law = ChiSquared::new(places.len().max(1) as f64).expect("degrees of freedom");
-            if !kept.contains(&number) {
-                return Support { gain: 0.0, p_value: 1.0 };
-            }
             let alike: usize = kept
                 .iter()
                 .enumerate()
@@ -138,14 +135,17 @@ impl Quadratic {
         (0..self.removable.len()).map(of).collect()
     }
 
-    /// The best subsets of terms and what speaks for every term: at most sixteen terms take part. Beside the best of
-    /// all
-    /// subsets the best are looked at that have one term more than `about`: a step so far from here is badly foretold,
-    /// and only a fit tells.
-    pub fn best(&self, about: &[bool], effects: &[(&str, Option<usize>)]) -> (Vec<Vec<bool>>, Vec<Support>) {
+    /// The terms that are weighed, at most [`MOST`], and the log weights of all their subsets.
+    fn weighed(&self) -> (Vec<usize>, Vec<f64>) {
         let free: Vec<usize> = (0..self.removable.len()).filter(|&k| !self.pinned[k]).collect();
         let (kept, covariance, removable) = self.fewer(free);
-        let weights = subsets(&covariance, &removable);
+        (kept, subsets(&covariance, &removable))
+    }
+
+    /// The best subsets of terms. Beside the best of all subsets the best are looked at that have one term more than
+    /// `about`: a step so far from here is badly foretold, and only a fit tells.
+    pub fn best(&self, about: &[bool]) -> Vec<Vec<bool>> {
+        let (kept, weights) = self.weighed();
         let chosen = |subset: usize| {
             let mut chosen = vec![false; self.removable.len()];
             kept.iter().enumerate().for_each(|(bit, &k)| chosen[k] = subset >> bit & 1 == 1);
@@ -167,7 +167,7 @@ impl Quadratic {
             .collect();
         more.sort_by(by_weight);
         order.extend(more.into_iter().take(ADDITIONS));
-        (order.into_iter().map(chosen).collect(), self.support(&kept, &weights, effects))
+        order.into_iter().map(chosen).collect()
     }
 
     /// The terms that matter most, with what is left of the posterior when the others are taken away.

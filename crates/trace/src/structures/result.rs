@@ -79,9 +79,7 @@ impl Structures {
         let has = |names: &[TermName]| names.iter().any(|name| name.0 == id && name.2 == only);
         self.weighed_names().filter(|(_, names)| has(names)).map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
     }
-}
 
-impl Structures {
     /// Mean square of what the most probable structure leaves that has nothing but the ship in it, rad².
     pub(super) fn mean_square_of_ship(&self) -> f64 {
         let is_ship = |one: &&Member| one.fit.structure.terms.iter().all(|term| !term.effect.is_of_time());
