@@ -1,12 +1,11 @@
 //! `trace`: what a first-order ship lacks.
 
-use campaign::folder::ResultFolder;
 use pyo3::prelude::*;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 use study::options::TraceRequest;
 use study::records::warn_of_repetition;
 use study::views::document;
-use study::views::trace_curves::{Curves, TracedRecord};
+use study::views::trace_curves::TracedRecord;
 use study::work;
 
 use crate::asked::request;
@@ -55,10 +54,7 @@ pub fn trace(
         warn_of_repetition(&records, &others, &mut warnings);
         let traced = work::trace::trace(&records, &others, &work::trace::settings(&asked), true, &mut warnings)?;
         let text = document::text(&traced.document).map_err(Failure::work)?;
-        let place = std::env::temp_dir();
-        let scratch = tempfile::tempdir().on("create", &place)?;
-        traced.write(&ResultFolder::hold(scratch.path())?)?;
-        let records = Curves::of(&traced.document, scratch.path())?.records;
+        let records = traced.curves()?.records;
         Ok(Trace { text, warnings, records })
     })
 }

@@ -106,7 +106,7 @@ pub(crate) struct IdentifierWire {
 #[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub(crate) struct TraceWire {
     /// How structures are weighed.
-    rule: RuleWire,
+    rule: Rule,
     /// Probability from which an effect is named.
     probability: f64,
     /// Effects that may be missing; without the key all.
@@ -118,19 +118,8 @@ pub(crate) struct TraceWire {
 impl Default for TraceWire {
     fn default() -> Self {
         let ::trace::Settings { probability, monomials, .. } = ::trace::Settings::default();
-        Self { rule: RuleWire::default(), probability, menu: None, monomials }
+        Self { rule: Rule::default(), probability, menu: None, monomials }
     }
-}
-
-/// How structures are weighed.
-#[derive(Debug, Clone, Copy, Default, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-enum RuleWire {
-    /// By their marginal likelihood under the priors of all coefficients.
-    #[default]
-    Posterior,
-    /// By exp(−BIC/2).
-    Bic,
 }
 
 /// The methods, all with names of their own; files that they name are beside the scenario, in `folder`.
@@ -194,10 +183,6 @@ fn refused(table: &KeyPath, error: &SettingsError) -> Problem {
 fn tracing(wire: &TraceWire) -> Result<::trace::Settings, SettingsError> {
     let TraceWire { rule, probability, ref menu, monomials } = *wire;
     let selection = menu.as_deref().map_or_else(|| Ok(Selection::default()), among)?;
-    let rule = match rule {
-        RuleWire::Posterior => Rule::Posterior,
-        RuleWire::Bic => Rule::Bic,
-    };
     if monomials > empirical::all().count() {
         return Err(SettingsError::new("monomials", monomials, "at most as many as there are, which is 59"));
     }

@@ -35,8 +35,8 @@ const FINALISTS: usize = 3;
 /// How often the size of the noise is found anew for a colour.
 const ROUNDS: usize = 2;
 
-/// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral of
-/// the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
+/// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral
+/// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
 fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
     let of = |record: &crate::record::Record| {
         let mut bends: Vec<f64> = record.rudder().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();

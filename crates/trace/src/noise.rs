@@ -38,8 +38,7 @@ pub enum Wander {
     /// [`COMPASS`].
     Compass(usize),
     /// ε'' + 2ε'/τ + ε/τ² = w, added to the heading: a smooth error that lasts for a time τ, this one of [`SMOOTH`].
-    /// It is
-    /// what a model leaves that is not quite that of the ship.
+    /// It is what a model leaves that is not quite that of the ship.
     Smooth(usize),
 }
 

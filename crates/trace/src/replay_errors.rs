@@ -112,8 +112,7 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
 }
 
 /// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the
-/// window;
-/// the memory of the effects goes on. `None` when a window holds too few headings.
+/// window; the memory of the effects goes on. `None` when a window holds too few headings.
 pub fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; response.dimension()];

@@ -34,7 +34,7 @@ impl EffectId {
 
 /// Effects that are in the model on request, effects that are no candidates, and whether others are looked for.
 ///
-/// An effect that was asked for is fitted in the form of lowest BIC, judged and replayed like any other, and never
+/// An effect that was asked for is fitted in its most probable form, judged and replayed like any other, and never
 /// dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {

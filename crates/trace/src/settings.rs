@@ -2,12 +2,14 @@
 
 use identify::IdentifyError;
 use identify::settings::SettingsError;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::selection::{EffectId, Selection};
 
 /// How structures are weighed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Rule {
     /// Marginal likelihood under the priors of all coefficients.
     #[default]

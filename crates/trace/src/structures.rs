@@ -145,8 +145,8 @@ impl Stage<'_> {
         self.latest = Some(quadratic);
     }
 
-    /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike, and
-    /// only a fit tells them apart.
+    /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike,
+    /// and only a fit tells them apart.
     fn swap(&mut self, top: &Fit) {
         let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().map(|one| &one.term));
         let delays: Vec<Arc<Term>> = known.filter(|term| is_delay(term.effect.as_ref())).cloned().collect();

@@ -90,12 +90,10 @@ fn record(entry: &RecordEntry, text: &str) -> Option<TracedRecord> {
     Some(TracedRecord { trial, replays, band })
 }
 
-/// Reads a file of a trace. Fails when it is not there or not what the analysis wrote.
-fn read<T>(folder: &Path, name: &str, parse: impl FnOnce(&str) -> Option<T>) -> Result<T, Failure> {
-    let path = folder.join(name);
-    let text = std::fs::read_to_string(&path).on("read", &path)?;
+/// What a table of a trace holds. Fails when it is not what the analysis wrote; `place` is where it is.
+fn read<T>(text: &str, place: &str, parse: impl FnOnce(&str) -> Option<T>) -> Result<T, Failure> {
     let again = "this is no table of a trace; make it again with `study trace`";
-    parse(&text).ok_or_else(|| Failure::input(format!("{}: {again}", path.display())))
+    parse(text).ok_or_else(|| Failure::input(format!("{place}: {again}")))
 }
 
 impl Curves {
@@ -103,10 +101,27 @@ impl Curves {
     ///
     /// Fails when one cannot be read.
     pub fn of(document: &TraceDocument, folder: &Path) -> Result<Self, Failure> {
-        let records = document.records.iter().map(|entry| read(folder, &entry.curves, |text| record(entry, text)));
-        let moments = document.missing_moment.iter().map(|entry| {
-            Ok([read(folder, &entry.moment, Columns::read)?, read(folder, &entry.curves, Columns::read)?])
+        Self::from_tables(document, |name| {
+            let path = folder.join(name);
+            Ok((std::fs::read_to_string(&path).on("read", &path)?, path.display().to_string()))
+        })
+    }
+
+    /// The same from tables by the names of their files, each with the place that a message names.
+    pub fn from_tables(
+        document: &TraceDocument,
+        table: impl Fn(&str) -> Result<(String, String), Failure>,
+    ) -> Result<Self, Failure> {
+        let columns = |name: &str| table(name).and_then(|(text, place)| read(&text, &place, Columns::read));
+        let records = document.records.iter().map(|entry| {
+            let (text, place) = table(&entry.curves)?;
+            read(&text, &place, |text| record(entry, text))
         });
-        Ok(Self { records: records.collect::<Result<_, _>>()?, moments: moments.collect::<Result<_, Failure>>()? })
+        let moments =
+            document.missing_moment.iter().map(|entry| Ok([columns(&entry.moment)?, columns(&entry.curves)?]));
+        Ok(Self {
+            records: records.collect::<Result<_, Failure>>()?,
+            moments: moments.collect::<Result<_, Failure>>()?,
+        })
     }
 }

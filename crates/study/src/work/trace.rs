@@ -12,8 +12,9 @@ use crate::options::{TraceRequest, Withheld};
 use crate::progress;
 use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, Together};
+use crate::views::trace_curves::{self, Curves};
 use crate::views::trace_document::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
-use crate::views::{document, missing_moment, trace_curves};
+use crate::views::{document, missing_moment};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
 pub struct Traced {
@@ -23,6 +24,14 @@ pub struct Traced {
 }
 
 impl Traced {
+    /// The curves, as whoever reads the files has them.
+    pub fn curves(&self) -> Result<Curves, Failure> {
+        Curves::from_tables(&self.document, |name| {
+            let table = self.tables.iter().find(|(own, _)| own == name).map(|(_, text)| text.clone());
+            Ok((table.unwrap_or_default(), name.to_owned()))
+        })
+    }
+
     /// Writes document and tables. Fails when a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
         let text = document::text(&self.document).on("describe", &folder.path().join(TRACE))?;
@@ -68,12 +77,13 @@ pub fn trace(
         .zip(trials.iter().chain(&held_out).zip(comparisons))
         .map(|(entry, (trial, comparison))| (entry.curves.clone(), trace_curves::table(trial, comparison)))
         .collect();
+    let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
     let mut moments = Vec::new();
+    let slugs = slugs(&names);
     for (number, missing) in analysis.missing_moments().iter().enumerate() {
         let Some(missing) = missing else { continue };
-        let stem = format!("missing-moment-{}", slugs(&names)[number]);
+        let stem = format!("missing-moment-{}", slugs[number]);
         let words = [entries[number].file.as_str(), &names[number], &stem];
-        let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
         let entry = missing_moment::entry(missing, words, analysis.document.verdict, explains);
         tables.push((entry.moment.clone(), missing_moment::over_time(missing)));
         tables.push((entry.curves.clone(), missing_moment::over_channels(missing)));
