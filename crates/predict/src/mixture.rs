@@ -370,6 +370,7 @@ mod tests {
         let sway = ship::effects::SwayCouplingMeasured { approach_speed: 1.0 };
         known.members[0].effects[0].id = ship::effects::Effect::id(&sway).into();
         known.members[0].effects[0].form = ship::effects::Effect::form(&sway).into();
+        known.members[0].effects[0].constants = ship::effects::Effect::constants(&sway);
         let error = Mixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
         assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }

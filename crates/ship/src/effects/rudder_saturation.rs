@@ -36,9 +36,10 @@ impl Effect for RudderSaturation {
         &PARAMETERS
     }
 
-    /// A fifth of the largest rudder lost to stall is much.
-    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
-        Some(Proposal::of_one(*self, 0.2 / (about.rudder * about.rudder)))
+    /// Half of sin 2δ, the side force of a rudder whose lift is normal to its blade, is δ − ⅔ δ³; a hull that turns
+    /// takes some of the angle away.
+    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
+        Some(Proposal::of_one(*self, 0.4))
     }
 
     fn places(&self) -> Places {
