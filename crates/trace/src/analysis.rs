@@ -127,7 +127,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         validation.par_iter().map(|trial| unseen.compared(trial, &response)).collect::<Result<_, _>>()?;
     let is_folded = settings.thorough && trials.len() > 1 && validation.is_empty();
     let left_out = if is_folded { leave_one_out(&trials, &problem, &full, &structures) } else { Vec::new() };
-    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials, &candidates);
+    let remainder = Remainder::new(&problem, &full, &structures, &identification, &trials);
     let whiteness = [
         whiteness(identification.iter().map(|one| &one.before), &trials),
         whiteness(identification.iter().map(|one| &one.after), &trials),

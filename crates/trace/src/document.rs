@@ -247,14 +247,12 @@ pub struct UnexplainedEntry {
     pub empirical: Option<EmpiricalEntry>,
 }
 
-/// A term without a name.
+/// Moments without a name, which add m to δ + δ_r.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct EmpiricalEntry {
     /// The best, and those that the records cannot tell from it.
     pub terms: Vec<String>,
-    /// Equation of the best.
-    pub equation: String,
-    /// Its parameters.
+    /// Coefficients of the best: the rudder angle that its root mean square is worth.
     pub parameters: Vec<ParameterEntry>,
     /// As that of an effect.
     pub delta_bic: f64,

@@ -9,11 +9,8 @@ use std::sync::Arc;
 use trial::Trial;
 
 use crate::candidates::{Candidate, manoeuvres, mean_square};
-use crate::fit::{Effort, Problem};
-use crate::full::Full;
 use crate::model::Term;
 use crate::record::Record;
-use crate::structures::Member;
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,6 +32,13 @@ pub struct Powers {
     pub form: &'static str,
     /// The equation.
     pub equation: &'static str,
+}
+
+impl Powers {
+    /// The monomial without magnitudes of r (rad/s), δ and ψ (rad).
+    pub fn at(&self, factors: [f64; 3]) -> f64 {
+        factors.iter().zip(self.of).map(|(factor, power)| factor.powi(power)).product()
+    }
 }
 
 macro_rules! library {
@@ -153,57 +157,8 @@ pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Itera
     terms(records, trials, time, all()).map(|term| Candidate { term, log_odds: LOG_ODDS })
 }
 
-/// A term without a name that carries what no named effect does.
-#[derive(Debug, Clone)]
-pub struct Empirical {
-    /// The best, and those that the records cannot tell from it.
-    pub group: Vec<&'static str>,
-    /// Equation of the best.
-    pub equation: &'static str,
-    /// Its coefficient and standard deviation, rad.
-    pub coefficient: (f64, Option<f64>),
-    /// Gain in the log of the evidence.
-    pub gain: f64,
-    /// Root mean square heading error with it, rad.
-    pub error: f64,
-}
-
-/// Gain in the log of the evidence from which a term without a name is proposed, and within which two are alike.
-const BELIEVED: f64 = 5.0;
-const ALIKE: f64 = 3.0;
-
-/// The monomial that improves a structure most; `None` where none does so clearly.
-pub fn best(
-    problem: &Problem,
-    full: &Full,
-    member: &Member,
-    trials: &[Trial],
-    candidates: &[Candidate],
-) -> Option<Empirical> {
-    let weights = problem.weights(&full.law);
-    let known: Vec<&str> = candidates.iter().map(|one| one.term.effect.form()).collect();
-    let fit = |term: Arc<Term>| {
-        let mut all = member.fit.structure.terms.clone();
-        all.push(Arc::clone(&term));
-        let theta = [member.fit.theta.as_slice(), &[0.0]].concat();
-        (term, problem.fit(&member.fit.structure.of(all), theta, member.fit.initial.clone(), &weights, Effort::FINE))
-    };
-    let proposed = terms(&problem.records, trials, problem.time, LIBRARY.iter());
-    let mut fits: Vec<_> = proposed.filter(|term| !known.contains(&term.effect.form())).map(fit).collect();
-    fits.sort_by(|one, other| other.1.evidence.total_cmp(&one.1.evidence));
-    let (term, first) = fits.first().filter(|(_, fit)| fit.evidence > member.fit.evidence + BELIEVED)?;
-    let alike = fits.iter().filter(|(_, fit)| fit.evidence > first.evidence - ALIKE);
-    let place = first.theta.len() - 1;
-    let sd = first.covariance().map(|all| all[(place, place)].max(0.0).sqrt());
-    let (square, rows) = first.residual.iter().flatten().fold((0.0, 0), |(sum, n), e| (sum + e * e, n + 1));
-    Some(Empirical {
-        group: alike.map(|(term, _)| term.effect.form()).collect(),
-        equation: term.effect.equation(),
-        coefficient: (first.theta[place], sd),
-        gain: first.evidence - member.fit.evidence,
-        error: (square / f64::from(rows)).sqrt(),
-    })
-}
+/// Standard deviation of a coefficient, rad.
+pub const PRIOR_SD: f64 = 0.05;
 
 /// The coefficient of a term without a name: a rudder angle, for factors in units of their own size.
 pub const COEFFICIENT: Parameter = Parameter {
@@ -245,7 +200,7 @@ impl Effect for Monomial {
     }
 
     fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
-        Some(Proposal::of_one(*self, 0.05))
+        Some(Proposal::of_one(*self, PRIOR_SD))
     }
 
     fn places(&self) -> Places {

@@ -73,7 +73,7 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
     let fitted = |law: &Law| if law.is_alike(&known_law) { whole.clone() } else { of(law) };
     let mut fulls: Vec<Full> = laws
         .into_par_iter()
-        .map(|Found { law, waves_gain }| Full { fit: fitted(&law), law, waves_gain, log_odds: log_odds.clone() })
+        .map(|Found { law, waves_gain, .. }| Full { fit: fitted(&law), law, waves_gain, log_odds: log_odds.clone() })
         .collect();
     let nothing = nothing(problem, base, with_waves);
     if fulls.iter().all(|full| !full.law.is_alike(&nothing.law)) {
@@ -91,7 +91,7 @@ fn nothing(problem: &Problem, base: &Base, with_waves: bool) -> Full {
         problem.fit(&own, theta, initial, &problem.weights(law), Effort::FINE)
     };
     let fit = of(theta, base.initial(), &law);
-    let Found { law, waves_gain } = law::of(problem, &fit, &law.variance, with_waves, law::Among::All);
+    let Found { law, waves_gain, .. } = law::of(problem, &fit, &law.variance, with_waves, law::Among::All);
     Full { fit: of(fit.theta, fit.initial, &law), law, waves_gain, log_odds: Vec::new() }
 }
 

@@ -8,7 +8,7 @@
 //! A colour pays log n for each of its parameters (Schwarz 1978). The law is common to all structures: what a structure
 //! without an effect leaves is never taken for weather.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
 use crate::fit::{Fit, Problem, curvature, deviation};
@@ -48,12 +48,15 @@ fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
     problem.records.iter().map(of).collect()
 }
 
-/// The full fit as the law sees it.
-struct Ground<'a> {
-    problem: &'a Problem,
-    linear: Linear,
-    /// Precision of what is expected of the unknowns, and where they stand beside it.
-    prior: Vec<(f64, f64)>,
+/// A fit as the law sees it.
+#[derive(Debug, Clone)]
+pub struct Ground<'a> {
+    /// The records.
+    pub problem: &'a Problem,
+    /// Residual and sensitivities.
+    pub linear: Linear,
+    /// Precision of what is expected of the unknowns, and where they stand beside it; none for those at the end.
+    pub prior: Vec<(f64, f64)>,
     floors: Vec<f64>,
 }
 
@@ -63,7 +66,46 @@ struct Judged {
     height: f64,
 }
 
-impl Ground<'_> {
+impl<'a> Ground<'a> {
+    /// That of a fit. States at the beginning stand behind the fitted parameters.
+    pub fn of(problem: &'a Problem, fit: &Fit) -> Self {
+        let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
+        let entries = fit.structure.entries();
+        let fitted = entries.iter().zip(&fit.theta).filter(|(entry, _)| entry.prior.is_fitted());
+        let prior = fitted.map(|(entry, value)| {
+            let precision = curvature(entry.prior);
+            (precision, deviation(entry.prior, *value) / precision.sqrt())
+        });
+        let mut prior: Vec<(f64, f64)> = prior.collect();
+        prior.resize(linear.unknowns, (0.0, 0.0));
+        Self { problem, linear, prior, floors: floors(problem, fit.theta[1]) }
+    }
+
+    /// The law of largest marginal likelihood beside the waves of a law, from its sizes.
+    pub fn law(&self, start: &Law, among: Among) -> Found {
+        let white = self.judge(Colour { wander: None, ..start.colour }, &start.variance);
+        let log_n = (self.problem.observations() as f64).ln();
+        let coloured = self.levels(among.kinds(), &white.law);
+        let priced = |judged: Judged| {
+            let height = judged.height + judged.law.colour.freedom() as f64 * log_n;
+            Found { law: judged.law, height, waves_gain: 0.0 }
+        };
+        let all = [white].into_iter().chain(coloured).map(priced);
+        all.min_by(|one, other| one.height.total_cmp(&other.height)).expect("white noise is one")
+    }
+
+    /// Factor of the precision of all unknowns under weights, and their step from where they stand.
+    pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
+        let NormalEquations { mut matrix, mut gradient, .. } = self.linear.normal(weights);
+        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
+            matrix[(k, k)] += precision;
+            gradient[k] -= precision * beside;
+        }
+        let factor = matrix.cholesky()?;
+        let step = factor.solve(&gradient);
+        Some((factor, step))
+    }
+
     /// The sizes of the noise of all records under a colour, from `start`.
     fn judge(&self, colour: Colour, start: &[f64]) -> Judged {
         let ones = vec![1.0; start.len()];
@@ -160,41 +202,32 @@ impl Among {
 pub struct Found {
     /// The law.
     pub law: Law,
+    /// −2 log p, with the price of its colour.
+    pub height: f64,
     /// How much better waves explain what is left, with the price of their parameters.
     pub waves_gain: f64,
 }
 
 /// The law of what a fit leaves; `variance` are sizes to begin with, rad².
 pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, among: Among) -> Found {
-    let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
-    let entries = fit.structure.entries();
-    let fitted = entries.iter().zip(&fit.theta).filter(|(entry, _)| entry.prior.is_fitted());
-    let prior = fitted.map(|(entry, value)| {
-        let precision = curvature(entry.prior);
-        (precision, deviation(entry.prior, *value) / precision.sqrt())
-    });
-    let ground = Ground { problem, linear, prior: prior.collect(), floors: floors(problem, fit.theta[1]) };
-    let white = ground.judge(Colour::WHITE, variance);
-    let log_n = (problem.observations() as f64).ln();
-    let price = |judged: &Judged| judged.height + judged.law.colour.freedom() as f64 * log_n;
-    let coloured =
-        ground.levels(among.kinds(), &white.law).into_iter().min_by(|one, other| price(one).total_cmp(&price(other)));
-    let mut best = coloured.filter(|other| price(other) < price(&white)).unwrap_or(white);
-    let mut waves_gain = 0.0;
+    let ground = Ground::of(problem, fit);
+    let start = Law { variance: variance.to_vec(), ..Law::white(variance.len(), 1.0) };
+    let mut best = ground.law(&start, among);
     if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
+        let log_n = (problem.observations() as f64).ln();
         let colours = [
             Some(Colour { waves: Some(sea), wander: None }),
             best.law.colour.wander.map(|_| Colour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let option = ground.judge(colour, &best.law.variance);
-            if price(&option) < price(&best) {
-                waves_gain += price(&best) - price(&option);
-                best = option;
+            let Judged { law, height } = ground.judge(colour, &best.law.variance);
+            let height = height + colour.freedom() as f64 * log_n;
+            if height < best.height {
+                best = Found { law, height, waves_gain: best.waves_gain + best.height - height };
             }
         }
     }
-    Found { law: best.law.of_model(problem), waves_gain }
+    Found { law: best.law.of_model(problem), ..best }
 }
 
 /// Smallest smooth error of a model, as a share of the standard deviation of the heading: no response is nearer to a

@@ -30,6 +30,7 @@ pub mod replay_errors;
 mod report;
 pub mod selection;
 pub mod settings;
+mod shapes;
 pub mod structures;
 pub mod transient;
 pub mod waves;

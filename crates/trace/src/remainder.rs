@@ -2,14 +2,13 @@
 
 use trial::Trial;
 
-use crate::candidates::Candidate;
 use crate::diagnostics::{self, Signature};
-use crate::empirical::{self, Empirical};
 use crate::fit::Problem;
 use crate::full::Full;
 use crate::innovations::Innovations;
 use crate::judge::{RecordComparison, ReplayResult};
 use crate::replay_errors::Errors;
+use crate::shapes::{self, Empirical};
 use crate::structures::Structures;
 
 /// Errors of all records together, squared, before and after.
@@ -30,7 +29,7 @@ pub struct Remainder {
     pub empirical: Option<Empirical>,
 }
 
-/// Share of the error of the base above which a rest that is no noise counts as unexplained.
+/// Share of the error of the base from which a rest that is not white noise is looked at.
 const UNEXPLAINED: f64 = 0.3;
 
 /// Standard deviations of the white noise below which a rest is too small to be looked at.
@@ -44,19 +43,22 @@ impl Remainder {
         structures: &Structures,
         identification: &[RecordComparison],
         trials: &[Trial],
-        candidates: &[Candidate],
     ) -> Self {
         let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
         let holds = Innovations::of(problem, &best.fit.residual, &full.law).agree();
         let [before, after] = squares(identification);
         let share = (after / before).sqrt();
-        let is_noise = holds && !full.law.is_of_model();
+        let is_noise = holds && !full.law.is_of_model() && !full.law.is_random_moment();
         let rows: f64 = identification.iter().map(|one| one.after.errors.rows as f64).sum();
         let white =
             full.law.variance.iter().zip(&problem.records).map(|(own, record)| own * record.full_readings as f64);
         let is_small = after / rows < SMALL * SMALL * white.fold(0.0, f64::max);
         if is_noise || is_small || share < UNEXPLAINED {
             return Self { holds, signature: None, empirical: None };
+        }
+        let empirical = shapes::explain(problem, full, best);
+        if holds && full.law.is_random_moment() && empirical.is_none() {
+            return Self { holds, signature: None, empirical };
         }
         let worst = (0..identification.len()).max_by(|&one, &other| {
             let error = |number: usize| identification[number].after.errors.heading;
@@ -76,6 +78,6 @@ impl Remainder {
                 trials[number].sampling_period(),
             )
         });
-        Self { holds, signature, empirical: empirical::best(problem, full, best, trials, candidates) }
+        Self { holds, signature, empirical }
     }
 }

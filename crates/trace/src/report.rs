@@ -373,12 +373,13 @@ impl Said<'_> {
 
     fn empirical(&self) -> Option<EmpiricalEntry> {
         let own = self.remainder.empirical.as_ref()?;
-        let (value, sd) = own.coefficient;
-        let ci95 = sd.map(|sd| [value - 1.96 * sd, value + 1.96 * sd]);
+        let parameter = |&(value, sd): &(f64, f64)| {
+            let quantity = Quantity { value, sd: Some(sd), ci95: Some([value - 1.96 * sd, value + 1.96 * sd]) };
+            self.parameter(&crate::empirical::COEFFICIENT, quantity, None, false)
+        };
         Some(EmpiricalEntry {
-            terms: own.group.iter().map(|form| String::from(*form)).collect(),
-            equation: own.equation.into(),
-            parameters: vec![self.parameter(&crate::empirical::COEFFICIENT, Quantity { value, sd, ci95 }, None, false)],
+            terms: own.group.clone(),
+            parameters: own.coefficients.iter().map(parameter).collect(),
             delta_bic: -2.0 * own.gain,
             heading_rmse_deg: to_deg(own.error),
         })

@@ -1,13 +1,12 @@
 //! A rudder that loses lift at large angles.
 
-use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
+use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Prior, Proposal};
 use crate::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RudderSaturation;
 
-// The highest value keeps δ − c₃ δ³ growing up to 35 deg: c₃ < 1/(3 δ²).
 const PARAMETERS: [Parameter; 1] = [Parameter {
     key: "c3",
     symbol: "c₃",
@@ -15,7 +14,7 @@ const PARAMETERS: [Parameter; 1] = [Parameter {
     neutral: 0.0,
     typical: 0.5,
     lowest: -2.0,
-    highest: 0.9,
+    highest: 5.0,
     odd: false,
 }];
 
@@ -38,8 +37,11 @@ impl Effect for RudderSaturation {
 
     /// Half of sin 2δ, the side force of a rudder whose lift is normal to its blade, is δ − ⅔ δ³; a hull that turns
     /// takes some of the angle away.
-    fn proposal(&self, _about: &Manoeuvres) -> Option<Proposal> {
-        Some(Proposal::of_one(*self, 0.4))
+    fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {
+        // A larger rudder has the larger effect as far as the records go: c₃ < 1/(3 δ²).
+        let largest = (about.rudder * about.rudder * 3.0).recip().min(PARAMETERS[0].highest);
+        let prior = Prior::normal(&PARAMETERS[0], 0.0, 0.4);
+        Some(Proposal::new(*self, [prior.within([PARAMETERS[0].lowest, largest])]))
     }
 
     fn places(&self) -> Places {
