@@ -334,16 +334,16 @@ fn what_no_candidate_carries_is_seen() {
 #[test]
 fn one_amplitude_is_blind_for_stall_and_two_are_not() {
     let vessel = || Vessel::response(ship(vec![(Arc::new(effects::RudderSaturation) as Arc<dyn Effect>, vec![0.88])]));
-    let (small, large) = (run(&steered(vessel(), 10.0), 7), run(&steered(vessel(), 20.0), 8));
+    let (small, large) = (run(&steered(vessel(), 10.0), 7), run(&steered(vessel(), 30.0), 8));
     let alone = analysed(std::slice::from_ref(&small), &[]);
     let outcome = |analysis: &Analysis| {
         let found = analysis.document.candidates.iter().find(|one| one.id == "rudder_saturation");
         found.map(|one| one.outcome)
     };
     assert_eq!((names(&alone), outcome(&alone)), (Vec::new(), Some(Outcome::NotObservable)));
-    let planned = [("10/10 again".to_owned(), small.clone()), ("20/20".to_owned(), large.clone())];
+    let planned = [("10/10 again".to_owned(), small.clone()), ("30/30".to_owned(), large.clone())];
     let prospects = alone.prospects(&planned);
-    assert_eq!(prospects[0].name, "20/20");
+    assert_eq!(prospects[0].name, "30/30");
     assert!(prospects[0].revealed.iter().any(|name| name.contains("rudder_saturation")), "{:?}", prospects[0]);
     assert!(prospects[1].still_hidden.iter().any(|name| name.contains("rudder_saturation")), "{:?}", prospects[1]);
     let both = analysed(&[small, large], &[]);
