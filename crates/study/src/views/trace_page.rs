@@ -152,11 +152,11 @@ pub fn page(document: &TraceDocument, drawn: &[Drawn]) -> String {
     if let Some(own) = &trace.unexplained.empirical {
         let values: Vec<String> = own.parameters.iter().map(tables::value).collect();
         page.say(format!(
-            "Empirical, not part of the model: a term in {} with {} would lower the heading error to {}° (ΔBIC {}).",
-            own.terms.join(" or "),
-            values.join(", "),
+            "Not part of the model: a moment of this shape would lower the heading error to {}° (ΔBIC {}): {}; {}.",
             significant(own.heading_rmse_deg, 2),
-            fixed(own.delta_bic, 0)
+            fixed(own.delta_bic, 0),
+            own.terms.join(" or "),
+            values.join(", ")
         ));
     }
     page.table("Aliases and blind spots", &aliases(document), "");
