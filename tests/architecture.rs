@@ -6,13 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates from the ground up: each may use those before it.
-const FLOORS: [&str; 17] = [
-    "lanes",
+const FLOORS: [&str; 16] = [
+    "estimation",
     "ship",
     "trial",
     "find",
     "motion",
-    "likelihood",
     "simulate",
     "predict",
     "identify",

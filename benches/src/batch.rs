@@ -9,7 +9,7 @@
 //! Source of the ship: Norrbin (1963).
 #![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
-use lanes::Kernel;
+use estimation::lanes::Kernel;
 
 /// Ships side by side.
 const LANES: usize = 16;
@@ -90,7 +90,7 @@ impl Batch {
             executes: vec![vec![0.0]; ships.len().next_multiple_of(LANES)],
         };
         for (block, executes) in ships.chunks(LANES).zip(batched.executes.chunks_mut(LANES)) {
-            lanes::run(Sweep { batch: self, ships: block, states: &mut batched.states, executes });
+            estimation::lanes::run(Sweep { batch: self, ships: block, states: &mut batched.states, executes });
         }
         batched.executes.truncate(ships.len());
         batched
@@ -285,7 +285,7 @@ mod tests {
             }
         }
         let ships = fleet(LANES);
-        let found = lanes::on_every_set(|| Whole(&ships));
+        let found = estimation::lanes::on_every_set(|| Whole(&ships));
         assert!(found.iter().all(|(_, way)| way == &found[0].1), "sets: {:?}", found.iter().map(|(set, _)| set));
     }
 }

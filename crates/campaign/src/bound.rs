@@ -3,13 +3,13 @@
 mod coloured;
 
 use identify::{maximum_likelihood, output_error};
-use likelihood::{Moment, Noise};
 use nalgebra::{Matrix2, Matrix2x3, Matrix3};
 use ship::FirstOrder;
 use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
 use simulate::recording::RudderColumn;
 use simulate::{Simulated, Simulation};
+use trial::noise_model::{Moment, NoiseModel};
 
 use crate::rows::Bound;
 use coloured::CompassError;
@@ -52,9 +52,9 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
     let white = simulation.sensors.declared_noise().heading;
     let wander = simulation.sensors.heading.wander.filter(|wander| wander.sd > 0.0);
     let compass = match (white, wander) {
-        (white, None) => Noise::compass(white?),
+        (white, None) => NoiseModel::compass(white?),
         (_, Some(GaussMarkov { sd, correlation_time })) => {
-            Noise { heading_correlation: Some(correlation_time), ..Noise::compass(sd) }
+            NoiseModel { heading_correlation: Some(correlation_time), ..NoiseModel::compass(sd) }
         }
     };
     let noise = noise(simulation, truth, compass)?;
@@ -72,7 +72,7 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
 
 /// What is random in trials of a simulation, beside the errors of its `compass`, as the likelihood of a first-order
 /// ship has it.
-fn noise(simulation: &Simulation, truth: &FirstOrder, compass: Noise) -> Option<Noise> {
+fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
     let gyro = sensors.yaw_rate.filter(|gyro| gyro.noise > 0.0 && gyro.bias == 0.0 && gyro.scale_error == 0.0);
     let read = recording.rudder == RudderColumn::Feedback;
@@ -84,7 +84,7 @@ fn noise(simulation: &Simulation, truth: &FirstOrder, compass: Noise) -> Option<
         (0.0, Some(gusts)) => (Moment::OrnsteinUhlenbeck, b * gusts.sd, gusts.correlation_time),
         (_, Some(_)) => return None,
     };
-    Some(Noise {
+    Some(NoiseModel {
         yaw_rate_sd: gyro.map(|gyro| gyro.noise),
         moment,
         moment_level,

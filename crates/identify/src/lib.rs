@@ -27,6 +27,7 @@ mod gaps;
 pub mod identifier;
 pub mod integral_least_squares;
 pub mod least_squares;
+pub mod likelihood;
 pub mod linear;
 pub mod maximum_likelihood;
 pub mod output_error;

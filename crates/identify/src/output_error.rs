@@ -17,12 +17,12 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
 use crate::identifier::Identifier;
+use crate::likelihood::track::{Coefficients, Track};
 use crate::profile::{Profile, Step, invert};
 use crate::robust;
 use crate::samples::track;
 use crate::scan::{self, Fit};
 use crate::settings::{SettingsError, check_iterations};
-use likelihood::track::{Coefficients, Track};
 
 /// Settings of [`OutputError`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -339,7 +339,7 @@ pub(crate) fn to_response(of_linear: &Matrix3<f64>, response: &FirstOrder, freed
 pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, heading_sd: f64) -> Option<Covariance> {
     let track = Track::new(trial);
     let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
-    if likelihood::track::is_backward(truth.inverse_T) {
+    if crate::likelihood::track::is_backward(truth.inverse_T) {
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
     }
     let mut profile = Profile::new(vec![track]);

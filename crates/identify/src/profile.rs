@@ -4,11 +4,11 @@
 //! follow from two normal equations over all trials. The same projections give the exact step in 1/T, the Fisher
 //! information and the scores. Work space is allocated once.
 
-use lanes::column::{Removed, dot, gram, project, sum};
+use estimation::column::{Removed, dot, gram, project, sum};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
-use likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::track::{Coefficients, Columns, Track};
 
 /// Workspace of one trial: columns after projection on the complement of (1, φ₁).
 #[derive(Debug)]

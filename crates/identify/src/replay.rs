@@ -3,12 +3,12 @@
 //! Only the initial state is fitted (linear least squares, exact): K, T and δ_r stay as they are, so the error judges
 //! them and not the luck of a start. Works for any sign of T.
 
-use lanes::column::{dot, sum};
+use estimation::column::{dot, sum};
 use ship::FirstOrder;
 use ship::first_order::State;
 use trial::Trial;
 
-use likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::track::{Coefficients, Columns, Track};
 
 /// Condition number above which no initial yaw rate is fitted: it is taken to be zero.
 const CONDITION_LIMIT: f64 = 1e9;

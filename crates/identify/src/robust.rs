@@ -1,6 +1,6 @@
 //! Errors of a least-squares estimate whose residual is coloured.
 
-use lanes::column::{dot, gram};
+use estimation::column::{dot, gram};
 use nalgebra::{DMatrix, Matrix3};
 
 use crate::estimate::{Covariance, Uncertainty};

@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use lanes::column::extremes;
-use likelihood::Track;
+use crate::likelihood::Track;
+use estimation::column::extremes;
 use ship::angle::to_deg;
 use trial::{Corner, Trial};
 

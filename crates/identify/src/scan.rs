@@ -4,12 +4,12 @@
 //! equations for several side by side: half the digits, which is enough to see where the valleys are, in a small part
 //! of the time.
 
-use lanes::column::{dot, sum};
+use estimation::column::{dot, sum};
 use nalgebra::{Matrix2, Vector2};
 use ship::first_order::Transition;
 
+use crate::likelihood::track::{Step, Track, differs, is_backward};
 use crate::profile::solve2;
-use likelihood::track::{Step, Track, differs, is_backward};
 
 /// Values of 1/T side by side.
 const LANES: usize = 8;
@@ -38,7 +38,7 @@ pub(crate) fn fits(tracks: &[Track], inverse_time: &[f64]) -> Vec<Option<Fit>> {
             let values: Lanes = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
             let mut products = [Products::default(); LANES];
             for (track, heading) in tracks.iter().zip(&centred) {
-                let own = lanes::run(Sweep { track, heading, inverse_time: &values });
+                let own = estimation::lanes::run(Sweep { track, heading, inverse_time: &values });
                 products.iter_mut().zip(own).for_each(|(sum, own)| sum.add(&own));
             }
             found.extend(products[..block.len()].iter().map(|products| products.fit(squares)));
@@ -125,7 +125,7 @@ impl Sums {
     }
 }
 
-impl lanes::Kernel for Sweep<'_> {
+impl estimation::lanes::Kernel for Sweep<'_> {
     type Output = [Products; LANES];
 
     /// The recursions of [`Track::fill`] in every lane. The anchor row has only zeros and is left out.
@@ -221,7 +221,11 @@ mod tests {
         let heading = centred(&track.heading);
         for sign in [1.0, -1.0] {
             let inverse_time = std::array::from_fn(|lane| sign * 0.003 * 2f64.powi(lane as i32));
-            let found = lanes::on_every_set(|| Sweep { track: &track, heading: &heading, inverse_time: &inverse_time });
+            let found = estimation::lanes::on_every_set(|| Sweep {
+                track: &track,
+                heading: &heading,
+                inverse_time: &inverse_time,
+            });
             assert!(found.iter().all(|(_, products)| products == &found[0].1), "{found:?}");
         }
     }

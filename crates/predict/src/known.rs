@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-pub use likelihood::Moment;
 use motion::{Hull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Response, ResponseModel};
+pub use trial::noise_model::Moment;
 
 use crate::error::PredictError;
 

@@ -3,7 +3,7 @@
 //! Response models ([`crate::response::Response`]) and hulls ([`crate::vessel`]) both implement [`Dynamics`], so
 //! simulation and replay are written once.
 
-use crate::number::Real;
+use estimation::number::Real;
 
 /// Channels a record may hold beside heading and rudder, at one instant; `None` where the record has none.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

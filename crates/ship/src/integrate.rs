@@ -1,7 +1,7 @@
 //! The classical fourth-order Runge–Kutta step, with its work space allocated once.
 
 use crate::dynamics::{Dynamics, Input};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// Classical Runge–Kutta of order four with a fixed step.
 ///

@@ -3,8 +3,8 @@
 
 use crate::dynamics::{Dynamics, Input, Measured, Motion};
 use crate::integrate::RungeKutta4;
-use crate::number::Real;
 use crate::signal::Polyline;
+use estimation::number::Real;
 
 /// Recorded signals that drive a replay.
 #[derive(Debug, Clone, Copy)]

@@ -7,8 +7,8 @@
 //! is drawn from its own law. Between structures the replays differ, which adds their variance. A band holds what is
 //! known to vary; it knows nothing of effects that are on no list.
 
+use estimation::column::dot;
 use identify::replay::Replay;
-use lanes::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use rand_distr::StandardNormal;

@@ -1,6 +1,6 @@
 //! What can be said of a residual alone: is it white, and if not, where does it live.
 
-use lanes::transform::{Complex, power, transform};
+use estimation::transform::{Complex, power, transform};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// A residual with the steps of an even clock at which its values stand; steps without a value are holes.

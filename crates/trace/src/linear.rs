@@ -1,10 +1,10 @@
 //! Residual and sensitivities of the records, and their normal equations.
 
-use lanes::column::dot;
+use estimation::column::dot;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use ship::Tangent;
-use ship::number::DIRECTIONS;
+use ship::DIRECTIONS;
+use ship::{Real, Tangent};
 
 use crate::model::{Structure, headings};
 use crate::record::Record;
@@ -33,7 +33,7 @@ pub fn tangents(
     let pass = |variables: &[(usize, usize)]| {
         let mut point = constant.clone();
         for (direction, &(_, place)) in variables.iter().enumerate() {
-            point[place] = Tangent::variable(point[place].value, direction);
+            point[place] = Tangent::variable(point[place].value, direction, 1.0);
         }
         let (theta, initial) = point.split_at(theta.len());
         let response = structure.response(Some(number), theta);

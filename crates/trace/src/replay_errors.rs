@@ -4,12 +4,12 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use estimation::column::dot;
 use identify::replay::Replay;
-use lanes::column::dot;
 use nalgebra::{Matrix2, Vector2};
 use ship::dynamics::Dynamics;
 use ship::replay::replay_states;
-use ship::{EffectReal, Response, Tangent};
+use ship::{EffectReal, Real, Response, Tangent};
 use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 
@@ -207,7 +207,7 @@ fn settle(
     let span = (record.time[rows.end - 1] - record.time[rows.start]).max(record.spacing);
     let mut state = vec![Tangent::default(); response.dimension()];
     let mut at = |initial: [f64; 2]| {
-        let variables = [Tangent::variable(initial[0], 0), Tangent::variable(initial[1], 1)];
+        let variables = [Tangent::variable(initial[0], 0, 1.0), Tangent::variable(initial[1], 1, 1.0)];
         enter(&response, record, rows.start, variables, memory, &mut state);
         let (mut residual, mut by) = (Vec::with_capacity(rows.len()), [(); 2].map(|()| Vec::with_capacity(rows.len())));
         run(&response, record, rows.clone(), &mut state, |row, heading, _| {

@@ -12,7 +12,7 @@ use ship::dynamics::Dynamics;
 use ship::first_order::{State, Transition};
 use ship::replay::replay_states;
 
-use lanes::column::dot;
+use estimation::column::dot;
 
 use crate::empirical::{LIBRARY, PRIOR_SD};
 use crate::fit::{Fit, Problem};

@@ -1,7 +1,7 @@
 //! Where in a record a moment may have been present for a while, or have set in: boxes of several lengths, or steps,
 //! are tried at every place with the response of the base in closed form, beside all unknowns of the full model.
 
-use lanes::column::dot;
+use estimation::column::dot;
 use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 

@@ -1,6 +1,6 @@
 //! The law of the noise, and what makes columns of a record white under it.
 
-use lanes::column::dot;
+use estimation::column::dot;
 
 use crate::noise::{Colour, Wander, Whitener};
 

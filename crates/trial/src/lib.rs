@@ -4,6 +4,7 @@
 //! |---|---|
 //! | the record itself | [`record`] |
 //! | names of columns and their units | [`channel`], [`names`] |
+//! | what is random in a record | [`noise_model`] |
 //! | which files are opened, and how much of them is read | [`mod@file`] |
 //! | decoders that may panic | [`decoder`] |
 //! | stamps of date and time | [`clock`] |
@@ -25,6 +26,7 @@ pub mod file;
 mod hygiene;
 pub mod imo;
 pub mod names;
+pub mod noise_model;
 pub mod plausibility;
 mod quantity;
 pub mod reader;

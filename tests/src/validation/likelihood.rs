@@ -1,12 +1,13 @@
 //! The likelihood under process noise, and what the method that maximises it reaches.
 
+use identify::likelihood::log_likelihood;
 use identify::{Identifier, maximum_likelihood, output_error};
-use likelihood::{Moment, Noise, log_likelihood};
 use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::State;
 use simulate::{Simulation, StreamKey};
+use trial::noise_model::{Moment, NoiseModel};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::{Check, INDEPENDENT, Section, Tolerance};
@@ -38,7 +39,7 @@ struct Sample {
     coverage: [f64; 2],
 }
 
-fn sample(simulation: &Simulation, truth: &FirstOrder, noise: &Noise) -> Sample {
+fn sample(simulation: &Simulation, truth: &FirstOrder, noise: &NoiseModel) -> Sample {
     let own = maximum_likelihood::Settings::default().build().expect("default settings are valid");
     let other = output_error::Settings::default().build().expect("default settings are valid");
     let rows: Vec<[[f64; 4]; 2]> = (0..TRIALS)
@@ -70,8 +71,9 @@ pub fn section() -> Section {
     let mut checks = Vec::new();
     let trial = uneven();
     let ship = FirstOrder::from_indices(0.1, 16.3, from_deg(0.4));
-    let compass = Noise::compass(from_deg(0.1));
-    let of = |moment, moment_level, moment_correlation| Noise { moment, moment_level, moment_correlation, ..compass };
+    let compass = NoiseModel::compass(from_deg(0.1));
+    let of =
+        |moment, moment_level, moment_correlation| NoiseModel { moment, moment_level, moment_correlation, ..compass };
     let gusts = of(Moment::OrnsteinUhlenbeck, 3.490658504e-4, 12.0);
     for (noise, published, decimals) in [
         (compass, -84_499.009_4, 4),
@@ -99,7 +101,7 @@ pub fn section() -> Section {
         simulation.sensors.rudder.noise = from_deg(rudder_deg);
         let moment_level = truth.K_over_T * from_deg(walk_deg);
         let moment = if walk_deg > 0.0 { Moment::Walk } else { Moment::None };
-        let noise = Noise { moment, moment_level, rudder_sd: from_deg(rudder_deg), ..compass };
+        let noise = NoiseModel { moment, moment_level, rudder_sd: from_deg(rudder_deg), ..compass };
         let sample = sample(&simulation, &truth, &noise);
         for (i, symbol) in ["K", "T"].into_iter().enumerate() {
             let mut push = |kind: &str, what: String, source, published, ours, tolerance| {

@@ -1,7 +1,7 @@
 //! The bound where the compass has a white and a coloured error at once, which the likelihood of the methods does not
 //! have: the sensitivities of the heading, made white by the filter of those two errors.
 
-use likelihood::track::{Coefficients, Columns, Track, is_backward};
+use identify::likelihood::track::{Coefficients, Columns, Track, is_backward};
 use nalgebra::{Matrix3, Matrix5};
 use ship::FirstOrder;
 use ship::first_order::State;
@@ -72,11 +72,11 @@ fn whiten(times: &[f64], error: &CompassError, columns: &mut [Vec<f64>; 5]) {
 mod tests {
     use super::*;
     use identify::{maximum_likelihood, output_error};
-    use likelihood::Noise;
     use nalgebra::DMatrix;
     use ship::angle::from_deg;
     use simulate::manoeuvre::ZigZagEnd;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
+    use trial::noise_model::NoiseModel;
 
     fn zig_zag(truth: FirstOrder) -> Trial {
         let angle = from_deg(10.0);
@@ -101,7 +101,7 @@ mod tests {
             let white = |sd_deg: f64| {
                 output_error::cramer_rao(&trial, &truth, State::default(), from_deg(sd_deg)).expect("known").matrix
             };
-            let noise = Noise { heading_correlation: Some(10.0), ..Noise::compass(from_deg(0.3)) };
+            let noise = NoiseModel { heading_correlation: Some(10.0), ..NoiseModel::compass(from_deg(0.3)) };
             let coloured = maximum_likelihood::cramer_rao(&trial, &truth, State::default(), &noise).expect("known");
             let pairs = [
                 (bound(0.1, 1e-6, 10.0), white(0.1)),

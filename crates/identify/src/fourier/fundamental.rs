@@ -312,7 +312,7 @@ pub fn peak_of_transform(time: &[f64], heading: &[f64]) -> f64 {
     }
     let mean = even.iter().sum::<f64>() / rows as f64;
     even.iter_mut().for_each(|x| *x -= mean);
-    let power = lanes::transform::power(&mut even);
+    let power = estimation::transform::power(&mut even);
     let bin = (1..power.len()).max_by(|&p, &q| power[p].total_cmp(&power[q])).expect("a record has many rows");
     TAU * bin as f64 / (rows as f64 * step)
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use lanes::column::{dot, gram, project, sum};
+use estimation::column::{dot, gram, project, sum};
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
 
 use crate::error::IdentifyError;

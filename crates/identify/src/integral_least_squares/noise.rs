@@ -1,6 +1,6 @@
 //! White heading noise as the doubly integrated equation sees it, e = n + a ∫n, and what it does to the estimate.
 
-use lanes::column::{dot, gram};
+use estimation::column::{dot, gram};
 use nalgebra::Matrix3;
 
 use super::equations::{Piece, SHARED, Solution};

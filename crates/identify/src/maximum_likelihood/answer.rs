@@ -11,12 +11,13 @@ use super::point::{Point, Record, SHARED};
 use super::search::Found;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason};
+use crate::likelihood::NoiseVector;
+use crate::likelihood::parameters::RUDDER;
+use crate::likelihood::track::{Coefficients, Track, is_backward};
 use crate::output_error::{CONDITION_LIMIT, SIGNIFICANT, to_response};
 use crate::profile::invert;
 use crate::robust;
-use likelihood::law::RUDDER;
-use likelihood::track::{Coefficients, Track, is_backward};
-use likelihood::{Moment, Noise, Place};
+use trial::noise_model::{Moment, NoiseModel};
 
 /// Step in a logarithm over which the change of a variance is taken.
 const DIFFERENCE: f64 = 0.05;
@@ -46,7 +47,7 @@ fn covariance(information: &DMatrix<f64>) -> Result<(Matrix3<f64>, f64), f64> {
 /// known to makes the variances uncertain, dof = 2/Var(log v) (Satterthwaite 1946; Kenward and Roger 1997).
 fn degrees_of_freedom(records: &[Record], found: &Found) -> f64 {
     let Point { inverse_time, gain, offset, ref places, ref parts, .. } = found.point;
-    let motion = |number: usize, place: &Place| {
+    let motion = |number: usize, place: &NoiseVector| {
         let part = &parts[number];
         let coefficients = Coefficients { anchor: part.anchor, gain, offset };
         let products = records[number].information(inverse_time, place, &coefficients);
@@ -142,7 +143,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
     if at_bound {
         warnings.push(format!("T = {} s is at its bound or beyond", Shown(response.T())));
     }
-    let noises: Vec<Noise> = records
+    let noises: Vec<NoiseModel> = records
         .iter()
         .zip(places.iter().zip(parts))
         .map(|(record, (place, part))| place.noise(gain, part.variance.sqrt(), record.has_gyro()))
@@ -225,7 +226,7 @@ pub(super) fn estimate(trials: &[Trial], chosen: Chosen) -> Result<Estimate, Ide
 }
 
 /// What is random beside a white compass error, in words.
-fn described(trial: &Trial, noise: &Noise, gain: f64) -> Option<String> {
+fn described(trial: &Trial, noise: &NoiseModel, gain: f64) -> Option<String> {
     let mut parts = Vec::new();
     let degrees = to_deg(noise.moment_level / gain);
     match noise.moment {
@@ -253,14 +254,14 @@ fn described(trial: &Trial, noise: &Noise, gain: f64) -> Option<String> {
 /// The information is that of the filter's own sensitivities, Σ (∂ν/∂θ)(∂ν/∂θ)ᵀ/S; what little the colour of the noise
 /// itself tells of 1/T is left out. `initial` is the true heading (rad) and yaw rate (rad/s) at the first observed row.
 /// `None` when the record does not determine the parameters. Source: Cramér (1946), Rao (1945).
-pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &Noise) -> Option<Covariance> {
+pub fn cramer_rao(trial: &Trial, truth: &FirstOrder, initial: State, noise: &NoiseModel) -> Option<Covariance> {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let mut coefficients = Coefficients { anchor: initial, ..Coefficients::of(truth) };
     if is_backward(truth.inverse_T) {
         coefficients.anchor = track.last_state_from(truth.inverse_T, &coefficients);
     }
     let record = Record::new(track, noise.rudder_sd > 0.0);
-    let information = record.information(truth.inverse_T, &Place::of(noise, truth), &coefficients)?;
+    let information = record.information(truth.inverse_T, &NoiseVector::of(noise, truth), &coefficients)?;
     let (inverse, _) = invert(&information, CONDITION_LIMIT).ok()?;
     let covariance = inverse * noise.heading_sd.powi(2);
     Some(Covariance { degrees_of_freedom: None, ..to_response(&covariance, truth, 1.0) })

@@ -9,13 +9,14 @@ use super::search::{Found, Ranges, Search, gyro_start};
 use super::settings::{CompassChoice, RudderChoice, Settings};
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
+use crate::likelihood::NoiseVector;
+use crate::likelihood::parameters::{COMPASS, RUDDER};
+use crate::likelihood::track::{Coefficients, Columns, Track};
 use crate::output_error::{self, CONDITION_LIMIT, FEWEST_ROWS};
 use crate::replay::best_start;
 use crate::robust;
 use crate::samples::track;
-use likelihood::law::{COMPASS, RUDDER};
-use likelihood::track::{Coefficients, Columns, Track};
-use likelihood::{Moment, Place};
+use trial::noise_model::Moment;
 
 /// Rounds in which outliers are looked for again in the fit without the last ones.
 const ROUNDS: usize = 12;
@@ -134,9 +135,12 @@ impl Prepared {
         let a = start.inverse_T;
         let estimated = settings.rudder == RudderChoice::Estimated;
         let blank = |(record, ranges): (&Record, &Ranges)| {
-            gyro_start(ranges, &Place { rudder: estimated || record.declared.is_some(), ..Place::default() })
+            gyro_start(
+                ranges,
+                &NoiseVector { rudder: estimated || record.declared.is_some(), ..NoiseVector::default() },
+            )
         };
-        let none: Vec<Place> = records.iter().zip(&ranges).map(blank).collect();
+        let none: Vec<NoiseVector> = records.iter().zip(&ranges).map(blank).collect();
 
         let mut spent = evaluations;
         let mut all = contest(&records, &ranges, settings, a, &none, &mut spent);
@@ -184,7 +188,7 @@ fn left_over(track: &Track, fitted: Option<&Estimate>, known: &[usize]) -> Vec<f
 
 fn ranges(record: &Record, start: &FirstOrder) -> Ranges {
     let track = &record.track;
-    let plain = evaluate(std::slice::from_ref(record), start.inverse_T, &[Place::default()]);
+    let plain = evaluate(std::slice::from_ref(record), start.inverse_T, &[NoiseVector::default()]);
     let spacing = track.duration() / (track.len() - 1) as f64;
     let residual = plain.map_or(1.0, |point| {
         let part = &point.parts[0];
@@ -219,7 +223,7 @@ fn contest(
     ranges: &[Ranges],
     settings: &Settings,
     a: f64,
-    none: &[Place],
+    none: &[NoiseVector],
     evaluations: &mut usize,
 ) -> Ranked {
     let coarse: Option<Vec<Record>> = records.iter().map(|record| record.thinned(LOOKED_AT)).collect();
@@ -272,12 +276,12 @@ fn contest(
     let best = lowest(&all).map(|(_, found)| found);
     let alone = all.iter().map(|(_, found)| found).find(|found| found.point.places[0].moment == Moment::None);
     let alone = alone.filter(|_| best.is_some_and(|best| best.point.places[0].moment != Moment::None));
-    let froms: Vec<(f64, Vec<Place>)> = [best, alone]
+    let froms: Vec<(f64, Vec<NoiseVector>)> = [best, alone]
         .into_iter()
         .flatten()
         .filter(|found| has_memory(found))
         .map(|found| {
-            let coloured = found.point.places.iter().map(|place| Place { coloured: true, ..*place });
+            let coloured = found.point.places.iter().map(|place| NoiseVector { coloured: true, ..*place });
             (found.point.inverse_time, coloured.collect())
         })
         .collect();
@@ -307,7 +311,7 @@ fn lowest(all: &[(f64, Found)]) -> Option<&(f64, Found)> {
 }
 
 /// The best of other values of 1/T, of both signs, under the same noise.
-fn asked_again(search: &mut Search, inverse_time: f64, places: &[Place]) -> Option<Point> {
+fn asked_again(search: &mut Search, inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
     let longest = search.ranges.iter().map(|ranges| ranges.duration).fold(0.0, f64::max);
     let finest = search.ranges.iter().map(|ranges| ranges.spacing).fold(f64::INFINITY, f64::min);
     let (slowest, fastest) = (0.2 / longest, 0.5 / finest);

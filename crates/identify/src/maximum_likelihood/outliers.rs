@@ -5,7 +5,7 @@
 //! a level that changes from one reading to the next and stays is a jump. Both are looked for again in the fit without
 //! them until nothing changes, so an honest reading that stood beside a spike comes back.
 
-use likelihood::track::Track;
+use crate::likelihood::track::Track;
 
 /// Neighbours on either side that a reading is held against: runs of up to three spikes are told from them.
 const NEIGHBOURS: usize = 7;

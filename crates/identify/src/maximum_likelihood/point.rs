@@ -5,14 +5,15 @@
 //! other unknowns: the likelihood of what these cannot move, which does not take the noise for smaller because some of
 //! it was fitted (Patterson and Thompson 1971; Cox and Reid 1987 for unknowns that are not linear).
 
-use lanes::column::{dot, gram};
+use estimation::column::{dot, gram};
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use ship::first_order::State;
 
+use crate::likelihood::parameters::RUDDER;
+use crate::likelihood::track::{Coefficients, Columns, Track};
+use crate::likelihood::{NoiseParameters, NoiseVector, Schedule, whitener};
 use crate::profile::solve2;
-use likelihood::law::RUDDER;
-use likelihood::track::{Coefficients, Columns, Track};
-use likelihood::{Law, Place, Schedule, Whitener};
+use estimation::kalman::Whitener;
 
 /// Unknowns that all records share: 1/T, K/T and (K/T) δ_r.
 pub(super) const SHARED: usize = 3;
@@ -87,7 +88,7 @@ pub(super) struct Part {
 #[derive(Debug, Clone)]
 pub(super) struct Point {
     pub inverse_time: f64,
-    pub places: Vec<Place>,
+    pub places: Vec<NoiseVector>,
     /// −2 log L, and the same of the restricted likelihood.
     pub deviance: f64,
     pub restricted: f64,
@@ -120,7 +121,7 @@ impl Record {
     }
 
     /// Declared rudder error of a place, rad.
-    pub fn tied(&self, place: &Place) -> Option<f64> {
+    pub fn tied(&self, place: &NoiseVector) -> Option<f64> {
         self.declared.filter(|_| place.rudder)
     }
 
@@ -161,16 +162,21 @@ impl Record {
         self.track.sensitivities(inverse_time, coefficients, [&mut by_heading, &mut by_rate]);
         let raw = self.stacked(&by_heading, &by_rate);
         let mut column = raw.clone();
-        white.filter.apply([&mut column]);
+        white.filter.apply(&mut [&mut column]);
         let shares = white.own.iter().map(|unit| take_out(unit, &mut column)).collect();
         ByTime { raw, white: column, shares }
     }
 
     /// Products of the whitened sensitivities by (1/T, b, b δ_r) at known coefficients, the start eliminated; over σ²
     /// they are the information of the motion.
-    pub fn information(&self, inverse_time: f64, place: &Place, coefficients: &Coefficients) -> Option<Matrix3<f64>> {
-        let law: Law<f64> = place.law(inverse_time, self.has_gyro());
-        let white = White::new(&self.raw(inverse_time), Whitener::new(&self.schedule, &law, [0.0; 2]))?;
+    pub fn information(
+        &self,
+        inverse_time: f64,
+        place: &NoiseVector,
+        coefficients: &Coefficients,
+    ) -> Option<Matrix3<f64>> {
+        let parameters: NoiseParameters<f64> = place.parameters(inverse_time, self.has_gyro());
+        let white = White::new(&self.raw(inverse_time), whitener(&self.schedule, &parameters, [0.0; 2]))?;
         let by_time = self.by_time(&white, inverse_time, coefficients);
         let products = white.motion(&by_time);
         products.iter().all(|value| value.is_finite()).then_some(products)
@@ -197,8 +203,8 @@ impl White {
         let (first, jumps) = own.split_at_mut(2);
         let [one, two] = first else { return None };
         let [three, four, five] = &mut rest;
-        filter.apply([one, two, three, four, five]);
-        jumps.iter_mut().for_each(|jump| filter.apply([jump]));
+        filter.apply(&mut [one, two, three, four, five]);
+        jumps.iter_mut().for_each(|jump| filter.apply(&mut [jump]));
         let count = own.len();
         let mut triangle = DMatrix::zeros(count, count);
         for k in 0..count {
@@ -295,16 +301,16 @@ fn weigh(weights: &[Weight]) -> Option<(Vector2<f64>, Vec<f64>)> {
 }
 
 /// The best fit for one 1/T and these places, one a record. `None` when it is no ship or not finite.
-pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) -> Option<Point> {
-    let columns = |(record, place): (&Record, &Place)| {
-        let law: Law<f64> = place.law(inverse_time, record.has_gyro());
+pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
+    let columns = |(record, place): (&Record, &NoiseVector)| {
+        let parameters: NoiseParameters<f64> = place.parameters(inverse_time, record.has_gyro());
         let raw = record.raw(inverse_time);
-        let white = White::new(&raw, Whitener::new(&record.schedule, &law, [0.0; 2]))?;
+        let white = White::new(&raw, whitener(&record.schedule, &parameters, [0.0; 2]))?;
         Some((raw, white))
     };
     let columns = records.iter().zip(places).map(columns).collect::<Option<Vec<_>>>()?;
     let all: usize = records.iter().map(Record::len).sum();
-    let weight = |((record, place), (_, white)): ((&Record, &Place), &(Raw, White))| {
+    let weight = |((record, place), (_, white)): ((&Record, &NoiseVector), &(Raw, White))| {
         let readings = record.len() as f64;
         let fitted = record.own() as f64 + SHARED as f64 * readings / all as f64;
         let [rudder, constant, measured] = &white.rest;
@@ -324,7 +330,7 @@ pub(super) fn evaluate(records: &[Record], inverse_time: f64, places: &[Place]) 
     for ((((raw, white), weight), &variance), record) in columns.into_iter().zip(&weights).zip(&variances).zip(records)
     {
         let constant = (2.0 * std::f64::consts::PI * variance).ln();
-        deviance += weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance();
+        deviance += weight.readings * constant + weight.square(gain, offset) / variance + white.filter.log_variance;
         let (anchor, jumps) = white.start(gain, offset)?;
         let lengths = white.triangle.diagonal();
         let seen = lengths.iter().filter(|&&length| length > 0.0);

@@ -1,9 +1,9 @@
 //! How the likelihood changes at a point: score, information, and what the fitted columns take from the noise.
 
-use lanes::column::dot;
-use likelihood::differentiated;
-use likelihood::filter::SIDE_BY_SIDE;
-use likelihood::law::RUDDER;
+use crate::likelihood::differentiated;
+use crate::likelihood::filter::SIDE_BY_SIDE;
+use crate::likelihood::parameters::RUDDER;
+use estimation::column::dot;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
 use super::point::{Part, Point, Record, SHARED, shrink, take_out};
@@ -37,7 +37,7 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
         let (part, place, count) = (&point.parts[number], &point.places[number], entries[number]);
         let filter = differentiated(&record.schedule, place, point.inverse_time, record.has_gyro());
         let lanes = 1 + count;
-        let mut slopes = filter.slopes(&record.schedule, &part.left_over(point), lanes);
+        let mut slopes = filter.slopes(&part.left_over(point), lanes);
         let tied = record.tied(place).is_some();
         let lane_of = |entry| place.entries(record.has_gyro()).position(|other| other == entry).map(|k| k + 1);
         if let Some(lane) = lane_of(RUDDER).filter(|_| tied) {
@@ -82,7 +82,7 @@ pub(super) fn linearise(records: &[Record], point: &Point) -> Option<Linearised>
             for columns in fitted.chunks(SIDE_BY_SIDE) {
                 let raw = std::array::from_fn(|k| columns.get(k).map_or(&[][..], |(_, raw)| raw.as_slice()));
                 let white = std::array::from_fn(|k| columns.get(k).map_or(&[][..], |(white, _)| white.as_slice()));
-                let turned = filter.turned(&record.schedule, raw, white);
+                let turned = filter.sensitivity_products(raw, white);
                 for lane in 1..lanes {
                     let logs = &slopes.log_variance[lane];
                     let shrunk: f64 = columns.iter().map(|(white, _)| weighted_square(white, logs)).sum();

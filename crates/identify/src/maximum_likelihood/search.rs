@@ -4,8 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::point::{Point, Record, SHARED, evaluate};
 use super::score::{Linearised, linearise};
-use likelihood::law::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
-use likelihood::{Moment, Place};
+use crate::likelihood::NoiseVector;
+use crate::likelihood::parameters::{COMPASS, CORRELATION, GYRO, LEVEL, RUDDER};
+use trial::noise_model::Moment;
 
 /// Steps end when they promise less than this in −log L: a hundredth of a standard deviation of the noise. Where there
 /// is none to find, 1/T alone has to be as exact as that of `output-error`.
@@ -45,7 +46,7 @@ impl Ranges {
     }
 
     /// Smallest and largest logarithm of an entry.
-    fn of(&self, place: &Place, entry: usize) -> [f64; 2] {
+    fn of(&self, place: &NoiseVector, entry: usize) -> [f64; 2] {
         let Self { duration, spacing, .. } = *self;
         let ends = match entry {
             LEVEL => [Self::level(place.moment, 1e-3, duration), Self::level(place.moment, 1e3, spacing)],
@@ -58,7 +59,7 @@ impl Ranges {
     }
 
     /// The same place with one entry at a value, inside its range.
-    fn with(&self, place: &Place, entry: usize, log: f64) -> Place {
+    fn with(&self, place: &NoiseVector, entry: usize, log: f64) -> NoiseVector {
         let [low, high] = self.of(place, entry);
         let mut moved = *place;
         moved.log[entry] = log.clamp(low, high);
@@ -84,17 +85,17 @@ pub(super) struct Found {
 }
 
 impl Search<'_> {
-    fn evaluate(&mut self, inverse_time: f64, places: &[Place]) -> Option<Point> {
+    fn evaluate(&mut self, inverse_time: f64, places: &[NoiseVector]) -> Option<Point> {
         self.evaluations += 1;
         evaluate(self.records, inverse_time, places)
     }
 
     /// The start with the lowest −2 log L, or restricted one where only the noise differs; it is looked for in fewer
     /// readings where there are many.
-    pub fn best(&mut self, starts: Vec<(f64, Vec<Place>)>, height: fn(&Point) -> f64) -> Option<Point> {
+    pub fn best(&mut self, starts: Vec<(f64, Vec<NoiseVector>)>, height: fn(&Point) -> f64) -> Option<Point> {
         let records = self.coarse.unwrap_or(self.records);
         self.evaluations += starts.len();
-        let of_start = |(a, places): &(f64, Vec<Place>)| {
+        let of_start = |(a, places): &(f64, Vec<NoiseVector>)| {
             evaluate(records, *a, places).map_or(f64::INFINITY, |point| height(&point))
         };
         let best = starts.iter().map(|start| (of_start(start), start)).min_by(|one, other| one.0.total_cmp(&other.0));
@@ -102,12 +103,12 @@ impl Search<'_> {
     }
 
     /// Starts of several sizes for the moment of a kind.
-    pub fn levels(&self, inverse_time: f64, places: &[Place], moment: Moment) -> Vec<(f64, Vec<Place>)> {
+    pub fn levels(&self, inverse_time: f64, places: &[NoiseVector], moment: Moment) -> Vec<(f64, Vec<NoiseVector>)> {
         LEVELS
             .iter()
             .map(|by| {
-                let place = |(place, ranges): (&Place, &Ranges)| {
-                    let wanted = Place { moment, ..*place };
+                let place = |(place, ranges): (&NoiseVector, &Ranges)| {
+                    let wanted = NoiseVector { moment, ..*place };
                     // A record shows what a moment does in a quarter of it.
                     let log = Ranges::level(moment, by * ranges.residual, 0.25 * ranges.duration).ln();
                     ranges.with(&wanted, LEVEL, log)
@@ -118,15 +119,15 @@ impl Search<'_> {
     }
 
     /// Starts for gusts: short ones that act like a white moment, and long ones like a walk.
-    pub fn gusts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<(f64, Vec<Place>)> {
+    pub fn gusts(&self, white: Option<&Point>, walk: Option<&Point>) -> Vec<(f64, Vec<NoiseVector>)> {
         let mut starts = Vec::new();
         for (point, shares) in [(white, [0.01, 0.05]), (walk, [0.1, 0.5])] {
             let Some(point) = point else { continue };
             for share in shares {
-                let place = |(place, ranges): (&Place, &Ranges)| {
+                let place = |(place, ranges): (&NoiseVector, &Ranges)| {
                     let time = share * ranges.duration;
                     let factor = if place.moment == Moment::White { 0.5 / time } else { 0.5 * time };
-                    let wanted = Place { moment: Moment::OrnsteinUhlenbeck, ..*place };
+                    let wanted = NoiseVector { moment: Moment::OrnsteinUhlenbeck, ..*place };
                     let wanted = ranges.with(&wanted, CORRELATION, time.ln());
                     ranges.with(&wanted, LEVEL, place.log[LEVEL] + 0.5 * factor.ln())
                 };
@@ -138,9 +139,9 @@ impl Search<'_> {
     }
 
     /// Starts for an entry of all places: a few sizes over its range.
-    pub fn spread(&self, inverse_time: f64, places: &[Place], entry: usize) -> Vec<(f64, Vec<Place>)> {
+    pub fn spread(&self, inverse_time: f64, places: &[NoiseVector], entry: usize) -> Vec<(f64, Vec<NoiseVector>)> {
         let start = |share: f64| {
-            let place = |(place, ranges): (&Place, &Ranges)| {
+            let place = |(place, ranges): (&NoiseVector, &Ranges)| {
                 let [low, high] = ranges.of(place, entry);
                 ranges.with(place, entry, low + share * (high - low))
             };
@@ -215,7 +216,7 @@ impl Search<'_> {
     }
 
     /// The place a step away.
-    fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> (f64, Vec<Place>) {
+    fn moved(&self, point: &Point, free: &[usize], step: &DVector<f64>) -> (f64, Vec<NoiseVector>) {
         let by = |at: usize| free.iter().position(|&place| place == at).map_or(0.0, |k| step[k]);
         let mut at = SHARED;
         let mut places = point.places.clone();
@@ -275,6 +276,6 @@ fn reduced(information: &DMatrix<f64>, wanted: &[usize]) -> Option<DMatrix<f64>>
 }
 
 /// The logarithm of the gyro error with which a search begins.
-pub(super) fn gyro_start(ranges: &Ranges, place: &Place) -> Place {
+pub(super) fn gyro_start(ranges: &Ranges, place: &NoiseVector) -> NoiseVector {
     ranges.with(place, GYRO, -0.5 * ranges.spacing.max(1e-3).ln() - 1.0)
 }

@@ -1,7 +1,7 @@
 //! What may be asked of the method.
 
-use likelihood::Moment;
 use serde::{Deserialize, Serialize};
+use trial::noise_model::Moment;
 
 /// Which yaw moment is fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]

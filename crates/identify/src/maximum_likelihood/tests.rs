@@ -7,13 +7,13 @@ use trial::{Channel, Columns, Noise, Origin};
 use super::choice::Prepared;
 use super::point::{Record, evaluate};
 use super::score::linearise;
-use likelihood::Moment;
+use trial::noise_model::{Moment, NoiseModel};
 
 use super::*;
+use crate::likelihood::NoiseVector;
+use crate::likelihood::track::Track;
 use crate::output_error;
 use crate::testing::{Case, record};
-use likelihood::Place;
-use likelihood::track::Track;
 use trial::Trial;
 
 /// Independent normal numbers.
@@ -120,8 +120,8 @@ fn the_score_is_the_derivative() {
         trials.iter().map(|trial| Record::new(Track::new(trial).with_rates(trial.yaw_rate(), trial), true)).collect();
     for moment in Moment::ALL {
         let places = [
-            Place { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
-            Place { moment, rudder: true, coloured: true, log: [-6.5, 3.0, -6.0, 1.0, -1.0] },
+            NoiseVector { moment, rudder: false, coloured: false, log: [-6.0, 2.0, 0.0, 0.0, 0.0] },
+            NoiseVector { moment, rudder: true, coloured: true, log: [-6.5, 3.0, -6.0, 1.0, -1.0] },
         ];
         let a = 0.063;
         let point = evaluate(&records, a, &places).expect("a fit");
@@ -254,17 +254,14 @@ fn the_bound_knows_the_noise() {
     let case = noisy();
     let (trial, truth) = (case.trial(), case.ship());
     let initial = ship::first_order::State { heading: case.truth().heading[0], yaw_rate: case.truth().yaw_rate[0] };
-    let noise = likelihood::Noise::compass(from_deg(0.1));
+    let noise = NoiseModel::compass(from_deg(0.1));
     let calm = output_error::cramer_rao(&trial, &truth, initial, from_deg(0.1)).expect("known").matrix;
     let same = cramer_rao(&trial, &truth, initial, &noise).expect("known").matrix;
     for (one, other) in same.iter().zip(calm.iter()) {
         assert_relative_eq!(one, other, max_relative = 1e-6, epsilon = 1e-18);
     }
-    let walking = |degrees: f64| likelihood::Noise {
-        moment: Moment::Walk,
-        moment_level: truth.K_over_T * from_deg(degrees),
-        ..noise
-    };
+    let walking =
+        |degrees: f64| NoiseModel { moment: Moment::Walk, moment_level: truth.K_over_T * from_deg(degrees), ..noise };
     let wide = cramer_rao(&trial, &truth, initial, &walking(0.1)).expect("known");
     // 2.1 % of T from 400 simulated trials.
     let percent = 100.0 * wide.indices(&truth).1.sd.expect("known") / 16.3;

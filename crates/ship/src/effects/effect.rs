@@ -4,7 +4,9 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::dynamics::{Measured, Regressor};
-use crate::number::{Real, Tangent};
+use estimation::number::Real;
+
+use crate::Tangent;
 use crate::particulars::{self, Dimension};
 
 /// One parameter of an effect or of the base.

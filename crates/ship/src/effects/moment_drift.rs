@@ -1,7 +1,7 @@
 //! A slow trend of the yaw moment over the record.
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// m (t − t₀) as an equivalent rudder angle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Damping that grows with the yaw rate: the terms of Norrbin and Bech.
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when
 /// 1/T passes through zero.

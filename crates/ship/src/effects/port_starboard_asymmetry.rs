@@ -1,7 +1,7 @@
 //! A ship that turns more readily to one side.
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// Asymmetry of the rudder, or of the hull in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

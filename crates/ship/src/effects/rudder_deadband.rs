@@ -1,7 +1,7 @@
 //! Play between the recorded and the acting rudder.
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// Backlash or dead band of half-width g.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! A rudder that loses lift at large angles.
 
 use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Prior, Proposal};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
 
 use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
 ///

@@ -2,7 +2,7 @@
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
 use crate::dynamics::Regressor;
-use crate::number::Real;
+use estimation::number::Real;
 
 /// K ~ U and T ~ 1/U, so a = 1/T ~ U and b = K/T ~ U².
 ///

@@ -1,7 +1,7 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// Lag between the recorded and the acting rudder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

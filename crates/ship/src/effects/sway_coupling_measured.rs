@@ -2,7 +2,7 @@
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
-use crate::number::Real;
+use estimation::number::Real;
 
 /// c_v q v with the measured sway velocity v, as an equivalent rudder angle; zero where the record has none. The moment
 /// of a drifting hull is N_v u v, so it falls with the measured speed: q = U/U₀, 1 where the record has no speed.

@@ -2,7 +2,7 @@
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
-use crate::number::Real;
+use estimation::number::Real;
 
 /// A moment m, as an equivalent rudder angle, in one of two forms.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::narrow_band::NarrowBand;
-use crate::number::Real;
+use estimation::number::Real;
 
 /// ξ'' + 2ζω₀ ξ' + ω₀² ξ = w added to the heading. The deterministic response knows nothing of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
-use crate::number::Real;
+use estimation::number::Real;
 
 /// Wind as the rudder angle with the same yaw moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

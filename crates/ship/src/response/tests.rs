@@ -2,9 +2,9 @@ use super::*;
 use crate::dynamics::Measured;
 use crate::effects;
 use crate::first_order::{State, Transition};
-use crate::number::Tangent;
 use crate::replay::{Recorded, replay, replay_states};
 use crate::signal::Polyline;
+use crate::{Real, Tangent};
 use approx::assert_relative_eq;
 
 const BASE_VALUES: [f64; 3] = [1.0 / 16.3, 0.1 / 16.3, 0.01];
@@ -152,7 +152,7 @@ fn a_replay_carries_its_derivatives() {
         for k in 0..values.len() {
             let name = format!("{} ({}), {k}", effect.id(), effect.form());
             let mut seeded = constant(&values);
-            seeded[k] = Tangent::variable(values[k], 1);
+            seeded[k] = Tangent::variable(values[k], 1, 1.0);
             let found = end(&model, &seeded);
             assert_eq!(found.value, end(&model, &constant(&values)).value, "{name}");
             let h = 1e-5 * values[k];

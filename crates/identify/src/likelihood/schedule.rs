@@ -1,10 +1,10 @@
 //! When a record was read, and what: the steps in time between readings, each kind once.
 
-use crate::track::{Track, differs};
+use super::track::{Track, differs};
 
 /// What is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
+pub enum Instrument {
     /// The compass.
     Heading,
     /// The gyro.
@@ -17,7 +17,7 @@ pub struct Reading {
     /// The kind of step that leads to it; `None` when no time passes.
     pub step: Option<usize>,
     /// The instrument.
-    pub of: Of,
+    pub of: Instrument,
 }
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
@@ -74,12 +74,12 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading { step, of: Of::Heading });
+                schedule.readings.push(Reading { step, of: Instrument::Heading });
                 schedule.numbers.push(heading);
                 heading += 1;
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(Reading { step: step.filter(|_| !both), of: Of::YawRate });
+                schedule.readings.push(Reading { step: step.filter(|_| !both), of: Instrument::YawRate });
                 schedule.numbers.push(rate);
                 rate += 1;
             }
@@ -103,8 +103,8 @@ impl Schedule {
             return heading.to_vec();
         }
         let of = |(reading, &number): (&Reading, &usize)| match reading.of {
-            Of::Heading => heading[number],
-            Of::YawRate => yaw_rate[number],
+            Instrument::Heading => heading[number],
+            Instrument::YawRate => yaw_rate[number],
         };
         self.readings.iter().zip(&self.numbers).map(of).collect()
     }

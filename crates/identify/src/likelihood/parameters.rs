@@ -3,16 +3,16 @@
 
 use ship::FirstOrder;
 
-use crate::noise::{Moment, Noise};
-use crate::number::Variable;
+use estimation::number::Real;
+use trial::noise_model::{Moment, NoiseModel};
 
-/// Entries of a [`Place`].
+/// Entries of a [`NoiseVector`].
 pub const ENTRIES: usize = 5;
 
 /// Where the noise is: logarithms of q/σ, τ, of the rudder error (as yaw acceleration over σ), of the correlation time
 /// of the compass error and of σ_r/σ, with which of them there are. The default is a white compass error alone.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Place {
+pub struct NoiseVector {
     /// Which yaw moment.
     pub moment: Moment,
     /// Whether the rudder has an error.
@@ -34,9 +34,9 @@ pub const COMPASS: usize = 3;
 /// Entry of σ_r/σ.
 pub const GYRO: usize = 4;
 
-impl Place {
+impl NoiseVector {
     /// The place of a known noise on a known ship.
-    pub fn of(noise: &Noise, ship: &FirstOrder) -> Self {
+    pub fn of(noise: &NoiseModel, ship: &FirstOrder) -> Self {
         let unit = noise.heading_sd;
         let log = |value: f64| if value > 0.0 { value.min(f64::MAX).ln() } else { 0.0 };
         Self {
@@ -54,10 +54,10 @@ impl Place {
     }
 
     /// The noise it stands for, on a ship with this b = K/T (1/s²) and a compass error of `heading_sd`, rad.
-    pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> Noise {
+    pub fn noise(&self, gain: f64, heading_sd: f64, gyro: bool) -> NoiseModel {
         let size = |entry: usize| heading_sd * self.log[entry].exp();
         let has = self.moment != Moment::None;
-        Noise {
+        NoiseModel {
             heading_sd,
             heading_correlation: self.coloured.then(|| self.log[COMPASS].exp()),
             yaw_rate_sd: gyro.then(|| size(GYRO)),
@@ -79,15 +79,15 @@ impl Place {
         (0..ENTRIES).filter(move |&entry| there[entry])
     }
 
-    /// The law of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of the
+    /// The parameters of the noise for this 1/T. The first lane of derivatives is that of 1/T, the others are those of the
     /// entries that are there.
-    pub fn law<R: Variable>(&self, inverse_time: f64, gyro: bool) -> Law<R> {
+    pub fn parameters<R: Real>(&self, inverse_time: f64, gyro: bool) -> NoiseParameters<R> {
         let lane = |entry: usize| self.entries(gyro).position(|other| other == entry).map(|place| place + 1);
         let exponential = |entry: usize, sign: f64| {
             let value = (sign * self.log[entry]).exp();
             lane(entry).map_or(R::from(value), |lane| R::variable(value, lane, sign * value))
         };
-        Law {
+        NoiseParameters {
             inverse_time: R::variable(inverse_time, 0, 1.0),
             moment: self.moment,
             level: exponential(LEVEL, 1.0),
@@ -104,7 +104,7 @@ impl Place {
 
 /// How the noise moves the state, in units of the compass error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Law<R> {
+pub struct NoiseParameters<R> {
     /// a = 1/T, 1/s.
     pub inverse_time: R,
     /// Which yaw moment.
@@ -121,7 +121,7 @@ pub struct Law<R> {
     pub gyro: R,
 }
 
-impl<R: Variable> Law<R> {
+impl<R: Real> NoiseParameters<R> {
     /// Whether the moment is a state.
     pub fn has_moment_state(&self) -> bool {
         matches!(self.moment, Moment::OrnsteinUhlenbeck | Moment::Walk)
@@ -134,12 +134,12 @@ impl<R: Variable> Law<R> {
             + usize::from(self.compass_rate.is_some())
     }
 
-    /// Place of the rudder error among the states.
+    /// NoiseVector of the rudder error among the states.
     pub fn rudder_state(&self) -> Option<usize> {
         self.rudder.map(|_| 2 + usize::from(self.has_moment_state()))
     }
 
-    /// Place of the compass error among the states: the last.
+    /// NoiseVector of the compass error among the states: the last.
     pub fn compass_state(&self) -> Option<usize> {
         self.compass_rate.map(|_| self.states() - 1)
     }

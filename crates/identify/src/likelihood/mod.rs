@@ -14,9 +14,7 @@
 //! for exact discretisation; Harvey (1989) for the prediction error decomposition.
 
 pub mod filter;
-pub mod law;
-pub mod noise;
-pub mod number;
+pub mod parameters;
 pub mod schedule;
 #[cfg(test)]
 mod tests;
@@ -25,10 +23,10 @@ mod transition;
 
 use ship::FirstOrder;
 use trial::Trial;
+use trial::noise_model::NoiseModel;
 
-pub use filter::{Whitener, differentiated};
-pub use law::{Law, Place};
-pub use noise::{Moment, Noise};
+pub use filter::{differentiated, whitener};
+pub use parameters::{NoiseParameters, NoiseVector};
 pub use schedule::Schedule;
 pub use track::{Columns, Track};
 
@@ -38,12 +36,13 @@ pub use track::{Columns, Track};
 /// The initial heading (rad) and yaw rate (rad/s) are normal about zero with the standard deviations `initial_sd`; a
 /// walk begins at zero, an Ornstein–Uhlenbeck moment in its stationary state. The value is not finite when a response
 /// leaves the range of numbers.
-pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &Noise, initial_sd: [f64; 2]) -> f64 {
+pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     let track = Track::new(trial).with_rates(noise.yaw_rate_sd.and(trial.yaw_rate()), trial);
     let schedule = Schedule::new(&track, noise.rudder_sd > 0.0);
-    let law: Law<f64> = Place::of(noise, ship).law(ship.inverse_T, noise.yaw_rate_sd.is_some());
+    let parameters: NoiseParameters<f64> =
+        NoiseVector::of(noise, ship).parameters(ship.inverse_T, noise.yaw_rate_sd.is_some());
     let unit = noise.heading_sd;
-    let filter = Whitener::new(&schedule, &law, initial_sd.map(|sd| (sd / unit).powi(2)));
+    let filter = whitener(&schedule, &parameters, initial_sd.map(|sd| (sd / unit).powi(2)));
     // The columns are from rest at the first row, where the prior stands.
     let mut columns = Columns::default();
     track.fill_from_first(ship.inverse_T, &mut columns);
@@ -56,8 +55,8 @@ pub fn log_likelihood(trial: &Trial, ship: &FirstOrder, noise: &Noise, initial_s
     let mut residual = schedule.stacked(&track.heading, &track.rates);
     let replayed = schedule.stacked(&heading, &rate);
     residual.iter_mut().zip(&replayed).for_each(|(measured, replayed)| *measured -= replayed);
-    filter.apply([&mut residual]);
+    filter.apply(&mut [&mut residual]);
     let square: f64 = residual.iter().map(|nu| (nu / unit).powi(2)).sum();
     let constant = (2.0 * std::f64::consts::PI * unit * unit).ln();
-    -0.5 * (square + filter.log_variance() + residual.len() as f64 * constant)
+    -0.5 * (square + filter.log_variance + residual.len() as f64 * constant)
 }

@@ -1,7 +1,7 @@
 //! Sums over columns of numbers. Every sum runs in eight lanes that are added up pairwise at the end: the lanes are
 //! independent, so a processor can work on them side by side.
 
-use crate::{Kernel, run};
+use crate::lanes::{Kernel, run};
 
 /// Partial sums side by side.
 const LANES: usize = 8;
@@ -147,7 +147,7 @@ pub fn extremes(x: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::on_every_set;
+    use crate::lanes::on_every_set;
     use approx::assert_relative_eq;
 
     fn columns(rows: usize) -> [Vec<f64>; 3] {

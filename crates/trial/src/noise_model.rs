@@ -34,7 +34,7 @@ impl Moment {
 
 /// All that is random in a record, in SI units and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
+pub struct NoiseModel {
     /// Standard deviation of the compass error, rad.
     pub heading_sd: f64,
     /// Correlation time of the compass error, s; `None` for white.
@@ -52,7 +52,7 @@ pub struct Noise {
     pub rudder_sd: f64,
 }
 
-impl Noise {
+impl NoiseModel {
     /// A white compass error and nothing else.
     pub fn compass(heading_sd: f64) -> Self {
         Self {

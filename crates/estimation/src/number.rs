@@ -1,8 +1,8 @@
 //! The numbers that equations are written in: plain values, and values that carry their derivatives, so that one replay
 //! gives a heading and how it changes with several parameters, exactly (forward differentiation; Wengert 1964).
 //!
-//! Equations of effects and responses are written once, for any [`Real`]; a value alone takes the same path through
-//! them as a value with derivatives.
+//! Equations are written once, for any [`Real`]; a value alone takes the same path through them as a value with
+//! derivatives.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -27,8 +27,22 @@ pub trait Real:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
+    /// A variable of this value whose derivative in one direction is `slope` (of a plain number: the value).
+    fn variable(value: f64, direction: usize, slope: f64) -> Self;
+
     /// The value alone.
     fn value(self) -> f64;
+
+    /// Its derivatives, where it has some.
+    fn slopes(&self) -> &[f64];
+
+    /// A function of this number, from its value and its derivative there.
+    fn chained(self, value: f64, slope: f64) -> Self;
+
+    /// Whether it is zero, with all its derivatives.
+    fn vanishes(&self) -> bool {
+        self.value() == 0.0 && self.slopes().iter().all(|&by| by == 0.0)
+    }
 
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
@@ -65,9 +79,23 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    fn variable(value: f64, _: usize, _: f64) -> Self {
+        value
+    }
+
     #[inline]
     fn value(self) -> f64 {
         self
+    }
+
+    #[inline]
+    fn slopes(&self) -> &[f64] {
+        &[]
+    }
+
+    #[inline]
+    fn chained(self, value: f64, _: f64) -> Self {
+        value
     }
 
     #[inline]
@@ -96,135 +124,140 @@ impl Real for f64 {
     }
 }
 
-/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with
-/// two parameters.
-pub const DIRECTIONS: usize = 6;
-
 /// A value and its derivatives in some directions.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Tangent {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual<const DIRECTIONS: usize> {
     /// The value.
     pub value: f64,
     /// Its derivatives.
     pub by: [f64; DIRECTIONS],
 }
 
-impl Tangent {
-    /// A variable: its derivative in its own direction is one.
-    pub fn variable(value: f64, direction: usize) -> Self {
-        let mut by = [0.0; DIRECTIONS];
-        by[direction] = 1.0;
-        Self { value, by }
-    }
-
-    /// A function of this number from its value and its derivative there.
-    #[inline]
-    fn chained(self, value: f64, slope: f64) -> Self {
-        Self { value, by: self.by.map(|d| slope * d) }
-    }
-
+impl<const N: usize> Dual<N> {
     /// Derivatives of both numbers, put together.
-    #[inline]
+    #[inline(always)]
     fn joined(self, other: Self, value: f64, by: impl Fn(f64, f64) -> f64) -> Self {
         Self { value, by: std::array::from_fn(|k| by(self.by[k], other.by[k])) }
     }
 }
 
-impl From<f64> for Tangent {
-    #[inline]
-    fn from(value: f64) -> Self {
-        Self { value, by: [0.0; DIRECTIONS] }
+impl<const N: usize> Default for Dual<N> {
+    fn default() -> Self {
+        Self::from(0.0)
     }
 }
 
-impl Neg for Tangent {
+impl<const N: usize> From<f64> for Dual<N> {
+    #[inline(always)]
+    fn from(value: f64) -> Self {
+        Self { value, by: [0.0; N] }
+    }
+}
+
+impl<const N: usize> Neg for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self.chained(-self.value, -1.0)
     }
 }
 
-impl Add for Tangent {
+impl<const N: usize> Add for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self.joined(other, self.value + other.value, |x, y| x + y)
     }
 }
 
-impl Sub for Tangent {
+impl<const N: usize> Sub for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self.joined(other, self.value - other.value, |x, y| x - y)
     }
 }
 
 #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the product")]
-impl Mul for Tangent {
+impl<const N: usize> Mul for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         self.joined(other, self.value * other.value, |x, y| other.value * x + self.value * y)
     }
 }
 
 #[expect(clippy::suspicious_arithmetic_impl, reason = "the rule of the quotient")]
-impl Div for Tangent {
+impl<const N: usize> Div for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         let (quotient, inverse) = (self.value / other.value, other.value.recip());
         self.joined(other, quotient, |x, y| (x - quotient * y) * inverse)
     }
 }
 
-impl Add<f64> for Tangent {
+impl<const N: usize> Add<f64> for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: f64) -> Self {
         Self { value: self.value + other, ..self }
     }
 }
 
-impl Sub<f64> for Tangent {
+impl<const N: usize> Sub<f64> for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: f64) -> Self {
         Self { value: self.value - other, ..self }
     }
 }
 
-impl Mul<f64> for Tangent {
+impl<const N: usize> Mul<f64> for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: f64) -> Self {
         self.chained(self.value * other, other)
     }
 }
 
-impl Div<f64> for Tangent {
+impl<const N: usize> Div<f64> for Dual<N> {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn div(self, other: f64) -> Self {
         self.chained(self.value / other, other.recip())
     }
 }
 
-impl Real for Tangent {
-    #[inline]
+impl<const N: usize> Real for Dual<N> {
+    fn variable(value: f64, direction: usize, slope: f64) -> Self {
+        let mut by = [0.0; N];
+        by[direction] = slope;
+        Self { value, by }
+    }
+
+    #[inline(always)]
     fn value(self) -> f64 {
         self.value
+    }
+
+    #[inline(always)]
+    fn slopes(&self) -> &[f64] {
+        &self.by
+    }
+
+    #[inline(always)]
+    fn chained(self, value: f64, slope: f64) -> Self {
+        Self { value, by: self.by.map(|d| slope * d) }
     }
 
     fn sin_cos(self) -> (Self, Self) {
@@ -241,7 +274,7 @@ impl Real for Tangent {
         let power = self.value.powf(exponent.value);
         let by_base = exponent.value * power / self.value;
         // A logarithm costs as much as the power: an exponent that is no variable needs none.
-        let by_exponent = if exponent.by == [0.0; DIRECTIONS] { 0.0 } else { power * self.value.ln() };
+        let by_exponent = if exponent.by == [0.0; N] { 0.0 } else { power * self.value.ln() };
         self.joined(exponent, power, |x, y| by_base * x + by_exponent * y)
     }
 
@@ -269,7 +302,7 @@ mod tests {
     fn derivatives_are_those_of_the_value() {
         let h = 1e-6;
         for (x, y) in [(0.7, 1.3), (-0.4, 0.2), (2.0, -0.6)] {
-            let found = expression(Tangent::variable(x, 0), Tangent::variable(y, 3));
+            let found = expression(Dual::<4>::variable(x, 0, 1.0), Dual::variable(y, 3, 1.0));
             assert_eq!(found.value, expression(x, y));
             let by_x = (expression(x + h, y) - expression(x - h, y)) / (2.0 * h);
             let by_y = (expression(x, y + h) - expression(x, y - h)) / (2.0 * h);

@@ -3,10 +3,11 @@ use nalgebra::{DMatrix, DVector};
 use ship::FirstOrder;
 use ship::angle::from_deg;
 use ship::first_order::{State, Transition};
+use trial::noise_model::Moment;
 use trial::{Channel, Columns, Origin, Trial};
 
+use super::parameters::{NoiseParameters, NoiseVector};
 use super::*;
-use crate::law::{Law, Place};
 
 fn record(name: &str, time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial {
     let channels = [(Channel::Heading, heading), (Channel::Rudder, rudder)].into();
@@ -37,8 +38,13 @@ fn published() -> Trial {
 
 const SIGMA_DEG: f64 = 0.1;
 
-fn noise(moment: Moment, level: f64, correlation: f64) -> Noise {
-    Noise { moment, moment_level: level, moment_correlation: correlation, ..Noise::compass(from_deg(SIGMA_DEG)) }
+fn noise(moment: Moment, level: f64, correlation: f64) -> NoiseModel {
+    NoiseModel {
+        moment,
+        moment_level: level,
+        moment_correlation: correlation,
+        ..NoiseModel::compass(from_deg(SIGMA_DEG))
+    }
 }
 
 /// Four log-likelihoods that were computed twice elsewhere, by a Kalman filter and from the dense Gaussian.
@@ -80,7 +86,7 @@ fn with_gyro() -> Trial {
 
 /// The same log-likelihood without a filter: the covariance of all readings from responses to every source of chance,
 /// with the moment stepped finely, and the determinant and inverse of that matrix.
-fn dense(trial: &Trial, ship: &FirstOrder, noise: &Noise, initial_sd: [f64; 2]) -> f64 {
+fn dense(trial: &Trial, ship: &FirstOrder, noise: &NoiseModel, initial_sd: [f64; 2]) -> f64 {
     const FINE: usize = 40;
     let (time, rudder) = (trial.time(), trial.rudder());
     let (a, b) = (ship.inverse_T, ship.K_over_T);
@@ -186,13 +192,13 @@ fn decaying(a: f64, correlation: f64, s: f64) -> State {
 #[test]
 fn the_filter_is_the_dense_gaussian() {
     let (plain, gyro) = (published(), with_gyro());
-    let coloured = |noise: Noise| Noise { heading_correlation: Some(3.0), ..noise };
-    let steered = |noise: Noise| Noise { rudder_sd: from_deg(0.7), ..noise };
-    let rated = |noise: Noise| Noise { yaw_rate_sd: Some(2e-3), ..noise };
+    let coloured = |noise: NoiseModel| NoiseModel { heading_correlation: Some(3.0), ..noise };
+    let steered = |noise: NoiseModel| NoiseModel { rudder_sd: from_deg(0.7), ..noise };
+    let rated = |noise: NoiseModel| NoiseModel { yaw_rate_sd: Some(2e-3), ..noise };
     let white = noise(Moment::White, 3e-4, 1.0);
     let gusts = noise(Moment::OrnsteinUhlenbeck, 4e-4, 12.0);
     let walk = noise(Moment::Walk, 9e-5, 1.0);
-    let none = Noise::compass(from_deg(SIGMA_DEG));
+    let none = NoiseModel::compass(from_deg(SIGMA_DEG));
     for (trial, noise) in [
         (&plain, white),
         (&plain, steered(none)),
@@ -219,16 +225,16 @@ fn slopes_are_derivatives() {
     let residual: Vec<f64> = (0..track.heading.len() + track.rates.len()).map(|k| (0.7 * k as f64).sin()).collect();
     for moment in Moment::ALL {
         for a in [0.06, -0.02] {
-            let place = Place { moment, rudder: true, coloured: true, log: [-2.0, 2.0, -5.0, 0.8, -3.0] };
+            let place = NoiseVector { moment, rudder: true, coloured: true, log: [-2.0, 2.0, -5.0, 0.8, -3.0] };
             let schedule = Schedule::new(&track, true);
             let filter = differentiated(&schedule, &place, a, true);
             let entries: Vec<usize> = place.entries(true).collect();
-            let found = filter.slopes(&schedule, &residual, 1 + entries.len());
-            let innovations = |a: f64, place: &Place| {
-                let whitener = Whitener::new(&schedule, &place.law::<f64>(a, true), [0.0; 2]);
+            let found = filter.slopes(&residual, 1 + entries.len());
+            let innovations = |a: f64, place: &NoiseVector| {
+                let filter = whitener(&schedule, &place.parameters::<f64>(a, true), [0.0; 2]);
                 let mut column = residual.clone();
-                whitener.apply([&mut column]);
-                let spread: Vec<f64> = (0..column.len()).map(|k| whitener.weight(k).recip()).collect();
+                filter.apply(&mut [&mut column]);
+                let spread: Vec<f64> = (0..column.len()).map(|k| filter.weight(k).recip()).collect();
                 let nu: Vec<f64> = column.iter().zip(&spread).map(|(x, s)| x * s).collect();
                 (nu, spread)
             };
@@ -263,12 +269,12 @@ fn even_rows_settle() {
     let trial = record("even", time, heading, rudder);
     let track = Track::new(&trial);
     let schedule = Schedule::new(&track, false);
-    let place = Place { moment: Moment::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
-    let law: Law<f64> = place.law(0.06, false);
-    let whitener = Whitener::new(&schedule, &law, [0.0; 2]);
+    let place = NoiseVector { moment: Moment::Walk, rudder: false, coloured: false, log: [-3.0, 0.0, 0.0, 0.0, 0.0] };
+    let parameters: NoiseParameters<f64> = place.parameters(0.06, false);
+    let filter = whitener(&schedule, &parameters, [0.0; 2]);
     assert_eq!(schedule.spans.len(), 1);
     let mut one = track.heading.clone();
-    whitener.apply([&mut one]);
+    filter.apply(&mut [&mut one]);
     // Steps that count as different kinds are computed one by one.
     let mut apart = schedule.clone();
     for (k, reading) in apart.readings.iter_mut().enumerate().skip(1) {
@@ -276,7 +282,7 @@ fn even_rows_settle() {
         reading.step = Some(k);
     }
     let mut other = track.heading.clone();
-    Whitener::new(&apart, &law, [0.0; 2]).apply([&mut other]);
+    whitener(&apart, &parameters, [0.0; 2]).apply(&mut [&mut other]);
     for (one, other) in one.iter().zip(&other) {
         assert_relative_eq!(one, other, max_relative = 1e-8, epsilon = 1e-12);
     }

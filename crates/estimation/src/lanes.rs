@@ -4,12 +4,6 @@
 //! The bits do not depend on the choice: every lane does the operations of the source in their order, additions across
 //! lanes are written out, and a compiler that honours IEEE 754 neither reorders nor fuses them. A machine without wide
 //! registers takes the same steps with narrow ones. [`on_every_set`] is for the tests that prove it.
-//!
-//! Nothing here knows of ships; [`mod@column`] has the sums and [`transform`] the spectrum that methods of
-//! identification need.
-
-pub mod column;
-pub mod transform;
 
 use pulp::Arch;
 /// A loop over lanes: `call` has to be `#[inline(always)]`, or it stays compiled for the narrowest registers.

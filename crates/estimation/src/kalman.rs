@@ -1,0 +1,502 @@
+//! The Kalman filter of a linear system that is read in a known order: gains and variances do not depend on what is
+//! read, so the filter is a linear map that makes columns of readings white.
+//!
+//! x ← F x + w before a reading, cov w = Q; a sensor sees the sum of one or two states and white noise. With one kind
+//! of reading at even times the gain settles; from there on no covariance is computed. Written for any
+//! [`Real`], so gains come with their derivatives by whatever moves the system.
+//!
+//! Sources: Harvey (1989) for the prediction error decomposition; Bryson and Frazier (1963) for the smoother, which
+//! inverts no matrix.
+
+use crate::number::{Dual, Real};
+
+/// Most states of a [`Whitener`].
+pub const MOST: usize = 5;
+
+/// Longest pattern of readings that repeats itself: that of two sensors in turn.
+const PATTERN: usize = 2;
+
+/// A gain that changes by less than this share, and its derivatives by less than the other, has settled.
+const SETTLED: f64 = 1e-10;
+const SETTLED_SLOPE: f64 = 1e-7;
+
+/// Transition F and added covariance Q over a step of time.
+#[derive(Debug, Clone, Copy)]
+pub struct Step<R, const N: usize> {
+    /// F.
+    pub transition: [[R; N]; N],
+    /// Q.
+    pub added: [[R; N]; N],
+}
+
+impl<R: Real, const N: usize> Step<R, N> {
+    /// This step and then another one.
+    pub fn then(&self, next: &Self) -> Self {
+        Self { transition: product(&next.transition, &self.transition), added: next.propagate(&self.added) }
+    }
+
+    /// The covariance after the step: F P Fᵀ + Q.
+    pub fn propagate(&self, covariance: &[[R; N]; N]) -> [[R; N]; N] {
+        sum(&self.added, &sandwich(&self.transition, covariance))
+    }
+}
+
+/// The unit matrix.
+pub fn identity<R: Real, const N: usize>() -> [[R; N]; N] {
+    std::array::from_fn(|i| std::array::from_fn(|j| R::from(f64::from(u8::from(i == j)))))
+}
+
+/// A sum of matrices.
+pub fn sum<R: Real, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
+    std::array::from_fn(|i| std::array::from_fn(|j| one[i][j] + other[i][j]))
+}
+
+/// A product of matrices of which the first has many zeros: nothing leads back from a ship to what disturbs it.
+pub fn product<R: Real, const N: usize>(one: &[[R; N]; N], other: &[[R; N]; N]) -> [[R; N]; N] {
+    let mut result = [[R::from(0.0); N]; N];
+    for (result, one) in result.iter_mut().zip(one) {
+        for (one, other) in one.iter().zip(other).filter(|(one, _)| !one.vanishes()) {
+            for (result, other) in result.iter_mut().zip(other) {
+                *result = *result + *one * *other;
+            }
+        }
+    }
+    result
+}
+
+/// F P Fᵀ of a symmetric P.
+pub fn sandwich<R: Real, const N: usize>(f: &[[R; N]; N], p: &[[R; N]; N]) -> [[R; N]; N] {
+    let half = product(f, p);
+    let mut result = [[R::from(0.0); N]; N];
+    for (j, f) in f.iter().enumerate() {
+        for (k, f) in f.iter().enumerate().filter(|(_, f)| !f.vanishes()) {
+            for i in j..N {
+                result[i][j] = result[i][j] + half[i][k] * *f;
+            }
+        }
+    }
+    std::array::from_fn(|i| std::array::from_fn(|j| result[i.max(j)][i.min(j)]))
+}
+
+/// What a sensor reads: a state, or the sum of two, and white noise of this variance.
+#[derive(Debug, Clone, Copy)]
+pub struct Sensor<R> {
+    /// Place of the state.
+    pub state: usize,
+    /// Place of the state that is added.
+    pub beside: Option<usize>,
+    /// Variance of the noise.
+    pub variance: R,
+}
+
+impl<R: Real> Sensor<R> {
+    /// What it makes of states, or of states side by side.
+    #[inline(always)]
+    fn of<const N: usize, const COLUMNS: usize>(&self, x: &[[f64; COLUMNS]; N]) -> [f64; COLUMNS] {
+        match self.beside {
+            Some(beside) => std::array::from_fn(|k| x[self.state % N.max(1)][k] + x[beside % N.max(1)][k]),
+            None if N == 0 => [0.0; COLUMNS],
+            None => x[self.state % N.max(1)],
+        }
+    }
+}
+
+/// A reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reading {
+    /// The kind of step that leads to it; `None` when no time passes.
+    pub step: Option<usize>,
+    /// The sensor.
+    pub sensor: usize,
+}
+
+/// A system and the order in which it is read.
+#[derive(Debug, Clone)]
+pub struct System<R, const N: usize> {
+    /// Kinds of steps.
+    pub steps: Vec<Step<R, N>>,
+    /// Sensors.
+    pub sensors: Vec<Sensor<R>>,
+    /// Readings in their order.
+    pub readings: Vec<Reading>,
+    /// Covariance of the state before the first reading.
+    pub initial: [[R; N]; N],
+}
+
+/// What the filter does with a reading.
+#[derive(Debug, Clone, Copy)]
+struct Gain<R, const N: usize> {
+    gain: [R; N],
+    /// Predicted variance S of the reading.
+    variance: R,
+}
+
+/// Gains of all readings, each kind once.
+#[derive(Debug, Clone)]
+pub struct Filter<R, const N: usize> {
+    system: System<R, N>,
+    gains: Vec<Gain<R, N>>,
+    /// One over √S of every gain.
+    weights: Vec<f64>,
+    /// Gain of every reading.
+    of: Vec<u32>,
+}
+
+impl<R: Real, const N: usize> Filter<R, N> {
+    /// The filter of a system.
+    pub fn new(system: System<R, N>) -> Self {
+        Self::visiting(system, |_| ())
+    }
+
+    /// The same, visiting the predicted covariance of every new gain.
+    fn visiting(system: System<R, N>, mut visit: impl FnMut(&[[R; N]; N])) -> Self {
+        let readings = &system.readings;
+        let mut filter = (Vec::<Gain<R, N>>::new(), Vec::<u32>::with_capacity(readings.len()));
+        let (gains, of) = (&mut filter.0, &mut filter.1);
+        // Covariances after the last readings, by their place in a pattern.
+        let mut after = [system.initial; PATTERN];
+        let mut alike = 0;
+        for (number, reading) in readings.iter().enumerate() {
+            let repeats = number >= PATTERN && readings[number - PATTERN] == *reading;
+            if repeats && alike >= PATTERN {
+                of.push(of[number - PATTERN]);
+                continue;
+            }
+            let before = &after[(number + PATTERN - 1) % PATTERN];
+            let mut covariance = reading.step.map_or(*before, |step| system.steps[step].propagate(before));
+            visit(&covariance);
+            let gain = correct(&mut covariance, &system.sensors[reading.sensor]);
+            after[number % PATTERN] = covariance;
+            let settled = repeats && {
+                let before = &gains[of[number - PATTERN] as usize];
+                gain.gain.iter().zip(&before.gain).all(|(one, other)| has_settled(*one, *other))
+            };
+            alike = if settled { alike + 1 } else { 0 };
+            of.push(gains.len() as u32);
+            gains.push(gain);
+        }
+        let (gains, of) = filter;
+        let weights = gains.iter().map(|gain| gain.variance.value().sqrt().recip()).collect();
+        Self { system, gains, weights, of }
+    }
+
+    /// Σ log S.
+    pub fn log_variance(&self) -> f64 {
+        let logs: Vec<f64> = self.gains.iter().map(|gain| gain.variance.value().ln()).collect();
+        self.of.iter().map(|&of| logs[of as usize]).sum()
+    }
+
+    /// The filter without its derivatives.
+    pub fn whitener(&self) -> Whitener {
+        let wide = |row: &[R; N]| -> [f64; MOST] { std::array::from_fn(|k| row.get(k).map_or(0.0, |x| x.value())) };
+        let matrix =
+            |f: &[[R; N]; N]| -> [[f64; MOST]; MOST] { std::array::from_fn(|k| f.get(k).map_or([0.0; MOST], wide)) };
+        let plain = |sensor: &Sensor<R>| Sensor {
+            state: sensor.state,
+            beside: sensor.beside,
+            variance: sensor.variance.value(),
+        };
+        Whitener {
+            states: N,
+            transitions: self.system.steps.iter().map(|step| matrix(&step.transition)).collect(),
+            sensors: self.system.sensors.iter().map(plain).collect(),
+            gains: self.gains.iter().zip(&self.weights).map(|(gain, &weight)| (wide(&gain.gain), weight)).collect(),
+            readings: self.system.readings.iter().copied().zip(self.of.iter().copied()).collect(),
+            log_variance: self.log_variance(),
+        }
+    }
+}
+
+/// Takes a reading into account.
+fn correct<R: Real, const N: usize>(covariance: &mut [[R; N]; N], sensor: &Sensor<R>) -> Gain<R, N> {
+    let seen: [R; N] = std::array::from_fn(|i| match sensor.beside {
+        Some(beside) => covariance[i][sensor.state] + covariance[i][beside],
+        None => covariance[i][sensor.state],
+    });
+    let variance = match sensor.beside {
+        Some(beside) => seen[sensor.state] + seen[beside] + sensor.variance,
+        None if N == 0 => sensor.variance,
+        None => seen[sensor.state] + sensor.variance,
+    };
+    let gain = seen.map(|value| value / variance);
+    for i in 0..N {
+        for j in 0..=i {
+            covariance[i][j] = covariance[i][j] - gain[i] * seen[j];
+            covariance[j][i] = covariance[i][j];
+        }
+    }
+    Gain { gain, variance }
+}
+
+/// Whether a number hardly changed, nor its derivatives.
+fn has_settled<R: Real>(now: R, before: R) -> bool {
+    let size = now.value().abs();
+    let near = |(now, before): (&f64, &f64)| (now - before).abs() <= SETTLED_SLOPE * now.abs().max(1e-3 * size);
+    (now.value() - before.value()).abs() <= SETTLED * size && now.slopes().iter().zip(before.slopes()).all(near)
+}
+
+/// Picks the number of states when the program runs.
+#[macro_export]
+macro_rules! with_states {
+    ($states:expr, $N:ident => $body:expr) => {
+        match $states {
+            0 => $crate::with_states!(@ 0, $N => $body),
+            1 => $crate::with_states!(@ 1, $N => $body),
+            2 => $crate::with_states!(@ 2, $N => $body),
+            3 => $crate::with_states!(@ 3, $N => $body),
+            4 => $crate::with_states!(@ 4, $N => $body),
+            _ => $crate::with_states!(@ 5, $N => $body),
+        }
+    };
+    (@ $number:literal, $N:ident => $body:expr) => {{
+        const $N: usize = $number;
+        $body
+    }};
+}
+
+/// A filter that makes columns of readings white: innovations in units of their standard deviation.
+#[derive(Debug, Clone)]
+pub struct Whitener {
+    states: usize,
+    transitions: Vec<[[f64; MOST]; MOST]>,
+    sensors: Vec<Sensor<f64>>,
+    /// Gain and one over the predicted standard deviation.
+    gains: Vec<([f64; MOST], f64)>,
+    /// Every reading with its gain.
+    readings: Vec<(Reading, u32)>,
+    /// Σ log S.
+    pub log_variance: f64,
+}
+
+impl Whitener {
+    /// One over the standard deviation of the innovation of a reading.
+    pub fn weight(&self, reading: usize) -> f64 {
+        self.gains[self.readings[reading].1 as usize].1
+    }
+
+    /// Makes columns white in place, several at once: the filter waits for the last reading of each, but not for the
+    /// other columns.
+    pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
+        with_states!(self.states, N => {
+            let (fours, rest) = columns.as_chunks_mut::<4>();
+            fours.iter_mut().for_each(|columns| self.run::<N, 4>(columns));
+            let (twos, rest) = rest.as_chunks_mut::<2>();
+            twos.iter_mut().for_each(|columns| self.run::<N, 2>(columns));
+            rest.as_chunks_mut::<1>().0.iter_mut().for_each(|columns| self.run::<N, 1>(columns));
+        });
+    }
+
+    fn run<const N: usize, const COLUMNS: usize>(&self, columns: &mut [&mut Vec<f64>; COLUMNS]) {
+        let columns = columns.each_mut().map(|column| &mut column[..self.readings.len()]);
+        let mut x = [[0.0; COLUMNS]; N];
+        for (row, &(Reading { step, sensor }, gain)) in self.readings.iter().enumerate() {
+            if let Some(step) = step {
+                x = advanced(&self.transitions[step], &x);
+            }
+            let (gain, weight) = &self.gains[gain as usize];
+            let seen = self.sensors[sensor].of(&x);
+            let mut innovation = [0.0; COLUMNS];
+            for k in 0..COLUMNS {
+                innovation[k] = columns[k][row] - seen[k];
+                columns[k][row] = innovation[k] * weight;
+            }
+            for (x, gain) in x.iter_mut().zip(gain) {
+                for k in 0..COLUMNS {
+                    x[k] += gain * innovation[k];
+                }
+            }
+        }
+    }
+
+    /// Applies the transpose of what makes a column white, so that both together are Σ⁻¹ of the noise.
+    pub fn apply_transposed(&self, column: &mut [f64]) {
+        let mut later = [0.0; MOST];
+        for (value, &(Reading { step, sensor }, gain)) in column.iter_mut().zip(&self.readings).rev() {
+            let (gain, weight) = &self.gains[gain as usize];
+            *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
+            let Sensor { state, beside, .. } = self.sensors[sensor];
+            [Some(state), beside].into_iter().flatten().for_each(|state| later[state] -= *value);
+            if let Some(step) = step {
+                let f = &self.transitions[step];
+                later = std::array::from_fn(|j| (0..self.states).map(|i| f[i][j] * later[i]).sum());
+            }
+        }
+    }
+}
+
+/// F x of states side by side.
+#[inline(always)]
+fn advanced<const N: usize, const COLUMNS: usize>(
+    f: &[[f64; MOST]; MOST],
+    x: &[[f64; COLUMNS]; N],
+) -> [[f64; COLUMNS]; N] {
+    let mut next = [[0.0; COLUMNS]; N];
+    for (next, f) in next.iter_mut().zip(f) {
+        for (x, f) in x.iter().zip(f) {
+            for k in 0..COLUMNS {
+                next[k] += f * x[k];
+            }
+        }
+    }
+    next
+}
+
+impl<const LANES: usize, const N: usize> Filter<Dual<LANES>, N> {
+    /// One over the standard deviation of the innovations of a gain, and the variance with its derivatives.
+    pub fn variance(&self, gain: usize) -> (f64, Dual<LANES>) {
+        (self.weights[gain], self.gains[gain].variance)
+    }
+
+    /// Runs columns through the filter and visits every reading with the number of its gain and the derivatives of the
+    /// innovations.
+    #[inline(always)]
+    pub fn run<const COLUMNS: usize>(
+        &self,
+        column: impl Fn(usize) -> [f64; COLUMNS],
+        mut visit: impl FnMut(usize, usize, [[f64; COLUMNS]; LANES]),
+    ) {
+        let mut x = [[0.0; COLUMNS]; N];
+        let mut by = [[[0.0; COLUMNS]; N]; LANES];
+        for (row, (&Reading { step, sensor }, &place)) in self.system.readings.iter().zip(&self.of).enumerate() {
+            if let Some(step) = step {
+                let f = &self.system.steps[step].transition;
+                let mut next = [[0.0; COLUMNS]; N];
+                let mut next_by = [[[0.0; COLUMNS]; N]; LANES];
+                for i in 0..N {
+                    for (j, f) in f[i].iter().enumerate() {
+                        for k in 0..COLUMNS {
+                            next[i][k] += f.value * x[j][k];
+                        }
+                        for (lane, (next_by, by)) in next_by.iter_mut().zip(&by).enumerate() {
+                            for k in 0..COLUMNS {
+                                next_by[i][k] += f.value * by[j][k] + f.by[lane] * x[j][k];
+                            }
+                        }
+                    }
+                }
+                (x, by) = (next, next_by);
+            }
+            let place = place as usize;
+            let gain = &self.gains[place].gain;
+            let sensor = &self.system.sensors[sensor];
+            let (seen, reading) = (sensor.of(&x), column(row));
+            let innovation: [f64; COLUMNS] = std::array::from_fn(|k| reading[k] - seen[k]);
+            let mut innovation_by = [[0.0; COLUMNS]; LANES];
+            for (innovation_by, by) in innovation_by.iter_mut().zip(&by) {
+                *innovation_by = sensor.of(by).map(|seen| -seen);
+            }
+            for (x, gain) in x.iter_mut().zip(gain) {
+                for k in 0..COLUMNS {
+                    x[k] += gain.value * innovation[k];
+                }
+            }
+            for (lane, (by, innovation_by)) in by.iter_mut().zip(&innovation_by).enumerate() {
+                for (by, gain) in by.iter_mut().zip(gain) {
+                    for k in 0..COLUMNS {
+                        by[k] += gain.value * innovation_by[k] + gain.by[lane] * innovation[k];
+                    }
+                }
+            }
+            visit(row, place, innovation_by);
+        }
+    }
+}
+
+/// The states of a system given all readings.
+#[derive(Debug, Clone)]
+pub struct Smoother<const N: usize> {
+    filter: Filter<f64, N>,
+    /// Covariance of the state of every gain before the reading is known.
+    predicted: Vec<[[f64; N]; N]>,
+}
+
+impl<const N: usize> Smoother<N> {
+    /// The smoother of a system.
+    pub fn new(system: System<f64, N>) -> Self {
+        let mut predicted = Vec::new();
+        let filter = Filter::visiting(system, |covariance| predicted.push(*covariance));
+        Self { filter, predicted }
+    }
+
+    /// Σ log S.
+    pub fn log_variance(&self) -> f64 {
+        self.filter.log_variance()
+    }
+
+    /// Predicted state and innovation of every reading, where a known input adds `forced` to the state in the step
+    /// before each.
+    fn run(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<([f64; N], f64)> {
+        let mut x = [0.0; N];
+        let step = |(row, &Reading { step, sensor }): (usize, &Reading)| {
+            if let Some(step) = step {
+                let f = &self.filter.system.steps[step].transition;
+                let added = forced(row);
+                x = std::array::from_fn(|i| (0..N).map(|j| f[i][j] * x[j]).sum::<f64>() + added[i]);
+            }
+            let predicted = x;
+            let Sensor { state, beside, .. } = self.filter.system.sensors[sensor];
+            let innovation = column[row] - predicted[state] - beside.map_or(0.0, |beside| predicted[beside]);
+            let gain = &self.filter.gains[self.filter.of[row] as usize].gain;
+            x.iter_mut().zip(gain).for_each(|(x, gain)| *x += gain * innovation);
+            (predicted, innovation)
+        };
+        self.filter.system.readings.iter().enumerate().map(step).collect()
+    }
+
+    /// The innovations in units of their standard deviation.
+    pub fn whitened(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<f64> {
+        let weight = |row: usize| self.filter.weights[self.filter.of[row] as usize];
+        self.run(column, forced).iter().enumerate().map(|(row, (_, innovation))| innovation * weight(row)).collect()
+    }
+
+    /// The state at every reading given all of them: x = x⁻ + P⁻ s with the score s of all later innovations.
+    pub fn smoothed(&self, column: &[f64], forced: impl Fn(usize) -> [f64; N]) -> Vec<[f64; N]> {
+        let mut states = self.run(column, forced);
+        let mut score = [0.0; N];
+        for (row, (state, innovation)) in states.iter_mut().enumerate().rev() {
+            let place = self.filter.of[row] as usize;
+            let (own, Reading { step, sensor }) = (&self.filter.gains[place], self.filter.system.readings[row]);
+            // Through the correction of the reading, then its own innovation.
+            let through = *innovation / own.variance - (0..N).map(|i| own.gain[i] * score[i]).sum::<f64>();
+            let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
+            [Some(first), beside].into_iter().flatten().for_each(|place| score[place] += through);
+            let predicted = &self.predicted[place];
+            *state = std::array::from_fn(|i| state[i] + (0..N).map(|j| predicted[i][j] * score[j]).sum::<f64>());
+            if let Some(step) = step {
+                let f = &self.filter.system.steps[step].transition;
+                score = std::array::from_fn(|j| (0..N).map(|i| f[i][j] * score[i]).sum());
+            }
+        }
+        states.into_iter().map(|(state, _)| state).collect()
+    }
+
+    /// Variance of one state at every reading given all of them: V = P⁻ − P⁻ N P⁻ with the variance N of the score.
+    pub fn variances(&self, state: usize) -> Vec<f64> {
+        let mut information = [[0.0; N]; N];
+        let mut variances = vec![0.0; self.filter.of.len()];
+        for row in (0..variances.len()).rev() {
+            let place = self.filter.of[row] as usize;
+            let (own, Reading { step, sensor }) = (&self.filter.gains[place], self.filter.system.readings[row]);
+            let Sensor { state: first, beside, .. } = self.filter.system.sensors[sensor];
+            let seen = |k: usize| f64::from(u8::from(k == first)) + f64::from(u8::from(Some(k) == beside));
+            let unit = identity::<f64, N>();
+            // Transposed, since N = Aᵀ N A.
+            let through: [[f64; N]; N] =
+                std::array::from_fn(|i| std::array::from_fn(|j| unit[i][j] - own.gain[j] * seen(i)));
+            information = sandwich(&through, &information);
+            for (i, row) in information.iter_mut().enumerate() {
+                row.iter_mut().enumerate().for_each(|(j, x)| *x += seen(i) * seen(j) / own.variance);
+            }
+            let column = &self.predicted[place][state];
+            let square: f64 =
+                (0..N).map(|i| column[i] * (0..N).map(|j| information[i][j] * column[j]).sum::<f64>()).sum();
+            variances[row] = (column[state] - square).max(0.0);
+            if let Some(step) = step {
+                let f = &self.filter.system.steps[step].transition;
+                let back: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f[j][i]));
+                information = sandwich(&back, &information);
+            }
+        }
+        variances
+    }
+}

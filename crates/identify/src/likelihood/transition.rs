@@ -1,0 +1,142 @@
+//! The exact step of the state over a time in which the noise goes on, with its derivatives.
+
+use estimation::kalman::{Step, identity, product, sandwich, sum};
+use estimation::number::Real;
+use ship::first_order::TangentTransition;
+use trial::noise_model::Moment;
+
+use super::parameters::NoiseParameters;
+use super::schedule::Span;
+
+/// Terms of the series of the matrix exponential over one scaled step.
+const TERMS: usize = 16;
+
+/// Longest scaled step, in time constants: the series then ends below rounding. Longer ones are doubled.
+const LONGEST: f64 = 0.25;
+
+/// Nodes and weights on (0, 1) of the Gauss–Legendre rule of eight points, exact up to degree 15.
+const NODES: [(f64, f64); 8] = [
+    (0.019_855_071_751_231_884, 0.050_614_268_145_188_13),
+    (0.101_666_761_293_186_63, 0.111_190_517_226_687_24),
+    (0.237_233_795_041_835_5, 0.156_853_322_938_943_64),
+    (0.408_282_678_752_175_1, 0.181_341_891_689_181),
+    (0.591_717_321_247_825, 0.181_341_891_689_181),
+    (0.762_766_204_958_164_5, 0.156_853_322_938_943_64),
+    (0.898_333_238_706_813_4, 0.111_190_517_226_687_24),
+    (0.980_144_928_248_768_1, 0.050_614_268_145_188_13),
+];
+
+type Small<R> = [[R; 3]; 3];
+
+/// The step over the time between two readings.
+pub(crate) fn step<R: Real, const N: usize>(parameters: &NoiseParameters<R>, span: &Span) -> Step<R, N> {
+    let zero = [[R::from(0.0); N]; N];
+    let mut whole = match parameters.rudder {
+        None => of_moment(parameters, span.length()),
+        Some(size) => {
+            let mut pieces =
+                span.pieces.iter().map(|&length| with_rudder(of_moment(parameters, length), parameters, size, length));
+            let first = pieces.next().unwrap_or(Step { transition: identity(), added: zero });
+            pieces.fold(first, |before, piece| before.then(&piece))
+        }
+    };
+    if let (Some(place), Some(rate)) = (parameters.compass_state(), parameters.compass_rate) {
+        let decay = (-rate.value() * span.length()).exp();
+        let decay = rate.chained(decay, -span.length() * decay);
+        whole.transition[place][place] = decay;
+        whole.added[place][place] = -(decay * decay) + 1.0;
+    }
+    whole
+}
+
+/// Ship and moment alone.
+fn of_moment<R: Real, const N: usize>(parameters: &NoiseParameters<R>, length: f64) -> Step<R, N> {
+    let rates = parameters.inverse_time.value().abs() + parameters.rate.value();
+    let doublings = (rates * length / LONGEST).log2().ceil().max(0.0);
+    let (mut f, mut q) = short(parameters, length / doublings.exp2());
+    for _ in 0..doublings as usize {
+        q = sum(&q, &sandwich(&f, &q));
+        f = product(&f, &f);
+    }
+    let mut step = Step { transition: identity(), added: [[R::from(0.0); N]; N] };
+    let own = if parameters.has_moment_state() { 3 } else { 2 };
+    for i in 0..own {
+        for j in 0..own {
+            (step.transition[i][j], step.added[i][j]) = (f[i][j], q[i][j]);
+        }
+    }
+    step
+}
+
+/// With the error of the recorded rudder at both ends of a piece, between which it is linear.
+fn with_rudder<R: Real, const N: usize>(
+    mut own: Step<R, N>,
+    parameters: &NoiseParameters<R>,
+    size: R,
+    length: f64,
+) -> Step<R, N> {
+    let Some(place) = parameters.rudder_state() else { return own };
+    let TangentTransition { value, by_inverse_T: by } = TangentTransition::new(parameters.inverse_time.value(), length);
+    let phi = |value: f64, slope: f64| parameters.inverse_time.chained(value, slope);
+    let [one, two, three] = [phi(value.phi1, by.phi1), phi(value.phi2, by.phi2), phi(value.phi3, by.phi3)];
+    let after = [three / length, two / length];
+    let before = [two - after[0], one - after[1]];
+    let zero = R::from(0.0);
+    let mut fresh = [zero; N];
+    for i in 0..2 {
+        own.transition[i][place] = size * before[i];
+        fresh[i] = size * after[i];
+    }
+    own.transition[place] = [zero; N];
+    fresh[place] = R::from(1.0);
+    for (row, one) in own.added.iter_mut().zip(fresh) {
+        for (value, other) in row.iter_mut().zip(fresh) {
+            *value = *value + one * other;
+        }
+    }
+    own
+}
+
+/// Transition and covariance over a step that is short against T and τ. Time is counted in steps, so that the series
+/// has no units: z = (ψ, r h, m h²).
+fn short<R: Real>(parameters: &NoiseParameters<R>, h: f64) -> (Small<R>, Small<R>) {
+    let zero = R::from(0.0);
+    let (x, y) = (parameters.inverse_time * h, parameters.rate * h);
+    // Coefficients of the motion after an impulse on r, and on m: (ψ, r, m) as polynomials of time.
+    let mut of_rate = [[zero; TERMS]; 3];
+    let mut of_moment = [[zero; TERMS]; 3];
+    of_rate[1][0] = R::from(1.0);
+    of_moment[2][0] = R::from(1.0);
+    for j in 1..TERMS {
+        let per = 1.0 / j as f64;
+        of_rate[0][j] = of_rate[1][j - 1] * per;
+        of_rate[1][j] = -(x * of_rate[1][j - 1]) * per;
+        of_moment[0][j] = of_moment[1][j - 1] * per;
+        of_moment[1][j] = (of_moment[2][j - 1] - x * of_moment[1][j - 1]) * per;
+        of_moment[2][j] = -(y * of_moment[2][j - 1]) * per;
+    }
+    let at = |polynomial: &[R; TERMS], s: f64| polynomial.iter().rev().fold(zero, |sum, &term| sum * s + term);
+    let [r, m] = [&of_rate, &of_moment].map(|motion| motion.each_ref().map(|polynomial| at(polynomial, 1.0)));
+    let transition = [[R::from(1.0), r[0] * h, m[0] * (h * h)], [zero, r[1], m[1] * h], [zero, zero, m[2]]];
+
+    let (impulse, density) = match parameters.moment {
+        Moment::None => return (transition, [[zero; 3]; 3]),
+        Moment::White => (&of_rate, parameters.level * parameters.level * h.powi(3)),
+        Moment::Walk => (&of_moment, parameters.level * parameters.level * h.powi(5)),
+        Moment::OrnsteinUhlenbeck => {
+            (&of_moment, parameters.level * parameters.level * parameters.rate * (2.0 * h.powi(5)))
+        }
+    };
+    let mut added = [[zero; 3]; 3];
+    for (s, weight) in NODES {
+        let motion = impulse.each_ref().map(|polynomial| at(polynomial, s));
+        for i in 0..3 {
+            for j in 0..=i {
+                added[i][j] = added[i][j] + motion[i] * motion[j] * weight;
+            }
+        }
+    }
+    let units = [1.0, h, h * h];
+    let entry = |i: usize, j: usize| added[i.max(j)][i.min(j)] * density / (units[i] * units[j]);
+    (transition, std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))
+}
