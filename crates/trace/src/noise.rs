@@ -12,6 +12,8 @@
 
 use std::sync::OnceLock;
 
+use estimation::kalman::{self, Filter, MOST, Reading, Sensor, Step, Whitener};
+use estimation::with_states;
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
@@ -19,11 +21,8 @@ use crate::record::Record;
 
 mod system;
 
-pub(crate) use system::{MOST, Matrix, System, propagate, transposed, van_loan};
-use system::{Vector, joint};
-
-/// What the filter does with a row: gain, log S, weight.
-type Correction<const N: usize> = ([f64; N], f64, f64);
+use system::joint;
+pub(crate) use system::{Matrix, System, van_loan};
 
 /// What wanders beside the white heading noise: a random yaw moment, or an error of the compass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -216,24 +215,10 @@ impl RecordNoise {
         self.longest
     }
 
-    /// The filter that makes noise of this colour white.
+    /// The filter that makes noise of this colour white, in units of the white noise of a full row.
     pub fn whitener(&self, colour: &Colour) -> Whitener {
-        let rows = self.durations.len();
-        if colour.is_white() {
-            let even = self.variances.iter().all(|&variance| variance == 1.0);
-            let weights = self.variances.iter().map(|variance| (0, [0.0; MOST], variance.sqrt().recip()));
-            let log_variance = if even { 0.0 } else { self.variances.iter().map(|variance| variance.ln()).sum() };
-            let rows_of = if even { Vec::new() } else { weights.collect() };
-            return Whitener { states: 0, steps: Vec::new(), rows: rows_of, count: rows, log_variance };
-        }
         let system = self.system(colour);
-        match system.states {
-            1 => self.filter::<1>(system, colour),
-            2 => self.filter::<2>(system, colour),
-            3 => self.filter::<3>(system, colour),
-            4 => self.filter::<4>(system, colour),
-            _ => self.filter::<5>(system, colour),
-        }
+        with_states!(system.states, N => self.filter::<N>(&system))
     }
 
     /// Random moment and waves of this colour as one linear system, without the white noise of the rows.
@@ -250,14 +235,11 @@ impl RecordNoise {
             (drift, level)
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);
-        let mut observe = [0.0; MOST];
-        observe[0] = 1.0;
         let mut initial = [[0.0; MOST]; MOST];
         if let Some((drift, level)) = drift {
             (0..own).for_each(|k| initial[k][k] = level * drift.beginning[k]);
         }
         if let Some(waves) = &colour.waves {
-            observe[own] = 1.0;
             let [p0, p1] = waves.stationary_sd().map(|sd| sd * sd);
             (initial[own][own], initial[own + 1][own + 1]) = (p0, p1);
         }
@@ -273,167 +255,26 @@ impl RecordNoise {
             })
         });
         let of_row = of_row.collect();
-        System { states: own + if colour.waves.is_some() { 2 } else { 0 }, own, steps, of_row, observe, initial }
+        let states = own + if colour.waves.is_some() { 2 } else { 0 };
+        System { states, beside: colour.waves.filter(|_| own > 0).map(|_| own), steps, of_row, initial }
     }
 
     /// The filter of a system of N states.
-    fn filter<const N: usize>(&self, system: System, colour: &Colour) -> Whitener {
-        let rows = self.durations.len();
-        let observe: [f64; N] = std::array::from_fn(|i| system.observe[i]);
-        let mut covariance: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| system.initial[i][j]));
-        let mut filter = Vec::with_capacity(rows);
-        let mut log_variance = 0.0;
-        let mut settled = false;
-        // Of the last row: place of its transition and variance of its noise; gain, log S, weight.
-        let mut last: Option<((usize, f64), Correction<N>)> = None;
-        for (row, &place) in system.of_row.iter().enumerate() {
-            // Even rows lead to a filter that no longer changes.
-            let kind = (place, self.variances[row]);
-            let (gain, log, weight) = match last {
-                Some((before, known)) if settled && before == kind => known,
-                _ => {
-                    if row > 0 {
-                        let (f, q) = &system.steps[place];
-                        covariance = propagate(f, &covariance, q);
-                    }
-                    let (gain, variance) = correct(&mut covariance, &observe, kind.1);
-                    settled = last.is_some_and(|(before, (old, ..))| {
-                        before == kind && (0..N).all(|i| (gain[i] - old[i]).abs() <= 1e-9 * old[i].abs() + 1e-15)
-                    });
-                    (gain, variance.ln(), variance.sqrt().recip())
-                }
-            };
-            last = Some((kind, (gain, log, weight)));
-            log_variance += log;
-            let mut all = [0.0; MOST];
-            all[..N].copy_from_slice(&gain);
-            filter.push((place, all, weight));
-        }
-        let steps = system.steps.into_iter().map(|(f, _)| f).collect();
-        let waves = colour.waves.is_some();
-        Whitener { states: N, steps, rows: filter, count: rows, log_variance }.observing(system.own, waves)
-    }
-}
-
-/// Takes a heading with white noise of variance `own` into account: the gain, and the variance S that was predicted for
-/// the heading.
-fn correct<const N: usize>(covariance: &mut [[f64; N]; N], observe: &[f64; N], own: f64) -> ([f64; N], f64) {
-    let mut seen = [0.0; N];
-    for i in 0..N {
-        seen[i] = (0..N).map(|j| covariance[i][j] * observe[j]).sum();
-    }
-    let variance = own + (0..N).map(|i| observe[i] * seen[i]).sum::<f64>();
-    let gain = seen.map(|s| s / variance);
-    for i in 0..N {
-        for j in 0..N {
-            covariance[i][j] -= gain[i] * seen[j];
-        }
-    }
-    (gain, variance)
-}
-
-/// A filter that makes columns of one record white; for white noise on rows of equally many readings it leaves them as
-/// they are.
-#[derive(Debug, Clone)]
-pub struct Whitener {
-    states: usize,
-    steps: Vec<Matrix>,
-    /// Transition, gain and one over the predicted standard deviation of every observed row.
-    rows: Vec<(usize, Vector, f64)>,
-    count: usize,
-    /// Σ log S.
-    pub log_variance: f64,
-}
-
-impl Whitener {
-    /// Waves are seen through their first state, which the transition of a moment leaves at `own`.
-    fn observing(mut self, own: usize, waves: bool) -> Self {
-        if waves && own > 0 {
-            // Seen is the sum of two states: a change of coordinates makes it the first one. x₀ ← x₀ + x_own.
-            for f in &mut self.steps {
-                for row in f.iter_mut() {
-                    row[own] -= row[0];
-                }
-                let moved = f[own];
-                f[0].iter_mut().zip(moved).for_each(|(first, own)| *first += own);
-            }
-            for (_, gain, _) in &mut self.rows {
-                gain[0] += gain[own];
-            }
-        }
-        self
-    }
-
-    /// Number of observed rows.
-    pub fn rows(&self) -> usize {
-        self.count
-    }
-
-    /// log S of an observed row.
-    pub fn log_variance_of(&self, row: usize) -> f64 {
-        self.rows.get(row).map_or(0.0, |(_, _, weight)| -2.0 * weight.ln())
-    }
-
-    /// Makes columns white in place.
-    pub fn apply(&self, columns: &mut [&mut Vec<f64>]) {
-        match self.states {
-            0 => {
-                for (k, (_, _, weight)) in self.rows.iter().enumerate() {
-                    columns.iter_mut().for_each(|column| column[k] *= weight);
-                }
-            }
-            1 => self.apply_all::<1>(columns),
-            2 => self.apply_all::<2>(columns),
-            3 => self.apply_all::<3>(columns),
-            4 => self.apply_all::<4>(columns),
-            _ => self.apply_all::<5>(columns),
-        }
-    }
-
-    /// Several columns at once: the filter waits for the last row of each, but not for the other columns.
-    fn apply_all<const N: usize>(&self, columns: &mut [&mut Vec<f64>]) {
-        let (fours, rest) = columns.as_chunks_mut::<4>();
-        fours.iter_mut().for_each(|columns| self.run::<N, 4>(columns));
-        let (twos, rest) = rest.as_chunks_mut::<2>();
-        twos.iter_mut().for_each(|columns| self.run::<N, 2>(columns));
-        rest.as_chunks_mut::<1>().0.iter_mut().for_each(|columns| self.run::<N, 1>(columns));
-    }
-
-    /// Applies the transpose of what makes a column white, so that both together are Σ⁻¹ of the noise.
-    pub fn apply_transposed(&self, column: &mut [f64]) {
-        let mut later = [0.0; MOST];
-        for (value, (step, gain, weight)) in column.iter_mut().zip(&self.rows).rev() {
-            *value = *value * weight + (0..self.states).map(|i| gain[i] * later[i]).sum::<f64>();
-            let Some(f) = self.steps.get(*step) else { continue };
-            later[0] -= *value;
-            later = transposed(f, &later);
-        }
-    }
-
-    fn run<const N: usize, const COLUMNS: usize>(&self, columns: &mut [&mut Vec<f64>; COLUMNS]) {
-        let columns = columns.each_mut().map(|column| column.as_mut_slice());
-        let mut x = [[0.0; COLUMNS]; N];
-        for (row, (step, gain, weight)) in self.rows.iter().enumerate() {
-            let f = &self.steps[*step];
-            let mut next = [[0.0; COLUMNS]; N];
-            for (next, f) in next.iter_mut().zip(f) {
-                for (x, f) in x.iter().zip(f) {
-                    for k in 0..COLUMNS {
-                        next[k] += f * x[k];
-                    }
-                }
-            }
-            let mut innovation = [0.0; COLUMNS];
-            for k in 0..COLUMNS {
-                innovation[k] = columns[k][row] - next[0][k];
-                columns[k][row] = innovation[k] * weight;
-            }
-            for ((x, next), gain) in x.iter_mut().zip(next).zip(gain) {
-                for k in 0..COLUMNS {
-                    x[k] = next[k] + gain * innovation[k];
-                }
-            }
-        }
+    fn filter<const N: usize>(&self, system: &System) -> Whitener {
+        let matrix = |wide: &Matrix| -> [[f64; N]; N] { std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j])) };
+        let steps = system.steps.iter().map(|(f, q)| Step { transition: matrix(f), added: matrix(q) });
+        let mut sensors: Vec<Sensor<f64>> = Vec::new();
+        let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
+            let known = sensors.iter().position(|sensor| sensor.variance == variance);
+            let sensor = known.unwrap_or_else(|| {
+                sensors.push(Sensor { state: 0, beside: system.beside, variance });
+                sensors.len() - 1
+            });
+            Reading { step: (row > 0).then_some(step), sensor }
+        };
+        let readings = system.of_row.iter().zip(&self.variances).enumerate().map(reading).collect();
+        Filter::new(kalman::System { steps: steps.collect(), sensors, readings, initial: matrix(&system.initial) })
+            .whitener()
     }
 }
 

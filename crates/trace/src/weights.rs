@@ -1,8 +1,9 @@
 //! The law of the noise, and what makes columns of a record white under it.
 
 use estimation::column::dot;
+use estimation::kalman::Whitener;
 
-use crate::noise::{Colour, Wander, Whitener};
+use crate::noise::{Colour, Wander};
 
 /// The law of the noise: one colour for all records, a size for each.
 #[derive(Debug, Clone, PartialEq)]

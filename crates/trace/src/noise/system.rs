@@ -1,27 +1,23 @@
 //! What wanders and waves as one linear system over the observed rows of a record.
 
+use estimation::kalman::MOST;
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
-/// Most states: heading, rate, moment, and two of the waves.
-pub(crate) const MOST: usize = 5;
-
-pub(crate) type Vector = [f64; MOST];
+type Vector = [f64; MOST];
 pub(crate) type Matrix = [[f64; MOST]; MOST];
 
-/// x ← F x + q before every observed row but the first, heading h·x.
+/// x ← F x + q before every observed row but the first; the heading is the first state, or the sum of it and another.
 #[derive(Debug, Clone)]
 pub(crate) struct System {
     /// Number of states; the others are zero.
     pub states: usize,
-    /// How many of them are those of what wanders: the waves come after it.
-    pub own: usize,
+    /// The state that is added to the first one: the waves, beside what wanders.
+    pub beside: Option<usize>,
     /// Transition F and covariance of q of every distinct step.
     pub steps: Vec<(Matrix, Matrix)>,
     /// The step before every observed row.
     pub of_row: Vec<usize>,
-    /// h.
-    pub observe: Vector,
     /// Covariance of the state at the first row.
     pub initial: Matrix,
 }
@@ -43,7 +39,7 @@ impl System {
                     added[i] + (0..MOST).map(|j| self.steps[step].0[i][j] * state[j]).sum::<f64>()
                 });
             }
-            path.push((0..MOST).map(|i| self.observe[i] * state[i]).sum());
+            path.push(state[0] + self.beside.map_or(0.0, |beside| state[beside]));
         }
         path
     }
@@ -63,11 +59,6 @@ fn root(covariance: &Matrix) -> Matrix {
         }
     }
     l
-}
-
-/// Fᵀ x.
-pub(crate) fn transposed(f: &Matrix, x: &Vector) -> Vector {
-    std::array::from_fn(|j| (0..MOST).map(|i| f[i][j] * x[i]).sum())
 }
 
 /// Transition and added covariance of what wanders and waves together.
@@ -98,23 +89,6 @@ pub(super) fn joint(
         }
     }
     (f, q)
-}
-
-/// Covariance a step later: F P Fᵀ + Q.
-pub(crate) fn propagate<const N: usize>(f: &Matrix, p: &[[f64; N]; N], q: &Matrix) -> [[f64; N]; N] {
-    let mut half = [[0.0; N]; N];
-    let mut result = [[0.0; N]; N];
-    for i in 0..N {
-        for j in 0..N {
-            half[i][j] = (0..N).map(|k| f[i][k] * p[k][j]).sum();
-        }
-    }
-    for i in 0..N {
-        for j in 0..N {
-            result[i][j] = q[i][j] + (0..N).map(|k| half[i][k] * f[j][k]).sum::<f64>();
-        }
-    }
-    result
 }
 
 /// Transition and added covariance over h for white noise of the given intensity on the last state (Van Loan 1978).

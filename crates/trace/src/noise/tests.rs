@@ -122,5 +122,5 @@ fn white_noise_is_left_alone() {
     let whitener = RecordNoise::new(&record(&time), 0.1, 19.0, 1).whitener(&Colour::WHITE);
     let mut column: Vec<f64> = time.clone();
     whitener.apply(&mut [&mut column]);
-    assert_eq!((column, whitener.log_variance, whitener.rows()), (time, 0.0, 20));
+    assert_eq!((column, whitener.log_variance), (time, 0.0));
 }
