@@ -123,6 +123,29 @@ pub struct System<R, const N: usize> {
     pub initial: [[R; N]; N],
 }
 
+impl<const N: usize> System<f64, N> {
+    /// A system of which every row is read once: its first state, or the sum of it and the one `beside`, with noise of a
+    /// variance of its own; `of_row` has the step before every row, which counts from the second on.
+    pub fn of_rows(
+        steps: Vec<Step<f64, N>>,
+        initial: [[f64; N]; N],
+        (of_row, variances): (&[usize], &[f64]),
+        beside: Option<usize>,
+    ) -> Self {
+        let mut sensors: Vec<Sensor<f64>> = Vec::new();
+        let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
+            let known = sensors.iter().position(|sensor| sensor.variance == variance);
+            let sensor = known.unwrap_or_else(|| {
+                sensors.push(Sensor { state: 0, beside, variance });
+                sensors.len() - 1
+            });
+            Reading { step: (row > 0).then_some(step), sensor }
+        };
+        let readings = of_row.iter().zip(variances).enumerate().map(reading).collect();
+        Self { steps, sensors, readings, initial }
+    }
+}
+
 /// What the filter does with a reading.
 #[derive(Debug, Clone, Copy)]
 struct Gain<R, const N: usize> {

@@ -12,7 +12,7 @@
 
 use std::sync::OnceLock;
 
-use estimation::kalman::{self, Filter, MOST, Reading, Sensor, Step, Whitener};
+use estimation::kalman::{self, Filter, MOST, Step, Whitener};
 use estimation::with_states;
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
@@ -263,18 +263,9 @@ impl RecordNoise {
     fn filter<const N: usize>(&self, system: &System) -> Whitener {
         let matrix = |wide: &Matrix| -> [[f64; N]; N] { std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j])) };
         let steps = system.steps.iter().map(|(f, q)| Step { transition: matrix(f), added: matrix(q) });
-        let mut sensors: Vec<Sensor<f64>> = Vec::new();
-        let reading = |(row, (&step, &variance)): (usize, (&usize, &f64))| {
-            let known = sensors.iter().position(|sensor| sensor.variance == variance);
-            let sensor = known.unwrap_or_else(|| {
-                sensors.push(Sensor { state: 0, beside: system.beside, variance });
-                sensors.len() - 1
-            });
-            Reading { step: (row > 0).then_some(step), sensor }
-        };
-        let readings = system.of_row.iter().zip(&self.variances).enumerate().map(reading).collect();
-        Filter::new(kalman::System { steps: steps.collect(), sensors, readings, initial: matrix(&system.initial) })
-            .whitener()
+        let rows = (system.of_row.as_slice(), self.variances.as_slice());
+        let own = kalman::System::of_rows(steps.collect(), matrix(&system.initial), rows, system.beside);
+        Filter::new(own).whitener()
     }
 }
 

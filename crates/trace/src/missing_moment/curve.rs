@@ -50,7 +50,7 @@ pub(super) fn likeliest(rows: &Rows, gain: f64, value: impl Fn(&Filter) -> Optio
 /// −2 log L up to a constant, with σ² at its best value.
 pub(super) fn deviance(square: f64, filter: &Filter, rows: usize) -> f64 {
     let n = (rows - STATES) as f64;
-    n * (square / n + FINEST * FINEST).ln() + filter.log_variance
+    n * (square / n + FINEST * FINEST).ln() + filter.log_variance()
 }
 
 /// σ² from a whitened sum of squares after `coefficients` were fitted, rad².

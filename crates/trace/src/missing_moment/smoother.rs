@@ -4,12 +4,9 @@
 //! density λσ² (rad²/s), where σ is the standard deviation of the heading noise of a full row, in whose square all
 //! variances here are counted. Steps between rows are exact. The state begins with a large variance, so that the first
 //! heading, rate and moment are the smoother's.
-//!
-//! The mean and the variance given all rows are those of Rauch, Tung and Striebel (1965), here by the adjoint recursion
-//! of Bryson and Frazier (1963), which inverts no matrix: x = x⁻ + P⁻ s, V = P⁻ − P⁻ N P⁻ with the score s of all later
-//! innovations and its variance N.
 
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use estimation::kalman::{Smoother, Step, System};
+use nalgebra::DMatrix;
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Polyline};
 
@@ -37,15 +34,15 @@ pub(super) struct Rows {
     /// Variance of the noise of every row, in units of that of a full one.
     variance: Vec<f64>,
     /// Transition and covariance for λ = 1 of every distinct step.
-    steps: Vec<(f64, Matrix3<f64>, Matrix3<f64>)>,
+    steps: Vec<(f64, Step<f64, STATES>)>,
     /// The step before every row; the first has none.
     of_row: Vec<usize>,
     /// Large initial variances over σ².
     prior: f64,
 }
 
-fn three(matrix: &Matrix) -> Matrix3<f64> {
-    Matrix3::from_fn(|i, j| matrix[i][j])
+fn three(matrix: &Matrix) -> [[f64; STATES]; STATES] {
+    std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j]))
 }
 
 impl Rows {
@@ -55,14 +52,14 @@ impl Rows {
         generator[(0, 1)] = 1.0;
         generator[(1, 1)] = -base.inverse_T;
         generator[(1, 2)] = base.K_over_T;
-        let mut steps: Vec<(f64, Matrix3<f64>, Matrix3<f64>)> = Vec::new();
+        let mut steps: Vec<(f64, Step<f64, STATES>)> = Vec::new();
         let mut of_row = vec![0];
         for pair in time.windows(2) {
             let h = pair[1] - pair[0];
             let known = steps.iter().rposition(|step| (step.0 - h).abs() <= 1e-9 * h);
             of_row.push(known.unwrap_or_else(|| {
                 let (f, q) = van_loan(&generator, 1.0, h);
-                steps.push((h, three(&f), three(&q)));
+                steps.push((h, Step { transition: three(&f), added: three(&q) }));
                 steps.len() - 1
             }));
         }
@@ -108,96 +105,47 @@ impl Rows {
     }
 
     /// The filter for a moment that walks with λ, 1/s.
-    pub fn filter(&self, intensity: f64) -> Filter<'_> {
-        let mut rows: Vec<Row> = Vec::with_capacity(self.count());
-        let mut covariance = Matrix3::from_diagonal_element(self.prior);
-        for (row, &noise) in self.variance.iter().enumerate() {
-            if row > 0 {
-                let (_, f, q) = &self.steps[self.of_row[row]];
-                covariance = f * covariance * f.transpose() + q * intensity;
-                covariance = 0.5 * (covariance + covariance.transpose());
-            }
-            let seen: Vector3<f64> = covariance.column(0).into();
-            let variance = seen[0] + noise;
-            rows.push(Row { predicted: covariance, gain: seen / variance, variance });
-            covariance -= seen * seen.transpose() / variance;
-        }
-        let log_variance = rows.iter().map(|row| row.variance.ln()).sum();
-        Filter { of: self, rows, log_variance }
+    pub fn filter(&self, intensity: f64) -> Filter {
+        let scaled = |(_, step): &(f64, Step<f64, STATES>)| Step {
+            added: step.added.map(|row| row.map(|x| x * intensity)),
+            ..*step
+        };
+        let steps = self.steps.iter().map(scaled).collect();
+        let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
+        Filter(Smoother::new(System::of_rows(steps, initial, (&self.of_row, &self.variance), None)))
     }
-}
-
-/// One row of a filter.
-#[derive(Debug, Clone)]
-struct Row {
-    /// Variance of the state before the heading of the row is known.
-    predicted: Matrix3<f64>,
-    gain: Vector3<f64>,
-    /// Predicted variance of the heading.
-    variance: f64,
 }
 
 /// The filter for one size of the walk.
 #[derive(Debug, Clone)]
-pub(super) struct Filter<'a> {
-    of: &'a Rows,
-    rows: Vec<Row>,
-    /// Σ log S.
-    pub log_variance: f64,
-}
+pub(super) struct Filter(Smoother<STATES>);
 
-impl Filter<'_> {
-    /// Predicted states and innovations of every row.
-    fn run<'b>(&'b self, column: &'b Column) -> impl Iterator<Item = (Vector3<f64>, f64)> + 'b {
-        let mut state = Vector3::zeros();
-        self.rows.iter().enumerate().map(move |(row, own)| {
-            if row > 0 {
-                let [heading, rate] = column.forced[row];
-                state = self.of.steps[self.of.of_row[row]].1 * state + Vector3::new(heading, rate, 0.0);
-            }
-            let predicted = state;
-            let innovation = column.heading[row] - predicted[0];
-            state += own.gain * innovation;
-            (predicted, innovation)
-        })
+impl Filter {
+    /// Σ log S.
+    pub fn log_variance(&self) -> f64 {
+        self.0.log_variance()
     }
 
     /// The innovations in units of their standard deviation over σ.
     pub fn whitened(&self, column: &Column) -> Vec<f64> {
-        self.run(column).zip(&self.rows).map(|((_, innovation), row)| innovation / row.variance.sqrt()).collect()
+        self.0.whitened(&column.heading, forced(column))
     }
 
     /// Heading, yaw rate and moment of every row given all rows.
-    pub fn smoothed(&self, column: &Column) -> Vec<Vector3<f64>> {
-        let forward: Vec<(Vector3<f64>, f64)> = self.run(column).collect();
-        let mut score = Vector3::zeros();
-        let mut states = vec![Vector3::zeros(); self.rows.len()];
-        for row in (0..self.rows.len()).rev() {
-            let (own, (predicted, innovation)) = (&self.rows[row], forward[row]);
-            // Through the correction of the row, then its own innovation.
-            score[0] += innovation / own.variance - own.gain.dot(&score);
-            states[row] = predicted + own.predicted * score;
-            score = self.of.steps.get(self.of.of_row[row]).map_or(score, |step| step.1.transpose() * score);
-        }
-        states
+    pub fn smoothed(&self, column: &Column) -> Vec<[f64; STATES]> {
+        self.0.smoothed(&column.heading, forced(column))
     }
 
     /// Variance of the moment of every row given all rows, rad² over σ².
     pub fn moment_variance(&self) -> Vec<f64> {
-        let mut information = Matrix3::<f64>::zeros();
-        let mut variances = vec![0.0; self.rows.len()];
-        for row in (0..self.rows.len()).rev() {
-            let own = &self.rows[row];
-            let mut through = Matrix3::identity();
-            through.column_mut(0).axpy(-1.0, &own.gain, 1.0);
-            information = through.transpose() * information * through;
-            information[(0, 0)] += own.variance.recip();
-            let column: Vector3<f64> = own.predicted.column(2).into();
-            variances[row] = (own.predicted[(2, 2)] - column.dot(&(information * column))).max(0.0);
-            if let Some((_, f, _)) = self.of.steps.get(self.of.of_row[row]) {
-                information = f.transpose() * information * f;
-            }
-        }
-        variances
+        self.0.variances(2)
+    }
+}
+
+/// What the known input of a column adds to the state before a row.
+fn forced(column: &Column) -> impl Fn(usize) -> [f64; STATES] {
+    |row| {
+        let [heading, rate] = column.forced[row];
+        [heading, rate, 0.0]
     }
 }
