@@ -128,6 +128,8 @@ pub struct Row {
 pub struct Group {
     /// Part of a path.
     pub name: &'static str,
+    /// Heading of its table.
+    pub title: &'static str,
     /// What a reader has to know to read the table.
     pub about: &'static str,
     /// The rows.
@@ -136,8 +138,8 @@ pub struct Group {
 
 impl Group {
     /// A group without rows.
-    pub fn new(name: &'static str, about: &'static str) -> Self {
-        Self { name, about, rows: Vec::new() }
+    pub fn new(name: &'static str, title: &'static str, about: &'static str) -> Self {
+        Self { name, title, about, rows: Vec::new() }
     }
 
     /// Adds work with nothing beside it.

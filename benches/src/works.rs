@@ -7,11 +7,11 @@ mod simulation;
 mod studies;
 mod tracing;
 
-pub use identification::{RIVAL, identification};
+pub use identification::identification;
 pub use outside::outside;
 pub use prediction::prediction;
 pub use simulation::simulation;
-pub use studies::{CHECK_S, SHARE, scenarios, scenarios_folder, studies, throughput};
+pub use studies::studies;
 pub use tracing::tracing;
 
 use crate::work::Group;

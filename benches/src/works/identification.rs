@@ -10,7 +10,7 @@ use crate::rivals;
 use crate::work::{Group, Reach, Work};
 
 /// What everything is held against.
-pub const RIVAL: &str = "dsmc SRIVC, heading";
+const RIVAL: &str = "dsmc SRIVC, heading";
 
 /// Triples of the published method where it takes many, and its name then.
 const TRIPLES: usize = 200;
@@ -55,6 +55,7 @@ fn identifying(name: &str, settings: IdentifierSettings, trial: &Arc<Trial>) -> 
 pub fn identification() -> Group {
     let mut group = Group::new(
         "identify",
+        "Identification",
         "One record of 1201 rows (10/10, 600 s at 0.5 s, K 0.08 1/s, T 25 s, heading noise 0.1 deg, gyro noise 0.02 deg/s), on \
          one core. Ours give K, T and the rudder bias with covariance, diagnostics and a typed reason where they fail. Beside \
          them stands SRIVC of dsmc 0.27 on the heading (one integrator, order one, first-order hold, \

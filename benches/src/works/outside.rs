@@ -16,6 +16,7 @@ const ROWS: usize = 270;
 pub fn outside(echo: &str) -> Group {
     let mut group = Group::new(
         "outside",
+        "Outside estimators",
         "One record of 270 rows (10/10, K 0.08 1/s, T 25 s) to an outside estimator that answers at once, and its answer back. \
          The line of the question alone is written to memory.",
     );

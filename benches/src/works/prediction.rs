@@ -54,6 +54,7 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> KnownShip {
 pub fn prediction() -> Group {
     let mut group = Group::new(
         "predict",
+        "Prediction",
         "A 20/20 zig-zag predicted from 1000 drawn ships, on one core: figures of merit with their intervals, and the bands \
          of the heading.",
     );

@@ -21,6 +21,7 @@ fn bare_draws(key: &StreamKey, rows: usize) -> [Vec<f64>; 2] {
 pub fn simulation() -> Group {
     let mut group = Group::new(
         "simulate",
+        "Simulation",
         "A 10/10 zig-zag of 600 s, 1201 rows, with heading and gyro noise, on one core. Beside it stand its random numbers \
          alone (ChaCha8, standard normal): nothing with that noise can be cheaper. A trial of a study shares the motion of its ship \
          with the other trials of its cell, where chance moves nothing but the instruments; a trial on its own makes it anew, \

@@ -17,38 +17,28 @@ use crate::work::{Group, Reach, Work};
 const TRIALS: u64 = 256;
 
 /// Share of the cores that a study has to use.
-pub const SHARE: f64 = 0.92;
+const SHARE: f64 = 0.92;
 
 /// Time that checking every scenario may take, s.
-pub const CHECK_S: f64 = 0.02;
+const CHECK_S: f64 = 0.02;
 
 /// Figures that are drawn side by side.
 const FIGURES: usize = 8;
 
-/// The folder of the scenarios of the project.
-pub fn scenarios_folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios")
-}
-
 /// Files of all scenarios of the project, in the order of their names.
-///
-/// # Panics
-/// When the folder the program was built in is gone.
-pub fn scenarios() -> Vec<PathBuf> {
-    let folder = std::fs::read_dir(scenarios_folder()).expect("the scenarios are in the project");
-    let mut files: Vec<PathBuf> = folder.filter_map(|entry| Some(entry.ok()?.path())).collect();
+fn scenarios() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenarios");
+    let entries = std::fs::read_dir(folder).expect("the scenarios are in the project");
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     files.sort();
     files
 }
 
-/// The scenario that trials per second are measured on: 271 samples, seven methods.
-pub fn throughput() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("throughput.toml")
-}
-
+/// Trials of the scenario that trials per second are measured on: 271 samples, seven methods.
 fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
-    let scenario = Scenario::read(&throughput(), None).expect("a scenario of the project");
+    let throughput = Path::new(env!("CARGO_MANIFEST_DIR")).join("throughput.toml");
+    let scenario = Scenario::read(&throughput, None).expect("a scenario of the project");
     let scenario = Scenario { replicates: TRIALS, ..scenario };
     move || in_memory(&scenario).1.len()
 }
@@ -63,6 +53,7 @@ fn drawing() -> Figure {
 pub fn studies() -> Group {
     let mut group = Group::new(
         "study",
+        "Trials, scenarios and figures",
         "Trials are those of benches/throughput.toml: 271 samples, seven methods, rows kept in memory. The figure is a zig-zag of \
          1201 rows with its characteristic points, 1800 pixels across (twice the pixels of a screen page).",
     );

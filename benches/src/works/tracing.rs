@@ -49,6 +49,7 @@ fn measured(folder: &str, names: &[&str]) -> Option<Vec<Trial>> {
 pub fn tracing() -> Group {
     let mut group = Group::new(
         "trace",
+        "Tracing",
         "Whole traces with bands and the errors of restarted replays, on one core: a simulated record that lacks nothing, and \
          measured zig-zags of KVLCC2 where they are at hand.",
     );

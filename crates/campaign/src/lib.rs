@@ -22,8 +22,6 @@ pub mod curves;
 pub mod design;
 pub mod disk;
 pub mod engine;
-#[cfg(test)]
-mod extremes;
 pub mod files;
 pub mod folder;
 mod foretell;
@@ -40,6 +38,8 @@ pub mod stopping;
 pub mod store;
 pub mod summary;
 pub mod task;
+#[cfg(test)]
+mod tests;
 pub mod timings;
 pub mod unfinished;
 mod yardstick;

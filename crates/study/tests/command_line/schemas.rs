@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use jsonschema::Validator;
 use serde_json::Value;
 use study::commands::schema::schema;
 use study::options::Described;
@@ -19,15 +18,89 @@ const ALL: [(&str, Described); 6] = [
     ("manifest", Described::Manifest),
 ];
 
-static VALIDATORS: LazyLock<Vec<(&str, Validator)>> = LazyLock::new(|| {
-    let validator = |what| jsonschema::validator_for(schema(what).as_value()).expect("a schema");
-    ALL.map(|(name, what)| (name, validator(what))).into()
-});
-
 /// What is wrong with a document by a schema.
 fn faults(name: &str, document: &Value) -> Vec<String> {
-    let (_, validator) = VALIDATORS.iter().find(|(known, _)| *known == name).expect("a schema of that name");
-    validator.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect()
+    static SCHEMAS: LazyLock<Vec<(&str, Value)>> =
+        LazyLock::new(|| ALL.map(|(name, what)| (name, schema(what).as_value().clone())).into());
+    let (_, root) = SCHEMAS.iter().find(|(known, _)| *known == name).expect("a schema of that name");
+    check(root, root, document).err().into_iter().collect()
+}
+
+/// Holds a value to a part of the schema `root`: the keywords of draft 7 that schemas of this program use, no others.
+fn check(root: &Value, part: &Value, value: &Value) -> Result<(), String> {
+    let wrong = |keyword: &str, limit: &Value| Err(format!("{keyword} {limit} refuses {value}"));
+    let Some(part) = part.as_object() else { return if *part == true { Ok(()) } else { wrong("schema", part) } };
+    let within = |place: &dyn std::fmt::Display, result: Result<(), String>| result.map_err(|e| format!("{place}/{e}"));
+    for (keyword, limit) in part {
+        let parts = || limit.as_array().into_iter().flatten();
+        let matching = || parts().filter(|part| check(root, part, value).is_ok()).count();
+        let count = limit.as_u64().unwrap_or_default() as usize;
+        let items = || value.as_array().map(Vec::len);
+        let keys = || value.as_object().map(serde_json::Map::len);
+        let is_met = match keyword.as_str() {
+            "$schema" | "title" | "description" | "default" | "definitions" | "format" => true,
+            "$ref" => {
+                let target = limit.as_str().and_then(|path| root.pointer(path.strip_prefix('#')?));
+                check(root, target.expect("a definition of the schema"), value)?;
+                true
+            }
+            "allOf" => {
+                parts().try_for_each(|part| check(root, part, value))?;
+                true
+            }
+            "anyOf" => matching() > 0,
+            "oneOf" => matching() == 1,
+            "type" => match limit.as_array() {
+                Some(types) => types.iter().any(|one| is_of_type(value, one)),
+                None => is_of_type(value, limit),
+            },
+            "const" => value == limit,
+            "enum" => parts().any(|one| one == value),
+            "minimum" => value.as_f64().is_none_or(|number| Some(number) >= limit.as_f64()),
+            "maximum" => value.as_f64().is_none_or(|number| Some(number) <= limit.as_f64()),
+            "minItems" => items().is_none_or(|items| items >= count),
+            "maxItems" => items().is_none_or(|items| items <= count),
+            "minProperties" => keys().is_none_or(|keys| keys >= count),
+            "maxProperties" => keys().is_none_or(|keys| keys <= count),
+            "required" => {
+                value.as_object().is_none_or(|map| parts().all(|key| map.contains_key(key.as_str().unwrap_or(""))))
+            }
+            "items" => {
+                let mut items = value.as_array().into_iter().flatten().enumerate();
+                items.try_for_each(|(place, item)| within(&place, check(root, limit, item)))?;
+                true
+            }
+            "properties" | "additionalProperties" => {
+                let known = part.get("properties");
+                for (key, own) in value.as_object().into_iter().flatten() {
+                    match (known.and_then(|known| known.get(key)), keyword.as_str()) {
+                        (Some(part), "properties") => within(key, check(root, part, own))?,
+                        (None, "additionalProperties") => within(key, check(root, limit, own))?,
+                        _ => {}
+                    }
+                }
+                true
+            }
+            other => panic!("the schema has the keyword `{other}`, which this test does not know"),
+        };
+        if !is_met {
+            return wrong(keyword, limit);
+        }
+    }
+    Ok(())
+}
+
+fn is_of_type(value: &Value, kind: &Value) -> bool {
+    match kind.as_str().expect("the name of a type") {
+        "null" => value.is_null(),
+        "boolean" => value.is_boolean(),
+        "string" => value.is_string(),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        "number" => value.is_number(),
+        "integer" => value.as_f64().is_some_and(|number| number.fract() == 0.0),
+        other => panic!("there is no type `{other}`"),
+    }
 }
 
 fn hold(name: &str, file: &Path, document: &Value) {

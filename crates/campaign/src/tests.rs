@@ -1,8 +1,6 @@
 //! Every number of a scenario is checked: put to NaN it is refused, and the message shows its own key at its own line.
 //! Put to any other extreme it is refused, or its trials end.
 
-mod texts;
-
 use std::path::Path;
 
 use scenario::keys::Key;
@@ -11,7 +9,21 @@ use simulate::limits::MOST_STEPS;
 use crate::engine::{Bench, key};
 use crate::task::Task;
 use scenario::{Scenario, effect_keys};
-use texts::{EVERYTHING, OF_STUDY, OF_TRACE};
+
+/// Scenarios that together hold every key with a number, one a line.
+const EVERYTHING: [&str; 5] = [
+    include_str!("tests/disturbed.toml"),
+    include_str!("tests/second_order.toml"),
+    include_str!("tests/turning_circle.toml"),
+    include_str!("tests/pull_out.toml"),
+    include_str!("tests/draws.toml"),
+];
+
+/// Numbers of the study and of its methods, as far as [`EVERYTHING`] has none of them.
+const OF_STUDY: &str = include_str!("tests/of_study.toml");
+
+/// Numbers of a trace.
+const OF_TRACE: &str = include_str!("tests/of_trace.toml");
 
 /// Numbers that somebody may write, and nobody can mean.
 const EXTREMES: [&str; 13] = [

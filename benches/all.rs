@@ -1,0 +1,23 @@
+//! Measures every piece of work with criterion; its filters and options work as usual (`cargo bench -p kempf-benches --
+//! identify`). The pieces are defined in `kempf_benches::works`, `ratios` makes their tables.
+
+use criterion::Criterion;
+use kempf_benches::works;
+
+/// Samples of work that takes long.
+const FEW_SAMPLES: usize = 10;
+
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    for group in works::all().into_iter().chain([works::outside(env!("CARGO_BIN_EXE_echo"))]) {
+        for work in group.works() {
+            let mut benches = criterion.benchmark_group(group.name);
+            if work.is_slow {
+                benches.sample_size(FEW_SAMPLES);
+            }
+            benches.bench_function(&work.name, |bencher| bencher.iter_custom(|goes| work.time(goes)));
+            benches.finish();
+        }
+    }
+    criterion.final_summary();
+}
