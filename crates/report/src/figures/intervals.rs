@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::median;
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::colour::Colour;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
@@ -14,7 +13,7 @@ use crate::markup::symbol;
 use crate::number;
 use crate::palette::{INK, Look, Origin, RECORD};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

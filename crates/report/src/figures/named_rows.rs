@@ -1,12 +1,11 @@
 //! Rows below each other with their names left of the frame, broken where they are long, over one axis.
 
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::colour::Colour;
 use crate::layout::{Grid, Sheet, Side, wrap};
 use crate::palette::INK;
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 
 /// The frame of named rows.

@@ -5,14 +5,13 @@ use serde::{Deserialize, Serialize};
 use super::named_rows::{NamedRows, limit_stroke};
 use super::shared::widened;
 use crate::axis::{self, Axis};
-use crate::canvas::Anchor;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
 use crate::layout::{Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::palette::{BEFORE, HEADING, INK, Look, Marker, RECORD, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

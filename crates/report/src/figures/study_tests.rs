@@ -39,12 +39,6 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         note: Some("Rows: rates.".into()),
         ..DotPlot::default()
     };
-    let steps = |(method, origin)| EcdfCurve {
-        origin,
-        points: (0..count(method)).map(|k| (size(method, k), (k + 1) as f64 / (n + 3) as f64)).collect(),
-    };
-    let ecdf_panel =
-        EcdfPanel { x_title: "size of the error of K [%]".into(), curves: methods().enumerate().map(steps).collect() };
     let violin = |(method, origin): (usize, Origin)| Violin {
         origin,
         density: (0..count(method)).map(|k| (k as f64 - 0.5 * n as f64, wild.min(3.0) + (k % 7) as f64)).collect(),
@@ -136,7 +130,6 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
     vec![
         ("missing moment", missing_moment(&moment, theme)),
         ("dots", super::dots(&dot_plot, theme)),
-        ("ecdf", ecdf(&Ecdf { title: None, panels: vec![ecdf_panel.clone(), ecdf_panel] }, theme)),
         ("violins", violins(&Violins { title: None, panels: vec![violin_panel.clone(), violin_panel] }, theme)),
         ("scatter", scatter(&KtScatter { title: None, panels: methods().enumerate().map(cloud).collect() }, theme)),
         ("heat map", heat_map(&map, theme)),
@@ -163,7 +156,6 @@ fn figures_are_well_formed_whatever_the_data() {
 fn nothing_is_nothing() {
     let theme = Theme::screen();
     check("dots", &dots(&DotPlot::default(), &theme));
-    check("ecdf", &ecdf(&Ecdf::default(), &theme));
     check("violins", &violins(&Violins::default(), &theme));
     check("scatter", &scatter(&KtScatter::default(), &theme));
     check("heat map", &heat_map(&HeatMap::default(), &theme));
