@@ -186,7 +186,7 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
                        ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
                        likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
         let draw = move |theme: &Theme, hero: Option<&Hero>| {
-            figures::power(&figures::Power { title: title(hero), ..data.clone() }, theme)
+            figures::panels(&figures::Panels { title: title(hero), ..data.clone() }, theme)
         };
         drawings.push(Drawing::new("power", format!("{caption}{whose}"), draw));
     }
@@ -194,7 +194,7 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
         let caption = "How often an effect was there, over the probability that the trace gave it: every effect on the list \
                        counts once in every trial of a ship whose effects are known, with 95 % intervals.";
         drawings.push(Drawing::new("reliability", format!("{caption}{whose}"), move |theme, _| {
-            figures::power(&data, theme)
+            figures::panels(&data, theme)
         }));
     }
     drawings.iter_mut().for_each(|drawing| drawing.of_traces = true);

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 
 use ::trace::Verdict;
 use ::trace::missing_moment::{MissingMoment, Over, Panel};
-use report::figures::{self, Banded, MomentPanel};
+use report::figures::{self, Division, Drawn, Layer, Layers, Panels, Pen, Ruler, Stack};
 use report::number::significant;
+use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{Curve, Figure, Theme, symbol};
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
@@ -183,40 +184,48 @@ fn values(table: &Table, name: &str) -> Vec<f64> {
     table.get(name).cloned().unwrap_or_default()
 }
 
+/// The moment with its band, and what the known explanation makes of it.
+fn banded(known: Option<&String>, [middle, lower, upper]: [Curve; 3], explained: Curve) -> Vec<Layer> {
+    let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
+    let mut layers = vec![
+        Layer::new("95 % band", lower, Drawn::Band(upper, HEADING, 0.2)),
+        Layer::new("missing moment", middle, Drawn::Line(Pen::new(HEADING))),
+    ];
+    layers.extend(known.map(|name| Layer::new(name, explained, Drawn::Line(dashed))));
+    layers
+}
+
 /// The figure of one record, from its tables over time and over the channels.
 pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[Table; 2], theme: &Theme) -> Figure {
-    let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
     let known = entry.explanation.as_ref();
-    let of_panel = |panel: &PanelEntry| {
-        let name = &panel.column;
+    let panel = |height: f64, layers: Vec<Layer>| {
+        let y = Ruler::new("moment [° rudder]", Division::Decimal);
+        vec![Layers { y, height, zero: true, layers, ..Layers::default() }]
+    };
+    let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
+    let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
+    let layers = banded(known, ends, over_time("explained_rudder_deg"));
+    let mut stacks = vec![Stack { x: Ruler::time(), panels: panel(0.24, layers), ..Stack::default() }];
+    stacks.extend(entry.over.iter().take(PANELS).map(|own| {
+        let name = &own.column;
         let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
         let over = |y: Vec<f64>| Curve::new(values(channels, name), y);
         let (moment, half) = (of("moment"), of("half_width95"));
         let edge = |side: f64| over(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
-        MomentPanel {
-            x_title: title_of(name),
-            head: if panel.shows { percent(panel.variance_share) } else { "zero lies inside the band".into() },
-            rows: Curve::new(values(time, name), values(time, "moment_rudder_deg")),
-            curve: Banded {
-                middle: over(moment.clone()),
-                lower: edge(-1.0),
-                upper: edge(1.0),
-                known: known.map(|_| over(of("explained"))),
-            },
+        let rows = Curve::new(values(time, name), values(time, "moment_rudder_deg"));
+        let mut layers = vec![Layer::new("its smoothed rows", rows, Drawn::Dots(RECORD)).within(0.3)];
+        layers.extend(banded(known, [over(moment.clone()), edge(-1.0), edge(1.0)], over(of("explained"))));
+        let head = if own.shows { percent(own.variance_share) } else { "zero lies inside the band".into() };
+        Stack {
+            x: Ruler::new(title_of(name), Division::Decimal),
+            head: Some(head),
+            is_half: true,
+            panels: panel(0.2, layers),
+            ..Stack::default()
         }
-    };
-    let data = figures::MissingMoment {
-        title: Some(format!("{}: yaw moment that the base lacks", entry.record)),
-        time: Banded {
-            middle: over_time("moment_rudder_deg"),
-            lower: over_time("lower95_rudder_deg"),
-            upper: over_time("upper95_rudder_deg"),
-            known: known.map(|_| over_time("explained_rudder_deg")),
-        },
-        panels: entry.over.iter().take(PANELS).map(of_panel).collect(),
-        known: known.cloned(),
-    };
-    figures::missing_moment(&data, theme)
+    }));
+    let title = Some(format!("{}: yaw moment that the base lacks", entry.record));
+    figures::panels(&Panels { title, stacks, ..Panels::default() }, theme)
 }
 
 /// What is said of the moment of one record.

@@ -3,11 +3,11 @@
 
 use campaign::design::Design;
 use campaign::summary::{self, PredictionSummary, Summary};
-use report::figures::{
-    Dot, DotColumn, DotPlot, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Reference95,
-    Scale, Violin, ViolinPanel, Violins,
-};
 use report::Origin;
+use report::figures::{
+    Dot, DotColumn, DotPlot, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Reference95, Scale, Violin, ViolinPanel,
+    Violins,
+};
 
 use super::charts::{Quantity, origin};
 
