@@ -13,7 +13,7 @@ use trial::{Channel, Trial, ZigZag};
 
 use super::picture::write_figure;
 use super::{curve_tables, index_figures};
-use crate::views::index_figures::Amplitudes;
+use crate::work::alone::Amplitudes;
 use campaign::answer::MethodEntry;
 use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::folder::ResultFolder;

@@ -22,10 +22,10 @@ use trial::{Trial, ZigZag, imo};
 
 use super::picture::{first_failure, write_figure};
 use super::predict_figures::steady;
-use super::trace_curves::{Curves, TracedRecord};
-use super::trace_document::{RecordEntry, TraceDocument, slugs, suffix};
 use super::trace_tables::{horizon, term};
 use super::{index_figures, missing_moment};
+use crate::documents::curves::{Curves, TracedRecord};
+use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
 
 /// Lags of the autocorrelation, at least where the record has them and at most.
 const LAGS: [usize; 2] = [60, 4000];
