@@ -4,8 +4,8 @@ use identify::Estimate;
 use identify::replay::replay;
 use pyo3::prelude::*;
 use scenario::failure::Failure;
+use study::documents as document;
 use study::records::warn_of_repetition;
-use study::views::document;
 use study::work;
 use trial::Trial;
 

@@ -2,10 +2,10 @@
 
 use pyo3::prelude::*;
 use scenario::failure::Failure;
+use study::documents as document;
+use study::documents::curves::TracedRecord;
 use study::options::TraceRequest;
 use study::records::warn_of_repetition;
-use study::views::document;
-use study::views::trace_curves::TracedRecord;
 use study::work;
 
 use crate::asked::request;

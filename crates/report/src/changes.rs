@@ -22,26 +22,9 @@ pub(crate) fn colour(text: &str) -> Option<Colour> {
 }
 
 impl Changes {
-    /// An SVG document in other colours.
-    pub(crate) fn recoloured(&self, svg: String) -> String {
-        if self.colours.iter().all(Option::is_none) {
-            return svg;
-        }
-        // Quotes inside a text are escaped, so this is the beginning of a colour.
-        let mut pieces = svg.split("=\"#");
-        let mut out = String::from(pieces.next().unwrap_or_default());
-        for piece in pieces {
-            let own = piece.get(..6).and_then(|digits| colour(&format!("#{digits}")));
-            let new = own.and_then(|own| self.colours.iter().flatten().find(|(old, _)| *old == own));
-            out.push_str("=\"#");
-            match new {
-                Some((_, Colour(red, green, blue))) => {
-                    out.push_str(&format!("{red:02X}{green:02X}{blue:02X}{}", &piece[6..]));
-                }
-                None => out.push_str(piece),
-            }
-        }
-        out
+    /// The colour in whose place this one stands.
+    pub(crate) fn of(&self, own: Colour) -> Colour {
+        self.colours.iter().flatten().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
     }
 
     /// Ends of the axis with a title, where they are given. A list of names stays, as does a logarithmic axis that

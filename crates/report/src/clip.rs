@@ -1,5 +1,5 @@
-//! Geometry of a line before it is drawn: cut at the frame, thinned to what can be seen, chopped into dashes. Points
-//! are in points on the page, y downwards. The drawing backend can do none of the three.
+//! Geometry of a line before it is drawn: cut at the frame, thinned to what can be seen. Points are in points on the
+//! page, y downwards.
 
 /// A place on the page, points from the upper left corner.
 pub(crate) type Place = (f64, f64);
@@ -115,47 +115,6 @@ pub(crate) fn thin(line: Vec<Place>, column: f64) -> Vec<Place> {
     kept
 }
 
-/// Most times the pattern of a dashed line is repeated. A line as long as that goes to and fro until it is a band, in
-/// which nobody sees dashes.
-const MOST_REPEATS: f64 = 5000.0;
-
-/// Chops a polyline into dashes; `pattern` holds the lengths of dash and gap in points.
-pub(crate) fn dashes(line: &[Place], pattern: &[f64]) -> Vec<Vec<Place>> {
-    let length: f64 = line.windows(2).map(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1)).sum();
-    let repeats = length / pattern.iter().sum::<f64>();
-    if pattern.is_empty() || pattern.iter().any(|l| *l <= 0.0) || repeats > MOST_REPEATS {
-        return vec![line.to_vec()];
-    }
-    let mut parts = Vec::new();
-    let (mut index, mut left) = (0, pattern[0]);
-    let mut current: Vec<Place> = line.first().copied().into_iter().collect();
-    for pair in line.windows(2) {
-        let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
-        let length = (x1 - x0).hypot(y1 - y0);
-        let mut done = 0.0;
-        while length - done > left {
-            done += left;
-            let place = (x0 + (x1 - x0) * done / length, y0 + (y1 - y0) * done / length);
-            if index % 2 == 0 {
-                current.push(place);
-                finish(&mut parts, &mut current);
-            }
-            index = (index + 1) % pattern.len();
-            left = pattern[index];
-            current.clear();
-            if index % 2 == 0 {
-                current.push(place);
-            }
-        }
-        left -= length - done;
-        if index % 2 == 0 {
-            current.push((x1, y1));
-        }
-    }
-    finish(&mut parts, &mut current);
-    parts
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -180,18 +139,5 @@ mod tests {
         assert_eq!((thinned[0], thinned.last()), (line[0], line.last()));
         assert!(thinned.iter().any(|p| p.1 == 0.0) && thinned.iter().any(|p| p.1 == 999.0));
         assert!(thinned.windows(2).all(|w| w[0].0 <= w[1].0));
-    }
-
-    #[test]
-    fn dashes_have_the_pattern_s_length_and_turn_corners() {
-        let parts = dashes(&[(0.0, 0.0), (4.0, 0.0), (4.0, 6.0)], &[3.0, 1.0]);
-        assert_eq!(parts.len(), 3);
-        assert_eq!(parts[0], [(0.0, 0.0), (3.0, 0.0)]);
-        assert_eq!(parts[1], [(4.0, 0.0), (4.0, 3.0)]);
-        assert_eq!(parts[2], [(4.0, 4.0), (4.0, 6.0)]);
-        assert_eq!(dashes(&[(0.0, 0.0), (1.0, 0.0)], &[]).len(), 1);
-        // A band.
-        let band: Vec<Place> = (0..4000).map(|i| (0.1 * f64::from(i), f64::from(i % 2) * 80.0)).collect();
-        assert_eq!(dashes(&band, &[3.0, 1.0]), std::slice::from_ref(&band));
     }
 }

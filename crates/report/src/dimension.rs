@@ -1,10 +1,9 @@
 //! Dimension lines as on a technical drawing: a line with an arrow at either end and the quantity beside it.
 
-use crate::canvas::Anchor;
 use crate::clip::Place;
 use crate::colour::Colour;
 use crate::palette::DIMENSION;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 
 /// Length of an arrow head, in small-font sizes.

@@ -9,7 +9,6 @@ use resvg::usvg::{Options, Tree};
 
 use crate::error::ReportError;
 use crate::fonts;
-use crate::indexed::{self, Indexed};
 
 const POINTS_PER_INCH: f64 = 72.0;
 const METRES_PER_INCH: f64 = 0.0254;
@@ -46,9 +45,7 @@ impl Figure {
         (side(self.width), side(self.height))
     }
 
-    /// The drawing as a PNG with its resolution in pixels per metre. It has a palette where its colours are at most
-    /// 256, or can be made so by merging shades at edges that differ by no more than 4/255 from what was drawn in red,
-    /// green and blue, while areas keep their colour; otherwise it is 8-bit RGB without loss.
+    /// The drawing as a PNG of 8-bit RGB with its resolution in pixels per metre.
     ///
     /// Fails with [`ReportError::TooLarge`] when a side is longer than 20 000 pixels.
     pub fn png(&self) -> Result<Vec<u8>, ReportError> {
@@ -70,27 +67,11 @@ impl Figure {
     fn encode(&self, pixmap: &Pixmap) -> Result<Vec<u8>, ReportError> {
         // The page is opaque, so the alpha channel says nothing and the colours are not premultiplied.
         let (drawn, _) = pixmap.data().as_chunks::<4>();
-        let image = indexed::indexed(drawn, pixmap.width() as usize);
+        let mut pixels = vec![0; 3 * drawn.len()];
+        pixels.as_chunks_mut().0.iter_mut().zip(drawn).for_each(|(rgb, &[r, g, b, _])| *rgb = [r, g, b]);
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, pixmap.width(), pixmap.height());
-        encoder.set_color(if image.is_some() { png::ColorType::Indexed } else { png::ColorType::Rgb });
-        encoder.set_depth(match image.as_ref().map(|image| image.bits) {
-            Some(1) => png::BitDepth::One,
-            Some(2) => png::BitDepth::Two,
-            Some(4) => png::BitDepth::Four,
-            _ => png::BitDepth::Eight,
-        });
-        let pixels = match image {
-            Some(Indexed { palette, rows, .. }) => {
-                encoder.set_palette(palette);
-                rows
-            }
-            None => {
-                let mut rgb = vec![0; 3 * drawn.len()];
-                rgb.as_chunks_mut().0.iter_mut().zip(drawn).for_each(|(rgb, &[r, g, b, _])| *rgb = [r, g, b]);
-                rgb
-            }
-        };
+        encoder.set_color(png::ColorType::Rgb);
         // Level 6 packs a fifteenth smaller and takes twice as long.
         encoder.set_deflate_compression(png::DeflateCompression::Level(4));
         // Flat areas and thin lines pack better unfiltered: measured a fifth smaller and faster than adaptive
@@ -122,13 +103,14 @@ impl Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::changes::Changes;
     use crate::scene::{Layer, Scene, Text};
     use crate::svg;
 
     fn sample() -> Figure {
         let mut scene = Scene::default();
         scene.text(Layer::Note, (10.0, 30.0), Text::new("ψ", 24.0));
-        Figure::new(svg::render(&scene, 72.0, 36.0), 72.0, 36.0, 300.0)
+        Figure::new(svg::render(&scene, 72.0, 36.0, &Changes::default()), 72.0, 36.0, 300.0)
     }
 
     #[test]
@@ -144,10 +126,8 @@ mod tests {
     #[test]
     fn text_reaches_the_pixels() {
         let bytes = sample().png().unwrap();
-        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
-        decoder.set_transformations(png::Transformations::EXPAND);
+        let decoder = png::Decoder::new(std::io::Cursor::new(bytes));
         let mut reader = decoder.read_info().unwrap();
-        assert_eq!(reader.info().color_type, png::ColorType::Indexed);
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut pixels).unwrap();
         let dark = pixels.chunks_exact(3).filter(|p| p[0] < 64).count();

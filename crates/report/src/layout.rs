@@ -3,13 +3,13 @@
 //! are drawn here, the data by the figures.
 
 use crate::axis::{Axis, Ticks};
-use crate::canvas::{Anchor, text_width};
 use crate::clip::Rect;
 use crate::figure::Figure;
+use crate::fonts::text_width;
 use crate::legend::{self, Entry};
 use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::svg;
 use crate::theme::Theme;
 
@@ -354,7 +354,7 @@ impl Sheet {
     /// The finished figure.
     pub(crate) fn finish(self) -> Figure {
         let height = self.y + 0.3 * self.theme.small_font;
-        let svg = self.theme.changes.recoloured(svg::render(&self.scene, self.theme.width, height));
+        let svg = svg::render(&self.scene, self.theme.width, height, &self.theme.changes);
         Figure::new(svg, self.theme.width, height, self.theme.dpi)
     }
 }

@@ -44,12 +44,10 @@ pub mod table;
 pub mod theme;
 
 mod axis;
-mod canvas;
 mod changes;
 mod clip;
 mod dimension;
 mod fonts;
-mod indexed;
 mod layout;
 mod legend;
 mod markup;

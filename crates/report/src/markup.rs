@@ -1,6 +1,6 @@
 //! Italic type inside a text: two marks around it, which measuring passes over and drawing turns into type.
 
-/// Opens italic type inside a text (a character of the private-use area; [`crate::canvas`] turns it into markup).
+/// Opens italic type inside a text (a character of the private-use area; [`crate::svg`] turns it into markup).
 const ITALIC_ON: char = '\u{e000}';
 /// Ends italic type.
 const ITALIC_OFF: char = '\u{e001}';

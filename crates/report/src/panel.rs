@@ -4,6 +4,7 @@
 use crate::axis::Axis;
 use crate::clip::{self, Place, Rect};
 use crate::colour::Colour;
+use crate::dimension::Dimensions;
 use crate::palette::Look;
 use crate::scene::{Layer, Scene, Stroke};
 
@@ -69,6 +70,25 @@ impl Panel {
         if let Some(place) = self.inside(pair) {
             scene.marker(Layer::Data, place, radius, look);
         }
+    }
+
+    /// An interval from left to right at height `y`, with an arrow head at an end that lies beyond the frame; tells
+    /// whether one does. An end without bound lies beyond every frame.
+    pub(crate) fn bar(&self, scene: &mut Scene, y: f64, [a, b]: [f64; 2], stroke: Stroke, head: f64) -> bool {
+        let place = |value: f64| self.across(value.clamp(-f64::MAX, f64::MAX)).filter(|place| !place.is_nan());
+        let (Some(a), Some(b)) = (place(a), place(b)) else { return false };
+        let (x, right) = (self.rect.x, self.rect.right());
+        let (lo, hi) = (a.min(b), a.max(b));
+        let (from, to) = (lo.clamp(x, right), hi.clamp(x, right));
+        if from < to {
+            scene.line(Layer::Data, [(from, y), (to, y)], stroke);
+        }
+        let slack = 1e-6;
+        let ends = [(lo < x - slack, x, -1.0), (hi > right + slack, right, 1.0)];
+        for (_, edge, direction) in ends.into_iter().filter(|end| end.0) {
+            Dimensions::head(scene, (edge, y), (direction, 0.0), head, stroke.colour);
+        }
+        ends.iter().any(|end| end.0)
     }
 
     /// A line from bottom to top.

@@ -1,9 +1,9 @@
 //! A drawing as a list of shapes in points on the page. Figures fill a scene; [`crate::svg`] writes it out. The list in
 //! between is what lets a frame be drawn after the data it encloses, and what keeps undefined coordinates out.
 
-use crate::canvas::{self, Anchor};
 use crate::clip::{Place, Rect};
 use crate::colour::Colour;
+use crate::fonts;
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 
 /// How a line is drawn.
@@ -25,6 +25,14 @@ impl Stroke {
     pub(crate) fn dashed(self, dash: Dash) -> Self {
         Self { dash, ..self }
     }
+}
+
+/// Which end of a text stands at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
 }
 
 /// A line of text; `place` is on the base line.
@@ -53,7 +61,7 @@ impl Text {
     }
 
     pub(crate) fn width(&self) -> f64 {
-        canvas::text_width(&self.text, self.size, self.bold)
+        fonts::text_width(&self.text, self.size, self.bold)
     }
 
     /// From the middle of a capital letter down to the base line.

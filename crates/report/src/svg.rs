@@ -1,71 +1,178 @@
-//! From a scene to SVG: shape by shape onto a [`canvas`], which knows no dashes, so a dashed line is cut here.
+//! From a scene to SVG. Coordinates are whole numbers, many to the point. Lines of one stroke that follow each other are
+//! one path, and so are dots of one size and colour: a browser is slow with many elements, and a page carries more
+//! figures. Text stays text, which can be searched and edited.
+
+use std::fmt::Write as _;
 
 use crate::axis::Axis;
-use crate::canvas::{self, Canvas, Type, UNITS};
-use crate::clip::{self, Rect};
-use crate::markup::is_markup;
+use crate::changes::Changes;
+use crate::clip::{Place, Rect};
+use crate::colour::Colour;
+use crate::fonts::FAMILY_WITH_FALLBACK;
+use crate::markup::{is_markup, runs};
 use crate::palette::PAPER;
 use crate::printable::is_printable;
-use crate::scene::{Scene, Shape, Text};
+use crate::scene::{Anchor, Scene, Shape, Stroke, Text};
+
+/// Units to one point on the page: 2.4 to a dot at 600 dpi, so rounding to whole units is never seen.
+pub(crate) const UNITS: f64 = 20.0;
+
+/// Most times the pattern of a dashed line is repeated. A line as long as that goes to and fro until it is a band, in
+/// which nobody sees dashes.
+const MOST_REPEATS: f64 = 5000.0;
 
 /// The scene as an SVG document of `width` x `height` points. What the key names stands in groups of that name, and
 /// empty groups say where the panels are, for a page in a browser.
-pub(crate) fn render(scene: &Scene, width: f64, height: f64) -> String {
-    let mut body = String::new();
+pub(crate) fn render(scene: &Scene, width: f64, height: f64, changes: &Changes) -> String {
+    let [across, down] = [width, height].map(|points| units(points).max(1));
+    let mut page = Elements { out: String::new(), open: None, changes };
+    page.polygon(&[(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)], PAPER, 1.0);
     for run in scene.told().chunk_by(|one, other| one.0 == other.0) {
-        let drawn = canvas::elements(width, height, |canvas| run.iter().for_each(|(_, shape)| draw(canvas, shape)));
-        match run[0].0 {
-            Some(name) => body.extend(["<g data-series=\"", &attribute(name), "\">\n", &drawn, "</g>\n"]),
-            None => body.push_str(&drawn),
+        if let Some(name) = run[0].0 {
+            page.put(&format!("<g data-series=\"{}\">\n", escaped(name)));
         }
+        run.iter().for_each(|(_, shape)| page.shape(shape));
+        page.put(if run[0].0.is_some() { "</g>\n" } else { "" });
     }
-    body.extend(scene.panels().iter().map(String::as_str));
-    canvas::document(width, height, PAPER, &body)
+    scene.panels().iter().for_each(|panel| page.put(panel));
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}pt\" height=\"{height:.3}pt\" \
+         viewBox=\"0 0 {across} {down}\">\n<g font-family=\"{FAMILY_WITH_FALLBACK}\" \
+         stroke-linejoin=\"round\">\n{}</g>\n</svg>\n",
+        page.out
+    )
 }
 
-fn draw(canvas: &mut Canvas, shape: &Shape) {
-    match shape {
-        Shape::Line { points, stroke } => {
-            let pattern: Vec<f64> = stroke.dash.iter().map(|l| l * stroke.width).collect();
-            for part in clip::dashes(points, &pattern) {
-                canvas.line(part, stroke.width, stroke.colour, stroke.opacity);
+fn units(points: f64) -> i64 {
+    (points * UNITS).round() as i64
+}
+
+/// A document in the making.
+struct Elements<'a> {
+    out: String,
+    /// Style and data of the path that is being lengthened.
+    open: Option<(String, String)>,
+    changes: &'a Changes,
+}
+
+impl Elements<'_> {
+    /// Writes an element, after the path that was open.
+    fn put(&mut self, element: &str) {
+        if let Some((style, data)) = self.open.take() {
+            let _ = writeln!(self.out, "<path {style} d=\"{data}\"/>");
+        }
+        self.out.push_str(element);
+    }
+
+    /// Lengthens the open path, or begins one. Where ink adds up (`alone`), lines stay apart.
+    fn path(&mut self, style: String, data: &str, alone: bool) {
+        match &mut self.open {
+            Some((known, longer)) if *known == style && !alone => longer.push_str(data),
+            _ => {
+                self.put("");
+                self.open = Some((style, data.to_owned()));
             }
         }
-        Shape::Fill { points, colour, opacity } => canvas.fill(points, *colour, *opacity),
-        Shape::Disc { centre, radius, colour, opacity } => canvas.disc(*centre, *radius, *colour, *opacity),
-        Shape::Text { place, text } => canvas.text(*place, &text.text, &type_of(text)),
     }
+
+    fn colour(&self, colour: Colour) -> String {
+        let Colour(red, green, blue) = self.changes.of(colour);
+        format!("#{red:02X}{green:02X}{blue:02X}")
+    }
+
+    fn shape(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Line { points, stroke } => self.line(points, stroke),
+            Shape::Fill { points, colour, opacity } => self.polygon(points, *colour, *opacity),
+            Shape::Disc { centre: (x, y), radius, colour, opacity } => {
+                let (colour, width) = (self.colour(*colour), 2 * units(*radius).max(1));
+                let faint = opacity_of("stroke", *opacity);
+                let style = format!("stroke=\"{colour}\"{faint} stroke-width=\"{width}\" stroke-linecap=\"round\"");
+                self.path(style, &format!("M{} {}h0", units(*x), units(*y)), *opacity < 1.0);
+            }
+            Shape::Text { place, text } => self.text(*place, text),
+        }
+    }
+
+    fn line(&mut self, points: &[Place], stroke: &Stroke) {
+        let colour = self.colour(stroke.colour);
+        let width = units(stroke.width).max(1);
+        let mut style = format!("fill=\"none\" stroke=\"{colour}\"{}", opacity_of("stroke", stroke.opacity));
+        let _ = write!(style, " stroke-width=\"{width}\"");
+        let length: f64 = points.windows(2).map(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1)).sum();
+        let pattern: f64 = stroke.dash.iter().sum::<f64>() * stroke.width;
+        if pattern > 0.0 && length < MOST_REPEATS * pattern {
+            let dashes: Vec<String> = stroke.dash.iter().map(|part| units(part * stroke.width).to_string()).collect();
+            let _ = write!(style, " stroke-dasharray=\"{}\"", dashes.join(" "));
+        }
+        let mut data = String::new();
+        let mut last = (0, 0);
+        for (number, &(x, y)) in points.iter().enumerate() {
+            let place = (units(x), units(y));
+            let _ = match number {
+                0 => write!(data, "M{} {}l", place.0, place.1),
+                1 => write!(data, "{} {}", place.0 - last.0, place.1 - last.1),
+                _ => write!(data, " {} {}", place.0 - last.0, place.1 - last.1),
+            };
+            last = place;
+        }
+        self.path(style, &data, stroke.opacity < 1.0);
+    }
+
+    fn polygon(&mut self, points: &[Place], colour: Colour, opacity: f64) {
+        let corners: Vec<String> = points.iter().map(|(x, y)| format!("{},{}", units(*x), units(*y))).collect();
+        let (colour, faint) = (self.colour(colour), opacity_of("fill", opacity));
+        self.put(&format!("<polygon fill=\"{colour}\"{faint} points=\"{}\"/>\n", corners.join(" ")));
+    }
+
+    /// A line of text with its base line at a place.
+    fn text(&mut self, (x, y): Place, text: &Text) {
+        let (x, y) = (units(x), units(y));
+        let size = (10.0 * text.size * UNITS).round() / 10.0;
+        let mut element =
+            format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{}\"", self.colour(text.colour));
+        element += match text.anchor {
+            Anchor::Start => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
+        };
+        element += if text.bold { " font-weight=\"bold\"" } else { "" };
+        if text.turned {
+            let _ = write!(element, " transform=\"rotate(270, {x}, {y})\"");
+        }
+        element += ">\n";
+        for (italic, run) in runs(&text.text) {
+            let run = escaped(run);
+            let _ = match italic {
+                true => write!(element, "<tspan font-style=\"italic\">{run}</tspan>"),
+                false => write!(element, "{run}"),
+            };
+        }
+        self.put(&(element + "\n</text>\n"));
+    }
+}
+
+/// An attribute for ink that is not opaque: that of an element would be a layer of its own, slow to draw.
+fn opacity_of(ink: &str, opacity: f64) -> String {
+    if opacity < 1.0 { format!(" {ink}-opacity=\"{opacity}\"") } else { String::new() }
 }
 
 /// An empty group that says where a panel is, in units of the view box, and what its axes are: kind, ends, title.
 pub(crate) fn panel(rect: &Rect, x: (&Axis, &str), y: (&Axis, &str)) -> String {
-    let [left, top, width, height] = [rect.x, rect.y, rect.w, rect.h].map(|points| (points * UNITS).round());
-    let [x_axis, y_axis] = [x.0, y.0].map(|axis| attribute(&axis.told()));
-    let [x_title, y_title] = [x.1, y.1].map(attribute);
+    let [left, top, width, height] = [rect.x, rect.y, rect.w, rect.h].map(units);
+    let [x_axis, y_axis] = [x.0, y.0].map(|axis| escaped(&axis.told()));
+    let [x_title, y_title] = [x.1, y.1].map(escaped);
     format!(
         "<g data-panel=\"{left} {top} {width} {height}\" data-x=\"{x_axis}\" data-y=\"{y_axis}\" \
          data-x-title=\"{x_title}\" data-y-title=\"{y_title}\"/>\n"
     )
 }
 
-/// Words as the value of an attribute.
-fn attribute(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars().filter(|&c| !is_markup(c) && is_printable(c)) {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c => out.push(c),
-        }
-    }
-    out
-}
-
-fn type_of(text: &Text) -> Type {
-    let Text { size, colour, bold, anchor, turned, .. } = *text;
-    Type { size, colour, bold, anchor, turned }
+/// Words as text or as the value of an attribute. XML allows neither control characters nor some others, not even
+/// escaped.
+fn escaped(text: &str) -> String {
+    let clean: String = text.chars().filter(|&c| !is_markup(c) && is_printable(c)).collect();
+    crate::html::escaped(&clean)
 }
 
 #[cfg(test)]
@@ -75,44 +182,53 @@ mod tests {
     use crate::palette::{DASHED, INK};
     use crate::scene::{Layer, Stroke};
 
-    fn sample() -> String {
+    fn drawn(fill: impl FnOnce(&mut Scene)) -> String {
         let mut scene = Scene::default();
-        scene.line(Layer::Data, [(10.0, 10.0), (90.0, 10.0)], Stroke::solid(INK, 0.5).dashed(DASHED));
-        scene.text(Layer::Note, (10.0, 20.0), Text::new(format!("a < b & {}\u{7}\u{fffe}", symbol("ψ")), 8.0));
-        render(&scene, 100.0, 30.0)
+        fill(&mut scene);
+        render(&scene, 100.0, 30.0, &Changes::default())
     }
 
     #[test]
-    fn document_has_size_on_the_page_and_scaled_strokes() {
-        let svg = sample();
+    fn a_document_has_its_size_on_the_page_and_scaled_strokes() {
+        let svg = drawn(|scene| {
+            scene.line(Layer::Data, [(10.0, 10.0), (90.0, 10.0)], Stroke::solid(INK, 0.5).dashed(DASHED));
+        });
         assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100.000pt\""));
         assert!(svg.contains("viewBox=\"0 0 2000 600\""));
-        assert!(svg.contains("stroke-width=\"10\""), "0.5 points at 20 units");
-        assert!(svg.matches("<polyline").count() > 15, "dashes");
+        assert!(svg.contains("stroke-width=\"10\" stroke-dasharray=\"50 25\" d=\"M200 200l1600 0\"/>"), "{svg}");
         assert!(svg.trim_end().ends_with("</svg>"));
     }
 
     #[test]
-    fn opacity_is_that_of_the_ink() {
-        let mut scene = Scene::default();
-        scene.disc(Layer::Data, (5.0, 5.0), 1.0, INK, 0.45);
-        scene.fill(Layer::Data, [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], INK, 0.85);
-        scene.line(Layer::Data, [(0.0, 0.0), (9.0, 9.0)], Stroke { opacity: 0.55, ..Stroke::solid(INK, 0.5) });
-        scene.text(Layer::Note, (0.0, 9.0), Text::new("a opacity=\"0.3\" b", 8.0));
-        let svg = render(&scene, 10.0, 10.0);
-        let line = |tag: &str| svg.lines().rfind(|line| line.starts_with(tag)).unwrap_or_default();
-        assert!(line("<circle").contains(" fill-opacity=\"0.45\" fill=\"#"), "{svg}");
-        assert!(line("<polygon").contains(" fill-opacity=\"0.85\" fill=\"#"), "{svg}");
-        assert!(line("<polyline").contains(" stroke-opacity=\"0.55\" stroke=\"#"), "{svg}");
-        assert!(!svg.contains(" opacity=\""), "opaque by default, and never that of an element: {svg}");
-        assert!(svg.contains("a opacity=&quot;0.3&quot; b\n"), "text is left alone: {svg}");
+    fn what_follows_each_other_in_one_style_is_one_path() {
+        let svg = drawn(|scene| {
+            let stroke = Stroke::solid(INK, 1.0);
+            scene.line(Layer::Data, [(1.0, 2.0), (4.0, 6.0), (3.0, 6.0)], stroke);
+            scene.line(Layer::Data, [(9.0, 9.0), (9.0, 0.0)], stroke);
+            scene.line(Layer::Data, [(0.0, 0.0), (9.0, 9.0)], Stroke { opacity: 0.55, ..stroke });
+            scene.line(Layer::Data, [(0.0, 0.0), (9.0, 9.0)], Stroke { opacity: 0.55, ..stroke });
+            scene.disc(Layer::Data, (3.0, 4.0), 5.0, INK, 1.0);
+            scene.disc(Layer::Data, (3.0, 5.0), 5.0, INK, 1.0);
+            scene.fill(Layer::Data, [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], INK, 0.85);
+        });
+        assert!(svg.contains("d=\"M20 40l60 80 -20 0M180 180l0 -180\"/>"), "{svg}");
+        assert_eq!(svg.matches(" stroke-opacity=\"0.55\"").count(), 2, "where ink adds up, lines stay apart: {svg}");
+        assert!(svg.contains("stroke-width=\"200\" stroke-linecap=\"round\" d=\"M60 80h0M60 100h0\"/>"), "{svg}");
+        assert!(svg.contains("<polygon fill=\"#111111\" fill-opacity=\"0.85\""), "{svg}");
+    }
+
+    #[test]
+    fn a_dashed_line_that_fills_an_area_is_solid() {
+        let band: Vec<Place> = (0..4000).map(|i| (0.02 * f64::from(i), f64::from(i % 2) * 29.0)).collect();
+        let svg = drawn(|scene| scene.line(Layer::Data, band, Stroke::solid(INK, 1.0).dashed(DASHED)));
+        assert!(!svg.contains("dasharray"));
     }
 
     #[test]
     fn text_is_escaped_and_italic_is_markup() {
-        let svg = sample();
-        assert!(svg.contains("a &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"));
-        assert!(!svg.contains("dy=") && !svg.contains(['\u{7}', '\u{fffe}']) && !svg.contains('\u{e000}'));
-        assert!(svg.contains("font-size=\"160\""));
+        let text = Text::new(format!("a < b & {}\u{7}\u{fffe}", symbol("ψ")), 8.0);
+        let svg = drawn(|scene| scene.text(Layer::Note, (10.0, 20.0), text));
+        assert!(svg.contains("\na &lt; b &amp; <tspan font-style=\"italic\">ψ</tspan>\n"), "{svg}");
+        assert!(!svg.contains(['\u{7}', '\u{fffe}', '\u{e000}']) && svg.contains("font-size=\"160\""));
     }
 }

@@ -70,10 +70,6 @@ const corners = element => {
       const moves = steps.split(" ").map(Number);
       for (let k = 0; k + 1 < moves.length; k += 2) found.push([(x += moves[k]), (y += moves[k + 1])]);
     }
-  } else if (element.tagName === "polyline") {
-    for (const pair of element.getAttribute("points").trim().split(" ")) found.push(pair.split(",").map(Number));
-  } else if (element.tagName === "circle") {
-    found.push(["cx", "cy"].map(name => Number(element.getAttribute(name))));
   } else if (element.tagName === "polygon") {
     const pairs = element.getAttribute("points").trim().split(" ").map(pair => pair.split(",").map(Number));
     if (pairs.length <= 10) found.push([0, 1].map(k => pairs.reduce((sum, pair) => sum + pair[k], 0) / pairs.length));

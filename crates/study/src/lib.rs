@@ -6,12 +6,14 @@
 //! | commands and exit codes | [`cli`], [`commands`] |
 //! | options | [`options`], [`outside`] |
 //! | what a command works out | [`work`] |
-//! | tables, figures, pages and JSON | [`views`] |
+//! | what it leaves for other programs | [`documents`] |
+//! | tables, figures and pages | [`views`] |
 //! | the terminal | [`screen`], `terminal`, `progress`, `interrupt`, `threads` |
 
 pub mod bench_options;
 pub mod cli;
 pub mod commands;
+pub mod documents;
 #[cfg(test)]
 mod faults;
 mod interrupt;

@@ -5,14 +5,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::colour::Colour;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample};
 use crate::palette::{DOTTED, GRID, INK, PAPER, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 
 /// What stands in a cell.

@@ -1,5 +1,5 @@
-//! Values of several methods in named rows: errors, coverage or failures at the named points of a study, or a ranking
-//! with the methods themselves as rows. Names stand where they can be long.
+//! Values of several methods in named rows: errors, coverage or failures at the named points of a study, or ratios with
+//! the methods themselves as rows. Names stand where they can be long.
 
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::{PAD, Reference95};
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::clip::{self, Place};
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
@@ -13,7 +12,7 @@ use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample, stroke_of};
 use crate::palette::{INK, Look, Origin, QUIET, RECORD, SHORT_DASH};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::colour::Colour;
 use crate::figure::Figure;
 use crate::layout::{Sheet, Side};
@@ -11,7 +10,7 @@ use crate::legend::{Entry, Sample};
 use crate::number;
 use crate::palette::{HEADING, INK, Look, Marker, PAPER, RECORD, RUDDER, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Layer, Stroke, Text};
+use crate::scene::{Anchor, Layer, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

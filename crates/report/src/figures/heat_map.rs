@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::error_curves::Scale;
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::colour::Colour;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
@@ -14,7 +13,7 @@ use crate::legend::{Entry, Sample};
 use crate::number;
 use crate::palette::{GRID, INK, PAPER};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Text};
+use crate::scene::{Anchor, Layer, Scene, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

@@ -48,19 +48,23 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         joint_name: "all records together, 95 %".into(),
         panels: vec![panel("K [1/s]"), panel("T [s]")],
     };
-    let row = |k: usize| ReplayedOvershoot {
-        label: format!("record {k}, first"),
-        measured: Some(if k == 1 { wild } else { 8.0 + k as f64 }),
-        before: (k != 2).then_some(12.0),
-        after: (k != 3).then_some(if k == 4 { wild } else { 8.3 + k as f64 }),
-        limit: k.is_multiple_of(2).then_some(20.0),
+    let row = |k: usize, scale: f64| Some(if k == 1 { wild } else { scale * (8.0 + k as f64) });
+    let values = |scale: f64| (0..n.min(14)).map(|k| row(k, scale)).collect::<Vec<_>>();
+    let replayed = Rows {
+        title: None,
+        x_title: "overshoot [°]".into(),
+        names: (0..n.min(14)).map(|k| (format!("record {k}, first"), k == 3)).collect(),
+        parts: vec![
+            ("measured", RowPart::Bars(values(1.0)), false),
+            ("IMO limit", RowPart::Limits(values(2.0)), false),
+            ("before", RowPart::Marks(Origin::Before.look(), -0.16, values(1.5)), true),
+        ],
     };
-    let replayed = OvershootReplays { title: None, rows: (0..n.min(14)).map(row).collect() };
     vec![
         ("phase", phase_plane(&plane, theme)),
         ("indices", index_plane(&plane_of_indices, theme)),
         ("amplitude", amplitude(&over, theme)),
-        ("replayed overshoots", overshoot_replays(&replayed, theme)),
+        ("replayed overshoots", rows(&replayed, theme)),
     ]
 }
 
@@ -82,7 +86,7 @@ fn nothing_is_nothing() {
     let theme = Theme::screen();
     check("phase", &phase_plane(&PhasePlane::default(), &theme));
     check("indices", &index_plane(&IndexPlane::default(), &theme));
-    check("replayed overshoots", &overshoot_replays(&OvershootReplays::default(), &theme));
+    check("replayed overshoots", &rows(&Rows::default(), &theme));
 }
 
 #[test]

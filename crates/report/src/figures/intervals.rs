@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::median;
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::colour::Colour;
 use crate::dimension::Dimensions;
 use crate::figure::Figure;
@@ -14,7 +13,7 @@ use crate::markup::symbol;
 use crate::number;
 use crate::palette::{INK, Look, Origin, RECORD};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 
@@ -189,28 +188,12 @@ fn draw_row(
 
 /// The interval as a bar with caps; an end beyond the axis is an arrow head. Tells whether one was.
 fn bar(panel: &Panel, scene: &mut Scene, theme: &Theme, y: f64, interval: Option<[f64; 2]>, colour: Colour) -> bool {
-    let rect = panel.rect;
-    let Some((lo, hi)) = interval.and_then(|[lo, hi]| Some((panel.across(lo)?, panel.across(hi)?))) else {
-        return false;
-    };
-    let (left, right) = (lo.min(hi).max(rect.x), lo.max(hi).min(rect.right()));
-    if left > right {
-        return true;
+    let Some(ends) = interval else { return false };
+    let (stroke, cap) = (Stroke::solid(colour, theme.line), 0.9 * theme.marker);
+    for x in ends.into_iter().filter_map(|end| panel.across(end)).filter(|x| panel.rect.contains((*x, y))) {
+        scene.line(Layer::Data, [(x, y - cap), (x, y + cap)], stroke);
     }
-    let stroke = Stroke::solid(colour, theme.line);
-    scene.line(Layer::Data, [(left, y), (right, y)], stroke);
-    let cap = 0.9 * theme.marker;
-    let mut beyond = false;
-    for (end, direction) in [(lo.min(hi), -1.0), (lo.max(hi), 1.0)] {
-        if rect.contains((end, y)) {
-            scene.line(Layer::Data, [(end, y - cap), (end, y + cap)], stroke);
-        } else {
-            let edge = if direction > 0.0 { rect.right() } else { rect.x };
-            Dimensions::head(scene, (edge, y), (direction, 0.0), 0.6 * theme.small_font, colour);
-            beyond = true;
-        }
-    }
-    beyond
+    panel.bar(scene, y, ends, stroke, 0.6 * theme.small_font)
 }
 
 fn remark(data: &Intervals, beyond: bool) -> Option<String> {

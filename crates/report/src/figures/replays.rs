@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::{PAD, heading_title, record, record_entry, time_side, zero_line};
 use crate::axis::{self, Axis};
-use crate::canvas::Anchor;
 use crate::curve::Curve;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
@@ -13,7 +12,7 @@ use crate::legend::{Entry, stroke_of};
 use crate::number;
 use crate::palette::Origin;
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

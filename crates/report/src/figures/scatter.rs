@@ -5,14 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::{median, zero_line, zero_upright};
 use crate::axis::Axis;
-use crate::canvas::Anchor;
 use crate::figure::Figure;
 use crate::layout::{Grid, Sheet, Side};
 use crate::legend::{Entry, Sample, stroke_of};
 use crate::markup::symbol;
 use crate::palette::{INK, Origin};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

@@ -32,11 +32,6 @@ pub(super) fn time_side<'a>(curves: impl IntoIterator<Item = &'a Curve>) -> Side
     Side::new(axis, format!("time {} [s]", symbol("t")))
 }
 
-/// An axis in degrees around everything in `curves`.
-pub(super) fn angle_side<'a>(curves: impl IntoIterator<Item = &'a Curve>, title: String) -> Side {
-    Side::new(Axis::covering(curves.into_iter().flat_map(|c| c.finite().map(|(_, y)| y)), PAD, Steps::Angle), title)
-}
-
 /// More points than this in a panel run into each other and are drawn as a line.
 const DENSE: usize = 400;
 
@@ -53,11 +48,6 @@ pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &
 pub(super) const OPACITY: f64 = 0.2;
 
 /// The area between two curves, as far as it lies in the frame.
-pub(super) fn area(panel: &Panel, scene: &mut Scene, edges: [&Curve; 2], colour: Colour) {
-    shaded(panel, scene, edges, colour, OPACITY);
-}
-
-/// The same, as dense as is wanted.
 pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Colour, opacity: f64) {
     let Rect { x, y, .. } = panel.rect;
     let inside = |(across, up): (f64, f64)| (across.clamp(x, panel.rect.right()), up.clamp(y, panel.rect.bottom()));

@@ -39,12 +39,6 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
         note: Some("Rows: rates.".into()),
         ..DotPlot::default()
     };
-    let steps = |(method, origin)| EcdfCurve {
-        origin,
-        points: (0..count(method)).map(|k| (size(method, k), (k + 1) as f64 / (n + 3) as f64)).collect(),
-    };
-    let ecdf_panel =
-        EcdfPanel { x_title: "size of the error of K [%]".into(), curves: methods().enumerate().map(steps).collect() };
     let violin = |(method, origin): (usize, Origin)| Violin {
         origin,
         density: (0..count(method)).map(|k| (k as f64 - 0.5 * n as f64, wild.min(3.0) + (k % 7) as f64)).collect(),
@@ -120,23 +114,43 @@ fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
             (0..n).map(|k| scale * if k == 1 { wild } else { (0.3 * k as f64).sin() }).collect::<Vec<_>>(),
         )
     };
-    let banded = Banded { middle: line(1.0), lower: line(0.8), upper: line(1.2), known: Some(line(1.1)) };
-    let moment_panel = MomentPanel {
-        x_title: "yaw rate [°/s]".into(),
-        head: "explains 93 %".into(),
-        rows: line(1.05),
-        curve: banded.clone(),
+    let look = Origin::After.look();
+    let layers = |division| Layers {
+        y: Ruler::new("moment [° rudder]", division),
+        height: 0.2,
+        zero: true,
+        levels: vec![-0.1, 0.1],
+        layers: vec![
+            Layer::new("95 % band", line(0.8), Drawn::Band(line(1.2), look.colour, 0.2)),
+            Layer::new("rows", line(1.05), Drawn::Dots(look.colour)),
+            Layer::new("line", line(1.0), Drawn::Line(Pen::of(&Origin::Before))).within(0.5),
+            Layer::new("shares", line(1.0), Drawn::Marks(look, vec![Some([0.0, 1.0]); n])),
+        ],
     };
-    let moment = MissingMoment {
+    let stack = |division, is_half| Stack {
+        x: Ruler::new("yaw rate [°/s]", division),
+        head: Some("explains 93 %".into()),
+        mark: Some(0.5),
+        is_half,
+        zero: true,
+        panels: vec![layers(division)],
+    };
+    let layered = Panels {
         title: Some("a record".into()),
-        time: banded,
-        known: Some("nonlinear_damping".into()),
-        panels: vec![moment_panel; 3],
+        stacks: vec![
+            stack(Division::Time, false),
+            stack(Division::Decimal, true),
+            stack(Division::Factors, true),
+            stack(Division::Percent, true),
+        ],
+        mark_name: Some("period".into()),
+        said: vec!["R² = 1".into()],
+        note: Some("Rows: rates.".into()),
+        cut: Some("Cut.".into()),
     };
     vec![
-        ("missing moment", missing_moment(&moment, theme)),
+        ("panels", panels(&layered, theme)),
         ("dots", super::dots(&dot_plot, theme)),
-        ("ecdf", ecdf(&Ecdf { title: None, panels: vec![ecdf_panel.clone(), ecdf_panel] }, theme)),
         ("violins", violins(&Violins { title: None, panels: vec![violin_panel.clone(), violin_panel] }, theme)),
         ("scatter", scatter(&KtScatter { title: None, panels: methods().enumerate().map(cloud).collect() }, theme)),
         ("heat map", heat_map(&map, theme)),
@@ -163,17 +177,16 @@ fn figures_are_well_formed_whatever_the_data() {
 fn nothing_is_nothing() {
     let theme = Theme::screen();
     check("dots", &dots(&DotPlot::default(), &theme));
-    check("ecdf", &ecdf(&Ecdf::default(), &theme));
     check("violins", &violins(&Violins::default(), &theme));
     check("scatter", &scatter(&KtScatter::default(), &theme));
     check("heat map", &heat_map(&HeatMap::default(), &theme));
-    check("missing moment", &missing_moment(&MissingMoment::default(), &theme));
+    check("panels", &panels(&Panels::default(), &theme));
 }
 
 #[test]
 fn methods_keep_their_colours() {
     for (name, figure) in all(40, 0.3, &Theme::screen()) {
-        let coloured = ["heat map", "missing moment", "confusion"].contains(&name) || figure.svg().contains("#009E73");
+        let coloured = ["heat map", "panels", "confusion"].contains(&name) || figure.svg().contains("#009E73");
         assert!(coloured, "output-error in {name}");
     }
 }

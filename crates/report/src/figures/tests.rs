@@ -2,9 +2,9 @@
 //! scaled, the same data give the same bytes.
 
 use super::*;
-use crate::canvas::UNITS;
 use crate::curve::Curve;
 use crate::palette::{self, Origin};
+use crate::svg::UNITS;
 use crate::{Figure, Theme};
 
 /// A sine of `n` points; every `gap`-th is undefined.
@@ -119,27 +119,36 @@ fn numbers<'a>(svg: &'a str, attribute: &str) -> Vec<&'a str> {
     svg.split(&format!(" {attribute}=\"")).skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
+/// Every corner of an area and of a line in the document, in its units.
+fn places(svg: &str) -> Vec<(i64, i64)> {
+    let read = |text: &str| -> Vec<i64> { text.split([' ', ',']).filter_map(|number| number.parse().ok()).collect() };
+    let pairs = |text: &str| read(text).chunks_exact(2).map(|pair| (pair[0], pair[1])).collect::<Vec<_>>();
+    let mut places: Vec<(i64, i64)> = numbers(svg, "points").into_iter().flat_map(pairs).collect();
+    for line in numbers(svg, "d").into_iter().flat_map(|data| data.split('M').skip(1)) {
+        let (start, steps) = line.split_once(['l', 'h']).expect("a line or a dot");
+        let mut place = pairs(start)[0];
+        places.push(place);
+        for (across, down) in pairs(steps) {
+            place = (place.0 + across, place.1 + down);
+            places.push(place);
+        }
+    }
+    places
+}
+
 /// What every figure has to keep.
 pub(super) fn check(name: &str, figure: &Figure) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
     let (width, height) = figure.size();
     let (right, bottom) = ((width * UNITS) as i64 + 1, (height * UNITS) as i64 + 1);
-    for points in numbers(svg, "points") {
-        for pair in points.split_whitespace() {
-            let (x, y) = pair.split_once(',').unwrap();
-            let (x, y): (i64, i64) = (x.parse().unwrap(), y.parse().unwrap());
-            assert!((0..=right).contains(&x) && (0..=bottom).contains(&y), "{name}: {pair} is off the page");
-        }
+    for (x, y) in places(svg) {
+        assert!((0..=right).contains(&x) && (0..=bottom).contains(&y), "{name}: {x},{y} is off the page");
     }
-    // A hairline would be a stroke of a few canvas units: nothing may be thinner than 0.3 points. (The backend gives
-    // filled circles a stroke width of 1 beside a stroke of "none".)
-    for line in svg.lines().filter(|line| !line.contains("stroke=\"none\"")) {
-        for stroke in numbers(line, "stroke-width") {
-            assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS, "{name}: stroke {stroke}");
-        }
+    // Nothing may be thinner than 0.3 points.
+    for stroke in numbers(svg, "stroke-width") {
+        assert!(stroke.parse::<f64>().unwrap() >= 0.3 * UNITS, "{name}: stroke {stroke}");
     }
-    assert!(!svg.contains("<rect"), "{name}: a rectangle of the backend has no stroke width");
     for size in numbers(svg, "font-size") {
         assert!(size.parse::<f64>().unwrap() >= 6.5 * UNITS, "{name}: font size {size}");
     }

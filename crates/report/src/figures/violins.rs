@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::{median, zero_upright};
 use crate::axis::Axis;
-use crate::dimension::Dimensions;
 use crate::figure::Figure;
 use crate::layout::{Sheet, Side};
 use crate::palette::{INK, Origin, PAPER};
@@ -102,7 +101,7 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, violin: &Vi
         outline.extend(lower.into_iter().rev());
         scene.fill(Layer::Data, outline, look.colour, 0.28);
     }
-    scene.line(Layer::Data, [(inside(places[0]), y), (inside(places[4]), y)], Stroke::solid(look.colour, theme.line));
+    let beyond = panel.bar(scene, y, [q[0], q[4]], Stroke::solid(look.colour, theme.line), 0.6 * theme.small_font);
     let (left, right) = (inside(places[1]), inside(places[3]));
     let half = 0.13 * row_height;
     scene.fill(
@@ -114,13 +113,6 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, row: usize, violin: &Vi
     if rect.contains((places[2], y)) {
         scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker + 0.4 * theme.thin, INK, 1.0);
         scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker, PAPER, 1.0);
-    }
-    let mut beyond = false;
-    for (place, edge, direction) in [(places[0], rect.x, -1.0), (places[4], rect.right(), 1.0)] {
-        if (place - edge) * direction > 1e-6 {
-            Dimensions::head(scene, (edge, y), (direction, 0.0), 0.6 * theme.small_font, look.colour);
-            beyond = true;
-        }
     }
     beyond
 }

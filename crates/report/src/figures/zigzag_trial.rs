@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::shared::{heading_title, rudder_title, time_side};
 use crate::axis::{self, Axis};
-use crate::canvas::Anchor;
 use crate::clip::Rect;
 use crate::curve::Curve;
 use crate::dimension::Dimensions;
@@ -17,7 +16,7 @@ use crate::markup::symbol;
 use crate::number;
 use crate::palette::{DIMENSION, DOTTED, HEADING, INK, Look, Marker, Origin, RECORD, RUDDER, SOLID};
 use crate::panel::Panel;
-use crate::scene::{Layer, Scene, Stroke, Text};
+use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
 use crate::ticks::Steps;
 

@@ -1,7 +1,7 @@
 //! Words on their way into a page: nothing in them is a tag.
 
 /// A text for the body of a page or for a value in double quotes.
-pub(super) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -6,7 +6,6 @@ use std::path::Path;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::compact::compacted;
 use super::escape::escaped;
 
 /// Largest drawing that stands in a page as shapes, bytes: beyond it browsers become slow, and pixels are smaller.
@@ -72,9 +71,8 @@ fn inline(svg: &str, caption: &str) -> Option<String> {
     let attribute = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);
     let (view, width) = (attribute("viewBox")?, attribute("width")?);
     Some(format!(
-        "<svg viewBox=\"{view}\" stroke-linejoin=\"round\" style=\"max-width:{width}\" role=\"img\" \
-         aria-label=\"{}\">{}",
+        "<svg viewBox=\"{view}\" style=\"max-width:{width}\" role=\"img\" aria-label=\"{}\">{}",
         escaped(caption),
-        compacted(shapes.trim_start())
+        shapes.trim_start()
     ))
 }

@@ -2,7 +2,6 @@
 //! stand in it; nothing is fetched. The Markdown stays the one source: nothing is said here that is not said there.
 
 mod body;
-mod compact;
 mod escape;
 mod figures;
 
@@ -11,6 +10,7 @@ use askama::Template;
 use crate::error::ReportError;
 use body::Heading;
 
+pub(crate) use escape::escaped;
 pub use figures::Images;
 
 /// What the page looks like, and what its tables and figures answer to.

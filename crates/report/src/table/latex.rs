@@ -1,58 +1,48 @@
-//! A table in LaTeX: rules of `booktabs`, numbers in columns of `siunitx` below each other by their decimal point, and
-//! never wider than the text. What is too wide is set as several blocks of columns, each with the names of the rows;
-//! what is too long runs over pages. Any LaTeX with the packages named in its first line compiles it.
+//! A table in LaTeX: rules of `booktabs`, numbers in columns of `siunitx` below each other by their decimal point. On one
+//! page it is scaled down to the width of the text; what is too long runs over pages, a wide one best in landscape. Any
+//! LaTeX with the packages named in its first line compiles it.
 
 use super::content::{Column, Table};
-use super::latex_text::{escape, is_symbol, script, worded};
+use super::latex_text::{escape, script, worded};
 use super::width::{Alignment, columns as characters};
 
-/// Rows of all blocks that one page holds; more run over pages.
+/// Rows that one page holds; more run over pages.
 const PAGE: usize = 42;
-
-/// Width of the text that blocks are made for, points: that of an article on A4.
-const TEXT: f64 = 345.0;
-
-/// A block on one page may be this much wider and is scaled down, to 7.5 points of type at most.
-const SCALED: f64 = 1.2;
-
-/// Mean width of a character, points: of 9 points of type on one page, of 8 over several.
-const CHARACTER: [f64; 2] = [4.7, 4.3];
 
 /// A heading is broken into lines of about so many characters.
 const HEADING: usize = 9;
 
-/// The names of the rows take at most this share of the width, where numbers follow.
-const NAMES: f64 = 0.55;
-
-/// Words are broken into lines of no fewer characters.
-const WORDS: usize = 14;
-
-/// Space between two columns, points.
-const GAP: f64 = 8.0;
+/// Words that are longer, in characters, are broken into lines.
+const WORDS: usize = 40;
 
 impl Table {
     /// As LaTeX that compiles with the packages named in its first line: caption and label where the table has a title
     /// and a label, numbers in `S` columns of siunitx (`0.1003 ± 0.0007` as `0.1003(7)`), every other character escaped
-    /// or translated to mathematics; at most as wide as the text, and on one page up to 42 rows.
+    /// or translated to mathematics; on one page, at most as wide as the text, up to 42 rows.
     pub fn to_latex(&self) -> String {
         if self.columns.is_empty() {
             return String::from("% A table without columns.\n");
         }
-        let set = |room: f64, character: f64| {
-            let mut set: Vec<Set> =
-                self.columns.iter().enumerate().map(|(i, column)| Set::new(self, i, column)).collect();
-            break_words(self, &mut set, room, character);
-            let blocks = blocks(self, &set, room, character);
-            (set, blocks)
-        };
-        let (short, short_blocks) = set(SCALED * TEXT, CHARACTER[0]);
-        let lines = |row: usize| short.iter().map(|column| column.lines(row)).max().unwrap_or(1);
-        let rows: usize = (0..self.rows.len()).map(lines).sum();
-        if short_blocks.len() * (rows + 3) <= PAGE {
-            return on_one_page(self, &short, &short_blocks);
+        let is_empty = |place: &usize| !self.rows.is_empty() && self.cells_of(*place).all(|cell| cell.is_none());
+        let shown = (0..self.columns.len()).filter(|place| !is_empty(place));
+        let set: Vec<Set> = shown.map(|place| Set::new(self, place, &self.columns[place])).collect();
+        let formats: Vec<&str> = set.iter().map(|column| column.format.as_str()).collect();
+        let (format, head, body) = (formats.join(" "), head(&set), body(&set, self.rows.len()));
+        if self.rows.len() > PAGE {
+            return format!(
+                "% Needs \\usepackage{{booktabs,siunitx,longtable}}.\n{{\\footnotesize\\setlength{{\\tabcolsep}}{{4pt}}\n\
+                 \\begin{{longtable}}{{@{{}}{format}@{{}}}}\n{}{head}    \\endhead\n{body}    \\bottomrule\n\
+                 \\end{{longtable}}}}\n",
+                caption(self, "\\\\")
+            );
         }
-        let (long, long_blocks) = set(TEXT, CHARACTER[1]);
-        over_pages(self, &long, &long_blocks)
+        format!(
+            "% Needs \\usepackage{{booktabs,siunitx,adjustbox}}.\n\\begin{{table}}\n  \\centering\n{}  \
+             \\par\\smallskip\\small\n  \\setlength{{\\tabcolsep}}{{4pt}}\n  \\begin{{adjustbox}}{{max width=\\linewidth}}\n  \
+             \\begin{{tabular}}{{@{{}}{format}@{{}}}}\n{head}{body}    \\bottomrule\n  \\end{{tabular}}\n  \
+             \\end{{adjustbox}}\n\\end{{table}}\n",
+            caption(self, "")
+        )
     }
 }
 
@@ -63,10 +53,6 @@ struct Set {
     /// Lines of the heading, the last one next to the cells.
     heading: Vec<String>,
     cells: Vec<String>,
-    /// Characters of its widest line.
-    widest: usize,
-    /// Characters of its cells.
-    characters: Vec<usize>,
 }
 
 impl Set {
@@ -75,16 +61,15 @@ impl Set {
         let numbers: Vec<Option<Number>> = cells.iter().map(|cell| cell.and_then(Number::parse)).collect();
         let (known, parsed) = (cells.iter().flatten().count(), numbers.iter().flatten().count());
         let is_number = column.alignment != Alignment::Left && parsed > 0 && 2 * parsed >= known;
+        let widest = cells.iter().flatten().map(|cell| characters(cell)).max().unwrap_or(0);
         let format = match (is_number, column.alignment) {
-            (true, _) => format!("S[table-format={}]", widest(numbers.iter().flatten())),
+            (true, _) => format!("S[table-format={}]", table_format(numbers.iter().flatten())),
+            (false, Alignment::Left) if widest > WORDS => String::from(">{\\raggedright\\arraybackslash}p{170pt}"),
             (false, Alignment::Left) => "l".to_owned(),
             (false, _) => "r".to_owned(),
         };
-        let lengths: Vec<usize> = cells.iter().map(|cell| cell.map_or(2, characters)).collect();
-        let body = lengths.iter().copied().max().unwrap_or(0);
-        let heading = wrapped(&column.head(), body.max(HEADING));
+        let heading = wrapped(&column.head(), widest.max(HEADING));
         Self {
-            widest: heading.iter().map(|line| characters(line)).fold(body, usize::max),
             heading: heading.iter().map(|line| format!("{{{}}}", worded(line))).collect(),
             cells: cells
                 .iter()
@@ -96,17 +81,7 @@ impl Set {
                 })
                 .collect(),
             format,
-            characters: lengths,
         }
-    }
-
-    /// Lines of a cell.
-    fn lines(&self, row: usize) -> usize {
-        self.characters[row].div_ceil(self.widest.max(1))
-    }
-
-    fn width(&self, character: f64) -> f64 {
-        self.widest as f64 * character + GAP
     }
 }
 
@@ -175,7 +150,7 @@ fn decimal(text: &str) -> Option<[usize; 2]> {
 }
 
 /// The `table-format` that has room for all numbers of a column.
-fn widest<'a>(numbers: impl Iterator<Item = &'a Number> + Clone) -> String {
+fn table_format<'a>(numbers: impl Iterator<Item = &'a Number> + Clone) -> String {
     let most = |part: usize| numbers.clone().map(|number| number.digits[part]).max().unwrap_or(0);
     let mut format = String::from(if numbers.clone().any(|number| number.is_negative) { "-" } else { "" });
     format += &most(0).to_string();
@@ -192,67 +167,22 @@ fn widest<'a>(numbers: impl Iterator<Item = &'a Number> + Clone) -> String {
     format
 }
 
-/// Breaks the words of the leading columns into lines, the widest first, where they take too much of the width.
-fn break_words(table: &Table, set: &mut [Set], room: f64, character: f64) {
-    let names = table.columns.iter().take_while(|column| column.alignment == Alignment::Left).count();
-    let limit = if names == set.len() { room } else { NAMES * room };
-    for _ in 0..names {
-        let excess = set[..names].iter().map(|column| column.width(character)).sum::<f64>() - limit;
-        let Some(widest) = set[..names].iter_mut().max_by_key(|column| column.widest).filter(|_| excess > 0.0) else {
-            return;
-        };
-        widest.widest = widest.widest.saturating_sub((excess / character).ceil() as usize).max(WORDS);
-        let width = widest.widest as f64 * character;
-        widest.format = format!(">{{\\raggedright\\arraybackslash}}p{{{width:.0}pt}}");
-    }
-}
-
-/// Columns in blocks that are no wider than `room`, each with the leading columns of words. A block begins with a
-/// heading that begins with a symbol, where it can, and never with words, which belong to the number before. Columns
-/// without a cell are left out.
-fn blocks(table: &Table, set: &[Set], room: f64, character: f64) -> Vec<Vec<usize>> {
-    let is_words = |place: usize| table.columns[place].alignment == Alignment::Left;
-    let is_empty = |place: usize| table.cells_of(place).all(|cell| cell.is_none()) && !table.rows.is_empty();
-    let begins = |place: usize| table.columns[place].heading.split(' ').next().is_some_and(is_symbol);
-    let width = |places: &[usize]| places.iter().map(|&place| set[place].width(character)).sum::<f64>();
-    let names: Vec<usize> = (0..set.len()).take_while(|&place| is_words(place)).collect();
-    let mut rest: Vec<usize> = (names.len()..set.len()).filter(|&place| !is_empty(place)).collect();
-    let mut blocks = Vec::new();
-    while blocks.is_empty() || !rest.is_empty() {
-        let fits = |count: &usize| width(&names) + width(&rest[..*count]) <= room;
-        let most = (1..=rest.len()).take_while(fits).last().unwrap_or(rest.len().min(1));
-        let is_end = |count: usize, good: &dyn Fn(usize) -> bool| count == rest.len() || good(rest[count]);
-        let last = |good: &dyn Fn(usize) -> bool| (1..=most).rev().find(|&count| is_end(count, good));
-        let count = last(&begins).or_else(|| last(&|place| !is_words(place))).unwrap_or(most);
-        blocks.push(names.iter().copied().chain(rest.drain(..count)).collect());
-    }
-    blocks
-}
-
-fn specification(set: &[Set], block: &[usize]) -> String {
-    let formats: Vec<&str> = block.iter().map(|&place| set[place].format.as_str()).collect();
-    format!("@{{}}{}@{{}}", formats.join(" "))
-}
-
 /// Rules and heading; lines of a heading end above the cells.
-fn head(set: &[Set], block: &[usize]) -> String {
-    let lines = block.iter().map(|&place| set[place].heading.len()).max().unwrap_or(0);
+fn head(set: &[Set]) -> String {
+    let lines = set.iter().map(|column| column.heading.len()).max().unwrap_or(0);
     let mut out = String::from("    \\toprule\n");
     for line in 0..lines {
-        let cell = |place: &usize| {
-            let heading = &set[*place].heading;
-            (line + heading.len()).checked_sub(lines).map_or("", |own| heading[own].as_str())
-        };
-        out += &format!("    {} \\\\\n", block.iter().map(cell).collect::<Vec<_>>().join(" & "));
+        let own = |column: &Set| (line + column.heading.len()).checked_sub(lines);
+        let cell = |column: &Set| own(column).map_or_else(String::new, |line| column.heading[line].clone());
+        out += &format!("    {} \\\\\n", set.iter().map(cell).collect::<Vec<_>>().join(" & "));
     }
     out + "    \\midrule\n"
 }
 
-fn body(table: &Table, set: &[Set], block: &[usize]) -> String {
+fn body(set: &[Set], rows: usize) -> String {
     let mut out = String::new();
-    for row in 0..table.rows.len() {
-        let cells: Vec<&str> = block.iter().map(|&place| set[place].cells[row].as_str()).collect();
-        let cells = cells.join(" & ");
+    for row in 0..rows {
+        let cells = set.iter().map(|column| column.cells[row].as_str()).collect::<Vec<_>>().join(" & ");
         // A bracket or a star behind the end of the row before would belong to that.
         let guard = if cells.starts_with(['[', '*', '(']) { "{}" } else { "" };
         out += &format!("    {guard}{cells} \\\\\n");
@@ -265,43 +195,6 @@ fn caption(table: &Table, end: &str) -> String {
         table.title.as_ref().map_or_else(String::new, |title| format!("  \\caption{{{}}}{end}\n", worded(title)));
     if let (Some(label), Some(_)) = (&table.label, &table.title) {
         out.insert_str(out.len() - 1 - end.len(), &format!("\\label{{tab:{label}}}"));
-    }
-    out
-}
-
-fn on_one_page(table: &Table, set: &[Set], blocks: &[Vec<usize>]) -> String {
-    let mut out = String::from("% Needs \\usepackage{booktabs,siunitx,adjustbox}.\n\\begin{table}\n  \\centering\n");
-    out += &caption(table, "");
-    out += "  \\par\\smallskip\\small\n  \\setlength{\\tabcolsep}{4pt}\n";
-    for (number, block) in blocks.iter().enumerate() {
-        if number > 0 {
-            out += "  \\par\\medskip\n";
-        }
-        out += &format!(
-            "  \\begin{{adjustbox}}{{max width=\\linewidth}}\n  \\begin{{tabular}}{{{}}}\n{}{}    \\bottomrule\n  \
-             \\end{{tabular}}\n  \\end{{adjustbox}}\n",
-            specification(set, block),
-            head(set, block),
-            body(table, set, block)
-        );
-    }
-    out + "\\end{table}\n"
-}
-
-fn over_pages(table: &Table, set: &[Set], blocks: &[Vec<usize>]) -> String {
-    let mut out = String::from("% Needs \\usepackage{booktabs,siunitx,longtable}.\n");
-    for (number, block) in blocks.iter().enumerate() {
-        let caption = match number {
-            0 => caption(table, "\\\\"),
-            _ => String::new(),
-        };
-        out += &format!(
-            "{{\\footnotesize\\setlength{{\\tabcolsep}}{{4pt}}\n\\begin{{longtable}}{{{}}}\n{caption}{}    \\endhead\n{}    \
-             \\bottomrule\n\\end{{longtable}}}}\n",
-            specification(set, block),
-            head(set, block),
-            body(table, set, block)
-        );
     }
     out
 }

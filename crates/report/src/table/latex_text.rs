@@ -3,112 +3,9 @@
 
 use crate::printable::escaped;
 
-/// Characters with what they are in mathematics.
-const SIGNS: [(char, &str); 65] = [
-    ('α', "\\alpha"),
-    ('β', "\\beta"),
-    ('γ', "\\gamma"),
-    ('δ', "\\delta"),
-    ('ε', "\\varepsilon"),
-    ('ζ', "\\zeta"),
-    ('η', "\\eta"),
-    ('θ', "\\theta"),
-    ('κ', "\\kappa"),
-    ('λ', "\\lambda"),
-    ('μ', "\\mu"),
-    ('µ', "\\mu"),
-    ('ν', "\\nu"),
-    ('ξ', "\\xi"),
-    ('π', "\\pi"),
-    ('ρ', "\\rho"),
-    ('σ', "\\sigma"),
-    ('τ', "\\tau"),
-    ('φ', "\\varphi"),
-    ('χ', "\\chi"),
-    ('ψ', "\\psi"),
-    ('ω', "\\omega"),
-    ('Γ', "\\Gamma"),
-    ('Δ', "\\Delta"),
-    ('Λ', "\\Lambda"),
-    ('Σ', "\\Sigma"),
-    ('Φ', "\\Phi"),
-    ('Ψ', "\\Psi"),
-    ('Ω', "\\Omega"),
-    ('ℓ', "\\ell"),
-    ('ṙ', "\\dot{r}"),
-    ('<', "<"),
-    ('>', ">"),
-    ('|', "|"),
-    ('−', "-"),
-    ('±', "\\pm"),
-    ('∓', "\\mp"),
-    ('×', "\\times"),
-    ('·', "\\cdot"),
-    ('√', "\\surd"),
-    ('∞', "\\infty"),
-    ('≈', "\\approx"),
-    ('≠', "\\neq"),
-    ('≤', "\\leq"),
-    ('≥', "\\geq"),
-    ('∝', "\\propto"),
-    ('∂', "\\partial"),
-    ('∫', "\\int"),
-    ('∇', "\\nabla"),
-    ('‖', "\\|"),
-    ('→', "\\rightarrow"),
-    ('←', "\\leftarrow"),
-    ('½', "\\frac{1}{2}"),
-    ('¼', "\\frac{1}{4}"),
-    ('°', "^{\\circ}"),
-    ('′', "'"),
-    ('″', "''"),
-    ('•', "\\bullet"),
-    ('†', "\\dagger"),
-    ('‡', "\\ddagger"),
-    ('●', "\\bullet"),
-    ('★', "\\star"),
-    ('◆', "\\diamond"),
-    ('▲', "\\triangle"),
-    ('■', "\\cdot"),
-];
-
-/// Characters with what they are in text.
-const PLAIN: [(char, &str); 23] = [
-    ('&', "\\&"),
-    ('%', "\\%"),
-    ('$', "\\$"),
-    ('#', "\\#"),
-    ('_', "\\_"),
-    ('{', "\\{"),
-    ('}', "\\}"),
-    ('\\', "\\textbackslash{}"),
-    ('~', "\\textasciitilde{}"),
-    ('^', "\\textasciicircum{}"),
-    ('–', "--"),
-    ('—', "---"),
-    ('…', "\\ldots{}"),
-    ('‰', "0.1\\,\\%"),
-    ('“', "``"),
-    ('”', "''"),
-    ('‘', "`"),
-    ('’', "'"),
-    ('\u{a0}', "~"),
-    ('\u{2009}', "\\,"),
-    ('\u{202f}', "\\,"),
-    ('ß', "\\ss{}"),
-    ('§', "\\S{}"),
-];
-
-/// Combining accents with their command in mathematics.
-const ACCENTS: [(char, &str); 7] = [
-    ('\u{300}', "grave"),
-    ('\u{301}', "acute"),
-    ('\u{302}', "hat"),
-    ('\u{303}', "tilde"),
-    ('\u{304}', "bar"),
-    ('\u{307}', "dot"),
-    ('\u{308}', "ddot"),
-];
+/// What becomes of a character: whether it is a sign of mathematics, of text or an accent of mathematics, its code point
+/// and how LaTeX writes it.
+const SIGNS: &str = include_str!("latex_signs.tsv");
 
 /// Letters that every LaTeX knows as they are.
 const LETTERS: &str =
@@ -134,10 +31,10 @@ pub(super) fn escape(text: &str) -> String {
                 chars.next();
             }
             out.push_str(&format!("${kind}{{{run}}}$"));
-        } else if let Some(accent) = chars.peek().and_then(|next| found(&ACCENTS, *next)) {
+        } else if let Some(accent) = chars.peek().and_then(|next| found("accent", *next)) {
             chars.next();
             let letter = c.is_ascii_alphanumeric().then(|| c.to_string());
-            match letter.or_else(|| found(&SIGNS, c).map(str::to_owned)) {
+            match letter.or_else(|| found("math", c).map(str::to_owned)) {
                 Some(letter) => out.push_str(&format!("$\\{accent}{{{letter}}}$")),
                 // An accent on what is no letter says nothing.
                 None => out.push_str(&alone(c)),
@@ -149,14 +46,9 @@ pub(super) fn escape(text: &str) -> String {
     out
 }
 
-/// Whether a word is a symbol.
-pub(super) fn is_symbol(word: &str) -> bool {
-    SYMBOLS.contains(&word)
-}
-
 /// A heading or a caption: as [`escape`], and symbols that are words in it are set as such.
 pub(super) fn worded(text: &str) -> String {
-    let word = |word: &str| match is_symbol(word) {
+    let word = |word: &str| match SYMBOLS.contains(&word) {
         true => format!("${word}$"),
         false => escape(word),
     };
@@ -170,7 +62,7 @@ pub(super) fn script(c: char) -> Option<(char, char)> {
 }
 
 fn alone(c: char) -> String {
-    match (found(&PLAIN, c), found(&SIGNS, c)) {
+    match (found("text", c), found("math", c)) {
         (Some(plain), _) => plain.to_owned(),
         (_, Some(sign)) => format!("${sign}$"),
         _ if c.is_ascii() || LETTERS.contains(c) => c.to_string(),
@@ -178,8 +70,9 @@ fn alone(c: char) -> String {
     }
 }
 
-fn found(list: &[(char, &'static str)], c: char) -> Option<&'static str> {
-    list.iter().find(|(known, _)| *known == c).map(|(_, tex)| *tex)
+fn found(kind: &str, c: char) -> Option<&'static str> {
+    let code = format!("{kind}\tU+{:04X}\t", u32::from(c));
+    SIGNS.lines().find_map(|line| line.strip_prefix(code.as_str()))
 }
 
 #[cfg(test)]

@@ -4,13 +4,13 @@ use report::Table;
 use report::number::{MISSING, fixed, optional, with_uncertainty};
 use trial::Trial;
 
+use crate::documents::fit::ZigZagEntry;
 use crate::options::{Common, FitRequest};
 use crate::records::{default_folder, file_of, names, read_all, read_others, warn_of_repetition};
 use crate::scales::Together;
 use crate::screen::{self, Told};
 use crate::views::document;
 use crate::views::fit_figures::{self, Drawn, Whole};
-use crate::views::fit_file::ZigZagEntry;
 use crate::views::fit_page::{self, FitPage};
 use crate::views::page_files::write_page;
 use crate::views::{fit_scales, method_table};

@@ -35,14 +35,15 @@ pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
         let name = what.to_possible_value().map(|value| value.get_name().to_owned());
         return document::say("list/1", json!({ "what": name, "entries": table.to_records() }));
     }
+    // What stands before a list in Markdown, which is a page of the documentation.
     let head = match what {
         _ if common.format != Format::Markdown => "",
-        Listed::Identifiers => IDENTIFIERS,
-        Listed::Effects => EFFECTS,
-        Listed::Ships => SHIPS,
-        Listed::Keys => KEYS,
-        Listed::Columns => COLUMNS,
-        Listed::Sidecar => SIDECAR,
+        Listed::Identifiers => include_str!("../../templates/list-identifiers.md"),
+        Listed::Effects => include_str!("../../templates/list-effects.md"),
+        Listed::Ships => include_str!("../../templates/list-ships.md"),
+        Listed::Keys => include_str!("../../templates/list-keys.md"),
+        Listed::Columns => include_str!("../../templates/list-columns.md"),
+        Listed::Sidecar => include_str!("../../templates/list-sidecar.md"),
         Listed::Manoeuvres | Listed::Sensors => "",
     };
     screen::say(&format!("{head}{}", common.format.render(&table).trim_end()))
@@ -151,87 +152,3 @@ fn sidecar() -> Table {
     }
     table
 }
-
-/// What stands before the methods in Markdown, which is a page of the documentation.
-const IDENTIFIERS: &str = "\
-# Methods
-
-What finds K, T and the rudder bias δ_r in a record. The id is what `study fit --method` and `[[identifier]] method.ID` of a
-scenario take. Settings are shown with their defaults, as a scenario may write them. Made by `study list identifiers --format
-markdown`.
-
-";
-
-/// What stands before the effects in Markdown, which is a page of the documentation.
-const EFFECTS: &str = "\
-# Effects
-
-What a first-order response may lack. `study trace` looks for each of them; a scenario puts them into a ship by the keys of the
-third column, `[[effect]] ID = { KEY = VALUE }`. Units of the parameters are those of `trace.json`. Made by `study list effects
---format markdown`.
-
-";
-
-/// What stands before the ships in Markdown, which is a page of the documentation.
-const SHIPS: &str = "\
-# Ships
-
-What `[ship.ID]` of a scenario may name, with length between perpendiculars and approach speed. Made by `study list ships --format
-markdown`.
-
-";
-
-/// What stands before the names of columns in Markdown, which is a page of the documentation.
-const COLUMNS: &str = "\
-# Columns of a record
-
-What the columns of a table may be called. The names in the middle say their unit and are read without a word. Other names are
-understood, too, whatever the case of their letters and the marks between their words; a unit may follow the name (`ROT deg/min`,
-`Heading [°]`, `STW (kn)`) or stand in a row below the names. Where no unit is written it is found from the values if only one fits
-them; otherwise the table is refused, or a channel that nobody needs is left out. What was understood is said. Made by `study list
-columns --format markdown`.
-
-";
-
-/// What stands before the keys of a sidecar in Markdown, which is a page of the documentation.
-const SIDECAR: &str = "\
-# Sidecar of a record
-
-A table that does not speak for itself is described by a file `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, …), which is
-found by itself, or by any file named with `--columns`. None of its keys is required. `study sidecar LOG` writes a first one with
-everything that was understood or guessed, for a person to check. Made by `study list sidecar --format markdown`.
-
-```toml
-[table]
-skip-lines = 4
-separator = \"blank\"
-
-[part]
-from-s = 20.0
-until-s = 110.0
-
-[[column]]
-name = \"psi [rad]\"
-is = \"heading_rad\"
-
-[[column]]
-index = 9
-is = \"rudder_deg\"
-flip = true
-
-[ship]
-length-m = 7.0
-speed-m-s = 1.18
-```
-
-";
-
-/// What stands before the keys in Markdown, which is a page of the documentation.
-const KEYS: &str = "\
-# Keys of a scenario
-
-What a scenario can say, key by key; `[]` stands for one entry of a list, such as an `[[identifier]]`. A key that is required may be
-left out with the whole table it stands in. `study list ships` and `study list effects` say more on what stands below `ship` and
-`effect`. Made by `study list keys --format markdown`.
-
-";

@@ -8,10 +8,10 @@ use campaign::store::{self, Stored};
 use scenario::failure::Failure;
 
 use super::trace;
+use crate::documents::trace::TRACE;
 use crate::options::{Common, StudyStyle};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
-use crate::views::trace_document::TRACE;
 
 /// Makes tables, figures and the pages of a finished study or of a trace where it is stored, or in `--out`; with `open`
 /// shows the page in a browser, which is all that can be done for a fit and a prediction.

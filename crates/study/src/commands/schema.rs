@@ -7,12 +7,12 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use std::path::Path;
 
+use crate::documents::fit::FitDocument;
+use crate::documents::trace::TraceDocument;
 use crate::options::{Common, Described};
 use crate::screen;
 use crate::views::document;
-use crate::views::fit_file::FitFile;
 use crate::views::predict_file::PredictFile;
-use crate::views::trace_document::TraceDocument;
 
 /// Prints the schema.
 pub fn run(what: Described, common: &Common) -> Result<(), Failure> {
@@ -25,7 +25,7 @@ pub fn schema(what: Described) -> Schema {
     match what {
         Described::Scenario => scenario::schema::schema(),
         Described::Sidecar => trial::sidecar::schema(),
-        Described::Fit => of::<FitFile>(),
+        Described::Fit => of::<FitDocument>(),
         Described::Trace => of::<TraceDocument>(),
         Described::Predict => of::<PredictFile>(),
         Described::Manifest => of::<Manifest>(),

@@ -7,12 +7,12 @@ use campaign::folder::ResultFolder;
 use report::Theme;
 use scenario::failure::{Failure, OnPath};
 
+use crate::documents::curves::Curves;
+use crate::documents::trace::{TRACE, TraceDocument};
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
-use crate::views::trace_curves::Curves;
-use crate::views::trace_document::{TRACE, TraceDocument};
 use crate::views::{trace_figures, trace_page, trace_tables};
 use crate::work::steady;
 use crate::work::trace::{settings, trace, without};

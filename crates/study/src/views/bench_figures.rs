@@ -1,10 +1,10 @@
-//! Figures of a benchmark: how scores are distributed, and scores over those of the reference.
+//! Figures of a benchmark: scores over those of the reference.
 
-use bench::board::{Board, FEWEST, steps};
-use bench::{Results, Task};
+use bench::Results;
+use bench::board::Board;
 use campaign::disk;
 use campaign::folder::ResultFolder;
-use report::figures::{Dot, DotColumn, DotPlot, Ecdf, EcdfCurve, EcdfPanel, Reference95, Scale, dots, ecdf};
+use report::figures::{Dot, DotColumn, DotPlot, Reference95, Scale, dots};
 use report::{Origin, Theme};
 use scenario::failure::{Failure, OnPath};
 
@@ -13,25 +13,20 @@ use super::picture::{slug, write_figure};
 /// A score over that of the reference beyond which an arrow stands for it.
 const FAR: f64 = 100.0;
 
-/// Beginnings of the names of the figures.
-const SCORES: &str = "scores";
+/// Beginning of the names of the figures, and of those that an earlier version drew beside them.
 const RATIOS: &str = "ratios";
+const FORMER: &str = "scores";
 
 /// Removes what an earlier run may have drawn.
 pub fn remove(folder: &ResultFolder) -> Result<(), Failure> {
     for name in disk::names(folder.path()).on("list the folder", folder.path())? {
-        let is_figure = [SCORES, RATIOS].iter().any(|stem| name.starts_with(&format!("{stem}-")));
+        let is_figure = [FORMER, RATIOS].iter().any(|stem| name.starts_with(&format!("{stem}-")));
         if is_figure && [".svg", ".png"].iter().any(|kind| name.ends_with(kind)) {
             let path = folder.path().join(name);
             disk::remove(&path).on("remove", &path)?;
         }
     }
     Ok(())
-}
-
-/// The stem of the figure of a task.
-pub fn of_task(task: Task) -> String {
-    format!("{SCORES}-{}", task.id())
 }
 
 /// The stem of the figure of a field.
@@ -42,11 +37,6 @@ pub fn of_field(field: &str) -> String {
 /// Draws them, and returns stems and captions.
 pub fn draw(results: &Results, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
     let mut drawn = Vec::new();
-    for task in Task::ALL {
-        let Some(data) = distribution(results, task) else { continue };
-        write_figure(&ecdf(&data, theme), folder, &of_task(task))?;
-        drawn.push((of_task(task), distribution_caption(task)));
-    }
     for field in results.fields() {
         let Some(data) = ratios(results, field) else { continue };
         write_figure(&dots(&data, theme), folder, &of_field(field))?;
@@ -60,14 +50,6 @@ pub fn draw(results: &Results, theme: &Theme, folder: &ResultFolder) -> Result<V
         drawn.push((of_field(field), caption));
     }
     Ok(drawn)
-}
-
-fn distribution_caption(task: Task) -> String {
-    format!(
-        "{}: share of the cases whose score is within a size. Further left is better; a line that levels off below one \
-         belongs to a method that fails. Fields of fewer than {FEWEST} records are left out.",
-        capital(task.title())
-    )
 }
 
 /// A sentence that begins with a capital.
@@ -85,22 +67,6 @@ fn origin(method: &str) -> Origin {
         }
         method => Origin::Method(method.to_owned()),
     }
-}
-
-fn distribution(results: &Results, task: Task) -> Option<Ecdf> {
-    let panel = |board: &Board| {
-        let curve = |method: &String| {
-            let points = steps(&results.cases, task, &board.field, method);
-            (!points.is_empty()).then(|| EcdfCurve { origin: origin(method), points })
-        };
-        let curves: Vec<EcdfCurve> = results.methods.iter().filter_map(curve).collect();
-        let x_title = format!("{}: {}", board.field, task.score()?);
-        (!curves.is_empty()).then_some(EcdfPanel { x_title, curves })
-    };
-    // Of a few records a distribution says nothing.
-    let boards = results.boards.iter().filter(|board| board.task == task && board.clusters >= FEWEST);
-    let panels: Vec<EcdfPanel> = boards.filter_map(panel).collect();
-    (!panels.is_empty()).then_some(Ecdf { title: None, panels })
 }
 
 fn ratios(results: &Results, field: &str) -> Option<DotPlot> {

@@ -8,7 +8,7 @@ use bench::board::FEWEST;
 use bench::cases::{Answer, Case};
 use report::markdown;
 
-use super::bench_figures::{capital, of_field, of_task};
+use super::bench_figures::{capital, of_field};
 use super::bench_tables as tables;
 
 /// How to read any of the tables.
@@ -45,7 +45,6 @@ pub fn page(results: &Results, drawn: &[(String, String)]) -> String {
         if before != Some(board.task) {
             line(&format!("## {}\n", capital(board.task.title())));
             line(&format!("Score: {}.\n", board.task.score().unwrap_or_default()));
-            figure(&of_task(board.task)).iter().for_each(|figure| line(figure));
             before = Some(board.task);
         }
         line(&format!("### {}: {}\n", capital(&board.field), counted(board.cases, board.clusters)));

@@ -9,9 +9,9 @@ use report::figures::Replays;
 use report::{Curve, Origin};
 use scenario::failure::Failure;
 
-use super::columns::digits;
 use super::drawings::Drawing;
 use super::picture::slug;
+use crate::documents::columns::digits;
 
 /// A column: its name with its unit, and its values over what the first column holds.
 type Column<'a> = (String, &'a Curve);

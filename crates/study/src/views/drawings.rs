@@ -186,7 +186,7 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
                        ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
                        likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
         let draw = move |theme: &Theme, hero: Option<&Hero>| {
-            figures::power(&figures::Power { title: title(hero), ..data.clone() }, theme)
+            figures::panels(&figures::Panels { title: title(hero), ..data.clone() }, theme)
         };
         drawings.push(Drawing::new("power", format!("{caption}{whose}"), draw));
     }
@@ -194,7 +194,7 @@ fn of_traces<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> {
         let caption = "How often an effect was there, over the probability that the trace gave it: every effect on the list \
                        counts once in every trial of a ship whose effects are known, with 95 % intervals.";
         drawings.push(Drawing::new("reliability", format!("{caption}{whose}"), move |theme, _| {
-            figures::power(&data, theme)
+            figures::panels(&data, theme)
         }));
     }
     drawings.iter_mut().for_each(|drawing| drawing.of_traces = true);
@@ -243,26 +243,6 @@ fn of_summary<'a>(stored: &'a Stored, summary: &'a Summary) -> Vec<Drawing<'a>> 
         let caption = format!("{} of every method over both axes: dark is good.", data.value_title);
         drawings.push(Drawing::new(stem, caption, move |theme, hero| {
             figures::heat_map(&figures::HeatMap { title: title(hero), ..data.clone() }, theme)
-        }));
-    }
-    // A trace is held against the ship's own K and T, another method against the nearest first-order response: in one
-    // pool their errors say nothing.
-    // Over several cells the pool is a mixture that nobody asked for.
-    let is_one_pool = summary.tracing.is_empty() && matches!(&design.cells[..], [only] if !only.is_nearest);
-    if let Some((data, first)) = pooled_charts::ranking(design, summary).filter(|_| is_one_pool) {
-        let caption = format!(
-            "Methods by the size of their error of T over all trials: median (filled) and the size that 90 % of the answers do \
-             not exceed (hollow), with 95 % intervals. Trials without an answer do not count here. First: {first}."
-        );
-        drawings.push(Drawing::new("ranking", caption, move |theme, hero| {
-            figures::dots(&figures::DotPlot { title: title(hero), ..data.clone() }, theme)
-        }));
-    }
-    if let Some(data) = pooled_charts::ecdf(design, summary).filter(|_| is_one_pool) {
-        let caption = "Share of all trials whose error is within a size. Further left is better; a line that levels off below one \
-                       belongs to a method that fails.";
-        drawings.push(Drawing::new("ecdf", caption, move |theme, hero| {
-            figures::ecdf(&figures::Ecdf { title: title(hero), ..data.clone() }, theme)
         }));
     }
     let of_cell = |name: &str, cell: usize| {
@@ -354,7 +334,7 @@ mod tests {
         let stems = ["errors", "errors-2", "errors", "errors"];
         let mut drawings: Vec<Drawing> = stems
             .iter()
-            .map(|stem| Drawing::new(*stem, "", |theme, _| figures::ecdf(&figures::Ecdf::default(), theme)))
+            .map(|stem| Drawing::new(*stem, "", |theme, _| figures::dots(&figures::DotPlot::default(), theme)))
             .collect();
         tell_apart(&mut drawings);
         let found: Vec<&str> = drawings.iter().map(|drawing| drawing.stem.as_str()).collect();

@@ -5,14 +5,15 @@
 use identify::Estimate;
 use identify::replay::replay;
 use rayon::prelude::*;
-use report::figures::{self, Fit, PhasePlane, RecordFit, Replay, Replays};
+use report::figures::{self, Fit, Layer, Layers, Panels, Pen, PhasePlane, RecordFit, Replay, Replays, Ruler, Stack};
+use report::palette::{BEFORE, Look, Marker, RUDDER, SOLID};
 use report::{Figure, Origin, Theme};
 use ship::Particulars;
 use trial::{Channel, Trial, ZigZag};
 
 use super::picture::write_figure;
 use super::{curve_tables, index_figures};
-use crate::views::index_figures::Amplitudes;
+use crate::work::alone::Amplitudes;
 use campaign::answer::MethodEntry;
 use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::folder::ResultFolder;
@@ -117,19 +118,24 @@ fn title(record: &Drawn) -> Option<String> {
 /// The record with marks at the readings that are left out or doubtful.
 fn raw(record: &Drawn, theme: &Theme) -> Figure {
     let trial = record.trial;
+    let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let marked = |channel: Channel| {
         let marks = trial.marks().iter().filter(|mark| mark.channel == channel);
         let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
-        curve(&time, &values)
+        let none = vec![None; time.len()];
+        Layer::new("left out or doubtful", curve(&time, &values), figures::Drawn::Marks(look, none))
     };
-    let data = figures::RawRecord {
-        title: title(record),
-        heading: curve(trial.time(), trial.heading()),
-        rudder: curve(trial.time(), trial.rudder()),
-        marked_headings: marked(Channel::Heading),
-        marked_rudder: marked(Channel::Rudder),
-    };
-    figures::raw_record(&data, theme)
+    let heading = Layer::new("recorded heading", curve(trial.time(), trial.heading()), figures::Drawn::Record);
+    let pen = figures::Drawn::Line(Pen::new(RUDDER));
+    let rudder = Layer::new("recorded rudder", curve(trial.time(), trial.rudder()), pen);
+    let upper = vec![heading, marked(Channel::Heading)];
+    let lower = vec![rudder, marked(Channel::Rudder)];
+    let rows = vec![
+        Layers { y: Ruler::heading(), height: 0.3, layers: upper, ..Layers::default() },
+        Layers { y: Ruler::rudder(), height: 0.16, zero: true, layers: lower, ..Layers::default() },
+    ];
+    let stack = Stack { x: Ruler::time(), panels: rows, ..Stack::default() };
+    figures::panels(&Panels { title: title(record), stacks: vec![stack], ..Panels::default() }, theme)
 }
 
 fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Replays {

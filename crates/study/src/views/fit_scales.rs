@@ -1,76 +1,17 @@
-//! Indices without dimension of `study fit`, and what every method says of records of several scales.
+//! What `study fit` says of indices without dimension, and of records of several scales.
 
-use identify::{Estimate, Identifier, Uncertainty};
-use rayon::prelude::*;
 use report::Table;
 use ship::Particulars;
-use ship::angle::to_deg;
-use trial::{Quantity, Trial};
+use trial::Quantity;
 
-use super::fit_file::FitFile;
-use super::scale_comparison::{ComparedModel, ComparedTerm, ScalesEntry, prime_table};
-use crate::outside::Named;
-use crate::scales::{Together, scale_name};
-use campaign::answer::MethodEntry;
-
-/// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
-/// first.
-pub const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
-
-/// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
-pub fn compared(
-    methods: &[Named],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    together: &Together,
-) -> Option<ScalesEntry> {
-    let of_group =
-        |records: &[usize]| -> Vec<Trial> { records.iter().map(|&record| together.trials[record].clone()).collect() };
-    ScalesEntry::compared(together, |groups, first| {
-        let groups: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
-        let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
-            groups.par_iter().map(|trials| method.identify(trials).ok()).collect()
-        };
-        methods
-            .par_iter()
-            .zip(answers)
-            .filter_map(|((_, method), (entry, joint))| {
-                let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
-                Some(ComparedModel { model: entry.method.clone(), terms })
-            })
-            .collect()
-    })
-}
-
-/// K', T', the regular 1/T' and K'/T', and δ_r.
-fn terms(joint: &Estimate, own: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
-    type Of = fn(&Estimate) -> Quantity;
-    let all: [(&str, &str, [i32; 2], Of); 5] = [
-        ("K′", "1", [-1, 0], Estimate::K),
-        ("T′", "1", [1, 0], Estimate::T),
-        ("1/T′", "1", [-1, 0], |estimate| parameter(estimate, 0)),
-        ("K′/T′", "1", [-2, 0], |estimate| parameter(estimate, 1)),
-        ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
-    ];
-    let term = |&(symbol, unit, dimension, of): &(&str, &str, [i32; 2], Of)| {
-        let prime = |estimate: &Estimate| of(estimate).scaled(ship.prime(dimension));
-        let own = own.iter().map(|own| own.as_ref().map(prime)).collect();
-        ComparedTerm::new(symbol, unit, prime(joint), own)
-    };
-    all.iter().map(term).collect()
-}
-
-/// 1/T or K/T with their errors.
-fn parameter(estimate: &Estimate, place: usize) -> Quantity {
-    let value = [estimate.response.inverse_T, estimate.response.K_over_T][place];
-    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return Quantity::bare(value) };
-    let sd = covariance.matrix[(place, place)].max(0.0).sqrt();
-    let reach = covariance.quantile95() * sd;
-    Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
-}
+use super::scale_tables;
+use crate::documents::fit::FitDocument;
+use crate::scales::scale_name;
+use crate::work::every_scale::SPEAKERS;
 
 /// What is said on the screen and on the page, which render tables in their own way: K' and T' of every method, and
 /// which terms scale.
-pub fn words(file: &FitFile, ship: Option<Particulars>, render: &dyn Fn(&Table) -> String) -> String {
+pub fn words(file: &FitDocument, ship: Option<Particulars>, render: &dyn Fn(&Table) -> String) -> String {
     let mut text = String::new();
     let rows: Vec<(String, Quantity, Quantity)> = file
         .methods
@@ -79,7 +20,7 @@ pub fn words(file: &FitFile, ship: Option<Particulars>, render: &dyn Fn(&Table) 
         .collect();
     if let Some(ship) = ship.filter(|_| !rows.is_empty()) {
         text += &format!("\nprime indices K′ = K L/V, T′ = T V/L with {}\n", scale_name(ship));
-        text += &render(&prime_table(&rows));
+        text += &render(&scale_tables::prime_table(&rows));
     }
     let Some(scales) = &file.scales else { return text };
     let speaker = SPEAKERS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
@@ -87,8 +28,8 @@ pub fn words(file: &FitFile, ship: Option<Particulars>, render: &dyn Fn(&Table) 
         text += &format!(
             "\nevery scale alone, {}: {}\n{}",
             model.model,
-            ScalesEntry::sentence(model),
-            render(&scales.table(model))
+            scale_tables::sentence(model),
+            render(&scale_tables::table(scales, model))
         );
         text += "a first-order response that lacks something differs between manoeuvres, too; `study trace` tells the two apart\n";
     }

@@ -4,7 +4,7 @@ use identify::Estimate;
 use identify::estimate::Uncertainty;
 use identify::replay::Replay;
 use report::figures::{
-    AMPLITUDES, Amplitude, AmplitudePanel, AmplitudePoint, IndexAnswer, IndexPlane, PhaseCurve, PhasePlane, Reference95,
+    Amplitude, AmplitudePanel, AmplitudePoint, IndexAnswer, IndexPlane, PhaseCurve, PhasePlane, Reference95,
 };
 use report::{Curve, Origin, symbol};
 use ship::Particulars;
@@ -12,27 +12,8 @@ use ship::angle::to_deg;
 use trial::zigzag::PhasePlane as Phase;
 use trial::{Quantity, Trial};
 
+use crate::work::alone::{Alone, Amplitudes};
 use campaign::answer::MethodEntry;
-
-/// K and T of one zig-zag.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Alone {
-    /// Mean size of the rudder between its executes, and of the heading at the peaks from the base course, rad.
-    pub amplitudes: [f64; AMPLITUDES],
-    /// K, 1/s.
-    pub k: Quantity,
-    /// T, s.
-    pub t: Quantity,
-}
-
-/// Every zig-zag of some records alone, with the method that was used.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Amplitudes {
-    /// Identifier of the method.
-    pub method: &'static str,
-    /// The records that are zig-zags and could be identified.
-    pub records: Vec<Alone>,
-}
 
 /// Radians a second over radians, as degrees.
 fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> Curve {

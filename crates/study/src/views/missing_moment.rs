@@ -1,159 +1,17 @@
-//! The yaw moment that the base lacks on every fitted record: its tables, its figure, and the sentence on it.
+//! The yaw moment that the base lacks on every fitted record: its figure, and the sentence on it.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use ::trace::Verdict;
-use ::trace::missing_moment::{MissingMoment, Over, Panel};
-use report::figures::{self, Banded, MomentPanel};
+use report::figures::{self, Division, Drawn, Layer, Layers, Panels, Pen, Ruler, Stack};
 use report::number::significant;
+use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
 use report::{Curve, Figure, Theme, symbol};
-use serde::{Deserialize, Serialize};
-use ship::angle::to_deg;
 
-use super::columns::Columns;
+use crate::documents::missing_moment::MissingMomentEntry;
 
 /// Panels of a figure at most.
 const PANELS: usize = 4;
-
-/// The moment of one record in `trace.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct MissingMomentEntry {
-    /// The record.
-    pub file: String,
-    /// Its name.
-    pub record: String,
-    /// The table of the smoothed moment.
-    pub moment: String,
-    /// The table of the curves over the channels.
-    pub curves: String,
-    /// Root mean square of the moment, as an angle of the rudder.
-    pub rms_rudder_deg: f64,
-    /// The explanation beside it in the tables: the named effects together, else the best candidate alone.
-    pub explanation: Option<String>,
-    /// Whether the verdict is unexplained and no effect lies inside the bands of all curves that show something.
-    pub unlisted: bool,
-    /// Effects inside the bands of all curves that show something.
-    pub inside_all: Vec<String>,
-    /// Curves over the channels, the most likely first.
-    pub over: Vec<PanelEntry>,
-}
-
-/// One curve.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct PanelEntry {
-    /// The channel.
-    pub channel: String,
-    /// Its column in the tables.
-    pub column: String,
-    /// Share of the variance of its walk that the curve takes away.
-    pub variance_share: Option<f64>,
-    /// Whether the band leaves zero.
-    pub shows: bool,
-    /// Effects inside the band everywhere.
-    pub inside: Vec<String>,
-}
-
-/// Name of a channel in a table, and whether it is an angle.
-fn column(over: Over) -> (&'static str, bool) {
-    match over {
-        Over::YawRate => ("yaw_rate_deg_s", true),
-        Over::Rudder => ("rudder_deg", true),
-        Over::Heading => ("heading_deg", true),
-        Over::Speed => ("speed_m_s", false),
-        Over::WindFrom => ("wind_relative_from_deg", true),
-        Over::Sway => ("sway_m_s", false),
-    }
-}
-
-fn shown(over: Over, values: &[f64]) -> Vec<f64> {
-    values.iter().map(|&value| if column(over).1 { to_deg(value) } else { value }).collect()
-}
-
-fn degrees(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
-    values.into_iter().map(to_deg).collect()
-}
-
-/// The rows: moment with its band, what the explanation makes of it, and every channel that was recorded.
-pub fn over_time(missing: &MissingMoment) -> String {
-    let end = |k: usize| degrees((0..missing.time.len()).map(|row| missing.interval(row)[k]));
-    let mut columns = Columns::default();
-    columns.push("t_s", missing.time.clone());
-    columns.push("moment_rudder_deg", degrees(missing.moment.iter().copied()));
-    columns.push("sd_rudder_deg", degrees(missing.sd.iter().copied()));
-    columns.push("lower95_rudder_deg", end(0));
-    columns.push("upper95_rudder_deg", end(1));
-    if let Some(explained) = missing.explained.first() {
-        columns.push("explained_rudder_deg", degrees(explained.iter().copied()));
-    }
-    for (over, values) in &missing.channels {
-        columns.push(column(*over).0, shown(*over, values));
-    }
-    columns.text()
-}
-
-/// The curves over the channels: of each the places, the moment, the half width of its band, and the explanation.
-///
-/// A curve has mean zero over the rows; here it has the mean of the moment.
-pub fn over_channels(missing: &MissingMoment) -> String {
-    let mean = missing.moment.iter().sum::<f64>() / missing.moment.len() as f64;
-    let mut columns = Columns::default();
-    for panel in &missing.panels {
-        let (name, curve) = (column(panel.over).0, &panel.curve);
-        columns.push(name, shown(panel.over, &curve.x));
-        columns.push(format!("{name}_moment_rudder_deg"), degrees(curve.moment.iter().map(|value| value + mean)));
-        columns.push(format!("{name}_half_width95_rudder_deg"), degrees(curve.half_width.iter().copied()));
-        if let Some(other) = curve.others.first() {
-            columns.push(format!("{name}_explained_rudder_deg"), degrees(other.iter().map(|value| value + mean)));
-        }
-    }
-    columns.text()
-}
-
-/// Effects of some explanations, every one once.
-fn effects(missing: &MissingMoment, places: &[usize]) -> Vec<String> {
-    let mut ids: Vec<String> = Vec::new();
-    for (id, _) in places.iter().filter_map(|place| missing.explanations.get(*place)).flat_map(|one| &one.effects) {
-        if !ids.iter().any(|known| known == id) {
-            ids.push((*id).to_owned());
-        }
-    }
-    ids
-}
-
-/// The entry of a record of this file and name, whose tables have this stem.
-pub fn entry(
-    missing: &MissingMoment,
-    [file, name, stem]: [&str; 3],
-    verdict: Verdict,
-    explains: bool,
-) -> MissingMomentEntry {
-    let shows = |panel: &&Panel| panel.share.is_some() && !panel.curve.holds_nothing();
-    let telling = || missing.panels.iter().filter(shows);
-    let everywhere = |place: &usize| telling().all(|panel| panel.inside.contains(place));
-    let inside: Vec<usize> = (0..missing.explanations.len()).filter(everywhere).collect();
-    let ids = effects(missing, &[0]).join(", ");
-    let explanation = if explains { ids.clone() } else { format!("best candidate: {ids}") };
-    let of_panel = |panel: &Panel| PanelEntry {
-        channel: panel.over.as_str().to_owned(),
-        column: column(panel.over).0.to_owned(),
-        variance_share: panel.share,
-        shows: !panel.curve.holds_nothing(),
-        inside: effects(missing, &panel.inside),
-    };
-    let square = missing.moment.iter().map(|m| m * m).sum::<f64>() / missing.moment.len() as f64;
-    MissingMomentEntry {
-        file: file.to_owned(),
-        record: name.to_owned(),
-        moment: format!("{stem}.csv"),
-        curves: format!("{stem}-curves.csv"),
-        rms_rudder_deg: to_deg(square.sqrt()),
-        explanation: (!ids.is_empty()).then_some(explanation),
-        unlisted: verdict == Verdict::Unexplained && inside.is_empty() && telling().next().is_some(),
-        inside_all: effects(missing, &inside),
-        over: missing.panels.iter().map(of_panel).collect(),
-    }
-}
 
 /// Title of an axis over a channel.
 fn title_of(column: &str) -> String {
@@ -183,40 +41,48 @@ fn values(table: &Table, name: &str) -> Vec<f64> {
     table.get(name).cloned().unwrap_or_default()
 }
 
+/// The moment with its band, and what the known explanation makes of it.
+fn banded(known: Option<&String>, [middle, lower, upper]: [Curve; 3], explained: Curve) -> Vec<Layer> {
+    let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
+    let mut layers = vec![
+        Layer::new("95 % band", lower, Drawn::Band(upper, HEADING, 0.2)),
+        Layer::new("missing moment", middle, Drawn::Line(Pen::new(HEADING))),
+    ];
+    layers.extend(known.map(|name| Layer::new(name, explained, Drawn::Line(dashed))));
+    layers
+}
+
 /// The figure of one record, from its tables over time and over the channels.
 pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[Table; 2], theme: &Theme) -> Figure {
-    let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
     let known = entry.explanation.as_ref();
-    let of_panel = |panel: &PanelEntry| {
-        let name = &panel.column;
+    let panel = |height: f64, layers: Vec<Layer>| {
+        let y = Ruler::new("moment [° rudder]", Division::Decimal);
+        vec![Layers { y, height, zero: true, layers, ..Layers::default() }]
+    };
+    let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
+    let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
+    let layers = banded(known, ends, over_time("explained_rudder_deg"));
+    let mut stacks = vec![Stack { x: Ruler::time(), panels: panel(0.24, layers), ..Stack::default() }];
+    stacks.extend(entry.over.iter().take(PANELS).map(|own| {
+        let name = &own.column;
         let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
         let over = |y: Vec<f64>| Curve::new(values(channels, name), y);
         let (moment, half) = (of("moment"), of("half_width95"));
         let edge = |side: f64| over(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
-        MomentPanel {
-            x_title: title_of(name),
-            head: if panel.shows { percent(panel.variance_share) } else { "zero lies inside the band".into() },
-            rows: Curve::new(values(time, name), values(time, "moment_rudder_deg")),
-            curve: Banded {
-                middle: over(moment.clone()),
-                lower: edge(-1.0),
-                upper: edge(1.0),
-                known: known.map(|_| over(of("explained"))),
-            },
+        let rows = Curve::new(values(time, name), values(time, "moment_rudder_deg"));
+        let mut layers = vec![Layer::new("its smoothed rows", rows, Drawn::Dots(RECORD)).within(0.3)];
+        layers.extend(banded(known, [over(moment.clone()), edge(-1.0), edge(1.0)], over(of("explained"))));
+        let head = if own.shows { percent(own.variance_share) } else { "zero lies inside the band".into() };
+        Stack {
+            x: Ruler::new(title_of(name), Division::Decimal),
+            head: Some(head),
+            is_half: true,
+            panels: panel(0.2, layers),
+            ..Stack::default()
         }
-    };
-    let data = figures::MissingMoment {
-        title: Some(format!("{}: yaw moment that the base lacks", entry.record)),
-        time: Banded {
-            middle: over_time("moment_rudder_deg"),
-            lower: over_time("lower95_rudder_deg"),
-            upper: over_time("upper95_rudder_deg"),
-            known: known.map(|_| over_time("explained_rudder_deg")),
-        },
-        panels: entry.over.iter().take(PANELS).map(of_panel).collect(),
-        known: known.cloned(),
-    };
-    figures::missing_moment(&data, theme)
+    }));
+    let title = Some(format!("{}: yaw moment that the base lacks", entry.record));
+    figures::panels(&Panels { title, stacks, ..Panels::default() }, theme)
 }
 
 /// What is said of the moment of one record.

@@ -2,13 +2,12 @@
 //! was asked for.
 
 use campaign::design::Design;
-use campaign::statistics::Statistic;
-use campaign::summary::{self, PredictionSummary, Record, Summary};
+use campaign::summary::{self, PredictionSummary, Summary};
+use report::Origin;
 use report::figures::{
-    Dot, DotColumn, DotPlot, Ecdf, EcdfCurve, EcdfPanel, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Reference95,
-    Scale, Violin, ViolinPanel, Violins,
+    Dot, DotColumn, DotPlot, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Reference95, Scale, Violin, ViolinPanel,
+    Violins,
 };
-use report::{Origin, number};
 
 use super::charts::{Quantity, origin};
 
@@ -66,83 +65,6 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
         of(Quantity::Validation, 0, "validation", "validation error of the heading [°]"),
     ];
     maps.into_iter().filter(is_there).collect()
-}
-
-/// Methods by the median size of their error of T, and the name of the first; nothing without errors.
-pub fn ranking(design: &Design, summary: &Summary) -> Option<(DotPlot, String)> {
-    let record = |method: usize| &summary.overall[method].record;
-    let size = |method: usize| record(method).t.median_size.map_or(f64::INFINITY, |figure| figure.value);
-    let mut order: Vec<usize> = (0..design.methods.len()).collect();
-    order.sort_by(|&one, &other| size(one).total_cmp(&size(other)));
-    let first = *order.first().filter(|&&method| order.len() > 1 && size(method).is_finite())?;
-    let column = |x_title: &str, errors: fn(&Record) -> &summary::Errors| DotColumn {
-        limit: None,
-        x_title: x_title.to_owned(),
-        scale: Scale::Log,
-        reference: None,
-        rows: order
-            .iter()
-            .map(|&method| {
-                let errors = errors(record(method));
-                let dot = |figure: Statistic, hollow: bool| Dot {
-                    origin: origin(design, method),
-                    x: figure.value,
-                    interval: figure.ci95,
-                    hollow,
-                };
-                let (median, high) = (errors.median_size, errors.high_size);
-                median
-                    .map(|figure| dot(figure, false))
-                    .into_iter()
-                    .chain(high.map(|figure| dot(figure, true)))
-                    .collect()
-            })
-            .collect(),
-    };
-    let name = |&method: &usize| {
-        let failed = record(method).failure_rate.map_or(0.0, |rate| rate.value);
-        let label = &design.methods[method].label;
-        match failed > 0.0 {
-            // A rare failure is not "0.0 %".
-            true => format!("{label} ({} % fail)", number::significant(100.0 * failed, 2)),
-            false => label.clone(),
-        }
-    };
-    let plot = DotPlot {
-        title: None,
-        names: order.iter().map(name).collect(),
-        columns: vec![
-            column("size of the error of K [%]", |record| &record.k),
-            column("size of the error of T [%]", |record| &record.t),
-        ],
-        rows_are_methods: true,
-        quiet: Vec::new(),
-        note: Some("Filled: median. Hollow: 90 % of the answers are within. Bars: 95 % intervals.".to_owned()),
-    };
-    Some((plot, design.methods[first].label.clone()))
-}
-
-/// Distributions of the sizes of all errors; nothing for fewer than ten trials.
-pub fn ecdf(design: &Design, summary: &Summary) -> Option<Ecdf> {
-    let panel = |x_title: &str, points: fn(&summary::MethodDetail) -> &Vec<(f64, f64)>| EcdfPanel {
-        x_title: x_title.to_owned(),
-        curves: (0..design.methods.len())
-            .map(|method| EcdfCurve {
-                origin: origin(design, method),
-                points: points(&summary.overall[method].detail).clone(),
-            })
-            .filter(|curve| !curve.points.is_empty())
-            .collect(),
-    };
-    let data = Ecdf {
-        title: None,
-        panels: vec![
-            panel("size of the error of K [%]", |detail| &detail.ecdf_k),
-            panel("size of the error of T [%]", |detail| &detail.ecdf_t),
-        ],
-    };
-    let enough = summary.overall.iter().any(|overall| overall.record.trials >= 10);
-    (enough && data.panels.iter().any(|panel| !panel.curves.is_empty())).then_some(data)
 }
 
 /// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.

@@ -3,7 +3,10 @@
 use std::collections::BTreeSet;
 
 use report::Curve;
-use report::figures::{Confusion, ConfusionCell, ConfusionRow, Power, PowerSeries};
+use report::figures::{
+    Confusion, ConfusionCell, ConfusionRow, Division, Drawn, Layer, Layers, Panels, Pen, Ruler, Stack,
+};
+use report::palette::{DASHED, DOTTED, Dash, INK, Look, Marker, Origin, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
 
@@ -105,9 +108,30 @@ const ROWS: f64 = 300.0;
 /// Numbers of parameters whose power is drawn.
 const PARAMETERS: [u32; 3] = [1, 2, 3];
 
+/// A measured share: where it is drawn, per cent, and its 95 % interval.
+type Share = (f64, f64, Option<[f64; 2]>);
+
+/// Measured shares under their names beside curves of theory.
+fn shares(x: Ruler, y_title: &str, series: Vec<(&str, Vec<Share>)>, theory: Vec<(String, Curve)>) -> Panels {
+    const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
+    const LOOKS: [(Origin, Marker); 2] = [(Origin::After, Marker::Circle), (Origin::Before, Marker::Square)];
+    let mut layers: Vec<Layer> = Vec::new();
+    for ((name, curve), dash) in theory.into_iter().zip(DASHES) {
+        layers.push(Layer::new(name, curve, Drawn::Line(Pen { width: 0.9, dash, ..Pen::new(INK) })));
+    }
+    for ((name, points), (origin, marker)) in series.into_iter().zip(LOOKS) {
+        let look = Look { colour: origin.look().colour, marker, dash: SOLID, hollow: false };
+        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.0, point.1)).unzip();
+        let intervals = points.into_iter().map(|point| point.2).collect();
+        layers.push(Layer::new(name, Curve { x, y }, Drawn::Marks(look, intervals)));
+    }
+    let panel = Layers { y: Ruler::new(y_title, Division::Percent), height: 0.42, layers, ..Layers::default() };
+    Panels { stacks: vec![Stack { x, panels: vec![panel], ..Stack::default() }], ..Panels::default() }
+}
+
 /// Power over the expected likelihood ratio, for cells with one missing effect.
-pub fn power(lines: &[TraceSummary]) -> Option<Power> {
-    let points = |needs_search: bool| -> Vec<(f64, f64, Option<[f64; 2]>)> {
+pub fn power(lines: &[TraceSummary]) -> Option<Panels> {
+    let points = |needs_search: bool| -> Vec<Share> {
         let single = lines.iter().filter(|line| line.missing.len() == 1);
         single
             .filter(|line| is_of_time(&line.missing[0]) == needs_search)
@@ -119,12 +143,9 @@ pub fn power(lines: &[TraceSummary]) -> Option<Power> {
             .collect()
     };
     let series = [(false, "an effect of the ship or its gear"), (true, "a moment that depends on time")];
-    let series: Vec<PowerSeries> = series
-        .into_iter()
-        .map(|(of_time, name)| PowerSeries { name: name.to_owned(), points: points(of_time) })
-        .filter(|series| !series.points.is_empty())
-        .collect();
-    let largest = series.iter().flat_map(|series| &series.points).map(|point| point.0).reduce(f64::max)?;
+    let series = series.map(|(of_time, name)| (name, points(of_time)));
+    let series: Vec<_> = series.into_iter().filter(|(_, points)| !points.is_empty()).collect();
+    let largest = series.iter().flat_map(|(_, points)| points).map(|point| point.0).reduce(f64::max)?;
     let theory = PARAMETERS.map(|freedom| {
         let limit = ODDS + f64::from(freedom) * ROWS.ln();
         let sizes: Vec<f64> =
@@ -133,19 +154,13 @@ pub fn power(lines: &[TraceSummary]) -> Option<Power> {
         let plural = if freedom == 1 { "" } else { "s" };
         (format!("likelihood-ratio test, {freedom} parameter{plural}"), Curve::new(sizes, power))
     });
-    Some(Power {
-        title: None,
-        x_title: String::from("expected likelihood ratio against the best first-order response"),
-        of_shares: false,
-        y_title: String::from("named [%]"),
-        series,
-        theory: theory.into(),
-    })
+    let x = Ruler::new("expected likelihood ratio against the best first-order response", Division::Factors);
+    Some(shares(x, "named [%]", series, theory.into()))
 }
 
 /// Probabilities and how often they came true, for traces of ships whose effects are known; `None` without any.
-pub fn reliability(lines: &[TraceSummary]) -> Option<Power> {
-    let points: Vec<_> = promised(lines)
+pub fn reliability(lines: &[TraceSummary]) -> Option<Panels> {
+    let points: Vec<Share> = promised(lines)
         .iter()
         .filter_map(|range| {
             let share = share(range.present, range.effects)?;
@@ -153,16 +168,10 @@ pub fn reliability(lines: &[TraceSummary]) -> Option<Power> {
             Some((100.0 * range.sum / range.effects as f64, 100.0 * share.value, percent))
         })
         .collect();
-    let series = vec![PowerSeries { name: String::from("effects by their probability"), points }];
     let diagonal = Curve::new(vec![0.0, 100.0], vec![0.0, 100.0]);
-    (!series[0].points.is_empty()).then(|| Power {
-        title: None,
-        x_title: String::from("mean probability given [%]"),
-        of_shares: true,
-        y_title: String::from("present [%]"),
-        series,
-        theory: vec![(String::from("as promised"), diagonal)],
-    })
+    let x = Ruler::new("mean probability given [%]", Division::Percent);
+    let theory = vec![(String::from("as promised"), diagonal)];
+    (!points.is_empty()).then(|| shares(x, "present [%]", vec![("effects by their probability", points)], theory))
 }
 
 /// Effects by their probability, over all cells.

@@ -11,8 +11,8 @@ use predict::known::Seen;
 use predict::steady::SteadyCurve;
 use rayon::prelude::*;
 use report::figures::{
-    self, Dot, DotColumn, DotPlot, Evidence, EvidenceRow, Fate, Fit, FitBand, OvershootReplays, RecordFit, Reference95,
-    ReplayedOvershoot, ResidualPanel, ResidualPanels, Scale,
+    self, Division, Dot, DotColumn, DotPlot, Drawn as Layered, Evidence, EvidenceRow, Fate, Fit, FitBand, Layer,
+    Layers, Panels, Pen, RecordFit, Reference95, RowPart, Rows, Ruler, Scale, Stack,
 };
 use report::number::significant;
 use report::{Curve, Figure, Origin, Theme};
@@ -22,10 +22,10 @@ use trial::{Trial, ZigZag, imo};
 
 use super::picture::{first_failure, write_figure};
 use super::predict_figures::steady;
-use super::trace_curves::{Curves, TracedRecord};
-use super::trace_document::{RecordEntry, TraceDocument, slugs, suffix};
 use super::trace_tables::{horizon, term};
 use super::{index_figures, missing_moment};
+use crate::documents::curves::{Curves, TracedRecord};
+use crate::documents::trace::{RecordEntry, TraceDocument, slugs, suffix};
 
 /// Lags of the autocorrelation, at least where the record has them and at most.
 const LAGS: [usize; 2] = [60, 4000];
@@ -111,13 +111,11 @@ fn of_the_trace<'a>(
         "Probability of every effect with its most probable form, and the support −ΔBIC that it has beside all others.";
     let data = evidence(document);
     drawings.push(drawing(Part::Evidence, "evidence", caption, move |theme| figures::evidence(&data, theme)));
-    let rows = overshoots(document, curves);
-    if !rows.is_empty() {
+    let data = overshoots(document, curves);
+    if !data.names.is_empty() {
         let caption = "Overshoots of the records and of the replays of their rudder before and after, with the \
                        limits of IMO MSC.137(76) where one is for this zig-zag.";
-        let title = Some(String::from("Overshoots of the records and of their replays"));
-        let data = OvershootReplays { title, rows };
-        let draw = move |theme: &Theme| figures::overshoot_replays(&data, theme);
+        let draw = move |theme: &Theme| figures::rows(&data, theme);
         drawings.push(drawing(Part::Further, "overshoots", caption, draw));
     }
     if let Some((curves, seen)) = turns {
@@ -154,7 +152,7 @@ fn of_record<'a>(
         let caption = format!(
             "{name}: the residual against time, heading, yaw rate and rudder, its spectrum and autocorrelation."
         );
-        let draw = move |theme: &Theme| figures::residual_panels(&residual(record, name), theme);
+        let draw = move |theme: &Theme| figures::panels(&residual(record, name), theme);
         drawings.push(drawing(Part::Further, format!("residual{suffix}"), caption, draw));
     }
     drawings
@@ -250,49 +248,63 @@ fn evidence(document: &TraceDocument) -> Evidence {
     Evidence { title: Some(document.title()), rows: named.chain(others).collect() }
 }
 
-/// The first two overshoots of every zig-zag, which are those that have a limit.
-fn overshoots(document: &TraceDocument, curves: &Curves) -> Vec<ReplayedOvershoot> {
-    let mut rows = Vec::new();
+/// The first two overshoots of every zig-zag, which are those that have a limit, with those of both replays.
+fn overshoots(document: &TraceDocument, curves: &Curves) -> Rows {
+    let mut names = Vec::new();
+    let [mut measured, mut before, mut after, mut limits] = [const { Vec::new() }; 4];
     for (entry, TracedRecord { trial, replays, .. }) in document.records.iter().zip(&curves.records) {
-        let Ok(measured) = ZigZag::of(trial) else { continue };
+        let Ok(zigzag) = ZigZag::of(trial) else { continue };
         let replays = replays.each_ref().map(|replay| replayed_zigzag(trial, replay));
-        let limits: Vec<_> = entry.particulars().map(|ship| imo::criteria(&measured, ship)).unwrap_or_default();
+        let criteria: Vec<_> = entry.particulars().map(|ship| imo::criteria(&zigzag, ship)).unwrap_or_default();
         for (number, word) in [(0, "first"), (1, "second")] {
             let of = |zigzag: &ZigZag| Some(to_deg(zigzag.swings().nth(number)??.angle.value));
-            let Some(angle) = of(&measured) else { continue };
-            let limit = limits.iter().find(|limit| {
+            let Some(angle) = of(&zigzag) else { continue };
+            let limit = criteria.iter().find(|limit| {
                 limit.unit == imo::Unit::Degrees && limit.measured.is_some() && limit.name.contains(word)
             });
-            let [before, after] = replays.each_ref().map(|replay| replay.as_ref().and_then(of));
-            rows.push(ReplayedOvershoot {
-                label: format!("{}, {word}", entry.name),
-                measured: Some(angle),
-                before,
-                after,
-                limit: limit.map(|limit| limit.limit),
-            });
+            names.push((format!("{}, {word}", entry.name), false));
+            measured.push(Some(angle));
+            let [one, other] = replays.each_ref().map(|replay| replay.as_ref().and_then(of));
+            before.push(one);
+            after.push(other);
+            limits.push(limit.map(|limit| limit.limit));
         }
     }
-    rows
+    // One mark above the other, so that neither hides the other.
+    let marks = |origin: Origin, aside: f64, values| RowPart::Marks(origin.look(), aside, values);
+    Rows {
+        title: Some(String::from("Overshoots of the records and of their replays")),
+        x_title: String::from("overshoot [°]"),
+        names,
+        parts: vec![
+            ("measured", RowPart::Bars(measured), false),
+            ("IMO limit", RowPart::Limits(limits), false),
+            ("before", marks(Origin::Before, -0.16, before), true),
+            ("after", marks(Origin::After, 0.16, after), true),
+        ],
+    }
 }
 
 /// The residual before and after from all sides.
-fn residual(record: &TracedRecord, name: &str) -> ResidualPanels {
+fn residual(record: &TracedRecord, name: &str) -> Panels {
     let trial: &Trial = &record.trial;
     let first = trial.time().partition_point(|&t| t < record.replays[0].time[0]);
     let degrees = |values: &[f64]| -> Vec<f64> { values.iter().map(|&x| to_deg(x)).collect() };
-    let panel = |x_title: &str, y_title: &str, of: &dyn Fn(&Replay) -> Curve| ResidualPanel {
-        x_title: x_title.to_owned(),
-        y_title: y_title.to_owned(),
-        logarithmic: false,
-        joined: false,
-        of_frequency: false,
-        mark: None,
-        curves: models(record).map(|(origin, replay)| (origin, of(replay))).into(),
-        band: None,
+    let stack = |x: Ruler, y: Ruler, joined: bool, of: &dyn Fn(&Replay) -> Curve| {
+        let layer = |(origin, replay): (Origin, &Replay)| {
+            let colour = origin.look().colour;
+            let drawn =
+                if joined { Layered::Line(Pen { width: 0.9, ..Pen::new(colour) }) } else { Layered::Dots(colour) };
+            Layer::new(origin.label(), of(replay), drawn)
+        };
+        let zero = y.division != Division::Factors;
+        let panel = Layers { y, height: 0.17, zero, layers: models(record).map(layer).into(), levels: Vec::new() };
+        Stack { x, is_half: true, panels: vec![panel], ..Stack::default() }
     };
+    let decimal = |title: &str| Ruler::new(title, Division::Decimal);
     let against = |x_title: &str, x: &dyn Fn(&Replay) -> Vec<f64>| {
-        panel(x_title, "residual [°]", &|replay| thinned(x(replay), degrees(&replay.residual)))
+        let of = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
+        stack(decimal(x_title), decimal("residual [°]"), false, &of)
     };
     let series = |replay: &Replay| Series::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
@@ -307,28 +319,21 @@ fn residual(record: &TracedRecord, name: &str) -> ResidualPanels {
             points.map(|one| (one.lag as f64 * series.spacing, one.value)).unzip();
         Curve::new(lags, values)
     };
-    ResidualPanels {
-        title: Some(name.to_owned()),
-        panels: vec![
-            against("time [s]", &|replay| replay.time.clone()),
-            against("heading [°]", &|replay| degrees(&replay.heading)),
-            against("yaw rate [°/s]", &|replay| degrees(&replay.yaw_rate)),
-            against("rudder [°]", &|replay| degrees(&trial.rudder()[first..first + replay.time.len()])),
-            ResidualPanel {
-                logarithmic: true,
-                joined: true,
-                of_frequency: true,
-                mark: period.map(f64::recip),
-                ..panel("frequency [Hz]", "power [°²/Hz]", &|replay| power(&series(replay)))
-            },
-            ResidualPanel {
-                joined: true,
-                mark: period,
-                band: Some([-band, band]),
-                ..panel("lag [s]", "autocorrelation", &lags)
-            },
-        ],
-    }
+    let frequency = Ruler::new("frequency [Hz]", Division::Factors);
+    let density = Ruler::new("power [°²/Hz]", Division::Factors);
+    let spectrum = stack(frequency, density, true, &|replay| power(&series(replay)));
+    let mut correlation = stack(decimal("lag [s]"), decimal("autocorrelation"), true, &lags);
+    correlation.panels[0].levels = vec![-band, band];
+    let stacks = vec![
+        against("time [s]", &|replay| replay.time.clone()),
+        against("heading [°]", &|replay| degrees(&replay.heading)),
+        against("yaw rate [°/s]", &|replay| degrees(&replay.yaw_rate)),
+        against("rudder [°]", &|replay| degrees(&trial.rudder()[first..first + replay.time.len()])),
+        Stack { mark: period.map(f64::recip), ..spectrum },
+        Stack { mark: period, ..correlation },
+    ];
+    let mark_name = Some(String::from("period of the manoeuvre"));
+    Panels { title: Some(name.to_owned()), stacks, mark_name, ..Panels::default() }
 }
 
 /// Points of a cloud, not more than a figure can show.

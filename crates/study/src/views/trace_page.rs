@@ -8,9 +8,9 @@ use report::number::{fixed, significant};
 use report::{Column, Table};
 use ship::Shown;
 
-use super::trace_document::TraceDocument;
 use super::trace_figures::{Drawn, Part};
 use super::trace_tables as tables;
+use crate::documents::trace::TraceDocument;
 use crate::scales::scale_name;
 
 /// Readings that are listed.

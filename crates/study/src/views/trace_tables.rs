@@ -7,7 +7,7 @@ use report::{Column, Table};
 use ship::angle::to_deg;
 use trial::Quantity;
 
-use super::trace_document::{RecordErrors, TraceDocument};
+use crate::documents::trace::{RecordErrors, TraceDocument};
 
 /// A quantity in degrees where its unit holds radians, and that unit. Frequencies stay in radians.
 fn in_degrees(symbol: &str, quantity: Quantity, unit: &str) -> (Quantity, String) {

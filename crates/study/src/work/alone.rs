@@ -2,9 +2,27 @@
 
 use identify::{Estimate, Identifier};
 use rayon::prelude::*;
-use trial::{Trial, ZigZag};
+use trial::{Quantity, Trial, ZigZag};
 
-use crate::views::index_figures::{Alone, Amplitudes};
+/// K and T of one zig-zag.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alone {
+    /// Mean size of the rudder between its executes, and of the heading at the peaks from the base course, rad.
+    pub amplitudes: [f64; 2],
+    /// K, 1/s.
+    pub k: Quantity,
+    /// T, s.
+    pub t: Quantity,
+}
+
+/// Every zig-zag of some records alone, with the method that was used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Amplitudes {
+    /// Identifier of the method.
+    pub method: &'static str,
+    /// The records that are zig-zags and could be identified.
+    pub records: Vec<Alone>,
+}
 
 /// Mean size of the rudder of a zig-zag, and of its heading at the peaks, rad.
 fn amplitudes(trial: &Trial) -> Option<[f64; 2]> {

@@ -10,13 +10,12 @@ use ship::Particulars;
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, ZigZagError};
 
-use super::alone;
+use super::alone::{self, Amplitudes};
+use super::every_scale;
+use crate::documents::fit::{FitDocument, TrialEntry, trial_entry};
 use crate::outside::{self, Named, NamedCommand};
 use crate::records::{file_of, warn_of_no_track};
 use crate::scales::{self, Together};
-use crate::views::fit_file::{FitFile, TrialEntry, trial_entry};
-use crate::views::fit_scales;
-use crate::views::index_figures::Amplitudes;
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
 use campaign::known::{self, Shown};
@@ -34,7 +33,7 @@ pub struct Fit {
     /// Every zig-zag alone, where there are several.
     pub amplitudes: Option<Amplitudes>,
     /// What other programs read.
-    pub file: FitFile,
+    pub file: FitDocument,
 }
 
 /// Identifies the records together by every method and replays the answers on `others`.
@@ -71,7 +70,7 @@ pub fn fit(
         records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
     let shown = Shown::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
-    let file = FitFile {
+    let file = FitDocument {
         schema: "fit/1".into(),
         zigzag: entries_of_trials[0].zigzag.clone(),
         trials: entries_of_trials,
@@ -81,7 +80,7 @@ pub fn fit(
                 Some((entry.method.clone(), known::of_estimate(estimate.as_ref()?, &shown)?))
             })
             .collect(),
-        scales: fit_scales::compared(methods, &answers, &together),
+        scales: every_scale::compared(methods, &answers, &together),
         methods: entries,
     };
     let amplitudes = alone::of_records(trials, &speakers(methods, &file.methods));
@@ -121,9 +120,9 @@ fn speakers<'a>(methods: &'a [Named], entries: &[MethodEntry]) -> Vec<&'a dyn Id
     let answered: Vec<&str> = entries.iter().filter(has_interval).map(|entry| entry.method.as_str()).collect();
     let answered = methods.iter().filter(|(label, _)| answered.contains(&label.as_str()));
     let mut found: Vec<&dyn Identifier> = answered.map(|(_, method)| method.as_ref()).collect();
-    let rank = |id: &str| fit_scales::SPEAKERS.iter().position(|speaker| *speaker == id);
-    found.sort_by_key(|method| rank(method.id()).unwrap_or(fit_scales::SPEAKERS.len()));
-    found.truncate(fit_scales::SPEAKERS.len());
+    let rank = |id: &str| every_scale::SPEAKERS.iter().position(|speaker| *speaker == id);
+    found.sort_by_key(|method| rank(method.id()).unwrap_or(every_scale::SPEAKERS.len()));
+    found.truncate(every_scale::SPEAKERS.len());
     found
 }
 

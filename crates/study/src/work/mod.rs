@@ -1,6 +1,7 @@
 //! What a command works out before anything is drawn, written or said; what a program that calls this crate asks for.
 
-mod alone;
+pub mod alone;
+pub mod every_scale;
 pub mod fit;
 mod planned;
 pub mod predict;

@@ -9,8 +9,8 @@ use scenario::problem::suggestion;
 use ship::Particulars;
 use simulate::Simulated;
 
+use crate::documents::truth::TruthFile;
 use crate::options::{Replicates, SimulateRequest};
-use crate::views::truth_file::TruthFile;
 
 /// Most records that one call writes: more are a study, which keeps them as rows.
 const MOST_RECORDS: u64 = 100_000;

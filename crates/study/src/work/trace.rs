@@ -8,13 +8,13 @@ use scenario::failure::{Failure, OnPath};
 use trial::{Channel, Trial};
 
 use super::planned;
+use crate::documents::curves::{self, Curves};
+use crate::documents::trace::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
+use crate::documents::{self, missing_moment};
 use crate::options::{TraceRequest, Withheld};
 use crate::progress;
 use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, Together};
-use crate::views::trace_curves::{self, Curves};
-use crate::views::trace_document::{RecordEntry, TRACE, TraceDocument, slugs, suffix};
-use crate::views::{document, missing_moment};
 
 /// A trace before it is written: its document, and the tables of its curves under the names of their files.
 pub struct Traced {
@@ -34,7 +34,7 @@ impl Traced {
 
     /// Writes document and tables. Fails when a file cannot be written.
     pub fn write(&self, folder: &ResultFolder) -> Result<(), Failure> {
-        let text = document::text(&self.document).on("describe", &folder.path().join(TRACE))?;
+        let text = documents::text(&self.document).on("describe", &folder.path().join(TRACE))?;
         folder.keep(TRACE, text)?;
         self.tables.iter().try_for_each(|(name, table)| folder.write(name, table))
     }
@@ -75,7 +75,7 @@ pub fn trace(
     let mut tables: Vec<(String, String)> = entries
         .iter()
         .zip(trials.iter().chain(&held_out).zip(comparisons))
-        .map(|(entry, (trial, comparison))| (entry.curves.clone(), trace_curves::table(trial, comparison)))
+        .map(|(entry, (trial, comparison))| (entry.curves.clone(), curves::table(trial, comparison)))
         .collect();
     let explains = analysis.structures.members().first().is_some_and(|(_, fit)| !fit.structure.terms.is_empty());
     let mut moments = Vec::new();

@@ -77,7 +77,7 @@ fn a_benchmark_of_ones_own_runs_and_skips_what_is_not_there() {
         assert!(of(board, "straight-on") > 10.0 * of(board, "output-error"), "{medians:?}");
     }
     assert!(of("indices, made", "output-error") < 2.0, "{medians:?}");
-    for file in ["report.md", "rows.csv", "leaderboard.csv", "scores-identify.png", "methods/trace.md"] {
+    for file in ["report.md", "rows.csv", "leaderboard.csv", "ratios-made.png", "methods/trace.md"] {
         assert!(desk.path("results/small-bench").join(file).is_file(), "{file}");
     }
     let page = String::from_utf8(desk.bytes("results/small-bench/report.md")).expect("text");
@@ -100,12 +100,12 @@ fn threads_change_no_byte_and_nothing_stale_is_left() {
     };
     run("1", "one", &[]);
     run("4", "four", &[]);
-    let files = ["bench.json", "rows.csv", "report.md", "leaderboard.csv", "scores-indices.svg", "methods/srivc.md"];
+    let files = ["bench.json", "rows.csv", "report.md", "leaderboard.csv", "ratios-made.svg", "methods/srivc.md"];
     for file in files {
         assert_eq!(desk.bytes(&format!("one/{file}")), desk.bytes(&format!("four/{file}")), "{file}");
     }
     run("4", "four", &["--task", "identify", "--set", "made", "--method", "output-error", "--method", "straight-on"]);
-    assert!(!desk.path("four/scores-indices.svg").exists() && !desk.path("four/methods/srivc.md").exists());
+    assert!(!desk.path("four/ratios-measured.svg").exists() && !desk.path("four/methods/srivc.md").exists());
     let json = desk.json("four/bench.json");
     assert_eq!(json["methods"], serde_json::json!(["output-error", "straight-on"]));
     assert_eq!(json["boards"].as_array().map(Vec::len), Some(1));

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::{Trial, ZigZag, imo};
 
-use super::scale_comparison::ScalesEntry;
+use super::scales::ScalesEntry;
 use crate::records::file_of;
 
 /// One record of `fit.json`.
@@ -58,7 +58,7 @@ pub struct ZigZagEntry {
 
 /// `fit.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct FitFile {
+pub struct FitDocument {
     /// `fit/1`.
     #[schemars(extend("const" = "fit/1"))]
     pub schema: String,

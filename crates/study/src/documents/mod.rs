@@ -1,4 +1,13 @@
-//! JSON for other programs: the text of a file, which is also what `--format json` writes to standard output.
+//! What commands leave for other programs: the types of their JSON files and of the tables beside them, from which pages
+//! and figures are made. The text of a file is also what `--format json` writes to standard output.
+
+pub mod columns;
+pub mod curves;
+pub mod fit;
+pub mod missing_moment;
+pub mod scales;
+pub mod trace;
+pub mod truth;
 
 use scenario::failure::Failure;
 use serde::Serialize;

@@ -11,7 +11,7 @@ use ship::angle::{from_deg, to_deg};
 use trial::{Channel, Columns as Channels, Origin, Trial};
 
 use super::columns::Columns;
-use super::trace_document::{RecordEntry, TraceDocument};
+use super::trace::{RecordEntry, TraceDocument};
 
 /// A record with what the models make of it.
 pub struct TracedRecord {

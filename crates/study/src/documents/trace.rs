@@ -3,11 +3,11 @@
 use ::trace::Document;
 use ::trace::document::BeforeAfter;
 use predict::KnownShip;
+use scenario::name::slug;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use super::missing_moment::MissingMomentEntry;
-use super::picture::slug;
 use crate::records::names;
 
 /// Name of the file.

@@ -1,0 +1,109 @@
+//! What was found at each scale beside what was found at all of them together, in words and tables.
+
+use report::number::{MISSING, fixed, uncertain};
+use report::{Column, Table};
+use ship::Particulars;
+use trial::{Quantity, Scaling};
+
+use super::method_table::estimate;
+use crate::documents::scales::{ComparedModel, ScalesEntry};
+use crate::scales::scale_name;
+
+/// The terms of a model that do not scale, in a sentence.
+pub fn sentence(model: &ComparedModel) -> String {
+    let of = |verdict: Scaling| -> Vec<&str> {
+        let terms = model.terms.iter().filter(|term| term.verdict == verdict.as_str());
+        terms.map(|term| term.symbol.as_str()).collect()
+    };
+    let [same, differing, open] = [Scaling::Scales, Scaling::DoesNotScale, Scaling::CannotBeTold].map(of);
+    let mut parts = Vec::new();
+    for (symbols, words) in [
+        (differing, ["does not scale", "do not scale"]),
+        (same, ["scales", "scale"]),
+        (open, ["cannot be told", "cannot be told"]),
+    ] {
+        if !symbols.is_empty() {
+            parts.push(format!("{} {}", symbols.join(", "), words[usize::from(symbols.len() > 1)]));
+        }
+    }
+    parts.join("; ")
+}
+
+/// The table of one model.
+pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
+    let mut columns = vec![Column::left("term"), Column::left("all together")];
+    columns.extend(
+        scales
+            .groups
+            .iter()
+            .map(|group| Column::left(scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }))),
+    );
+    columns.extend([Column::decimal("difference").unit("sd"), Column::left("verdict")]);
+    let mut table = Table::new(columns);
+    let number = |quantity: &Quantity| match quantity.value.is_finite() {
+        true => uncertain(quantity.value, quantity.sd),
+        false => MISSING.to_owned(),
+    };
+    for term in &model.terms {
+        let unit = if term.unit == "1" { String::new() } else { format!(" [{}]", term.unit) };
+        let mut cells = vec![format!("{}{unit}", term.symbol), number(&term.joint)];
+        cells.extend(term.own.iter().map(|own| own.as_ref().map_or_else(|| MISSING.to_owned(), number)));
+        cells.push(term.difference_sd.map_or_else(|| MISSING.to_owned(), |far| fixed(far, 1)));
+        cells.push(term.verdict.clone());
+        table.push(cells);
+    }
+    table
+}
+
+/// K' and T' with their intervals, one row for every name.
+pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
+    let mut table = Table::new([
+        Column::left("method"),
+        Column::decimal("K′"),
+        Column::interval(),
+        Column::left("sd"),
+        Column::decimal("T′"),
+        Column::interval(),
+        Column::left("sd"),
+    ]);
+    let sd =
+        |quantity: &Quantity| quantity.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
+    for (name, k, t) in rows {
+        let mut cells = vec![name.clone()];
+        for quantity in [k, t] {
+            cells.extend(estimate(quantity));
+            cells.push(sd(quantity));
+        }
+        table.push(cells);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::documents::scales::ComparedTerm;
+
+    #[test]
+    fn every_term_has_its_word_and_the_sentence_begins_with_what_does_not_scale() {
+        let of = |value: f64, sd: f64| Some(Quantity::new(value, Some(sd)));
+        let joint = Quantity::new(1.0, Some(0.01));
+        let terms = vec![
+            ComparedTerm::new("K′", "1", joint, vec![of(1.0, 0.01), of(1.02, 0.01)]),
+            ComparedTerm::new("n₃/T′", "1/rad²", joint, vec![of(1.0, 0.01), of(1.5, 0.01)]),
+            ComparedTerm::new("δ_r", "deg", joint, vec![of(1.0, 0.5), None]),
+        ];
+        let model = ComparedModel { model: "traced".into(), terms };
+        assert_eq!(sentence(&model), "n₃/T′ does not scale; K′ scales; δ_r cannot be told");
+        let groups = [
+            (Particulars { length: 7.0, speed: 1.18 }, vec![0, 2]),
+            (Particulars { length: 320.0, speed: 7.97 }, vec![1]),
+        ];
+        let entry = ScalesEntry::new(&groups, &["a", "b", "c"], groups[0].0, vec![model]);
+        assert_eq!(entry.groups[0].files, ["a", "c"]);
+        assert!((entry.groups[1].time_factor - 7.0 / 1.18 / (320.0 / 7.97)).abs() < 1e-12);
+        let text = table(&entry, &entry.comparisons[0]).to_text();
+        assert!(text.contains("L = 7.00 m, V = 1.18 m/s") && text.contains("35.4"), "{text}");
+        assert!(text.contains("n₃/T′ [1/rad²]") && text.contains("does not scale"), "{text}");
+    }
+}

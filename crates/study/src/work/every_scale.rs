@@ -1,0 +1,67 @@
+//! What every method says of the records of every scale alone.
+
+use identify::{Estimate, Identifier, Uncertainty};
+use rayon::prelude::*;
+use ship::Particulars;
+use ship::angle::to_deg;
+use trial::{Quantity, Trial};
+
+use crate::documents::scales::{ComparedModel, ComparedTerm, ScalesEntry};
+use crate::outside::Named;
+use crate::scales::Together;
+use campaign::answer::MethodEntry;
+
+/// Methods in the order in which one is asked to speak for all: the one whose errors hold the doubt about the noise
+/// first.
+pub const SPEAKERS: [&str; 2] = ["maximum-likelihood", "output-error"];
+
+/// Every method on the records of every scale alone, against its answer for all; `None` where all have one scale.
+pub fn compared(
+    methods: &[Named],
+    answers: &[(MethodEntry, Option<Estimate>)],
+    together: &Together,
+) -> Option<ScalesEntry> {
+    let of_group =
+        |records: &[usize]| -> Vec<Trial> { records.iter().map(|&record| together.trials[record].clone()).collect() };
+    ScalesEntry::compared(together, |groups, first| {
+        let groups: Vec<Vec<Trial>> = groups.iter().map(|(_, records)| of_group(records)).collect();
+        let own = |method: &dyn Identifier| -> Vec<Option<Estimate>> {
+            groups.par_iter().map(|trials| method.identify(trials).ok()).collect()
+        };
+        methods
+            .par_iter()
+            .zip(answers)
+            .filter_map(|((_, method), (entry, joint))| {
+                let terms = terms(joint.as_ref()?, &own(method.as_ref()), first);
+                Some(ComparedModel { model: entry.method.clone(), terms })
+            })
+            .collect()
+    })
+}
+
+/// K', T', the regular 1/T' and K'/T', and δ_r.
+fn terms(joint: &Estimate, own: &[Option<Estimate>], ship: Particulars) -> Vec<ComparedTerm> {
+    type Of = fn(&Estimate) -> Quantity;
+    let all: [(&str, &str, [i32; 2], Of); 5] = [
+        ("K′", "1", [-1, 0], Estimate::K),
+        ("T′", "1", [1, 0], Estimate::T),
+        ("1/T′", "1", [-1, 0], |estimate| parameter(estimate, 0)),
+        ("K′/T′", "1", [-2, 0], |estimate| parameter(estimate, 1)),
+        ("δ_r", "deg", [0, 0], |estimate| estimate.rudder_bias().scaled(to_deg(1.0))),
+    ];
+    let term = |&(symbol, unit, dimension, of): &(&str, &str, [i32; 2], Of)| {
+        let prime = |estimate: &Estimate| of(estimate).scaled(ship.prime(dimension));
+        let own = own.iter().map(|own| own.as_ref().map(prime)).collect();
+        ComparedTerm::new(symbol, unit, prime(joint), own)
+    };
+    all.iter().map(term).collect()
+}
+
+/// 1/T or K/T with their errors.
+fn parameter(estimate: &Estimate, place: usize) -> Quantity {
+    let value = [estimate.response.inverse_T, estimate.response.K_over_T][place];
+    let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return Quantity::bare(value) };
+    let sd = covariance.matrix[(place, place)].max(0.0).sqrt();
+    let reach = covariance.quantile95() * sd;
+    Quantity { value, sd: Some(sd), ci95: Some([value - reach, value + reach]) }
+}
