@@ -12,6 +12,7 @@
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
+//! | manoeuvres inside a long log | [`find`] |
 //! | IMO criteria | [`imo`] |
 //! | records of similar ships of different size and speed | [`scale`] |
 
@@ -22,6 +23,7 @@ pub mod conditions;
 pub mod decoder;
 mod encoding;
 pub mod file;
+pub mod find;
 mod hygiene;
 pub mod imo;
 pub mod names;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ship::angle::from_deg;
 
-use crate::{Approach, Log, Manoeuvre, manoeuvres};
+use crate::find::{Approach, Manoeuvre, Signals, manoeuvres};
 
 /// The columns of a measured record that a search looks at.
 struct Table {
@@ -42,7 +42,7 @@ fn measured(file: &str) -> Option<Table> {
 
 impl Table {
     fn manoeuvres(&self) -> Vec<Manoeuvre> {
-        let log = Log {
+        let log = Signals {
             time: &self.time,
             rudder: &self.rudder,
             heading: &self.heading,

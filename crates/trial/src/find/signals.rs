@@ -1,10 +1,14 @@
-//! What a search looks at.
+//! What a search looks at, and what is derived of it once.
+
+use super::course::Course;
+use super::kind::Kind;
+use super::rest::{Hold, Rest};
 
 /// The channels that a search looks at, row by row, in SI units and radians.
 ///
 /// All have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
 #[derive(Debug, Clone, Copy)]
-pub struct Log<'a> {
+pub struct Signals<'a> {
     /// Time, s.
     pub time: &'a [f64],
     /// Rudder angle or order, rad; finite in every row.
@@ -17,7 +21,7 @@ pub struct Log<'a> {
     pub propeller: Option<&'a [f64]>,
 }
 
-impl Log<'_> {
+impl Signals<'_> {
     /// Whether the channels are as documented: a search in anything else finds nothing.
     pub(crate) fn is_sound(&self) -> bool {
         let rows = self.time.len();
@@ -26,5 +30,35 @@ impl Log<'_> {
             && self.time.iter().all(|t| t.is_finite())
             && self.time.windows(2).all(|pair| pair[0] < pair[1])
             && self.rudder.iter().all(|delta| delta.is_finite())
+    }
+}
+
+/// A log with what is derived from it once.
+#[derive(Clone, Copy)]
+pub(crate) struct Prepared<'a> {
+    pub log: &'a Signals<'a>,
+    pub rest: &'a Rest,
+    pub course: &'a Course,
+}
+
+/// A manoeuvre before its part is bounded.
+#[derive(Debug, Clone)]
+pub(crate) struct Pattern {
+    pub kind: Kind,
+    /// Where the rudder was held; never empty.
+    pub holds: Vec<Hold>,
+    /// Longest approach that belongs to it, s; also its time scale.
+    pub scale: f64,
+    /// Change of heading that is large for it, rad.
+    pub swing: f64,
+}
+
+impl Pattern {
+    pub fn first(&self) -> usize {
+        self.holds[0].first
+    }
+
+    pub fn last(&self) -> usize {
+        self.holds[self.holds.len() - 1].last
     }
 }
