@@ -1,5 +1,5 @@
 //! The rows of a table, one after the other: cells to SI units, the part and thinning asked for, rows that are left
-//! out, and the bound on memory. Only the rows kept are held; what becomes of them is in [`super::kept`].
+//! out, and the bound on memory. Only the rows kept are held; what becomes of them is in [`super::read_table`].
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use super::layout::{Layout, Meaning};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
 use crate::cells::{Cell, Separator, cell};
 use crate::channel::Channel;
+use crate::cleaning::is_sentinel;
 use crate::clock::{Stamp, StampFault, Stamps};
-use crate::hygiene::is_sentinel;
 use crate::record::Trial;
 use crate::sidecar::Sidecar;
 use crate::words::shortened;

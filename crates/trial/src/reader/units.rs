@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use super::error::Problem;
-use super::kept::{Kept, Open};
 use super::limits::spoken;
+use super::read_table::{ReadTable, UnitlessColumn};
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
@@ -45,7 +45,7 @@ type Channels = BTreeMap<Channel, Vec<f64>>;
 /// Finds the open units; what was decided, in words.
 ///
 /// Fails where heading, rudder, a yaw rate that stands for the heading, or time could have two units.
-pub(super) fn settle(kept: &mut Kept, line: usize) -> Result<Vec<String>, Problem> {
+pub(super) fn settle(kept: &mut ReadTable, line: usize) -> Result<Vec<String>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
     let open = std::mem::take(&mut kept.open);
@@ -94,7 +94,7 @@ pub(super) fn settle(kept: &mut Kept, line: usize) -> Result<Vec<String>, Proble
     if !decided.is_empty() {
         told.push(format!("columns without a unit: {}, the only unit that fits their values", decided.join(", ")));
     }
-    for Open { channel, name, .. } in left_out {
+    for UnitlessColumn { channel, name, .. } in left_out {
         let names: Vec<String> =
             channel.units().iter().map(|unit| format!("`{}_{}`", channel.quantity(), unit.id())).collect();
         told.push(format!(
@@ -111,12 +111,12 @@ pub(super) fn settle(kept: &mut Kept, line: usize) -> Result<Vec<String>, Proble
     Ok(told)
 }
 
-fn in_words(open: &Open, unit: Unit) -> String {
+fn in_words(open: &UnitlessColumn, unit: Unit) -> String {
     format!("`{}` is the {} in {}", shortened(&open.name), spoken(open.channel), unit.spoken())
 }
 
-fn refusal(open: &Open, line: usize) -> Problem {
-    let Open { channel, name, largest } = open.clone();
+fn refusal(open: &UnitlessColumn, line: usize) -> Problem {
+    let UnitlessColumn { channel, name, largest } = open.clone();
     Problem::OpenUnit { line, column: name, quantity: spoken(channel), largest, channel }
 }
 
@@ -130,7 +130,7 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     }
 }
 
-fn rudder(open: &Open) -> Option<Unit> {
+fn rudder(open: &UnitlessColumn) -> Option<Unit> {
     match open.largest {
         largest if largest <= RUDDER_RAD => Some(Unit::Radian),
         largest if largest > RUDDER_EITHER => Some(Unit::Degree),
@@ -139,7 +139,7 @@ fn rudder(open: &Open) -> Option<Unit> {
 }
 
 /// The unit of a heading that was read as degrees; removes the wrap at 2π where it is in radians.
-fn heading(channels: &mut Channels, open: &Open) -> Option<Unit> {
+fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     let degree = Unit::Degree.to_si();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
     let values = channels.get_mut(&Channel::Heading)?;
@@ -212,7 +212,7 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
 }
 
 /// Time without a unit: seconds where ships can turn like that, or the count of a clock.
-fn time(kept: &mut Kept, name: &str, line: usize) -> Result<Option<String>, Problem> {
+fn time(kept: &mut ReadTable, name: &str, line: usize) -> Result<Option<String>, Problem> {
     let name = shortened(name);
     let times = &mut kept.columns.time;
     let first = times[0];

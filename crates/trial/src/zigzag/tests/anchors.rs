@@ -4,7 +4,7 @@ use approx::assert_relative_eq;
 use ship::angle::to_deg;
 
 use super::of_plant;
-use crate::zigzag::simulator::Plant;
+use crate::testing::Plant;
 use crate::zigzag::{BaseCourseSource, Side};
 
 /// A row of the table of anchors: pair and rudder rate, first crossing, three later executes, three overshoots, period,

@@ -16,7 +16,7 @@ use crate::words::{counted, shortened};
 
 /// A channel whose unit its values have to show.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Open {
+pub(super) struct UnitlessColumn {
     pub channel: Channel,
     /// Name of its column.
     pub name: String,
@@ -26,13 +26,13 @@ pub(super) struct Open {
 
 /// The columns of a table.
 #[derive(Debug)]
-pub(super) struct Kept {
+pub(super) struct ReadTable {
     pub columns: Columns,
     /// Rows of the file.
     pub rows: usize,
     /// What the clock shows at time 0, where the table has stamps.
     pub clock: Option<Clock>,
-    pub open: Vec<Open>,
+    pub open: Vec<UnitlessColumn>,
     /// Name of the column of time where its unit is open.
     pub open_time: Option<String>,
     /// Latitude and longitude, deg.
@@ -41,7 +41,7 @@ pub(super) struct Kept {
 
 impl Rows<'_> {
     /// The columns of all rows kept, with warnings.
-    pub fn finish(mut self) -> Result<(Kept, Vec<String>), Problem> {
+    pub fn finish(mut self) -> Result<(ReadTable, Vec<String>), Problem> {
         let layout = self.layout;
         if self.counts.rows == 0 {
             return Err(no_rows(layout.line));
@@ -76,7 +76,7 @@ impl Rows<'_> {
                 }
                 Meaning::Channel(channel, _) => {
                     if layout.open[place] {
-                        open.push(Open { channel, name: name.clone(), largest: self.largest[place] });
+                        open.push(UnitlessColumn { channel, name: name.clone(), largest: self.largest[place] });
                     }
                     channels.insert(channel, values);
                 }
@@ -87,7 +87,7 @@ impl Rows<'_> {
             }
         }
         let open_time = self.time_place.filter(|&place| layout.open[place]).map(|place| layout.names[place].clone());
-        let kept = Kept {
+        let kept = ReadTable {
             columns: Columns { time: self.time, channels, unknown },
             rows: self.counts.rows,
             clock: self.stamps.as_ref().and_then(Stamps::clock),
