@@ -47,29 +47,16 @@ pub(super) fn from_stamps(log: &mut Log) -> Timed {
         drop_rows(sensor);
         spread += usize::from(spread_stamps(&mut sensor.at));
     }
-    let mut warnings = Vec::new();
-    if log.counts.strayed > 0 {
-        warnings.push(format!(
-            "{} with a stamp far from {} neighbours {} left out",
-            counted(log.counts.strayed, "sentence"),
-            if log.counts.strayed == 1 { "its" } else { "their" },
-            are(log.counts.strayed)
-        ));
-    }
-    if disordered > 0 {
-        warnings.push(format!(
-            "{} with an earlier stamp than the one before of the same instrument {} left out",
-            counted(disordered, "sentence"),
-            are(disordered)
-        ));
-    }
-    if log.counts.unstamped > 0 {
-        warnings.push(format!(
-            "{} without a time stamp {} left out",
-            counted(log.counts.unstamped, "sentence"),
-            are(log.counts.unstamped)
-        ));
-    }
+    let neighbours = if log.counts.strayed == 1 { "its" } else { "their" };
+    let mut warnings: Vec<String> = [
+        (log.counts.strayed, format!("with a stamp far from {neighbours} neighbours")),
+        (disordered, "with an earlier stamp than the one before of the same instrument".to_owned()),
+        (log.counts.unstamped, "without a time stamp".to_owned()),
+    ]
+    .into_iter()
+    .filter(|(number, _)| *number > 0)
+    .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
+    .collect();
     if spread > 0 {
         warnings.push(
             "several sentences of one instrument have the same time stamp; they are spread evenly over the time to the \
