@@ -307,7 +307,7 @@ impl Trial {
     }
 
     /// Readings that were taken as missing or told as doubtful before the record was made.
-    pub fn marks(&self) -> &[RejectedReading] {
+    pub fn rejected(&self) -> &[RejectedReading] {
         &self.marks
     }
 

@@ -13,7 +13,7 @@ use crate::screen;
 use crate::views::document;
 use trial::Channel;
 use trial::names::{self, ColumnMeaning};
-use trial::sidecar::{Key, keys};
+use trial::sidecar::{self, Key};
 
 use scenario::effect_keys;
 use scenario::failure::Failure;
@@ -150,7 +150,7 @@ fn columns() -> Table {
 
 fn sidecar() -> Table {
     let mut table = Table::new([Column::left("key"), Column::left("value"), Column::left("meaning")]);
-    for Key { key, value, meaning } in keys() {
+    for Key { key, value, meaning } in sidecar::keys() {
         table.push([&key, &value, &meaning.replace('`', "")]);
     }
     table
