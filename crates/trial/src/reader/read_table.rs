@@ -8,7 +8,7 @@ use super::instants::spread;
 use super::layout::Meaning;
 use super::limits::no_rows;
 use super::limits::spoken;
-use super::rows::Rows;
+use super::rows::{Met, Rows};
 use crate::channel::Channel;
 use crate::clock::{Clock, Stamps};
 use crate::record::Columns;
@@ -76,13 +76,13 @@ impl Rows<'_> {
                 }
                 Meaning::Channel(channel, _) => {
                     if layout.open[place] {
-                        open.push(UnitlessColumn { channel, name: name.clone(), largest: self.largest[place] });
+                        open.push(UnitlessColumn { channel, name: name.clone(), largest: self.met[place].largest });
                     }
                     channels.insert(channel, values);
                 }
                 Meaning::Latitude => latitude = Some(values),
                 Meaning::Longitude => longitude = Some(values),
-                _ if missing && self.text[place] > 0 => {}
+                _ if missing && self.met[place].text > 0 => {}
                 _ => unknown.push((name.clone(), values)),
             }
         }
@@ -134,7 +134,6 @@ impl Rows<'_> {
 
     fn warnings(&self) -> Vec<String> {
         let counts = &self.counts;
-        let names = &self.layout.names;
         let mut warnings = self.layout.told.clone();
         let mut count = |number: usize, text: &str| {
             if number > 0 {
@@ -155,16 +154,13 @@ impl Rows<'_> {
         if counts.decimal_commas > 0 {
             warnings.push(format!("{} numbers were read with a decimal comma", counts.decimal_commas));
         }
-        for (name, &text) in names.iter().zip(&self.text) {
-            if text > 0 {
-                warnings.push(format!("the column `{}` holds text in {text} rows, taken as missing", shortened(name)));
-            }
+        let columns = || self.layout.names.iter().map(|name| shortened(name)).zip(&self.met);
+        for (name, Met { text, .. }) in columns().filter(|(_, met)| met.text > 0) {
+            warnings.push(format!("the column `{name}` holds text in {text} rows, taken as missing"));
         }
-        for (name, (count, value)) in names.iter().zip(&self.sentinels) {
-            if *count > 0 {
-                let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
-                warnings.push(format!("the column `{}` holds {value} {times}, taken as missing", shortened(name)));
-            }
+        for (name, Met { sentinels: (count, value), .. }) in columns().filter(|(_, met)| met.sentinels.0 > 0) {
+            let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
+            warnings.push(format!("the column `{name}` holds {value} {times}, taken as missing"));
         }
         warnings
     }
