@@ -64,8 +64,10 @@ struct WireTable {
     encoding: Encoding,
     /// Whether a line with names comes before the rows; true when absent. (true or false)
     header: Option<bool>,
-    #[schemars(description = "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not \
-        used. Rows that are missing shift all that follow: for tables without time only. (s)")]
+    #[schemars(
+        description = "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not \
+        used. Rows that are missing shift all that follow: for tables without time only. (s)"
+    )]
     time_step_s: Option<f64>,
 }
 
