@@ -34,6 +34,7 @@ pub mod record;
 pub mod scale;
 pub mod sidecar;
 mod sidecar_error;
+mod sidecar_keys;
 #[cfg(test)]
 mod testing;
 mod words;

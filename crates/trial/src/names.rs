@@ -1,5 +1,6 @@
 //! What people call the columns of their tables: a heading, split into the words that name a quantity and the unit
-//! beside them, becomes a [`ColumnMeaning`]. It knows names and units; which column of a table is used is decided by the reader.
+//! beside them, becomes a [`ColumnMeaning`]. It knows names and units; which column of a table is used is decided by
+//! the reader.
 
 use crate::channel::{Channel, Unit, column, time_column};
 

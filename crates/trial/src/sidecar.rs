@@ -2,15 +2,11 @@
 //! describes; reading is done in [`crate::reader`].
 //!
 //! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
-//! [`keys`] lists what it may say; none of it is required. A key is declared by the field that it is read into; the
-//! last words of the field's comment, in brackets, say what the value may be.
+//! [`keys`] lists what it may say; none of it is required.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use schemars::Schema;
-use schemars::generate::SchemaSettings;
-use serde::Deserialize;
 use ship::Particulars;
 use ship::angle::{KNOT, from_deg};
 use toml::de::{DeTable, DeValue};
@@ -24,153 +20,12 @@ use crate::names::{ColumnMeaning, contract};
 use crate::record::Noise;
 use crate::sidecar_error::Fault;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
+pub use crate::sidecar_keys::{Key, keys, schema};
+use crate::sidecar_keys::{Wire, WireColumn, WireShip};
 use crate::words::shortened;
 
 /// A sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
-
-// The tables of the file. Comments on fields are what `study list sidecar` and the JSON schema say of a key.
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Wire {
-    #[serde(default)]
-    table: WireTable,
-    #[serde(default)]
-    part: WirePart,
-    #[serde(default)]
-    #[schemars(with = "Vec<WireColumn>")]
-    column: Vec<Spanned<WireColumn>>,
-    ship: Option<WireShip>,
-    #[serde(default)]
-    noise: WireNoise,
-    #[serde(default)]
-    check: WireCheck,
-    #[serde(default)]
-    #[schemars(description = "The table as it is written.")]
-    form: Conditions,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireTable {
-    /// Lines before the header, or before the rows when there is none; not even decoded. (number)
-    #[serde(default)]
-    skip_lines: usize,
-    /// What stands between cells; recognised when absent. (comma, semicolon, tab or blank)
-    separator: Option<Separator>,
-    /// How bytes stand for letters; utf-8 when absent. (utf-8 or windows-1252)
-    #[serde(default)]
-    encoding: Encoding,
-    /// Whether a line with names comes before the rows; true when absent. (true or false)
-    header: Option<bool>,
-    #[schemars(
-        description = "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not \
-        used. Rows that are missing shift all that follow: for tables without time only. (s)"
-    )]
-    time_step_s: Option<f64>,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WirePart {
-    /// First time that is used, on the clock of the record. (s)
-    from_s: Option<f64>,
-    /// Last time that is used. (s)
-    until_s: Option<f64>,
-    /// The first row of the part and every n-th after it. (number)
-    every: Option<usize>,
-}
-
-#[derive(Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireColumn {
-    /// Which column: counted from 1; this or its name. (number)
-    index: Option<usize>,
-    /// Which column: its name in the header. (text)
-    name: Option<String>,
-    /// What it holds: a name of `study list columns`; its own name when absent. (name such as heading_rad)
-    #[schemars(with = "Option<String>")]
-    is: Option<Spanned<String>>,
-    /// Change the sign. (true)
-    #[serde(default)]
-    flip: bool,
-    /// Leave the column out. (true)
-    #[serde(default)]
-    ignore: bool,
-}
-
-#[derive(Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireShip {
-    /// Length between perpendiculars; needs a speed beside it. (m)
-    length_m: Option<f64>,
-    /// Approach speed. (m/s)
-    speed_m_s: Option<f64>,
-    /// The same in knots. (kn)
-    speed_kn: Option<f64>,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireNoise {
-    /// Standard deviation of the heading, where it is known. (deg)
-    heading_deg: Option<f64>,
-    /// The same of the yaw rate. (deg/s)
-    yaw_rate_deg_s: Option<f64>,
-    /// The same of the rudder. (deg)
-    rudder_deg: Option<f64>,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireCheck {
-    /// With false nothing is mended, and what looks implausible is a warning in place of an error. (true or false)
-    plausibility: Option<bool>,
-}
-
-/// The JSON schema of the file, by which an editor completes and checks its keys, in the draft that editors of TOML
-/// understand.
-pub fn schema() -> Schema {
-    // Tables stand where they are used, so that a key is found by its table.
-    let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
-    let mut schema = settings.into_generator().into_root_schema_for::<Wire>();
-    schema.insert("title".into(), "Sidecar of a record".into());
-    schema
-}
-
-/// A key of a sidecar.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Key {
-    /// Table and key.
-    pub key: String,
-    /// What it may be.
-    pub value: String,
-    /// What it says, and what holds where it is absent.
-    pub meaning: String,
-}
-
-/// All keys, in the order in which they are written.
-pub fn keys() -> Vec<Key> {
-    let schema = schema();
-    let properties = |of: &serde_json::Value| of["properties"].as_object().cloned().unwrap_or_default();
-    let mut keys = Vec::new();
-    for (table, own) in properties(schema.as_value()) {
-        let (table, own) = match own.get("items") {
-            Some(items) => (format!("[[{table}]]"), items),
-            None => (format!("[{table}]"), &own),
-        };
-        for (key, own) in properties(own) {
-            let said = own["description"].as_str().unwrap_or_default();
-            let (meaning, value) = said.rsplit_once(" (").unwrap_or((said, ")"));
-            let value = value.trim_end_matches(')').to_owned();
-            keys.push(Key { key: format!("{table} {key}"), value, meaning: meaning.to_owned() });
-        }
-    }
-    let [key, value, meaning] = ["#", "text", "A remark, to the end of the line."].map(str::to_owned);
-    keys.push(Key { key, value, meaning });
-    keys
-}
 
 /// Which column of a table is meant.
 #[derive(Debug, Clone, PartialEq, Eq)]

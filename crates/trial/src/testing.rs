@@ -1,5 +1,5 @@
-//! Fixtures of tests: an exact first-order zig-zag (straight pieces of rudder, closed-form response, and executes at the
-//! root of the heading condition, which shares nothing with the detection it tests), noise, and measured records.
+//! Fixtures of tests: an exact first-order zig-zag (straight pieces of rudder, closed-form response, and executes at
+//! the root of the heading condition, which shares nothing with the detection it tests), noise, and measured records.
 
 use std::path::PathBuf;
 

@@ -4,9 +4,9 @@
 use super::course::middle;
 use super::kind::Kind;
 use super::manoeuvre::Manoeuvre;
+use super::pattern::{Pattern, Prepared};
 use super::quality::{Approach, Quality, STEADY_SPEED};
 use super::rest::{Hold, usual};
-use super::signals::{Pattern, Prepared};
 use crate::zigzag::executes::Rudder;
 use crate::zigzag::holds::{self, LAID};
 

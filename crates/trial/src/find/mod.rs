@@ -14,6 +14,7 @@ mod bounds;
 mod course;
 mod kind;
 mod manoeuvre;
+mod pattern;
 mod quality;
 mod signals;
 
@@ -26,8 +27,8 @@ mod turns;
 mod zigzags;
 
 use course::Course;
+use pattern::{Pattern, Prepared};
 use rest::{Hold, Rest};
-use signals::{Pattern, Prepared};
 
 pub use kind::Kind;
 pub use manoeuvre::Manoeuvre;
@@ -36,8 +37,8 @@ pub use signals::Signals;
 
 /// The manoeuvres of a log in order of time; they do not overlap.
 ///
-/// Empty where nothing is recognised, and for a log that is not as [`Signals`] says. Time and memory grow in proportion to
-/// the rows.
+/// Empty where nothing is recognised, and for a log that is not as [`Signals`] says. Time and memory grow in
+/// proportion to the rows.
 pub fn manoeuvres(log: &Signals) -> Vec<Manoeuvre> {
     if !log.is_sound() {
         return Vec::new();

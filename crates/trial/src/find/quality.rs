@@ -3,7 +3,7 @@
 
 use ship::angle::to_deg;
 
-use super::signals::Prepared;
+use super::pattern::Prepared;
 
 /// Share of missing headings worth a remark.
 const MISSING: f64 = 0.01;

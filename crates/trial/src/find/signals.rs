@@ -1,8 +1,4 @@
-//! What a search looks at, and what is derived of it once.
-
-use super::course::Course;
-use super::kind::Kind;
-use super::rest::{Hold, Rest};
+//! What a search looks at.
 
 /// The channels that a search looks at, row by row, in SI units and radians.
 ///
@@ -30,35 +26,5 @@ impl Signals<'_> {
             && self.time.iter().all(|t| t.is_finite())
             && self.time.windows(2).all(|pair| pair[0] < pair[1])
             && self.rudder.iter().all(|delta| delta.is_finite())
-    }
-}
-
-/// A log with what is derived from it once.
-#[derive(Clone, Copy)]
-pub(crate) struct Prepared<'a> {
-    pub log: &'a Signals<'a>,
-    pub rest: &'a Rest,
-    pub course: &'a Course,
-}
-
-/// A manoeuvre before its part is bounded.
-#[derive(Debug, Clone)]
-pub(crate) struct Pattern {
-    pub kind: Kind,
-    /// Where the rudder was held; never empty.
-    pub holds: Vec<Hold>,
-    /// Longest approach that belongs to it, s; also its time scale.
-    pub scale: f64,
-    /// Change of heading that is large for it, rad.
-    pub swing: f64,
-}
-
-impl Pattern {
-    pub fn first(&self) -> usize {
-        self.holds[0].first
-    }
-
-    pub fn last(&self) -> usize {
-        self.holds[self.holds.len() - 1].last
     }
 }

@@ -2,8 +2,8 @@
 //! steadily. Reverse spirals, where the rate is ordered and the rudder looked for, are not recognised.
 
 use super::kind::Kind;
+use super::pattern::{Pattern, Prepared};
 use super::rest::Hold;
-use super::signals::{Pattern, Prepared};
 use crate::zigzag::median::median;
 
 /// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.

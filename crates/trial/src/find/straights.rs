@@ -4,9 +4,9 @@
 
 use super::kind::Kind;
 use super::manoeuvre::Manoeuvre;
+use super::pattern::{Pattern, Prepared};
 use super::quality::Quality;
 use super::rest::usual;
-use super::signals::{Pattern, Prepared};
 
 /// Range of headings on one course, rad: an autopilot keeps ±1 degree, in waves ±2.
 const COURSE: f64 = 5.0_f64.to_radians();

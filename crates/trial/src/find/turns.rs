@@ -4,8 +4,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::kind::Kind;
+use super::pattern::{Pattern, Prepared};
 use super::rest::Hold;
-use super::signals::{Pattern, Prepared};
 
 /// Smallest rudder angle of a turn, rad.
 const SMALLEST_RUDDER: f64 = 3.0_f64.to_radians();

@@ -4,8 +4,8 @@
 use super::bounds::first_execute;
 use super::course::middle;
 use super::kind::Kind;
+use super::pattern::{Pattern, Prepared};
 use super::rest::Hold;
-use super::signals::{Pattern, Prepared};
 use crate::zigzag::median::median;
 
 /// Largest ratio of the rudder angles to both sides.

@@ -79,7 +79,8 @@ impl<R: Read> Lines<R> {
         self.consumed
     }
 
-    /// Takes the bytes of a line, or of its begin where it is too long; how many there are, none at the end of the file.
+    /// Takes the bytes of a line, or of its begin where it is too long; how many there are, none at the end of the
+    /// file.
     fn take_line(&mut self) -> Result<usize, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);

@@ -81,8 +81,11 @@ pub(super) enum Slot {
 /// Most quantities of one sentence.
 pub(super) const MOST_SLOTS: usize = 5;
 
+/// A sentence with its formatters and quantities.
+type Sentence = (Kind, &'static [&'static [u8]], &'static [Slot]);
+
 /// The sentences that are read: formatters, and quantities in the order of [`Row::values`].
-const SENTENCES: [(Kind, &[&[u8]], &[Slot]); 18] = {
+const SENTENCES: [Sentence; 18] = {
     use Slot::*;
     [
         (Kind::Hdt, &[b"HDT"], &[HeadingTrue]),

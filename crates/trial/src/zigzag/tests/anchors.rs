@@ -1,13 +1,14 @@
 //! The ship (K, T) = (0.1 1/s, 16.3 s) in nine zig-zags, against an independent integration and the closed form.
 
-use std::f64::{INFINITY as INF, NAN};
-
 use approx::assert_relative_eq;
 use ship::angle::to_deg;
 
 use super::of_plant;
 use crate::testing::Plant;
 use crate::zigzag::{BaseCourseSource, Side};
+
+const INF: f64 = f64::INFINITY;
+const NAN: f64 = f64::NAN;
 
 /// A row of the table of anchors: pair and rudder rate; first crossing and three later executes; three overshoots; the
 /// period where the source has its limit (elsewhere it has the median of few cycles, the transient one among them);
