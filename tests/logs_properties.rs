@@ -7,7 +7,7 @@ use kempf_tests::logs::voyage::{EPOCH, every, seconds, time_of_day, time_of_half
 use proptest::prelude::*;
 use proptest::sample::select;
 use trial::channel::Unit;
-use trial::names::{self, Said};
+use trial::names::{self, ColumnMeaning};
 use trial::reader::read_bytes;
 use trial::{Channel, Trial};
 
@@ -177,12 +177,12 @@ impl Notation {
     }
 }
 
-fn names_of(wanted: impl Fn(Said) -> bool) -> Vec<&'static str> {
+fn names_of(wanted: impl Fn(ColumnMeaning) -> bool) -> Vec<&'static str> {
     names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect()
 }
 
 fn angle(channel: Channel) -> impl Strategy<Value = Angle> {
-    let names = names_of(|said| said == Said::Channel(channel, None));
+    let names = names_of(|said| said == ColumnMeaning::Channel(channel, None));
     let units: Vec<(&'static str, Unit)> = names::units().filter(|(_, unit)| channel.units().contains(unit)).collect();
     (select(names), select(units), any::<bool>()).prop_map(|(name, unit, upper)| Angle { name, unit, upper })
 }
@@ -218,7 +218,8 @@ fn place() -> impl Strategy<Value = Place> {
 fn notation() -> impl Strategy<Value = Notation> {
     let look = (select(vec![',', ';', '\t', ' ']), any::<[bool; 4]>(), select(vec!["\n", "\r\n", "\r\n\r\n"]));
     let order = Just((0..6).collect::<Vec<usize>>()).prop_shuffle();
-    let names = (select(names_of(|said| said == Said::Time(None))), angle(Channel::Heading), angle(Channel::Rudder));
+    let names =
+        (select(names_of(|said| said == ColumnMeaning::Time(None))), angle(Channel::Heading), angle(Channel::Rudder));
     (clock(), names, place(), look, order).prop_map(
         |((clock, time_unit), (time, heading, mut rudder), place, look, order)| {
             let (separator, [comma, quoted, more, mark], line_end) = look;

@@ -36,7 +36,8 @@
 //! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
-pub use {campaign, find, identify, motion, predict, scenario, ship, simulate, trace, trial};
+pub use trial::find;
+pub use {campaign, identify, motion, predict, scenario, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use find::{Kind, Manoeuvre};
 use ship::Particulars;
 use ship::angle::KNOT;
 use trial::file::{STDIN, called};
+use trial::find::{Kind, Manoeuvre};
 use trial::zigzag::median::upper_median;
 use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
@@ -163,7 +163,7 @@ pub fn manoeuvres(log: &Log) -> Vec<Manoeuvre> {
     let (Some(rudder), Some(heading)) = (log.channel(Channel::Rudder), log.channel(Channel::Heading)) else {
         return Vec::new();
     };
-    find::manoeuvres(&find::Log {
+    trial::find::manoeuvres(&trial::find::Signals {
         time: log.time(),
         rudder,
         heading,

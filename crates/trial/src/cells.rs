@@ -160,7 +160,7 @@ pub enum Cell {
 
 /// The value of digits with a point or without, correctly rounded; `None` for every other text and for so many digits
 /// that it takes more than one division of two exact numbers (Clinger 1990).
-fn plain_number(text: &[u8]) -> Option<f64> {
+pub(crate) fn plain_number(text: &[u8]) -> Option<f64> {
     const POWERS: [f64; 19] =
         [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18];
     let (negative, digits) = match text {

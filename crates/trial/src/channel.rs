@@ -71,147 +71,98 @@ pub enum Unit {
 }
 
 impl Unit {
+    /// How it ends a column name, its name in words, and the factor to SI units and radians.
+    fn facts(self) -> (&'static str, &'static str, f64) {
+        match self {
+            Unit::Second => ("s", "seconds", 1.0),
+            Unit::Millisecond => ("ms", "milliseconds", 1e-3),
+            Unit::Minute => ("min", "minutes", 60.0),
+            Unit::Degree => ("deg", "degrees", DEGREE),
+            Unit::Radian => ("rad", "radians", 1.0),
+            Unit::DegreePerSecond => ("deg_s", "degrees per second", DEGREE),
+            Unit::DegreePerMinute => ("deg_min", "degrees per minute", DEGREE / 60.0),
+            Unit::RadianPerSecond => ("rad_s", "radians per second", 1.0),
+            Unit::MetrePerSecond => ("m_s", "metres per second", 1.0),
+            Unit::Knot => ("kn", "knots", KNOT),
+            Unit::Metre => ("m", "metres", 1.0),
+            Unit::PerSecond => ("rps", "revolutions per second", 1.0),
+            Unit::PerMinute => ("rpm", "revolutions per minute", 1.0 / 60.0),
+        }
+    }
+
     /// The unit as it ends a column name.
     pub fn id(self) -> &'static str {
-        match self {
-            Unit::Second => "s",
-            Unit::Millisecond => "ms",
-            Unit::Minute => "min",
-            Unit::Degree => "deg",
-            Unit::Radian => "rad",
-            Unit::DegreePerSecond => "deg_s",
-            Unit::DegreePerMinute => "deg_min",
-            Unit::RadianPerSecond => "rad_s",
-            Unit::MetrePerSecond => "m_s",
-            Unit::Knot => "kn",
-            Unit::Metre => "m",
-            Unit::PerSecond => "rps",
-            Unit::PerMinute => "rpm",
-        }
+        self.facts().0
     }
 
     /// The unit in words, for messages.
     pub fn spoken(self) -> &'static str {
-        match self {
-            Unit::Second => "seconds",
-            Unit::Millisecond => "milliseconds",
-            Unit::Minute => "minutes",
-            Unit::Degree => "degrees",
-            Unit::Radian => "radians",
-            Unit::DegreePerSecond => "degrees per second",
-            Unit::DegreePerMinute => "degrees per minute",
-            Unit::RadianPerSecond => "radians per second",
-            Unit::MetrePerSecond => "metres per second",
-            Unit::Knot => "knots",
-            Unit::Metre => "metres",
-            Unit::PerSecond => "revolutions per second",
-            Unit::PerMinute => "revolutions per minute",
-        }
+        self.facts().1
     }
 
     /// What a number in this unit is multiplied with to be in SI units and radians.
     pub fn to_si(self) -> f64 {
-        match self {
-            Unit::Second
-            | Unit::Radian
-            | Unit::RadianPerSecond
-            | Unit::MetrePerSecond
-            | Unit::Metre
-            | Unit::PerSecond => 1.0,
-            Unit::Millisecond => 1e-3,
-            Unit::Minute => 60.0,
-            Unit::Degree | Unit::DegreePerSecond => DEGREE,
-            Unit::DegreePerMinute => DEGREE / 60.0,
-            Unit::Knot => KNOT,
-            Unit::PerMinute => 1.0 / 60.0,
-        }
+        self.facts().2
     }
 }
 
 /// Column name of time in files this crate writes.
 pub const TIME_COLUMN: &str = "t_s";
 
+/// Units that a quantity may have, the one files are written in first, and its exponents of second and metre.
+type Units = (&'static [Unit], Dimension);
+
 const TIMES: [Unit; 3] = [Unit::Second, Unit::Millisecond, Unit::Minute];
-const ANGLES: [Unit; 2] = [Unit::Degree, Unit::Radian];
-const ANGULAR_RATES: [Unit; 3] = [Unit::DegreePerSecond, Unit::RadianPerSecond, Unit::DegreePerMinute];
-const SPEEDS: [Unit; 2] = [Unit::MetrePerSecond, Unit::Knot];
-const LENGTHS: [Unit; 1] = [Unit::Metre];
-const REVOLUTIONS: [Unit; 2] = [Unit::PerSecond, Unit::PerMinute];
+const ANGLE: Units = (&[Unit::Degree, Unit::Radian], [0, 0]);
+const RATE: Units = (&[Unit::DegreePerSecond, Unit::RadianPerSecond, Unit::DegreePerMinute], [-1, 0]);
+const SPEED: Units = (&[Unit::MetrePerSecond, Unit::Knot], [-1, 1]);
+const LENGTH: Units = (&[Unit::Metre], [0, 1]);
+const REVOLUTIONS: Units = (&[Unit::PerSecond, Unit::PerMinute], [-1, 0]);
+
+/// Every channel, in the order in which files are written, with the beginning of its column name and its units.
+const CHANNELS: [(Channel, &str, Units); 15] = [
+    (Channel::Heading, "heading", ANGLE),
+    (Channel::Rudder, "rudder", ANGLE),
+    (Channel::RudderOrder, "rudder_order", ANGLE),
+    (Channel::YawRate, "yaw_rate", RATE),
+    (Channel::Speed, "speed", SPEED),
+    (Channel::Surge, "surge", SPEED),
+    (Channel::Sway, "sway", SPEED),
+    (Channel::North, "north", LENGTH),
+    (Channel::East, "east", LENGTH),
+    (Channel::Roll, "roll", ANGLE),
+    (Channel::PropellerRate, "propeller", REVOLUTIONS),
+    (Channel::WindRelativeSpeed, "wind_relative_speed", SPEED),
+    (Channel::WindRelativeFrom, "wind_relative_from", ANGLE),
+    (Channel::WindTrueSpeed, "wind_true_speed", SPEED),
+    (Channel::WindTrueFrom, "wind_true_from", ANGLE),
+];
 
 impl Channel {
-    /// Every channel, in the order in which files are written.
-    pub const ALL: [Channel; 15] = [
-        Channel::Heading,
-        Channel::Rudder,
-        Channel::RudderOrder,
-        Channel::YawRate,
-        Channel::Speed,
-        Channel::Surge,
-        Channel::Sway,
-        Channel::North,
-        Channel::East,
-        Channel::Roll,
-        Channel::PropellerRate,
-        Channel::WindRelativeSpeed,
-        Channel::WindRelativeFrom,
-        Channel::WindTrueSpeed,
-        Channel::WindTrueFrom,
-    ];
+    /// Every channel, in the order in which files are written: that of their declaration.
+    pub const ALL: [Channel; CHANNELS.len()] = {
+        let mut all = [Channel::Heading; CHANNELS.len()];
+        let mut place = 0;
+        while place < all.len() {
+            all[place] = CHANNELS[place].0;
+            place += 1;
+        }
+        all
+    };
 
     /// Exponents of second and metre in the unit; angles have none.
     pub fn dimension(self) -> Dimension {
-        match self {
-            Channel::Heading
-            | Channel::Rudder
-            | Channel::RudderOrder
-            | Channel::Roll
-            | Channel::WindRelativeFrom
-            | Channel::WindTrueFrom => [0, 0],
-            Channel::YawRate | Channel::PropellerRate => [-1, 0],
-            Channel::Speed | Channel::Surge | Channel::Sway | Channel::WindRelativeSpeed | Channel::WindTrueSpeed => {
-                [-1, 1]
-            }
-            Channel::North | Channel::East => [0, 1],
-        }
+        CHANNELS[self as usize].2.1
     }
 
     /// The quantity as it begins a column name.
     pub fn quantity(self) -> &'static str {
-        match self {
-            Channel::Heading => "heading",
-            Channel::Rudder => "rudder",
-            Channel::RudderOrder => "rudder_order",
-            Channel::YawRate => "yaw_rate",
-            Channel::Speed => "speed",
-            Channel::Surge => "surge",
-            Channel::Sway => "sway",
-            Channel::North => "north",
-            Channel::East => "east",
-            Channel::Roll => "roll",
-            Channel::PropellerRate => "propeller",
-            Channel::WindRelativeSpeed => "wind_relative_speed",
-            Channel::WindRelativeFrom => "wind_relative_from",
-            Channel::WindTrueSpeed => "wind_true_speed",
-            Channel::WindTrueFrom => "wind_true_from",
-        }
+        CHANNELS[self as usize].1
     }
 
     /// The units a column of this channel may have; the first is the one files are written in.
     pub fn units(self) -> &'static [Unit] {
-        match self {
-            Channel::Heading
-            | Channel::Rudder
-            | Channel::RudderOrder
-            | Channel::Roll
-            | Channel::WindRelativeFrom
-            | Channel::WindTrueFrom => &ANGLES,
-            Channel::YawRate => &ANGULAR_RATES,
-            Channel::Speed | Channel::Surge | Channel::Sway | Channel::WindRelativeSpeed | Channel::WindTrueSpeed => {
-                &SPEEDS
-            }
-            Channel::North | Channel::East => &LENGTHS,
-            Channel::PropellerRate => &REVOLUTIONS,
-        }
+        CHANNELS[self as usize].2.0
     }
 
     /// The unit this channel is written in.
@@ -219,15 +170,19 @@ impl Channel {
         self.units()[0]
     }
 
+    /// The column name this channel has in a unit, for example `heading_deg`.
+    pub fn name_in(self, unit: Unit) -> String {
+        format!("{}_{}", self.quantity(), unit.id())
+    }
+
     /// The column name this channel is written under, for example `heading_deg`.
     pub fn column_name(self) -> String {
-        format!("{}_{}", self.quantity(), self.written_unit().id())
+        self.name_in(self.written_unit())
     }
 
     /// Every column name this channel is read from, for messages: `heading_deg or heading_rad`.
     pub fn accepted_names(self) -> String {
-        let names: Vec<String> = self.units().iter().map(|unit| format!("{}_{}", self.quantity(), unit.id())).collect();
-        names.join(" or ")
+        self.units().iter().map(|unit| self.name_in(*unit)).collect::<Vec<_>>().join(" or ")
     }
 }
 
@@ -289,7 +244,7 @@ mod tests {
     fn written_names_are_read_back_and_all_channels_are_listed_once() {
         for (place, channel) in Channel::ALL.into_iter().enumerate() {
             assert_eq!(column(&channel.column_name()), Some((channel, channel.written_unit())));
-            assert!(!Channel::ALL[..place].contains(&channel));
+            assert_eq!(channel as usize, place);
         }
     }
 

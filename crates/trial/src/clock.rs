@@ -1,5 +1,8 @@
 //! Stamps of date and time as loggers and spreadsheets write them, and the seconds between them. It knows the notations
 //! and the calendar; what is a time column and what becomes of the seconds is decided in [`crate::reader`].
+//!
+//! No library of dates does it: jiff reads ISO 8601 and one given notation at a time, no decimal commas, no 60th second
+//! and no date of which the file has yet to show the month.
 
 /// Seconds of a day.
 pub const DAY: f64 = 86_400.0;
@@ -11,6 +14,17 @@ enum Date {
     Day(i64),
     /// Two numbers up to 31 and a year, of which the file has to show which one is the month.
     Either { first: u32, second: u32, year: i32 },
+}
+
+impl Date {
+    /// Its day since 1970-01-01, where the first of two numbers is the month or not; `None` where there is no such day.
+    fn day(self, month_first: bool) -> Option<i64> {
+        match self {
+            Date::Day(day) => Some(day),
+            Date::Either { first, second, year } if month_first => days(year, first, second),
+            Date::Either { first, second, year } => days(year, second, first),
+        }
+    }
 }
 
 /// One stamp: a date, a time of day or both, and the zone where it stands beside them.
@@ -333,35 +347,24 @@ impl Stamps {
         {
             return Ok(day);
         }
-        let read = |date: Date, month_first: bool| match date {
-            Date::Day(day) => Some(day),
-            Date::Either { first, second, year } if month_first => days(year, first, second),
-            Date::Either { first, second, year } => days(year, second, first),
-        };
-        let after = |month_first: bool| Some(read(date, month_first)? - read(begin, month_first)?);
-        let day = match (self.month_first, after(false), after(true)) {
-            _ if date == begin => Some(0),
-            (Some(month_first), ..) => after(month_first),
-            (None, Some(day), None) => {
-                self.month_first = Some(false);
-                Some(day)
-            }
-            (None, None, Some(day)) => {
-                self.month_first = Some(true);
-                Some(day)
-            }
-            (None, Some(one), Some(other)) if one == other => Some(one),
-            (None, Some(one), Some(other)) => {
-                let last = self.last.map_or(0, |(_, day)| day);
-                let month_first = match (one == last + 1, other == last + 1) {
-                    (true, false) => false,
-                    (false, true) => true,
+        let after = |month_first: bool| Some(date.day(month_first)? - begin.day(month_first)?);
+        let (day_first, month_first) = (after(false), after(true));
+        let next = self.last.map_or(0, |(_, day)| day) + 1;
+        let day = if date == begin {
+            Some(0)
+        } else {
+            self.month_first = match (self.month_first, day_first, month_first) {
+                (Some(known), ..) => Some(known),
+                (None, Some(_), None) => Some(false),
+                (None, None, Some(_)) => Some(true),
+                (None, Some(one), Some(other)) if one != other => match (one == next, other == next) {
+                    (true, false) => Some(false),
+                    (false, true) => Some(true),
                     _ => return Err(StampFault::EitherMonth),
-                };
-                self.month_first = Some(month_first);
-                Some(if month_first { other } else { one })
-            }
-            (None, None, None) => None,
+                },
+                (None, ..) => None,
+            };
+            if self.month_first == Some(true) { month_first } else { day_first }
         };
         let day = day.ok_or(StampFault::EitherMonth)?;
         self.last = Some((date, day));
@@ -371,20 +374,13 @@ impl Stamps {
     /// The clock at the first stamp; `None` before there was one.
     pub fn clock(&self) -> Option<Clock> {
         let first = self.first?;
-        let day = match (first.date, self.month_first) {
-            (Some(Date::Day(day)), _) => Some(day),
-            (Some(Date::Either { first, second, year }), order) => {
-                let [day_first, month_first] = [days(year, second, first), days(year, first, second)];
-                match order {
-                    Some(true) => month_first,
-                    Some(false) => day_first,
-                    None if day_first == month_first || month_first.is_none() => day_first,
-                    None if day_first.is_none() => month_first,
-                    None => None,
-                }
-            }
-            (None, _) => None,
-        };
+        let day = first.date.and_then(|date| match (self.month_first, date.day(false), date.day(true)) {
+            (Some(true), _, month_first) => month_first,
+            (Some(false), day_first, _) => day_first,
+            (None, day_first, month_first) if day_first == month_first => day_first,
+            (None, Some(day), None) | (None, None, Some(day)) => Some(day),
+            (None, ..) => None,
+        });
         Some(Clock { day, second: first.second?, zone: first.zone })
     }
 }

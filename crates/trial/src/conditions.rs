@@ -1,9 +1,9 @@
 //! What a trial was made with and in, as the form of MSC/Circ.1053, appendix 6, asks for it: particulars of the ship
 //! that no record holds, and the conditions of the trial with what the circular demands of them.
 
-use std::fmt;
-
+use serde::Deserialize;
 use ship::Particulars;
+use thiserror::Error;
 
 /// Water depth that a trial needs, mean draughts. Source: MSC/Circ.1053 (2002), 2.2.1.2.1.
 pub const FEWEST_DRAUGHTS: f64 = 4.0;
@@ -17,7 +17,8 @@ pub const DRAUGHT_TOLERANCE: f64 = 0.05;
 pub const LONGEST_INTERVAL: f64 = 20.0;
 
 /// How a ship was loaded at her trial.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Loading {
     /// To the summer load line draught, or within 5 % of it.
     Full,
@@ -35,130 +36,128 @@ impl Loading {
     }
 }
 
-/// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` where nothing is declared.
+/// Particulars and conditions that a sidecar declares under `[form]`; SI units, `None` where nothing is declared. In
+/// brackets, what the key of a sidecar may be.
 ///
 /// Source of the entries: MSC/Circ.1053 (2002), appendix 6.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Conditions {
-    /// Container ship, tanker, gas carrier, ...
+    /// Administration the form of MSC/Circ.1053 goes to; texts have at most 100 characters. (text)
+    pub administration: Option<String>,
+    /// Container ship, tanker, gas carrier, ro-ro ship, bulk carrier, ... (text)
     pub ship_type: Option<String>,
     /// Length and approach speed of the same sidecar, so that ratios are of one scale.
+    #[serde(skip)]
     pub particulars: Option<Particulars>,
-    /// Breadth, m.
+    /// Breadth of the ship; lengths are of the scale of [ship] length-m. (m)
+    #[serde(rename = "beam-m")]
     pub beam: Option<f64>,
-    /// Mean draught at the trial, m.
+    /// Mean draught at the trial. (m)
+    #[serde(rename = "draught-m")]
     pub draught: Option<f64>,
-    /// Mean draught at full load, m.
+    /// Mean draught at full load. (m)
+    #[serde(rename = "full-load-draught-m")]
     pub full_load_draught: Option<f64>,
-    /// Block coefficient at full load, 1.
+    /// Block coefficient at full load. (1)
     pub block_coefficient: Option<f64>,
-    /// Full spade, semi-spade, high lift, ...
+    /// Full spade, semi-spade, high lift, ... (text)
     pub rudder_type: Option<String>,
-    /// Area of all rudders together, m².
+    /// Area of all rudders together. (m²)
+    #[serde(rename = "rudder-area-m2")]
     pub rudder_area: Option<f64>,
-    /// Number of rudders.
+    /// Number of rudders. (number)
     pub rudders: Option<u8>,
-    /// Fixed pitch, controllable pitch, with nozzle, ...
+    /// Fixed pitch, controllable pitch, with or without nozzle, ... (text)
     pub propeller_type: Option<String>,
-    /// Number of propellers.
+    /// Number of propellers. (number)
     pub propellers: Option<u8>,
-    /// Diesel, steam turbine, diesel-electric, ...
+    /// Diesel, steam turbine, gas turbine, diesel-electric, ... (text)
     pub engine_type: Option<String>,
-    /// Trim, m, positive by the stern.
+    /// Trim, positive by the stern, 0 for an even keel. (m)
+    #[serde(rename = "trim-m")]
     pub trim: Option<f64>,
-    /// Ballast condition, in words.
+    /// Ballast condition in words. (text)
     pub ballast: Option<String>,
-    /// Depth of the water at the trial, m.
+    /// Depth of the water at the trial. (m)
+    #[serde(rename = "water-depth-m")]
     pub water_depth: Option<f64>,
-    /// Wind at the trial, Beaufort number.
+    /// Wind at the trial, Beaufort number. (0 to 12)
     pub wind_beaufort: Option<u8>,
-    /// Sea state at the trial.
+    /// Sea state at the trial. (0 to 9)
     pub sea_state: Option<u8>,
-    /// Loading at the trial as it is declared.
+    /// Loading at the trial; by the two draughts, with a tolerance of 5 %, when absent. (full or partial)
+    #[serde(rename = "loading")]
+    #[schemars(with = "Option<String>")]
     pub declared_loading: Option<Loading>,
-    /// Administration the form goes to.
-    pub administration: Option<String>,
-    /// A remark.
+    /// A remark for the form. (text)
     pub remark: Option<String>,
 }
 
 /// Where a trial is not, or not known to be, what MSC/Circ.1053 (2002), 2.2, asks for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Shortcoming {
     /// Something is not declared.
-    Unknown {
-        /// What, in words.
-        what: &'static str,
-        /// What is asked for.
-        asked: &'static str,
-    },
+    #[error("{what} is not known; {asked} is asked for")]
+    Unknown { what: &'static str, asked: &'static str },
     /// The water is too shallow.
-    Depth {
-        /// Depth in mean draughts.
-        draughts: f64,
-    },
+    #[error("water of {draughts:.1} mean draughts; more than {FEWEST_DRAUGHTS} are asked for")]
+    Depth { draughts: f64 },
     /// The wind is too strong.
-    Wind {
-        /// Beaufort number.
-        beaufort: u8,
-    },
+    #[error("wind of Beaufort {beaufort}; at most {MOST_BEAUFORT} is asked for")]
+    Wind { beaufort: u8 },
     /// The sea is too rough.
-    Sea {
-        /// Sea state.
-        state: u8,
-    },
-    /// Readings are too far apart.
-    Interval {
-        /// Median time between rows, s.
-        seconds: f64,
-    },
-    /// The ship was not at full load.
-    Load {
-        /// Draught as a share of that at full load, where both are known.
-        draught: Option<f64>,
-    },
-    /// Full load is declared and the draughts say otherwise.
-    Contradiction {
-        /// Draught as a share of that at full load.
-        draught: f64,
-    },
-    /// The ship was not on an even keel.
-    Trim {
-        /// Trim, m, positive by the stern.
-        trim: f64,
-    },
+    #[error("sea state {state}; at most {MOST_SEA_STATE} is asked for")]
+    Sea { state: u8 },
+    /// Readings are too far apart: the median time between rows.
+    #[error("a reading every {seconds:.0} s; at most {LONGEST_INTERVAL} s are asked for")]
+    Interval { seconds: f64 },
+    /// The ship was not at full load; her draught as a share of that at full load, where both are known.
+    #[error("not at full load{}", draught.map_or_else(String::new, of_full_load))]
+    Load { draught: Option<f64> },
+    /// Full load is declared and the draughts say otherwise: the draught as a share of that at full load.
+    #[error(
+        "the loading is declared as \"full\", and the draught is {:.0} % of that at full load; 5 % are allowed",
+        100.0 * draught
+    )]
+    Contradiction { draught: f64 },
+    /// The ship was not on an even keel; trim by the stern, m.
+    #[error(
+        "trim of {:.2} m by the {}; an even keel is asked for", trim.abs(), if *trim > 0.0 { "stern" } else { "bow" }
+    )]
+    Trim { trim: f64 },
 }
 
-impl fmt::Display for Shortcoming {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown { what, asked } => write!(f, "{what} is not known; {asked} is asked for"),
-            Self::Depth { draughts } => {
-                write!(f, "water of {draughts:.1} mean draughts; more than {FEWEST_DRAUGHTS} are asked for")
-            }
-            Self::Wind { beaufort } => write!(f, "wind of Beaufort {beaufort}; at most {MOST_BEAUFORT} is asked for"),
-            Self::Sea { state } => write!(f, "sea state {state}; at most {MOST_SEA_STATE} is asked for"),
-            Self::Interval { seconds } => {
-                write!(f, "a reading every {seconds:.0} s; at most {LONGEST_INTERVAL} s are asked for")
-            }
-            Self::Load { draught: None } => f.write_str("not at full load"),
-            Self::Load { draught: Some(share) } => {
-                write!(f, "not at full load: the draught is {:.0} % of that at full load", 100.0 * share)
-            }
-            Self::Contradiction { draught } => write!(
-                f,
-                "the loading is declared as \"full\", and the draught is {:.0} % of that at full load; 5 % are allowed",
-                100.0 * draught
-            ),
-            Self::Trim { trim } => {
-                let end = if *trim > 0.0 { "stern" } else { "bow" };
-                write!(f, "trim of {:.2} m by the {end}; an even keel is asked for", trim.abs())
-            }
-        }
-    }
+fn of_full_load(share: f64) -> String {
+    format!(": the draught is {:.0} % of that at full load", 100.0 * share)
 }
 
 impl Conditions {
+    /// The same without blanks around texts.
+    pub(crate) fn trimmed(mut self) -> Self {
+        let Self { administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark, .. } =
+            &mut self;
+        for text in [administration, ship_type, rudder_type, propeller_type, engine_type, ballast, remark] {
+            *text = text.take().map(|text| text.trim().to_owned());
+        }
+        self
+    }
+
+    /// The key of a length that no ship has beside the others, and what was expected.
+    pub(crate) fn contradiction(&self) -> Option<(&'static str, &'static str)> {
+        let length = self.particulars.map(|own| own.length);
+        let rules = [
+            ("beam-m", self.beam, length, "a breadth below the length of [ship]"),
+            ("draught-m", self.draught, self.water_depth, "a draught below water-depth-m"),
+            ("draught-m", self.draught, self.beam, "a draught below beam-m"),
+            ("full-load-draught-m", self.full_load_draught, self.beam, "a draught below beam-m"),
+        ];
+        let broken =
+            rules.into_iter().find(|(_, one, limit, _)| one.zip(*limit).is_some_and(|(one, limit)| one >= limit));
+        broken.map(|(key, .., expected)| (key, expected))
+    }
+
     /// Draught at the trial as a share of that at full load.
     fn draught_share(&self) -> Option<f64> {
         Some(self.draught? / self.full_load_draught?)

@@ -18,6 +18,7 @@ pub struct Kind {
 
 /// Why a file cannot be used, without its name.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum FileError {
     /// There is no such file.
     #[error("there is no such file; check its name and folder")]
@@ -33,20 +34,10 @@ pub enum FileError {
         "this file has {} bytes, {} has at most {}; name another one, or use a part of it",
         size.map_or_else(|| "more".to_owned(), |size| size.to_string()), kind.name, kind.largest
     )]
-    TooLarge {
-        /// What it should be.
-        kind: Kind,
-        /// Its size in bytes; unknown for a pipe.
-        size: Option<u64>,
-    },
+    TooLarge { kind: Kind, size: Option<u64> },
     /// Bytes that are not text.
     #[error("line {line} holds the byte 0x{byte:02x}, which is not UTF-8 text; save the file as UTF-8")]
-    NotUtf8 {
-        /// Line with the byte, from 1.
-        line: usize,
-        /// The byte.
-        byte: u8,
-    },
+    NotUtf8 { line: usize, byte: u8 },
     /// The system refused to give the bytes.
     #[error("cannot be read: {0}; check the rights of the file and the disk")]
     Io(io::Error),
@@ -64,21 +55,25 @@ impl From<io::Error> for FileError {
 }
 
 /// An open file that ends with an error where it is longer than its kind may be.
-pub struct Limited {
-    file: Box<dyn Read>,
+pub struct Limited<'a> {
+    file: Box<dyn Read + 'a>,
     kind: Kind,
     size: Option<u64>,
     left: u64,
 }
 
-impl Limited {
+impl<'a> Limited<'a> {
+    pub(crate) fn new(file: Box<dyn Read + 'a>, kind: Kind, size: Option<u64>) -> Self {
+        Self { file, kind, size, left: kind.largest }
+    }
+
     /// Size in bytes; `None` for a pipe.
     pub fn size(&self) -> Option<u64> {
         self.size
     }
 }
 
-impl Read for Limited {
+impl Read for Limited<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.file.read(buffer)?;
         let Some(left) = self.left.checked_sub(count as u64) else {
@@ -102,9 +97,9 @@ pub fn called(path: &Path) -> &Path {
 ///
 /// Fails when there is none, and when it is known to be too large; a file that turns out to be so fails in reading,
 /// with an error that becomes a [`FileError`] again.
-pub fn open(path: &Path, kind: Kind) -> Result<Limited, FileError> {
+pub fn open(path: &Path, kind: Kind) -> Result<Limited<'static>, FileError> {
     if path == Path::new(STDIN) {
-        return Ok(Limited { file: Box::new(io::stdin().lock()), kind, size: None, left: kind.largest });
+        return Ok(Limited::new(Box::new(io::stdin().lock()), kind, None));
     }
     let about = fs::metadata(path)?;
     let size = match about.file_type() {
@@ -116,7 +111,7 @@ pub fn open(path: &Path, kind: Kind) -> Result<Limited, FileError> {
     if size.is_some_and(|size| size > kind.largest) {
         return Err(FileError::TooLarge { kind, size });
     }
-    Ok(Limited { file: Box::new(File::open(path)?), kind, size, left: kind.largest })
+    Ok(Limited::new(Box::new(File::open(path)?), kind, size))
 }
 
 #[cfg(unix)]

@@ -148,7 +148,7 @@ pub fn criteria(zigzag: &ZigZag, particulars: Particulars) -> Vec<Criterion> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::zigzag::simulator::{Plant, trial};
+    use crate::testing::{Plant, trial};
     use approx::assert_relative_eq;
 
     /// Length and speed of the training ship YUKUN as commonly quoted (no primary source seen): L/V = 12.2 s.

@@ -13,17 +13,19 @@
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
+//! | manoeuvres inside a long log | [`find`] |
 //! | IMO criteria | [`imo`] |
 //! | records of similar ships of different size and speed | [`scale`] |
 
 mod cells;
 pub mod channel;
+mod cleaning;
 pub mod clock;
 pub mod conditions;
 pub mod decoder;
 mod encoding;
 pub mod file;
-mod hygiene;
+pub mod find;
 pub mod imo;
 pub mod names;
 pub mod noise_model;
@@ -34,9 +36,9 @@ pub mod record;
 pub mod scale;
 pub mod sidecar;
 mod sidecar_error;
-mod sidecar_form;
 mod sidecar_keys;
-mod sidecar_schema;
+#[cfg(test)]
+mod testing;
 mod words;
 pub mod writer;
 pub mod zigzag;
@@ -46,7 +48,7 @@ pub use conditions::{Conditions, Loading};
 pub use file::FileError;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, Reading, read, read_with};
-pub use record::{Columns, Corner, Mark, Noise, Origin, Trial, TrialError};
+pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
 pub use scale::{ScaleError, Scales, Scaling};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;

@@ -1,11 +1,12 @@
 //! What people call the columns of their tables: a heading, split into the words that name a quantity and the unit
-//! beside them, becomes a [`Said`]. It knows names and units; which column of a table is used is decided by the reader.
+//! beside them, becomes a [`ColumnMeaning`]. It knows names and units; which column of a table is used is decided by
+//! the reader.
 
 use crate::channel::{Channel, Unit, column, time_column};
 
 /// What the name of a column says.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Said {
+pub enum ColumnMeaning {
     /// Time, or a stamp of date and time.
     Time(Option<Unit>),
     /// A date alone.
@@ -26,209 +27,88 @@ pub enum Said {
 const LONGEST: usize = 80;
 
 /// Names of the quantities in small letters, words separated by one blank: English first, then German, French, Spanish.
-const NAMES: [(&str, Said); 115] = {
-    use Channel::*;
-    use Said::{Course as COURSE, Date as DATE, Latitude as LATITUDE, Longitude as LONGITUDE};
-    const TIME: Said = Said::Time(None);
-    const fn of(channel: Channel) -> Said {
-        Said::Channel(channel, None)
-    }
-    const GROUND: Said = Said::OverGround(None);
+const NAMES: [(ColumnMeaning, &str); 20] = {
+    use crate::channel::Channel as C;
+    use ColumnMeaning::*;
     [
-        ("t", TIME),
-        ("time", TIME),
-        ("timestamp", TIME),
-        ("time stamp", TIME),
-        ("date time", TIME),
-        ("datetime", TIME),
-        ("date and time", TIME),
-        ("utc", TIME),
-        ("gmt", TIME),
-        ("time utc", TIME),
-        ("utc time", TIME),
-        ("local time", TIME),
-        ("elapsed time", TIME),
-        ("elapsed", TIME),
-        ("zeit", TIME),
-        ("uhrzeit", TIME),
-        ("zeitstempel", TIME),
-        ("datum zeit", TIME),
-        ("temps", TIME),
-        ("heure", TIME),
-        ("tiempo", TIME),
-        ("hora", TIME),
-        ("date", DATE),
-        ("datum", DATE),
-        ("fecha", DATE),
-        ("heading", of(Heading)),
-        ("hdg", of(Heading)),
-        ("hdt", of(Heading)),
-        ("heading true", of(Heading)),
-        ("true heading", of(Heading)),
-        ("gyro", of(Heading)),
-        ("gyro heading", of(Heading)),
-        ("heading gyro", of(Heading)),
-        ("compass heading", of(Heading)),
-        ("ship heading", of(Heading)),
-        ("ships heading", of(Heading)),
-        ("psi", of(Heading)),
-        ("ψ", of(Heading)),
-        ("yaw", of(Heading)),
-        ("yaw angle", of(Heading)),
-        ("heading angle", of(Heading)),
-        ("steuerkurs", of(Heading)),
-        ("kurs gyro", of(Heading)),
-        ("kreiselkurs", of(Heading)),
-        ("cap", of(Heading)),
-        ("rumbo", of(Heading)),
-        ("rudder", of(Rudder)),
-        ("rudder angle", of(Rudder)),
-        ("rudder actual", of(Rudder)),
-        ("actual rudder", of(Rudder)),
-        ("actual rudder angle", of(Rudder)),
-        ("rudder angle actual", of(Rudder)),
-        ("rudder feedback", of(Rudder)),
-        ("rudder position", of(Rudder)),
-        ("rudder response", of(Rudder)),
-        ("rudder indicator", of(Rudder)),
-        ("rudder sensor angle", of(Rudder)),
-        ("rsa", of(Rudder)),
-        ("delta", of(Rudder)),
-        ("δ", of(Rudder)),
-        ("ruder", of(Rudder)),
-        ("ruderlage", of(Rudder)),
-        ("ruderwinkel", of(Rudder)),
-        ("ruder ist", of(Rudder)),
-        ("angle de barre", of(Rudder)),
-        ("timon", of(Rudder)),
-        ("rudder order", of(RudderOrder)),
-        ("ordered rudder", of(RudderOrder)),
-        ("rudder angle order", of(RudderOrder)),
-        ("rudder command", of(RudderOrder)),
-        ("rudder cmd", of(RudderOrder)),
-        ("commanded rudder", of(RudderOrder)),
-        ("rudder demand", of(RudderOrder)),
-        ("rudder setpoint", of(RudderOrder)),
-        ("rudder set", of(RudderOrder)),
-        ("ruder soll", of(RudderOrder)),
-        ("rot", of(YawRate)),
-        ("rate of turn", of(YawRate)),
-        ("turn rate", of(YawRate)),
-        ("yaw rate", of(YawRate)),
-        ("yaw velocity", of(YawRate)),
-        ("drehrate", of(YawRate)),
-        ("wendegeschwindigkeit", of(YawRate)),
-        ("speed", of(Speed)),
-        ("stw", of(Speed)),
-        ("speed through water", of(Speed)),
-        ("water speed", of(Speed)),
-        ("log speed", of(Speed)),
-        ("ship speed", of(Speed)),
-        ("fahrt", of(Speed)),
-        ("fahrt durch wasser", of(Speed)),
-        ("sog", GROUND),
-        ("speed over ground", GROUND),
-        ("gps speed", GROUND),
-        ("fahrt über grund", GROUND),
-        ("surge velocity", of(Surge)),
-        ("longitudinal speed", of(Surge)),
-        ("sway velocity", of(Sway)),
-        ("transverse speed", of(Sway)),
-        ("northing", of(North)),
-        ("easting", of(East)),
-        ("latitude", LATITUDE),
-        ("lat", LATITUDE),
-        ("longitude", LONGITUDE),
-        ("lon", LONGITUDE),
-        ("cog", COURSE),
-        ("course", COURSE),
-        ("course over ground", COURSE),
-        ("kurs über grund", COURSE),
-        ("heel", of(Roll)),
-        ("rpm", Said::Channel(PropellerRate, Some(Unit::PerMinute))),
-        ("apparent wind speed", of(WindRelativeSpeed)),
-        ("aws", of(WindRelativeSpeed)),
-        ("awa", of(WindRelativeFrom)),
-        ("tws", of(WindTrueSpeed)),
+        (
+            Time(None),
+            "t, time, timestamp, time stamp, date time, datetime, date and time, utc, gmt, time utc, utc time, \
+         local time, elapsed time, elapsed, zeit, uhrzeit, zeitstempel, datum zeit, temps, heure, tiempo, \
+         hora",
+        ),
+        (Date, "date, datum, fecha"),
+        (
+            Channel(C::Heading, None),
+            "heading, hdg, hdt, heading true, true heading, gyro, gyro heading, heading gyro, compass heading, \
+         ship heading, ships heading, psi, ψ, yaw, yaw angle, heading angle, steuerkurs, kurs gyro, \
+         kreiselkurs, cap, rumbo",
+        ),
+        (
+            Channel(C::Rudder, None),
+            "rudder, rudder angle, rudder actual, actual rudder, actual rudder angle, rudder angle actual, \
+         rudder feedback, rudder position, rudder response, rudder indicator, rudder sensor angle, rsa, \
+         delta, δ, ruder, ruderlage, ruderwinkel, ruder ist, angle de barre, timon",
+        ),
+        (
+            Channel(C::RudderOrder, None),
+            "rudder order, ordered rudder, rudder angle order, rudder command, rudder cmd, commanded rudder, \
+         rudder demand, rudder setpoint, rudder set, ruder soll",
+        ),
+        (
+            Channel(C::YawRate, None),
+            "rot, rate of turn, turn rate, yaw rate, yaw velocity, drehrate, wendegeschwindigkeit",
+        ),
+        (
+            Channel(C::Speed, None),
+            "speed, stw, speed through water, water speed, log speed, ship speed, fahrt, fahrt durch wasser",
+        ),
+        (OverGround(None), "sog, speed over ground, gps speed, fahrt über grund"),
+        (Channel(C::Surge, None), "surge velocity, longitudinal speed"),
+        (Channel(C::Sway, None), "sway velocity, transverse speed"),
+        (Channel(C::North, None), "northing"),
+        (Channel(C::East, None), "easting"),
+        (Latitude, "latitude, lat"),
+        (Longitude, "longitude, lon"),
+        (Course, "cog, course, course over ground, kurs über grund"),
+        (Channel(C::Roll, None), "heel"),
+        (Channel(C::PropellerRate, Some(Unit::PerMinute)), "rpm"),
+        (Channel(C::WindRelativeSpeed, None), "apparent wind speed, aws"),
+        (Channel(C::WindRelativeFrom, None), "awa"),
+        (Channel(C::WindTrueSpeed, None), "tws"),
     ]
 };
 
 /// Units as they are written, without blanks and in small letters.
-const UNITS: [(&str, Unit); 61] = {
-    use Unit::*;
-    [
-        ("s", Second),
-        ("sec", Second),
-        ("secs", Second),
-        ("second", Second),
-        ("seconds", Second),
-        ("sek", Second),
-        ("ms", Millisecond),
-        ("msec", Millisecond),
-        ("min", Minute),
-        ("minutes", Minute),
-        ("deg", Degree),
-        ("degs", Degree),
-        ("degree", Degree),
-        ("degrees", Degree),
-        ("°", Degree),
-        ("º", Degree),
-        ("grad", Degree),
-        ("rad", Radian),
-        ("radian", Radian),
-        ("radians", Radian),
-        ("deg/s", DegreePerSecond),
-        ("deg/sec", DegreePerSecond),
-        ("°/s", DegreePerSecond),
-        ("º/s", DegreePerSecond),
-        ("degs-1", DegreePerSecond),
-        ("grad/s", DegreePerSecond),
-        ("deg/min", DegreePerMinute),
-        ("°/min", DegreePerMinute),
-        ("º/min", DegreePerMinute),
-        ("degmin-1", DegreePerMinute),
-        ("grad/min", DegreePerMinute),
-        ("dpm", DegreePerMinute),
-        ("rad/s", RadianPerSecond),
-        ("rad/sec", RadianPerSecond),
-        ("rads-1", RadianPerSecond),
-        ("m/s", MetrePerSecond),
-        ("mps", MetrePerSecond),
-        ("m/sec", MetrePerSecond),
-        ("ms-1", MetrePerSecond),
-        ("kn", Knot),
-        ("kt", Knot),
-        ("kts", Knot),
-        ("kns", Knot),
-        ("knot", Knot),
-        ("knots", Knot),
-        ("knoten", Knot),
-        ("sm/h", Knot),
-        ("nm/h", Knot),
-        ("m", Metre),
-        ("metre", Metre),
-        ("metres", Metre),
-        ("meter", Metre),
-        ("meters", Metre),
-        ("rpm", PerMinute),
-        ("1/min", PerMinute),
-        ("min-1", PerMinute),
-        ("u/min", PerMinute),
-        ("rps", PerSecond),
-        ("1/s", PerSecond),
-        ("s-1", PerSecond),
-        ("hz", PerSecond),
-    ]
-};
+const UNITS: [(Unit, &str); 13] = [
+    (Unit::Second, "s, sec, secs, second, seconds, sek"),
+    (Unit::Millisecond, "ms, msec"),
+    (Unit::Minute, "min, minutes"),
+    (Unit::Degree, "deg, degs, degree, degrees, °, º, grad"),
+    (Unit::Radian, "rad, radian, radians"),
+    (Unit::DegreePerSecond, "deg/s, deg/sec, °/s, º/s, degs-1, grad/s"),
+    (Unit::DegreePerMinute, "deg/min, °/min, º/min, degmin-1, grad/min, dpm"),
+    (Unit::RadianPerSecond, "rad/s, rad/sec, rads-1"),
+    (Unit::MetrePerSecond, "m/s, mps, m/sec, ms-1"),
+    (Unit::Knot, "kn, kt, kts, kns, knot, knots, knoten, sm/h, nm/h"),
+    (Unit::Metre, "m, metre, metres, meter, meters"),
+    (Unit::PerMinute, "rpm, 1/min, min-1, u/min"),
+    (Unit::PerSecond, "rps, 1/s, s-1, hz"),
+];
+
+/// The entries of such a list, each with what it stands for.
+fn entries<T: Copy>(list: &'static [(T, &'static str)]) -> impl Iterator<Item = (&'static str, T)> {
+    list.iter().flat_map(|&(meaning, names)| names.split(", ").map(move |name| (name, meaning)))
+}
 
 /// What people call the columns of a record, with what it says.
-pub fn names() -> impl Iterator<Item = (&'static str, Said)> {
-    NAMES.into_iter()
+pub fn names() -> impl Iterator<Item = (&'static str, ColumnMeaning)> {
+    entries(&NAMES)
 }
 
 /// How units are written.
 pub fn units() -> impl Iterator<Item = (&'static str, Unit)> {
-    UNITS.into_iter()
+    entries(&UNITS)
 }
 
 /// The unit a text stands for, brackets around it left out: `[deg]`, `(°/min)`, `kn`.
@@ -243,7 +123,7 @@ pub fn unit(text: &str) -> Option<Unit> {
         .filter(|c| !c.is_whitespace() && !matches!(c, '.' | '^' | '·' | '*' | '⁻'))
         .map(|c| if c == '¹' { '1' } else { c })
         .collect();
-    UNITS.iter().find(|(name, _)| *name == plain).map(|(_, unit)| *unit)
+    units().find(|(name, _)| *name == plain).map(|(_, unit)| unit)
 }
 
 /// A name in words: small letters, one blank between words, marks of all kinds as blanks, `RudderAngle` as two words.
@@ -264,37 +144,40 @@ fn words(name: &str) -> String {
     words.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-fn known(words: &str) -> Option<Said> {
-    let plain = NAMES.iter().find(|(name, _)| *name == words).map(|(_, said)| *said);
-    // What the contract calls `wind_true_speed` is said by the same words.
+fn known(words: &str) -> Option<ColumnMeaning> {
+    let plain = names().find(|(name, _)| *name == words).map(|(_, meaning)| meaning);
+    // What the contract calls `wind_true_speed` is named by the same words.
     plain.or_else(|| {
         let contract = Channel::ALL.into_iter().find(|channel| channel.quantity().replace('_', " ") == words)?;
-        Some(Said::Channel(contract, None))
+        Some(ColumnMeaning::Channel(contract, None))
     })
+}
+
+/// What a column name of the contract says, such as `t_s` or `heading_deg`.
+pub(crate) fn contract(name: &str) -> Option<ColumnMeaning> {
+    let of_channel = |(channel, unit)| ColumnMeaning::Channel(channel, Some(unit));
+    time_column(name).map(|unit| ColumnMeaning::Time(Some(unit))).or_else(|| column(name).map(of_channel))
 }
 
 /// What the name of a column says; `None` for a name that is not known, or whose unit its quantity cannot have.
 ///
 /// A unit may follow in brackets, after a comma, a slash or a blank (`ROT deg/min`, `Heading [°]`, `SOG_kn`), with `in`
 /// before it or not. Case does not matter.
-pub fn said(name: &str) -> Option<Said> {
+pub fn meaning(name: &str) -> Option<ColumnMeaning> {
     let name = name.trim();
     if name.len() > LONGEST {
         return None;
     }
-    if let Some(unit) = time_column(name) {
-        return Some(Said::Time(Some(unit)));
-    }
-    if let Some((channel, unit)) = column(name) {
-        return Some(Said::Channel(channel, Some(unit)));
+    if let Some(meaning) = contract(name) {
+        return Some(meaning);
     }
     let marks =
         name.char_indices().filter(|(_, c)| c.is_whitespace() || matches!(c, '[' | '(' | '{' | ',' | '/' | '_'));
     for (at, mark) in marks {
         let rest = name[at + usize::from(!matches!(mark, '[' | '(' | '{')) * mark.len_utf8()..].trim();
         let rest = rest.strip_prefix("in ").unwrap_or(rest);
-        if let (Some(said), Some(unit)) = (known(&words(&name[..at])), unit_after(rest)) {
-            return with_unit(said, unit);
+        if let (Some(meaning), Some(unit)) = (known(&words(&name[..at])), unit_after(rest)) {
+            return with_unit(meaning, unit);
         }
     }
     known(&words(name))
@@ -306,21 +189,23 @@ fn unit_after(text: &str) -> Option<Unit> {
 }
 
 /// The same with a unit; `None` where the quantity cannot have it.
-pub fn with_unit(said: Said, unit: Unit) -> Option<Said> {
-    match said {
-        Said::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| Said::Time(Some(unit))),
-        Said::Channel(channel, _) => {
+pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
+    match meaning {
+        ColumnMeaning::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit))),
+        ColumnMeaning::Channel(channel, _) => {
             // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
             let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
             let unit = if speed { Unit::MetrePerSecond } else { unit };
-            channel.units().contains(&unit).then_some(Said::Channel(channel, Some(unit)))
+            channel.units().contains(&unit).then_some(ColumnMeaning::Channel(channel, Some(unit)))
         }
-        Said::OverGround(_) => match with_unit(Said::Channel(Channel::Speed, None), unit)? {
-            Said::Channel(_, unit) => Some(Said::OverGround(unit)),
+        ColumnMeaning::OverGround(_) => match with_unit(ColumnMeaning::Channel(Channel::Speed, None), unit)? {
+            ColumnMeaning::Channel(_, unit) => Some(ColumnMeaning::OverGround(unit)),
             _ => None,
         },
-        Said::Latitude | Said::Longitude | Said::Course => (unit == Unit::Degree).then_some(said),
-        Said::Date => None,
+        ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::Course => {
+            (unit == Unit::Degree).then_some(meaning)
+        }
+        ColumnMeaning::Date => None,
     }
 }
 
@@ -331,7 +216,7 @@ mod tests {
     #[test]
     fn names_people_use_are_understood() {
         use Channel::*;
-        let channel = |channel, unit| Some(Said::Channel(channel, unit));
+        let channel = |channel, unit| Some(ColumnMeaning::Channel(channel, unit));
         let cases = [
             ("Heading", channel(Heading, None)),
             ("Heading [deg]", channel(Heading, Some(Unit::Degree))),
@@ -350,40 +235,40 @@ mod tests {
             ("yawRate_deg_s", channel(YawRate, Some(Unit::DegreePerSecond))),
             ("STW (kts)", channel(Speed, Some(Unit::Knot))),
             ("Speed in m/s", channel(Speed, Some(Unit::MetrePerSecond))),
-            ("SOG", Some(Said::OverGround(None))),
-            ("SOG [kn]", Some(Said::OverGround(Some(Unit::Knot)))),
+            ("SOG", Some(ColumnMeaning::OverGround(None))),
+            ("SOG [kn]", Some(ColumnMeaning::OverGround(Some(Unit::Knot)))),
             ("RPM", channel(PropellerRate, Some(Unit::PerMinute))),
             ("Wind True Speed (m/s)", channel(WindTrueSpeed, Some(Unit::MetrePerSecond))),
-            ("Time [s]", Some(Said::Time(Some(Unit::Second)))),
-            ("Zeit (min)", Some(Said::Time(Some(Unit::Minute)))),
-            ("t_ms", Some(Said::Time(Some(Unit::Millisecond)))),
-            ("Timestamp", Some(Said::Time(None))),
-            ("DateTime", Some(Said::Time(None))),
-            ("Date", Some(Said::Date)),
-            ("Latitude [deg]", Some(Said::Latitude)),
-            ("COG", Some(Said::Course)),
+            ("Time [s]", Some(ColumnMeaning::Time(Some(Unit::Second)))),
+            ("Zeit (min)", Some(ColumnMeaning::Time(Some(Unit::Minute)))),
+            ("t_ms", Some(ColumnMeaning::Time(Some(Unit::Millisecond)))),
+            ("Timestamp", Some(ColumnMeaning::Time(None))),
+            ("DateTime", Some(ColumnMeaning::Time(None))),
+            ("Date", Some(ColumnMeaning::Date)),
+            ("Latitude [deg]", Some(ColumnMeaning::Latitude)),
+            ("COG", Some(ColumnMeaning::Course)),
         ];
-        for (name, said_of) in cases {
-            assert_eq!(said(name), said_of, "{name}");
+        for (name, expected) in cases {
+            assert_eq!(meaning(name), expected, "{name}");
         }
         // Neither what is not known nor a unit that the quantity cannot have.
         for name in
             ["", "helm", "rudder port", "heading_m", "Heading [kn]", "course_deg_x", "wind speed", "load_t", "Ä["]
         {
-            assert_eq!(said(name), None, "{name}");
+            assert_eq!(meaning(name), None, "{name}");
         }
     }
 
     #[test]
     fn every_name_is_there_once_and_reads_as_itself() {
-        for (place, (name, meaning)) in NAMES.iter().enumerate() {
-            assert!(NAMES[..place].iter().all(|(other, _)| other != name), "{name}");
-            assert_eq!(said(name), Some(*meaning), "{name}");
-            assert_eq!(words(name), *name);
+        for (place, (name, expected)) in names().enumerate() {
+            assert!(names().take(place).all(|(other, _)| other != name), "{name}");
+            assert_eq!(meaning(name), Some(expected), "{name}");
+            assert_eq!(words(name), name);
         }
-        for (place, (name, meaning)) in UNITS.iter().enumerate() {
-            assert!(UNITS[..place].iter().all(|(other, _)| other != name), "{name}");
-            assert_eq!(unit(&format!("[{name}]")), Some(*meaning), "{name}");
+        for (place, (name, expected)) in units().enumerate() {
+            assert!(units().take(place).all(|(other, _)| other != name), "{name}");
+            assert_eq!(unit(&format!("[{name}]")), Some(expected), "{name}");
         }
     }
 }

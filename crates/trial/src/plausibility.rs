@@ -16,74 +16,47 @@ use regression::{Slope, rudder_on_heading, turn_with_rudder, yaw_rate_on_heading
 
 /// Why a record is not believed. Angles in degrees, for people.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Implausible {
     /// Neither heading nor rudder changes.
     #[error(
         "nothing moves: the heading changes by {heading_deg:.4}° and the rudder by {rudder_deg:.4}°; expected a manoeuvre, \
          check that the right columns and the right part of the record are used"
     )]
-    NothingMoves {
-        /// Range of the heading, deg.
-        heading_deg: f64,
-        /// Range of the rudder, deg.
-        rudder_deg: f64,
-    },
+    NothingMoves { heading_deg: f64, rudder_deg: f64 },
     /// The rudder moves and the heading does not.
     #[error(
         "the heading stays within {heading_deg:.4}° while the rudder moves through {rudder_deg:.1}°; expected the heading to \
          answer, check that the heading sensor was recorded and the right column is used"
     )]
-    HeadingConstant {
-        /// Range of the heading, deg.
-        heading_deg: f64,
-        /// Range of the rudder, deg.
-        rudder_deg: f64,
-    },
+    HeadingConstant { heading_deg: f64, rudder_deg: f64 },
     /// Degrees under a name that says radians.
     #[error(
         "the rudder reaches {largest_deg:.0}°, expected less than 92°: it looks like degrees under a name that says radians; \
          name the column rudder_deg, or write `is = \"rudder_deg\"` for it in a sidecar NAME.trial.toml"
     )]
-    RudderInDegrees {
-        /// Largest rudder angle as read, deg.
-        largest_deg: f64,
-    },
+    RudderInDegrees { largest_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the rudder never exceeds {largest_deg:.3}° while the heading moves through {heading_deg:.0}°: it looks like radians \
          under a name that says degrees; name the column rudder_rad, or write `is = \"rudder_rad\"` for it in a sidecar \
          NAME.trial.toml"
     )]
-    RudderInRadians {
-        /// Largest rudder angle as read, deg.
-        largest_deg: f64,
-        /// Range of the heading, deg.
-        heading_deg: f64,
-    },
+    RudderInRadians { largest_deg: f64, heading_deg: f64 },
     /// Degrees under a name that says radians.
     #[error(
         "the heading moves through {heading_deg:.0}° while the rudder moves through {rudder_deg:.1}°: it looks like degrees \
          under a name that says radians; name the column heading_deg, or write `is = \"heading_deg\"` for it in a sidecar \
          NAME.trial.toml"
     )]
-    HeadingInDegrees {
-        /// Range of the heading as read, deg.
-        heading_deg: f64,
-        /// Range of the rudder, deg.
-        rudder_deg: f64,
-    },
+    HeadingInDegrees { heading_deg: f64, rudder_deg: f64 },
     /// Radians under a name that says degrees.
     #[error(
         "the heading moves through {heading_deg:.2}° only while the rudder moves through {rudder_deg:.1}°: it looks like \
          radians under a name that says degrees; name the column heading_rad, or write `is = \"heading_rad\"` for it in a \
          sidecar NAME.trial.toml (if it is right, write `plausibility = false` under [check] there)"
     )]
-    HeadingInRadians {
-        /// Range of the heading as read, deg.
-        heading_deg: f64,
-        /// Range of the rudder, deg.
-        rudder_deg: f64,
-    },
+    HeadingInRadians { heading_deg: f64, rudder_deg: f64 },
     /// Heading and integrated yaw rate differ by the factor between two units.
     #[error(
         "the heading changes {ratio:.3} times as much as the integral of the yaw rate, expected 1: one of the two has the wrong \
@@ -91,34 +64,21 @@ pub enum Implausible {
          `is = \"yaw_rate_rad_s\"` (yaw_rate_deg_s, yaw_rate_deg_min, heading_rad, heading_deg) for the column in a sidecar \
          NAME.trial.toml"
     )]
-    YawRateUnit {
-        /// Heading per integrated yaw rate.
-        ratio: f64,
-    },
+    YawRateUnit { ratio: f64 },
     /// Heading and integrated yaw rate have opposite signs.
     #[error(
         "heading and yaw rate have opposite signs: the heading changes {ratio:.3} times as much as the integral of the yaw \
          rate, expected 1; both are positive to starboard (clockwise), write `flip = true` for the {culprit} column in a \
          sidecar NAME.trial.toml"
     )]
-    YawRateSign {
-        /// Heading per integrated yaw rate.
-        ratio: f64,
-        /// The one of the two that disagrees with the rudder.
-        culprit: &'static str,
-    },
+    YawRateSign { ratio: f64, culprit: &'static str },
     /// The ship turns round and round away from its rudder.
     #[error(
         "the rudder sign looks flipped: the heading moves through {heading_deg:.0}°, and the ship turns to port under positive \
          rudder for {share_percent:.0} % of that; write `flip = true` for the rudder column in a sidecar NAME.trial.toml \
          (the heading, if that grows to port)"
     )]
-    TurnsAgainstRudder {
-        /// Range of the heading, deg.
-        heading_deg: f64,
-        /// Share of its changes that go against the rudder, each weighed by the rudder, %.
-        share_percent: f64,
-    },
+    TurnsAgainstRudder { heading_deg: f64, share_percent: f64 },
     /// The ship turns away from its rudder.
     #[error(
         "the rudder sign looks flipped: the ship turns to port under positive rudder (K/T = {gain:.2e} 1/s², and the rudder \
@@ -126,12 +86,7 @@ pub enum Implausible {
          true` for the rudder column in a sidecar NAME.trial.toml, [[column]] with `name = \"rudder_deg\"` or what the column \
          is called (the heading, if that grows to port)"
     )]
-    RudderFlipped {
-        /// b = K/T as read, 1/s².
-        gain: f64,
-        /// Share of the heading the rudder explains, %.
-        share_percent: f64,
-    },
+    RudderFlipped { gain: f64, share_percent: f64 },
 }
 
 /// Ranges below this are the resolution of an instrument, not a movement, deg.

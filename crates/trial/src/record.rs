@@ -75,7 +75,7 @@ impl Columns {
 
 /// A reading that was taken as missing, or told as doubtful, before the record was made.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mark {
+pub struct RejectedReading {
     /// What was read.
     pub channel: Channel,
     /// When, s.
@@ -84,7 +84,7 @@ pub struct Mark {
     pub value: f64,
 }
 
-impl Mark {
+impl RejectedReading {
     pub(crate) fn at(channel: Channel, time: &[f64], values: &[f64], row: usize) -> Self {
         Self { channel, time: time[row], value: values[row] }
     }
@@ -92,44 +92,23 @@ impl Mark {
 
 /// Why columns do not make a record.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum TrialError {
     /// A needed quantity is absent.
     #[error("the record has no {0}")]
     Missing(&'static str),
     /// Columns of different length.
     #[error("{channel:?} has {found} values, time has {expected}")]
-    Length {
-        /// The channel.
-        channel: Channel,
-        /// Values found.
-        found: usize,
-        /// Values expected.
-        expected: usize,
-    },
+    Length { channel: Channel, found: usize, expected: usize },
     /// Too short to be a manoeuvre.
     #[error("a record needs at least {needed} rows with heading and rudder, this one has {found}")]
-    TooShort {
-        /// Rows needed.
-        needed: usize,
-        /// Rows found.
-        found: usize,
-    },
+    TooShort { needed: usize, found: usize },
     /// Time does not increase or is not finite.
     #[error("time must increase: row {row} has {time} s after {before} s")]
-    Time {
-        /// Row of the record, from 0.
-        row: usize,
-        /// Time of the row before, s.
-        before: f64,
-        /// Time found, s.
-        time: f64,
-    },
+    Time { row: usize, before: f64, time: f64 },
     /// A rudder angle is not finite.
     #[error("row {row} has no rudder angle")]
-    Rudder {
-        /// Row of the record, from 0.
-        row: usize,
-    },
+    Rudder { row: usize },
 }
 
 /// One manoeuvring trial as a time series; immutable, in SI units and radians.
@@ -160,7 +139,7 @@ pub struct Trial {
     noise: Noise,
     particulars: Option<Particulars>,
     conditions: Conditions,
-    marks: Vec<Mark>,
+    marks: Vec<RejectedReading>,
 }
 
 /// The rudder over time, of as many values as times.
@@ -231,7 +210,7 @@ impl Trial {
     }
 
     /// The same record with the readings that were taken as missing or told as doubtful.
-    pub fn with_marks(self, marks: Vec<Mark>) -> Self {
+    pub fn with_rejected(self, marks: Vec<RejectedReading>) -> Self {
         Self { marks, ..self }
     }
 
@@ -328,7 +307,7 @@ impl Trial {
     }
 
     /// Readings that were taken as missing or told as doubtful before the record was made.
-    pub fn marks(&self) -> &[Mark] {
+    pub fn rejected(&self) -> &[RejectedReading] {
         &self.marks
     }
 

@@ -13,27 +13,16 @@ const SAME: f64 = 0.05;
 
 /// Why records cannot be brought to one scale.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ScaleError {
     /// A record of unknown length and speed among records of several scales.
     #[error(
         "the records are of {scales} scales, and length and speed of {record} are not declared; declare them in its sidecar"
     )]
-    Unknown {
-        /// Name of the record.
-        record: String,
-        /// Scales among the others.
-        scales: usize,
-    },
+    Unknown { record: String, scales: usize },
     /// Length or speed are no positive numbers.
     #[error("{record}: length {length} m and speed {speed} m/s have to be positive for a change of scale")]
-    NotPositive {
-        /// Name of the record.
-        record: String,
-        /// Length, m.
-        length: f64,
-        /// Speed, m/s.
-        speed: f64,
-    },
+    NotPositive { record: String, length: f64, speed: f64 },
 }
 
 /// The scales of some records, in the order in which they appear.

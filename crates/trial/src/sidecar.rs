@@ -2,118 +2,30 @@
 //! describes; reading is done in [`crate::reader`].
 //!
 //! `NAME.trial.toml` beside `NAME.csv` (or `.dat`, `.txt`, ...) is found by itself; any other sidecar has to be named.
-//! [`KEYS`] lists what it may say; none of it is required.
+//! [`keys`] lists what it may say; none of it is required.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
 use ship::Particulars;
 use ship::angle::{KNOT, from_deg};
-use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
 
 use crate::cells::Separator;
-use crate::channel::{Channel, Unit, column, time_column};
 use crate::conditions::Conditions;
 use crate::encoding::Encoding;
 use crate::file::{Kind, read_text};
+use crate::names::{ColumnMeaning, contract};
 use crate::record::Noise;
 use crate::sidecar_error::Fault;
 pub use crate::sidecar_error::{SidecarError, SidecarProblem};
-use crate::sidecar_form::{self, WireForm};
-pub use crate::sidecar_keys::{KEYS, Key};
+pub use crate::sidecar_keys::{Key, keys, schema};
+use crate::sidecar_keys::{Wire, WireColumn, WireShip};
+use crate::words::shortened;
 
 /// A sidecar; the longest in use has a hundred lines.
 pub const SIDECAR: Kind = Kind { name: "a sidecar", largest: 1 << 20 };
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Wire {
-    #[serde(default)]
-    table: WireTable,
-    #[serde(default)]
-    part: WirePart,
-    #[serde(default)]
-    #[schemars(with = "Vec<WireColumn>")]
-    column: Vec<Spanned<WireColumn>>,
-    #[schemars(with = "Option<WireShip>")]
-    ship: Option<Spanned<WireShip>>,
-    #[serde(default)]
-    noise: WireNoise,
-    #[serde(default)]
-    check: WireCheck,
-    #[serde(default)]
-    form: WireForm,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireTable {
-    #[serde(default)]
-    skip_lines: usize,
-    separator: Option<Separator>,
-    #[serde(default)]
-    encoding: Encoding,
-    header: Option<bool>,
-    #[schemars(with = "Option<f64>")]
-    time_step_s: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WirePart {
-    #[schemars(with = "Option<f64>")]
-    from_s: Option<Spanned<f64>>,
-    #[schemars(with = "Option<f64>")]
-    until_s: Option<Spanned<f64>>,
-    #[schemars(with = "Option<usize>")]
-    every: Option<Spanned<usize>>,
-}
-
-#[derive(Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireColumn {
-    index: Option<usize>,
-    name: Option<String>,
-    #[schemars(with = "Option<String>")]
-    is: Option<Spanned<String>>,
-    #[serde(default)]
-    flip: bool,
-    #[serde(default)]
-    ignore: bool,
-}
-
-#[derive(Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireShip {
-    #[schemars(with = "Option<f64>")]
-    length_m: Option<Spanned<f64>>,
-    #[schemars(with = "Option<f64>")]
-    speed_m_s: Option<Spanned<f64>>,
-    #[schemars(with = "Option<f64>")]
-    speed_kn: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireNoise {
-    #[schemars(with = "Option<f64>")]
-    heading_deg: Option<Spanned<f64>>,
-    #[schemars(with = "Option<f64>")]
-    yaw_rate_deg_s: Option<Spanned<f64>>,
-    #[schemars(with = "Option<f64>")]
-    rudder_deg: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize, Default, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct WireCheck {
-    plausibility: Option<bool>,
-}
-
-/// The JSON schema of the file.
-pub fn schema() -> schemars::Schema {
-    crate::sidecar_schema::of::<Wire>()
-}
 
 /// Which column of a table is meant.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -124,28 +36,12 @@ pub(crate) enum Which {
     Name(String),
 }
 
-/// What a column holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Quantity {
-    Time(Unit),
-    Channel(Channel, Unit),
-}
-
-impl Quantity {
-    /// What a column name of the contract stands for.
-    pub(crate) fn of(name: &str) -> Option<Self> {
-        time_column(name)
-            .map(Quantity::Time)
-            .or_else(|| column(name).map(|(channel, unit)| Self::Channel(channel, unit)))
-    }
-}
-
 /// One `[[column]]`, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Described {
     pub(crate) line: usize,
     pub(crate) which: Which,
-    pub(crate) quantity: Option<Quantity>,
+    pub(crate) meaning: Option<ColumnMeaning>,
     pub(crate) flip: bool,
     pub(crate) ignore: bool,
 }
@@ -229,94 +125,139 @@ fn line_of(text: &str, byte: usize) -> usize {
     1 + text.bytes().take(byte).filter(|&byte| byte == b'\n').count()
 }
 
-fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
-    let wire: Wire = toml::from_str(text)
-        .map_err(|error| (error.span(), SidecarProblem::Syntax { message: error.message().to_owned() }))?;
-    let header = wire.table.header.unwrap_or(true);
-    let columns = wire.column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
-    let (from, until) = part(&wire.part)?;
-    if let Some(every) = wire.part.every.as_ref().filter(|every| *every.get_ref() == 0) {
-        return Err((Some(every.span()), SidecarProblem::NotPositive { key: "every", found: 0.0 }));
-    }
-    let particulars = wire.ship.as_ref().map(particulars).transpose()?;
-    let deviation = |value: &Option<Spanned<f64>>, key| Ok(positive(value.as_ref(), key)?.map(from_deg));
-    Ok(Sidecar {
-        file: file.to_path_buf(),
-        skip_lines: wire.table.skip_lines,
-        separator: wire.table.separator,
-        encoding: wire.table.encoding,
-        header,
-        time_step: positive(wire.table.time_step_s.as_ref(), "time-step-s")?,
-        from,
-        until,
-        every: wire.part.every.map_or(1, Spanned::into_inner),
-        columns,
-        particulars,
-        noise: Noise {
-            heading: deviation(&wire.noise.heading_deg, "heading-deg")?,
-            yaw_rate: deviation(&wire.noise.yaw_rate_deg_s, "yaw-rate-deg-s")?,
-            rudder: deviation(&wire.noise.rudder_deg, "rudder-deg")?,
-        },
-        plausibility: wire.check.plausibility.unwrap_or(true),
-        conditions: sidecar_form::conditions(&wire.form, particulars)?,
+/// Where a key of a table stands in the text, and its table where the key is not there.
+fn place(document: &DeTable, table: &str, key: &str) -> Option<Range<usize>> {
+    let table = entry(document, table)?;
+    Some(table.get_ref().as_table().and_then(|own| entry(own, key)).unwrap_or(table).span())
+}
+
+fn entry<'a, 'b>(table: &'a DeTable<'b>, wanted: &str) -> Option<&'a Spanned<DeValue<'b>>> {
+    table.iter().find(|(key, _)| key.get_ref() == wanted).map(|(_, value)| value)
+}
+
+/// What a number or text may be that is checked before it is used: whether this one is so, and the words for it.
+fn rule(table: &str, key: &str, kind: &str, value: &Value) -> Option<(bool, &'static str)> {
+    let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).filter(|x| x.is_finite());
+    let above_zero = number.is_some_and(|number| number > 0.0);
+    let whole = |range: std::ops::RangeInclusive<i64>| value.as_integer().is_some_and(|whole| range.contains(&whole));
+    Some(match (table, key, kind) {
+        ("table", "time-step-s", _) | ("part", "every", _) | ("ship" | "noise", ..) => {
+            (above_zero, "a finite number above zero")
+        }
+        ("form", "trim-m", _) => (number.is_some(), "a number of metres, positive by the stern"),
+        ("form", _, "m") => (above_zero, "a number of metres above 0"),
+        ("form", _, "m²") => (above_zero, "a number of square metres above 0"),
+        ("form", _, "1") => (above_zero && number <= Some(1.0), "a number above 0, at most 1"),
+        ("form", _, "number") => (whole(1..=10), "a whole number from 1 to 10"),
+        ("form", _, "0 to 12") => (whole(0..=12), "a whole number from 0 to 12 (the Beaufort scale)"),
+        ("form", _, "0 to 9") => (whole(0..=9), "a whole number from 0 to 9 (WMO sea state)"),
+        ("form", _, "full or partial") => {
+            (matches!(value.as_str(), Some("full" | "partial")), "\"full\" or \"partial\"")
+        }
+        ("form", _, "text") => {
+            let text = value.as_str().map_or("", str::trim);
+            let fits = (1..=100).contains(&text.chars().count()) && !text.chars().any(char::is_control);
+            (fits, "a text of 1 to 100 characters in one line")
+        }
+        _ => return None,
     })
 }
 
-fn positive(value: Option<&Spanned<f64>>, key: &'static str) -> Result<Option<f64>, Fault> {
-    let Some(spanned) = value else { return Ok(None) };
-    let found = *spanned.get_ref();
-    if found > 0.0 && found.is_finite() {
-        Ok(Some(found))
-    } else {
-        Err((Some(spanned.span()), SidecarProblem::NotPositive { key, found }))
+/// Checks every value that is there by itself.
+fn check_values(text: &str, document: &DeTable) -> Result<(), Fault> {
+    let values: toml::Table = text.parse().map_err(syntax)?;
+    for Key { key: name, value: kind, .. } in keys() {
+        let Some((table, key)) = name.split_once(' ') else { continue };
+        let table = table.trim_matches(['[', ']']);
+        let Some(value) = values.get(table).and_then(|table| table.get(key)) else { continue };
+        if let Some((false, expected)) = rule(table, key, &kind, value) {
+            return Err(unfit(text, document, (table, key), expected));
+        }
     }
+    Ok(())
 }
 
-fn part(part: &WirePart) -> Result<(f64, f64), Fault> {
-    let from = part.from_s.as_ref().map_or(f64::NEG_INFINITY, |value| *value.get_ref());
-    let until = part.until_s.as_ref().map_or(f64::INFINITY, |value| *value.get_ref());
-    if from < until {
-        return Ok((from, until));
-    }
-    let span = part.until_s.as_ref().or(part.from_s.as_ref()).map(Spanned::span);
-    Err((span, SidecarProblem::Part { from_s: from, until_s: until }))
+fn unfit(text: &str, document: &DeTable, (table, key): (&str, &str), expected: &'static str) -> Fault {
+    let place = place(document, table, key);
+    let found = place.clone().and_then(|place| text.get(place)).map(shortened).unwrap_or_default();
+    (place, SidecarProblem::Value { key: key.to_owned(), found, expected })
 }
 
-fn particulars(ship: &Spanned<WireShip>) -> Result<Particulars, Fault> {
-    let wire = ship.get_ref();
-    let length = positive(wire.length_m.as_ref(), "length-m")?;
-    let metres = positive(wire.speed_m_s.as_ref(), "speed-m-s")?;
-    let knots = positive(wire.speed_kn.as_ref(), "speed-kn")?.map(|speed_kn| speed_kn * KNOT);
-    match (length, metres, knots) {
-        (Some(length), Some(speed), None) | (Some(length), None, Some(speed)) => Ok(Particulars { length, speed }),
-        _ => Err((Some(ship.span()), SidecarProblem::Ship)),
+fn syntax(error: toml::de::Error) -> Fault {
+    (error.span(), SidecarProblem::Syntax { message: error.message().to_owned() })
+}
+
+fn resolve(text: &str, file: &Path) -> Result<Sidecar, Fault> {
+    let document = DeTable::parse(text).map_err(syntax)?.into_inner();
+    check_values(text, &document)?;
+    let Wire { table, part, column, ship, noise, check, form } = toml::from_str(text).map_err(syntax)?;
+    let header = table.header.unwrap_or(true);
+    let columns = column.iter().map(|column| described(column, header, text)).collect::<Result<_, _>>()?;
+    let (from, until) = (part.from_s.unwrap_or(f64::NEG_INFINITY), part.until_s.unwrap_or(f64::INFINITY));
+    // NaN is below nothing.
+    if from.partial_cmp(&until) != Some(std::cmp::Ordering::Less) {
+        let key = if part.until_s.is_some() { "until-s" } else { "from-s" };
+        return Err((place(&document, "part", key), SidecarProblem::Part { from_s: from, until_s: until }));
     }
+    let particulars = match ship {
+        None => None,
+        Some(WireShip { length_m: Some(length), speed_m_s: Some(speed), speed_kn: None }) => {
+            Some(Particulars { length, speed })
+        }
+        Some(WireShip { length_m: Some(length), speed_m_s: None, speed_kn: Some(speed_kn) }) => {
+            Some(Particulars { length, speed: speed_kn * KNOT })
+        }
+        Some(_) => return Err((place(&document, "ship", ""), SidecarProblem::Ship)),
+    };
+    let conditions = Conditions { particulars, ..form.trimmed() };
+    if let Some((key, expected)) = conditions.contradiction() {
+        return Err(unfit(text, &document, ("form", key), expected));
+    }
+    Ok(Sidecar {
+        file: file.to_path_buf(),
+        skip_lines: table.skip_lines,
+        separator: table.separator,
+        encoding: table.encoding,
+        header,
+        time_step: table.time_step_s,
+        from,
+        until,
+        every: part.every.unwrap_or(1),
+        columns,
+        particulars,
+        noise: Noise {
+            heading: noise.heading_deg.map(from_deg),
+            yaw_rate: noise.yaw_rate_deg_s.map(from_deg),
+            rudder: noise.rudder_deg.map(from_deg),
+        },
+        plausibility: check.plausibility.unwrap_or(true),
+        conditions,
+    })
 }
 
 fn described(column: &Spanned<WireColumn>, header: bool, text: &str) -> Result<Described, Fault> {
-    let fault = |problem| (Some(column.span()), problem);
-    let wire = column.get_ref();
-    let which = match (wire.index, &wire.name) {
-        (Some(_), Some(_)) => return Err(fault(SidecarProblem::Which { found: "both" })),
-        (None, None) => return Err(fault(SidecarProblem::Which { found: "neither" })),
-        (Some(0), None) => return Err(fault(SidecarProblem::Which { found: "index 0" })),
+    let fault = |problem| Err((Some(column.span()), problem));
+    let WireColumn { index, name, is, flip, ignore } = column.get_ref();
+    let which = match (index, name) {
+        (Some(_), Some(_)) => return fault(SidecarProblem::Which { found: "both" }),
+        (None, None) => return fault(SidecarProblem::Which { found: "neither" }),
+        (Some(0), None) => return fault(SidecarProblem::Which { found: "index 0" }),
         (Some(index), None) => Which::Place(index - 1),
-        (None, Some(_)) if !header => return Err(fault(SidecarProblem::NameWithoutHeader)),
+        (None, Some(_)) if !header => return fault(SidecarProblem::NameWithoutHeader),
         (None, Some(name)) => Which::Name(name.trim().to_owned()),
     };
-    if wire.ignore && (wire.is.is_some() || wire.flip) {
-        return Err(fault(SidecarProblem::IgnoredAndUsed));
+    if *ignore && (is.is_some() || *flip) {
+        return fault(SidecarProblem::IgnoredAndUsed);
     }
-    if !wire.ignore && !wire.flip && wire.is.is_none() {
-        return Err(fault(SidecarProblem::Idle));
+    if !ignore && !flip && is.is_none() {
+        return fault(SidecarProblem::Idle);
     }
-    let quantity = match &wire.is {
-        None => None,
-        Some(is) => Some(Quantity::of(is.get_ref()).ok_or_else(|| {
-            (Some(is.span()), SidecarProblem::UnknownQuantity { found: crate::words::shortened(is.get_ref()) })
-        })?),
+    let known = |is: &Spanned<String>| {
+        let found = || SidecarProblem::UnknownQuantity { found: shortened(is.get_ref()) };
+        contract(is.get_ref()).ok_or_else(|| (Some(is.span()), found()))
     };
-    Ok(Described { line: line_of(text, column.span().start), which, quantity, flip: wire.flip, ignore: wire.ignore })
+    let meaning = is.as_ref().map(known).transpose()?;
+    Ok(Described { line: line_of(text, column.span().start), which, meaning, flip: *flip, ignore: *ignore })
 }
 
 #[cfg(test)]
@@ -330,7 +271,7 @@ mod tests {
     /// A key that is listed is understood, though a value may not fit beside the others.
     #[test]
     fn every_listed_key_is_known() {
-        for Key { key, .. } in KEYS.iter().filter(|key| key.key.starts_with('[')) {
+        for Key { key, .. } in keys().into_iter().filter(|key| key.key.starts_with('[')) {
             let (table, name) = key.split_once(' ').expect("a table and a key");
             let text = format!("{table}\n{name} = {{}}\n");
             let error = parse(&text).expect_err("no key is a table").to_string();
@@ -354,7 +295,7 @@ mod tests {
         assert_eq!(sidecar.columns.len(), 2);
         assert_eq!(sidecar.columns[0].line, 11);
         assert_eq!(sidecar.columns[0].which, Which::Place(3));
-        assert_eq!(sidecar.columns[0].quantity, Some(Quantity::Channel(Channel::Heading, Unit::Radian)));
+        assert_eq!(sidecar.columns[0].meaning, contract("heading_rad"));
         let particulars = sidecar.particulars().expect("declared");
         approx::assert_relative_eq!(particulars.speed, 7.973_888_888_888_89, max_relative = 1e-14);
         approx::assert_relative_eq!(sidecar.noise().rudder.expect("declared"), from_deg(0.2));

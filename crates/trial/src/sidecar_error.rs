@@ -21,31 +21,23 @@ pub struct SidecarError {
 
 /// What is wrong with a sidecar.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum SidecarProblem {
     /// The file cannot be read.
     #[error("the sidecar cannot be used: {0}")]
     File(FileError),
     /// Not TOML, or a key or value that is not known.
     #[error("{message}")]
-    Syntax {
-        /// What the TOML reader says.
-        message: String,
-    },
+    Syntax { message: String },
     /// `is` names no quantity.
     #[error(
         "`is = \"{found}\"` is no known column name; expected quantity_unit such as t_s, heading_deg, heading_rad, rudder_deg, \
          yaw_rate_deg_s, speed_m_s or speed_kn"
     )]
-    UnknownQuantity {
-        /// The value of `is`.
-        found: String,
-    },
+    UnknownQuantity { found: String },
     /// A column that is not pointed at, or twice.
     #[error("a [[column]] needs either `index` (from 1) or `name`, this one has {found}; keep one")]
-    Which {
-        /// What it has.
-        found: &'static str,
-    },
+    Which { found: &'static str },
     /// A column that says nothing.
     #[error("this [[column]] says nothing; add `is`, `flip = true` or `ignore = true`")]
     Idle,
@@ -59,68 +51,28 @@ pub enum SidecarProblem {
     NameWithoutHeader,
     /// The name is not in the header.
     #[error("no column is called `{name}`; the header of {} has {}", table.display(), crate::words::listed(found))]
-    NameNotFound {
-        /// The name asked for.
-        name: String,
-        /// The table.
-        table: PathBuf,
-        /// Names in the header.
-        found: Vec<String>,
-    },
+    NameNotFound { name: String, table: PathBuf, found: Vec<String> },
     /// Columns described in a log of sentences.
     #[error("the file holds sentences (NMEA 0183), which have no columns; remove every [[column]]")]
     NoTable,
     /// The index is larger than the number of columns.
     #[error("there is no column {index}; {} has {columns} columns", table.display())]
-    IndexBeyond {
-        /// The index asked for, from 1.
-        index: usize,
-        /// The table.
-        table: PathBuf,
-        /// Number of columns found.
-        columns: usize,
-    },
+    IndexBeyond { index: usize, table: PathBuf, columns: usize },
     /// Two entries for one column.
     #[error("the column `{name}` is described twice; keep one [[column]] for it")]
-    DescribedTwice {
-        /// Name of the column.
-        name: String,
-    },
+    DescribedTwice { name: String },
     /// The column keeps its own name, which says nothing.
     #[error("the name `{name}` of this column is not a known one; add `is` to say what it holds")]
-    NameSaysNothing {
-        /// Name of the column.
-        name: String,
-    },
-    /// A number that has to be positive.
-    #[error("`{key}` is {found}, expected a finite number above zero")]
-    NotPositive {
-        /// The key.
-        key: &'static str,
-        /// Value found.
-        found: f64,
-    },
+    NameSaysNothing { name: String },
     /// A part that ends before it begins, or whose bounds are not numbers.
     #[error("the part from {from_s} s until {until_s} s holds nothing; expected numbers with `from-s` below `until-s`")]
-    Part {
-        /// `from-s`, s.
-        from_s: f64,
-        /// `until-s`, s.
-        until_s: f64,
-    },
+    Part { from_s: f64, until_s: f64 },
     /// Length or speed alone, or two speeds.
     #[error("[ship] needs `length-m` and one of `speed-m-s` and `speed-kn`")]
     Ship,
-    /// A value of the form that no ship or trial has.
+    /// A value that no ship, trial or table has.
     #[error("`{key}` is {found}, expected {expected}")]
-    Form {
-        /// The key.
-        key: &'static str,
-        /// Value found.
-        found: String,
-        /// What it should be.
-        expected: &'static str,
-    },
+    Value { key: String, found: String, expected: &'static str },
 }
 
 /// What is wrong, and the bytes of the text where it is.

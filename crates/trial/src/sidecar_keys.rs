@@ -1,85 +1,154 @@
-//! The keys of a sidecar with what they mean: the list that `study list sidecar` and the documentation are made from.
+//! The keys of a sidecar, each declared by the field that it is read into; the last words of the field's comment, in
+//! brackets, say what the value may be. The JSON schema and the list of keys are made of them.
 
-/// A key of a sidecar.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Key {
-    /// Table and key.
-    pub key: &'static str,
-    /// What it may be.
-    pub value: &'static str,
-    /// What it says, and what holds where it is absent.
-    pub meaning: &'static str,
+use schemars::Schema;
+use schemars::generate::SchemaSettings;
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::cells::Separator;
+use crate::conditions::Conditions;
+use crate::encoding::Encoding;
+
+// The tables of the file. Comments on fields are what `study list sidecar` and the JSON schema say of a key.
+
+#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct Wire {
+    #[serde(default)]
+    pub table: WireTable,
+    #[serde(default)]
+    pub part: WirePart,
+    #[serde(default)]
+    #[schemars(with = "Vec<WireColumn>")]
+    pub column: Vec<Spanned<WireColumn>>,
+    pub ship: Option<WireShip>,
+    #[serde(default)]
+    pub noise: WireNoise,
+    #[serde(default)]
+    pub check: WireCheck,
+    #[serde(default)]
+    #[schemars(description = "The table as it is written.")]
+    pub form: Conditions,
 }
 
-const fn key(key: &'static str, value: &'static str, meaning: &'static str) -> Key {
-    Key { key, value, meaning }
+#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct WireTable {
+    /// Lines before the header, or before the rows when there is none; not even decoded. (number)
+    #[serde(default)]
+    pub skip_lines: usize,
+    /// What stands between cells; recognised when absent. (comma, semicolon, tab or blank)
+    pub separator: Option<Separator>,
+    /// How bytes stand for letters; utf-8 when absent. (utf-8 or windows-1252)
+    #[serde(default)]
+    pub encoding: Encoding,
+    /// Whether a line with names comes before the rows; true when absent. (true or false)
+    pub header: Option<bool>,
+    #[schemars(
+        description = "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not \
+        used. Rows that are missing shift all that follow: for tables without time only. (s)"
+    )]
+    pub time_step_s: Option<f64>,
+}
+
+#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct WirePart {
+    /// First time that is used, on the clock of the record. (s)
+    pub from_s: Option<f64>,
+    /// Last time that is used. (s)
+    pub until_s: Option<f64>,
+    /// The first row of the part and every n-th after it. (number)
+    pub every: Option<usize>,
+}
+
+#[derive(Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct WireColumn {
+    /// Which column: counted from 1; this or its name. (number)
+    pub index: Option<usize>,
+    /// Which column: its name in the header. (text)
+    pub name: Option<String>,
+    /// What it holds: a name of `study list columns`; its own name when absent. (name such as heading_rad)
+    #[schemars(with = "Option<String>")]
+    pub is: Option<Spanned<String>>,
+    /// Change the sign. (true)
+    #[serde(default)]
+    pub flip: bool,
+    /// Leave the column out. (true)
+    #[serde(default)]
+    pub ignore: bool,
+}
+
+#[derive(Deserialize, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct WireShip {
+    /// Length between perpendiculars; needs a speed beside it. (m)
+    pub length_m: Option<f64>,
+    /// Approach speed. (m/s)
+    pub speed_m_s: Option<f64>,
+    /// The same in knots. (kn)
+    pub speed_kn: Option<f64>,
+}
+
+#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct WireNoise {
+    /// Standard deviation of the heading, where it is known. (deg)
+    pub heading_deg: Option<f64>,
+    /// The same of the yaw rate. (deg/s)
+    pub yaw_rate_deg_s: Option<f64>,
+    /// The same of the rudder. (deg)
+    pub rudder_deg: Option<f64>,
+}
+
+#[derive(Deserialize, Default, schemars::JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub(crate) struct WireCheck {
+    /// With false nothing is mended, and what looks implausible is a warning in place of an error. (true or false)
+    pub plausibility: Option<bool>,
+}
+
+/// The JSON schema of the file, by which an editor completes and checks its keys, in the draft that editors of TOML
+/// understand.
+pub fn schema() -> Schema {
+    // Tables stand where they are used, so that a key is found by its table.
+    let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);
+    let mut schema = settings.into_generator().into_root_schema_for::<Wire>();
+    schema.insert("title".into(), "Sidecar of a record".into());
+    schema
+}
+
+/// A key of a sidecar.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Key {
+    /// Table and key.
+    pub key: String,
+    /// What it may be.
+    pub value: String,
+    /// What it says, and what holds where it is absent.
+    pub meaning: String,
 }
 
 /// All keys, in the order in which they are written.
-pub const KEYS: [Key; 40] = [
-    key(
-        "[table] skip-lines",
-        "number",
-        "Lines before the header, or before the rows when there is none; not even decoded.",
-    ),
-    key("[table] separator", "comma, semicolon, tab or blank", "What stands between cells; recognised when absent."),
-    key("[table] encoding", "utf-8 or windows-1252", "How bytes stand for letters; utf-8 when absent."),
-    key("[table] header", "true or false", "Whether a line with names comes before the rows; true when absent."),
-    key(
-        "[table] time-step-s",
-        "s",
-        "Row i (from 0, empty lines not counted) is at i times this, and a column of time is not used. Rows that are missing \
-         shift all that follow: for tables without time only.",
-    ),
-    key("[part] from-s", "s", "First time that is used, on the clock of the record."),
-    key("[part] until-s", "s", "Last time that is used."),
-    key("[part] every", "number", "The first row of the part and every n-th after it."),
-    key("[[column]] index", "number", "Which column: counted from 1; this or its name."),
-    key("[[column]] name", "text", "Which column: its name in the header."),
-    key(
-        "[[column]] is",
-        "name such as heading_rad",
-        "What it holds: a name of `study list columns`; its own name when absent.",
-    ),
-    key("[[column]] flip", "true", "Change the sign."),
-    key("[[column]] ignore", "true", "Leave the column out."),
-    key("[ship] length-m", "m", "Length between perpendiculars; needs a speed beside it."),
-    key("[ship] speed-m-s", "m/s", "Approach speed."),
-    key("[ship] speed-kn", "kn", "The same in knots."),
-    key("[noise] heading-deg", "deg", "Standard deviation of the heading, where it is known."),
-    key("[noise] yaw-rate-deg-s", "deg/s", "The same of the yaw rate."),
-    key("[noise] rudder-deg", "deg", "The same of the rudder."),
-    key(
-        "[check] plausibility",
-        "true or false",
-        "With false nothing is mended, and what looks implausible is a warning in place of an error.",
-    ),
-    key(
-        "[form] administration",
-        "text",
-        "Administration the form of MSC/Circ.1053 goes to; texts have at most 100 characters.",
-    ),
-    key("[form] ship-type", "text", "Container ship, tanker, gas carrier, ro-ro ship, bulk carrier, ..."),
-    key("[form] beam-m", "m", "Breadth of the ship; lengths are of the scale of [ship] length-m."),
-    key("[form] draught-m", "m", "Mean draught at the trial."),
-    key("[form] full-load-draught-m", "m", "Mean draught at full load."),
-    key("[form] block-coefficient", "1", "Block coefficient at full load."),
-    key("[form] rudder-type", "text", "Full spade, semi-spade, high lift, ..."),
-    key("[form] rudder-area-m2", "m²", "Area of all rudders together."),
-    key("[form] rudders", "number", "Number of rudders."),
-    key("[form] propeller-type", "text", "Fixed pitch, controllable pitch, with or without nozzle, ..."),
-    key("[form] propellers", "number", "Number of propellers."),
-    key("[form] engine-type", "text", "Diesel, steam turbine, gas turbine, diesel-electric, ..."),
-    key("[form] trim-m", "m", "Trim, positive by the stern, 0 for an even keel."),
-    key("[form] ballast", "text", "Ballast condition in words."),
-    key("[form] water-depth-m", "m", "Depth of the water at the trial."),
-    key("[form] wind-beaufort", "0 to 12", "Wind at the trial, Beaufort number."),
-    key("[form] sea-state", "0 to 9", "Sea state at the trial."),
-    key(
-        "[form] loading",
-        "full or partial",
-        "Loading at the trial; by the two draughts, with a tolerance of 5 %, when absent.",
-    ),
-    key("[form] remark", "text", "A remark for the form."),
-    key("#", "text", "A remark, to the end of the line."),
-];
+pub fn keys() -> Vec<Key> {
+    let schema = schema();
+    let properties = |of: &serde_json::Value| of["properties"].as_object().cloned().unwrap_or_default();
+    let mut keys = Vec::new();
+    for (table, own) in properties(schema.as_value()) {
+        let (table, own) = match own.get("items") {
+            Some(items) => (format!("[[{table}]]"), items),
+            None => (format!("[{table}]"), &own),
+        };
+        for (key, own) in properties(own) {
+            let said = own["description"].as_str().unwrap_or_default();
+            let (meaning, value) = said.rsplit_once(" (").unwrap_or((said, ")"));
+            let value = value.trim_end_matches(')').to_owned();
+            keys.push(Key { key: format!("{table} {key}"), value, meaning: meaning.to_owned() });
+        }
+    }
+    let [key, value, meaning] = ["#", "text", "A remark, to the end of the line."].map(str::to_owned);
+    keys.push(Key { key, value, meaning });
+    keys
+}

@@ -116,7 +116,7 @@ pub fn stamp(data: &[u8]) -> bool {
 /// The manoeuvres of a record.
 pub fn find(data: &[u8]) -> bool {
     let Ok(Reading { trial, .. }) = read("case.csv", data) else { return false };
-    let found = find::manoeuvres(&find::Log {
+    let found = trial::find::manoeuvres(&trial::find::Signals {
         time: trial.time(),
         rudder: trial.rudder(),
         heading: trial.heading(),

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use find::{Kind, Manoeuvre};
 use report::number::{MISSING, fixed, optional};
 use report::{Column, Table};
 use serde_json::{Value, json};
 use ship::angle::to_deg;
 use trial::Log;
 use trial::file::called;
+use trial::find::{Kind, Manoeuvre};
 
 use crate::options::{Common, FindRequest, Format};
 use crate::records::{expand, manoeuvres, open};

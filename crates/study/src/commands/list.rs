@@ -12,8 +12,8 @@ use crate::options::{Common, Format, Listed};
 use crate::screen;
 use crate::views::document;
 use trial::Channel;
-use trial::names::{self, Said};
-use trial::sidecar::Key;
+use trial::names::{self, ColumnMeaning};
+use trial::sidecar::{self, Key};
 
 use scenario::effect_keys;
 use scenario::failure::Failure;
@@ -126,29 +126,33 @@ fn keys_below(part: &str) -> Table {
 /// What columns may be called.
 fn columns() -> Table {
     let mut table = Table::new([Column::left("holds"), Column::left("names"), Column::left("understood as well")]);
-    let usual = |wanted: &dyn Fn(Said) -> bool| {
+    let usual = |wanted: &dyn Fn(ColumnMeaning) -> bool| {
         let names: Vec<&str> = names::names().filter(|(_, said)| wanted(*said)).map(|(name, _)| name).collect();
         names.join(", ")
     };
-    let time = usual(&|said| matches!(said, Said::Time(_)));
+    let time = usual(&|said| matches!(said, ColumnMeaning::Time(_)));
     table.push(["time", "t_s, t_ms, t_min", &format!("{time}; seconds, or stamps of date and time")]);
-    table.push(["date beside the time", "", &usual(&|said| said == Said::Date)]);
+    table.push(["date beside the time", "", &usual(&|said| said == ColumnMeaning::Date)]);
     for channel in Channel::ALL {
         let accepted = channel.accepted_names().replace(" or ", ", ");
-        let of_channel = |said| matches!(said, Said::Channel(found, _) if found == channel);
-        let over_ground = |said| channel == Channel::Speed && matches!(said, Said::OverGround(_));
+        let of_channel = |said| matches!(said, ColumnMeaning::Channel(found, _) if found == channel);
+        let over_ground = |said| channel == Channel::Speed && matches!(said, ColumnMeaning::OverGround(_));
         let holds = channel.quantity().replace('_', " ");
         table.push([&holds, &accepted, &usual(&|said| of_channel(said) || over_ground(said))]);
     }
-    table.push(["position, deg", "", &usual(&|said| matches!(said, Said::Latitude | Said::Longitude))]);
-    table.push(["no heading", "", &usual(&|said| said == Said::Course)]);
+    table.push([
+        "position, deg",
+        "",
+        &usual(&|said| matches!(said, ColumnMeaning::Latitude | ColumnMeaning::Longitude)),
+    ]);
+    table.push(["no heading", "", &usual(&|said| said == ColumnMeaning::Course)]);
     table
 }
 
 fn sidecar() -> Table {
     let mut table = Table::new([Column::left("key"), Column::left("value"), Column::left("meaning")]);
-    for Key { key, value, meaning } in trial::sidecar::KEYS {
-        table.push([key, value, &meaning.replace('`', "")]);
+    for Key { key, value, meaning } in sidecar::keys() {
+        table.push([&key, &value, &meaning.replace('`', "")]);
     }
     table
 }

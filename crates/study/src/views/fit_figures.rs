@@ -75,7 +75,7 @@ pub fn draw(
                 figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, &zigzag) };
             put(&figures::zigzag_trial(&data, theme), "trial")?;
         }
-        if !record.trial.marks().is_empty() {
+        if !record.trial.rejected().is_empty() {
             put(&raw(record, theme), "raw")?;
         }
         let replays = replays(record, answers);
@@ -120,7 +120,7 @@ fn raw(record: &Drawn, theme: &Theme) -> Figure {
     let trial = record.trial;
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let marked = |channel: Channel| {
-        let marks = trial.marks().iter().filter(|mark| mark.channel == channel);
+        let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
         let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
         let none = vec![None; time.len()];
         Layer::new("left out or doubtful", curve(&time, &values), figures::Drawn::Marks(look, none))

@@ -1,125 +1,107 @@
 //! A first sidecar for a table: what was understood of every column, what was guessed and what was not, for a person to
 //! check.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use super::error::{Problem, ReadError};
 use super::head::{self, Found};
 use super::input::{self, Content};
+use super::limits::is_comment;
 use super::lines::Lines;
 use crate::cells::{Cell, Separator, cell};
-use crate::channel::Channel;
+use crate::channel::{Channel, Unit};
 use crate::encoding::Encoding;
-use crate::names::{Said, said, with_unit};
-use crate::sidecar::Quantity;
+use crate::names::{ColumnMeaning, contract, meaning, with_unit};
 use crate::words::shortened;
 
 /// Rows whose values are shown.
 const SHOWN: usize = 1000;
 
-/// The text of a sidecar for the table at `path`.
+/// The text of a sidecar for the table at `path`; one of numbers alone is described by the places of its columns.
 ///
 /// Fails as reading does up to the header; for sentences, which need none; and for a table in whose first thousand rows
 /// no line can be read.
 pub fn describe(path: &Path) -> Result<String, ReadError> {
     let fault = |problem| ReadError::table(path, problem);
-    let (content, _) = input::open(path).map_err(fault)?;
-    let Content::Table(table) = content else { return Err(fault(Problem::NeedsNoSidecar)) };
-    let mut lines = Lines::new(table.bytes, Encoding::Utf8);
-    let found = head::find(&mut lines, table.is_made.then_some(Separator::Tab), None);
-    let Found { head, rows, .. } = match found {
-        // A table of numbers alone is described by the places of its columns.
-        Err(Problem::NoHeader { .. }) => return headless(path),
-        found => found.map_err(fault)?,
+    let open = || match input::open(path).map_err(fault)? {
+        (Content::Table(table), _) => Ok(table),
+        (Content::Sentences(_), _) => Err(fault(Problem::NeedsNoSidecar)),
     };
-    let mut texts: Vec<String> = rows.into_iter().map(|(_, text)| text).collect();
+    let table = open()?;
+    let declared = table.is_made.then_some(Separator::Tab);
+    let mut lines = Lines::new(table.bytes, Encoding::Utf8);
+    let (head, mut texts) = match head::find(&mut lines, declared, None) {
+        Err(Problem::NoHeader { .. }) => {
+            lines = Lines::new(open()?.bytes, Encoding::Utf8);
+            (None, Vec::new())
+        }
+        found => {
+            let Found { head, rows, .. } = found.map_err(fault)?;
+            (Some(head), rows.into_iter().map(|(_, text)| text).collect::<Vec<String>>())
+        }
+    };
     while texts.len() < SHOWN {
         match lines.next_line().map_err(fault)? {
+            Some(text) if is_comment(text) || text.trim().is_empty() => {}
             Some(text) => texts.push(text.to_owned()),
             None => break,
         }
     }
-    let mut text = begin(path, head.separator, true);
+    let first = texts.first().map_or("", String::as_str);
+    let separator = head.as_ref().map_or_else(|| head::numbers_of(first).unwrap_or(Separator::Blank), |h| h.separator);
+    let mut text = begin(path, separator, head.is_some());
+    let Some(head) = head else {
+        for place in 0..head::split(first, separator).len() {
+            let (range, rudder) = (range(&texts, place, separator), Channel::Rudder.column_name());
+            text.push_str(&format!("\n# {range}\n# Not understood; where it is needed, say what it holds:\n"));
+            text.push_str(&format!("# [[column]]\n# index = {}\n# is = \"{rudder}\"\n", place + 1));
+        }
+        return Ok(text + END);
+    };
     for (place, name) in head.names.iter().enumerate() {
-        let range = range(&texts, place, head.separator);
         let unit = head.units.get(place).copied().flatten();
-        let said = said(name).map(|said| unit.and_then(|unit| with_unit(said, unit)).unwrap_or(said));
-        let _ = writeln!(text, "\n# {range}");
-        let name = toml::Value::from(name.as_str());
-        match (Quantity::of(name.as_str().unwrap_or_default()), said) {
-            (Some(_), _) => {
-                let _ = writeln!(text, "# The name of {name} says what it holds; nothing has to be described.");
-            }
-            (None, Some(Said::Channel(channel, Some(unit)))) => {
-                let _ = writeln!(text, "# Understood by its name and unit; check it.");
-                let _ = writeln!(text, "[[column]]\nname = {name}\nis = \"{}_{}\"", channel.quantity(), unit.id());
-            }
-            (None, Some(Said::OverGround(unit))) => {
-                let _ = writeln!(
-                    text,
-                    "# GUESS: a speed over ground; check the unit, or ignore it where there is a current."
-                );
-                let unit = unit.map_or("kn", |unit| unit.id());
-                let _ = writeln!(text, "[[column]]\nname = {name}\nis = \"speed_{unit}\"");
-            }
-            (None, Some(Said::Channel(channel, None))) => {
-                let unit = channel.written_unit().id();
-                let _ = writeln!(text, "# GUESS: the unit is not written; {} are possible.", channel.accepted_names());
-                let _ = writeln!(text, "[[column]]\nname = {name}\nis = \"{}_{unit}\"", channel.quantity());
-            }
-            (None, Some(Said::Time(Some(unit)))) => {
-                let _ = writeln!(text, "# Understood by its name and unit; check it.");
-                let _ = writeln!(text, "[[column]]\nname = {name}\nis = \"t_{}\"", unit.id());
-            }
-            (None, Some(Said::Time(None))) => {
-                let _ = writeln!(
-                    text,
-                    "# GUESS: time; stamps of date and time need no unit, numbers are taken as seconds."
-                );
-                let _ = writeln!(text, "[[column]]\nname = {name}\nis = \"t_s\"");
-            }
-            (None, Some(Said::Date | Said::Latitude | Said::Longitude)) => {
-                let _ = writeln!(text, "# {name} is understood by its name; nothing has to be described.");
-            }
-            (None, Some(Said::Course)) => {
-                let _ = writeln!(text, "# {name} is the course over ground, which is no heading; it is not used.");
-            }
-            (None, None) => {
-                let _ = writeln!(text, "# {name} is not understood; where it is needed, say what it holds:");
-                let _ = writeln!(text, "# [[column]]\n# name = {name}\n# is = \"rudder_deg\"");
-            }
+        let said = meaning(name).map(|said| unit.and_then(|unit| with_unit(said, unit)).unwrap_or(said));
+        let quoted = toml::Value::from(name.as_str());
+        let (remark, is) = understood(name, &quoted.to_string(), said);
+        text.push_str(&format!("\n# {}\n# {remark}\n", range(&texts, place, separator)));
+        if let Some(is) = is {
+            text.push_str(&format!("[[column]]\nname = {quoted}\nis = \"{is}\"\n"));
+        } else if said.is_none() {
+            text.push_str(&format!("# [[column]]\n# name = {quoted}\n# is = \"rudder_deg\"\n"));
         }
     }
-    text.push_str(END);
-    Ok(text)
+    Ok(text + END)
 }
 
-/// The sidecar of a table without names.
-fn headless(path: &Path) -> Result<String, ReadError> {
-    let fault = |problem| ReadError::table(path, problem);
-    let (content, _) = input::open(path).map_err(fault)?;
-    let Content::Table(table) = content else { return Err(fault(Problem::NeedsNoSidecar)) };
-    let mut lines = Lines::new(table.bytes, Encoding::Utf8);
-    let mut texts: Vec<String> = Vec::new();
-    while texts.len() < SHOWN {
-        match lines.next_line().map_err(fault)? {
-            Some(text) if super::limits::is_comment(text) || text.trim().is_empty() => {}
-            Some(text) => texts.push(text.to_owned()),
-            None => break,
+/// What is to be said of a column by its name, and what it is, where that has to be described.
+fn understood(name: &str, quoted: &str, said: Option<ColumnMeaning>) -> (String, Option<String>) {
+    let own_words = || "Understood by its name and unit; check it.".to_owned();
+    match said {
+        _ if contract(name).is_some() => {
+            (format!("The name of {quoted} says what it holds; nothing has to be described."), None)
         }
+        Some(ColumnMeaning::Channel(channel, Some(unit))) => (own_words(), Some(channel.name_in(unit))),
+        Some(ColumnMeaning::OverGround(unit)) => {
+            let remark = "GUESS: a speed over ground; check the unit, or ignore it where there is a current.";
+            (remark.to_owned(), Some(Channel::Speed.name_in(unit.unwrap_or(Unit::Knot))))
+        }
+        Some(ColumnMeaning::Channel(channel, None)) => {
+            let names = channel.accepted_names();
+            (format!("GUESS: the unit is not written; {names} are possible."), Some(channel.column_name()))
+        }
+        Some(ColumnMeaning::Time(Some(unit))) => (own_words(), Some(format!("t_{}", unit.id()))),
+        Some(ColumnMeaning::Time(None)) => {
+            let remark = "GUESS: time; stamps of date and time need no unit, numbers are taken as seconds.";
+            (remark.to_owned(), Some("t_s".to_owned()))
+        }
+        Some(ColumnMeaning::Date | ColumnMeaning::Latitude | ColumnMeaning::Longitude) => {
+            (format!("{quoted} is understood by its name; nothing has to be described."), None)
+        }
+        Some(ColumnMeaning::Course) => {
+            (format!("{quoted} is the course over ground, which is no heading; it is not used."), None)
+        }
+        None => (format!("{quoted} is not understood; where it is needed, say what it holds:"), None),
     }
-    let separator = texts.first().and_then(|line| head::numbers_of(line)).unwrap_or(Separator::Blank);
-    let mut ranges = Vec::new();
-    separator.split(texts.first().map_or("", String::as_str), &mut ranges);
-    let mut text = begin(path, separator, false);
-    for place in 0..ranges.len() {
-        let range = range(&texts, place, separator);
-        let _ = writeln!(text, "\n# {range}\n# Not understood; where it is needed, say what it holds:");
-        let _ = writeln!(text, "# [[column]]\n# index = {}\n# is = \"{}\"", place + 1, Channel::Rudder.column_name());
-    }
-    text.push_str(END);
-    Ok(text)
 }
 
 fn begin(path: &Path, separator: Separator, header: bool) -> String {

@@ -13,15 +13,11 @@ use crate::words::listed;
 
 /// Why a file did not become a record.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ReadError {
     /// The file itself is at fault.
     #[error("{}: {problem}", file.display())]
-    Table {
-        /// The file as the caller named it.
-        file: PathBuf,
-        /// What is wrong with it.
-        problem: Problem,
-    },
+    Table { file: PathBuf, problem: Problem },
     /// The sidecar that describes the file is at fault.
     #[error(transparent)]
     Sidecar(#[from] SidecarError),
@@ -46,6 +42,7 @@ impl ReadError {
 
 /// What is wrong with a table. Lines count from 1 as editors do.
 #[derive(Debug, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum Problem {
     /// There is no such file, or none that can be used.
     #[error(transparent)]
@@ -58,10 +55,7 @@ pub enum Problem {
     Empty,
     /// Bytes that no text has.
     #[error("line {line} holds a zero byte, so this is not a text table; export it as CSV")]
-    Binary {
-        /// Line with the byte.
-        line: usize,
-    },
+    Binary { line: usize },
     /// UTF-16, as some spreadsheets write "Unicode text".
     #[error("line 1 starts with the mark of UTF-16 text; save the file as CSV in UTF-8")]
     Utf16,
@@ -70,362 +64,174 @@ pub enum Problem {
         "line {line} holds the byte 0x{byte:02x}, which is not UTF-8; save the file as UTF-8, or write `encoding = \
          \"windows-1252\"` under [table] in a sidecar NAME.trial.toml"
     )]
-    NotUtf8 {
-        /// Line with the byte.
-        line: usize,
-        /// The byte.
-        byte: u8,
-    },
+    NotUtf8 { line: usize, byte: u8 },
     /// A line that no table has.
     #[error(
         "line {line} is longer than {longest} bytes, so this is not a table with one row per line; export it as CSV"
     )]
-    LongLine {
-        /// The line.
-        line: usize,
-        /// Longest line that is read, bytes.
-        longest: usize,
-    },
+    LongLine { line: usize, longest: usize },
     /// Numbers where names were expected.
     #[error(
         "line {line} holds numbers ({found}) where a header was expected; add a header such as \
          `t_s,heading_deg,rudder_deg`, or describe the columns in a sidecar NAME.trial.toml (`header = false` under \
          [table], one [[column]] with `index` and `is` each)"
     )]
-    NoHeader {
-        /// The line.
-        line: usize,
-        /// Its begin.
-        found: String,
-    },
+    NoHeader { line: usize, found: String },
     /// A needed column is not there.
     #[error(
         "line {line}: no column holds the {wanted}; expected {accepted}, found {}; rename the column, or say which it is in \
          a sidecar NAME.trial.toml ([[column]] with `name` and `is`)",
         listed(found)
     )]
-    NoColumn {
-        /// Line of the header.
-        line: usize,
-        /// The quantity that is missing.
-        wanted: &'static str,
-        /// Names it may have.
-        accepted: String,
-        /// Names of the columns found.
-        found: Vec<String>,
-    },
+    NoColumn { line: usize, wanted: &'static str, accepted: String, found: Vec<String> },
     /// A course over ground and no heading.
     #[error(
         "line {line}: no column holds the heading; `{column}` is the course over ground, which is no heading (they differ by the \
          drift angle, up to 20 degrees in a turn); use a record with the compass, or write `is = \"heading_deg\"` for the column in \
          a sidecar NAME.trial.toml if it is a heading"
     )]
-    CourseOnly {
-        /// Line of the header.
-        line: usize,
-        /// Name of the column.
-        column: String,
-    },
+    CourseOnly { line: usize, column: String },
     /// Files or sentences without a needed channel.
     #[error("there is no {wanted}; found {}; add the file that holds it with `--with-columns FILE`", listed(found))]
-    NoChannel {
-        /// What is missing.
-        wanted: &'static str,
-        /// What is there.
-        found: Vec<String>,
-    },
+    NoChannel { wanted: &'static str, found: Vec<String> },
     /// Rudder and heading of different times.
     #[error(
         "rudder and heading have no time in common: the rudder was read from {} s to {} s, the heading from {} s to {} s; check \
          that both belong to one trial and count time from the same moment", rudder_s[0], rudder_s[1], heading_s[0], heading_s[1]
     )]
-    NoOverlap {
-        /// First and last time of the rudder, s.
-        rudder_s: [f64; 2],
-        /// First and last time of the heading, s.
-        heading_s: [f64; 2],
-    },
+    NoOverlap { rudder_s: [f64; 2], heading_s: [f64; 2] },
     /// Two files that count time in different ways.
     #[error(
         "{} counts time {}, and this file {}: nobody can tell how they belong together; give both stamps of date and time, \
          or both seconds from the same moment", other.display(), if *stamped { "by its stamps" } else { "in seconds" },
         if *stamped { "in seconds" } else { "by its stamps" }
     )]
-    TwoClocks {
-        /// The other file.
-        other: PathBuf,
-        /// Whether the other file has stamps.
-        stamped: bool,
-    },
+    TwoClocks { other: PathBuf, stamped: bool },
     /// A file that speaks for itself.
     #[error("this file holds sentences (NMEA 0183), which say themselves what they hold; it needs no sidecar")]
     NeedsNoSidecar,
     /// A format that is recognised and not read.
     #[error("this is {format}; {cure}")]
-    Format {
-        /// What it is.
-        format: &'static str,
-        /// What to do.
-        cure: &'static str,
-    },
+    Format { format: &'static str, cure: &'static str },
     /// A format that is read, and a file that is not as it should be.
     #[error("this is {format} and cannot be read: {found}; it is damaged or cut short: copy or export it again")]
-    Damaged {
-        /// What it is.
-        format: &'static str,
-        /// What is wrong with it.
-        found: String,
-    },
+    Damaged { format: &'static str, found: String },
     /// A format that holds tables, and a file without one.
     #[error("this is {format} without a table: expected {wanted}, found {}; export the table as CSV", listed(found))]
-    NoTable {
-        /// What it is.
-        format: &'static str,
-        /// What a table is made of there.
-        wanted: &'static str,
-        /// Names of what is there.
-        found: Vec<String>,
-    },
+    NoTable { format: &'static str, wanted: &'static str, found: Vec<String> },
     /// A needed column without a unit.
     #[error(
         "line {line}: the {quantity} `{column}` has no unit, and its values (up to {largest}) fit more than one; name it {}, or write in \
          a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"{}\"",
         channel.accepted_names(), channel.column_name()
     )]
-    OpenUnit {
-        /// Line of the header.
-        line: usize,
-        /// Name of the column.
-        column: String,
-        /// What it holds.
-        quantity: &'static str,
-        /// Its largest number, without its sign.
-        largest: f64,
-        /// The channel.
-        channel: Channel,
-    },
+    OpenUnit { line: usize, column: String, quantity: &'static str, largest: f64, channel: Channel },
     /// A time without a unit that cannot be seconds.
     #[error(
         "line {line}: the time `{column}` has no unit, and no ship answers its rudder like that in seconds; name it t_s, t_ms or t_min, \
          or write in a sidecar NAME.trial.toml: [[column]] name = \"{column}\" is = \"t_ms\""
     )]
-    OpenTime {
-        /// Line of the header.
-        line: usize,
-        /// Name of the column.
-        column: String,
-    },
+    OpenTime { line: usize, column: String },
     /// A cell that should be a stamp.
     #[error(
         "line {line}, column `{column}`: found `{value}`, expected a date and time such as `2026-11-20T14:03:05.2` or \
          `20.11.2026 14:03:05`; correct the cell"
     )]
-    NotAStamp {
-        /// Line of the cell.
-        line: usize,
-        /// Name of its column.
-        column: String,
-        /// What it holds, shortened.
-        value: String,
-    },
+    NotAStamp { line: usize, column: String, value: String },
     /// A date that can be read two ways.
     #[error(
         "line {line}: `{value}` can be read with the day or the month first, and the dates before do not show which; write dates as \
          2026-11-20"
     )]
-    EitherMonth {
-        /// The line.
-        line: usize,
-        /// The stamp.
-        value: String,
-    },
+    EitherMonth { line: usize, value: String },
     /// Two columns for one quantity.
     #[error(
         "line {line}: the columns `{first}` and `{second}` both hold the {quantity}; remove one, or write `ignore = true` for \
          it in a sidecar NAME.trial.toml"
     )]
-    Duplicate {
-        /// Line of the header.
-        line: usize,
-        /// What both hold.
-        quantity: &'static str,
-        /// Name of the earlier column.
-        first: String,
-        /// Name of the later column.
-        second: String,
-    },
+    Duplicate { line: usize, quantity: &'static str, first: String, second: String },
     /// A header without rows, or nothing but comments.
     #[error("there is no row of numbers after line {line}; expected a header and at least {needed} rows below it")]
-    NoRows {
-        /// Line of the header, or the last line.
-        line: usize,
-        /// Rows a record needs.
-        needed: usize,
-    },
+    NoRows { line: usize, needed: usize },
     /// A cell that should be a number.
     #[error(
         "line {line}, column `{column}`: found `{value}`, expected a number (or an empty cell or NaN where nothing was \
          recorded); correct the cell"
     )]
-    NotANumber {
-        /// Line of the cell.
-        line: usize,
-        /// Name of its column.
-        column: String,
-        /// What it holds, shortened.
-        value: String,
-    },
+    NotANumber { line: usize, column: String, value: String },
     /// A row that does not fit the header.
     #[error(
         "line {line} has {found} cells, expected {expected} as in the first line of the table; correct the row, or the \
          separator in a sidecar NAME.trial.toml"
     )]
-    Cells {
-        /// The line.
-        line: usize,
-        /// Cells found.
-        found: usize,
-        /// Cells expected.
-        expected: usize,
-    },
+    Cells { line: usize, found: usize, expected: usize },
     /// Time goes back.
     #[error(
         "line {line}: time runs backwards, {found} s after {before} s; sort or cut the file, or rebuild time from its step with \
          `time-step-s` under [table] in a sidecar NAME.trial.toml"
     )]
-    TimeBackwards {
-        /// The line.
-        line: usize,
-        /// Time of the row before, s.
-        before: f64,
-        /// Time found, s.
-        found: f64,
-    },
+    TimeBackwards { line: usize, before: f64, found: f64 },
     /// Time stands still while other values change.
     #[error(
         "line {line}: time {time} s is there twice with different values; if it was printed with too few digits, rebuild it \
          with `time-step-s` under [table] in a sidecar NAME.trial.toml"
     )]
-    TimeRepeats {
-        /// The line of the second row.
-        line: usize,
-        /// The time of both, s.
-        time: f64,
-    },
+    TimeRepeats { line: usize, time: f64 },
     /// A needed column without a value.
     #[error(
         "the column `{column}` has no value in any row used; expected the {quantity}, check that the sensor was recorded"
     )]
-    AllMissing {
-        /// Name of the column.
-        column: String,
-        /// What it should hold.
-        quantity: &'static str,
-    },
+    AllMissing { column: String, quantity: &'static str },
     /// The part of the record asked for holds nothing.
     #[error(
         "no row lies between {from_s} s and {until_s} s, the rows lie between {first_s} s and {last_s} s; correct `from-s` and \
          `until-s` under [part] in the sidecar"
     )]
-    EmptyPart {
-        /// Begin of the part, s.
-        from_s: f64,
-        /// End of the part, s.
-        until_s: f64,
-        /// First time in the file, s.
-        first_s: f64,
-        /// Last time in the file, s.
-        last_s: f64,
-    },
+    EmptyPart { from_s: f64, until_s: f64, first_s: f64, last_s: f64 },
     /// Too few usable rows.
     #[error(
         "{found} of {rows} rows have time, heading (or yaw rate) and rudder, a record needs at least {needed}; fill in the \
          missing values or use a longer part"
     )]
-    TooShort {
-        /// Rows needed.
-        needed: usize,
-        /// Rows found.
-        found: usize,
-        /// Rows in the file.
-        rows: usize,
-    },
+    TooShort { needed: usize, found: usize, rows: usize },
     /// More rows than a record may have.
     #[error(
         "more than {limit} rows{}, a record may have {limit} with {columns} columns; thin it with `every = {every}` under \
          [part] in a sidecar NAME.trial.toml, or use a part of it with `from-s` and `until-s`",
         estimated(*estimate)
     )]
-    TooManyRows {
-        /// Rows a record with this many columns may have.
-        limit: usize,
-        /// Columns of the table.
-        columns: usize,
-        /// Rows in the whole file, estimated from its size where that is known.
-        estimate: Option<u64>,
-        /// Thinning that makes the file fit.
-        every: u64,
-    },
+    TooManyRows { limit: usize, columns: usize, estimate: Option<u64>, every: u64 },
     /// A log of which little can be read.
     #[error(
         "{damaged} of {lines} lines are damaged ({wrong} with a wrong checksum, {broken} cut short or not text), expected at \
          most half; check the speed and the wiring of the serial line, or export the log again"
     )]
-    DamagedLog {
-        /// Lines with text or a sentence in them.
-        lines: usize,
-        /// Lines that cannot be read.
-        damaged: usize,
-        /// Those of them with a wrong checksum.
-        wrong: usize,
-        /// All others of them.
-        broken: usize,
-    },
+    DamagedLog { lines: usize, damaged: usize, wrong: usize, broken: usize },
     /// Sentences without time.
     #[error(
         "the log has no time: found no time stamp before its {sentences} sentences and {clocks} valid times in ZDA, RMC, GGA \
          or GLL, expected the one or at least two of the other; record it with time stamps, or with the sentences of a GPS \
          (`time-step-s` is not possible for sentences)"
     )]
-    NoClock {
-        /// Sentences that could be read.
-        sentences: usize,
-        /// Different times in sentences that carry one.
-        clocks: usize,
-    },
+    NoClock { sentences: usize, clocks: usize },
     /// A log whose clock starts anew.
     #[error(
         "line {line}: the clock of the log goes back from {before} to {found}, expected one recording; cut the log there and \
          give the parts one by one"
     )]
-    ClockBack {
-        /// The first line of the earlier time.
-        line: usize,
-        /// Time of day before.
-        before: String,
-        /// Time of day found.
-        found: String,
-    },
+    ClockBack { line: usize, before: String, found: String },
     /// A log without a quantity of a record.
     #[error(
         "none of the {sentences} sentences of the log gives a quantity that is used; expected a heading (HDT, THS, HDG) and \
          a rudder angle (RSA), check which sentences were recorded"
     )]
-    NoReadings {
-        /// Sentences that could be read.
-        sentences: usize,
-    },
+    NoReadings { sentences: usize },
     /// More readings than a record may have.
     #[error(
         "line {line}: the log holds more than {limit} numbers, which is the most that is read; use the part of it with the \
          manoeuvre"
     )]
-    TooManyReadings {
-        /// The line where the limit is passed.
-        line: usize,
-        /// Most numbers that are read.
-        limit: usize,
-    },
+    TooManyReadings { line: usize, limit: usize },
     /// The record contradicts itself.
     #[error(transparent)]
     Implausible(#[from] Implausible),

@@ -168,10 +168,10 @@ fn is_known(name: &str, sidecar: Option<&Sidecar>) -> bool {
     let described = |sidecar: &Sidecar| {
         sidecar.columns.iter().any(|column| matches!(&column.which, Which::Name(found) if found == name))
     };
-    names::said(name).is_some() || sidecar.is_some_and(described)
+    names::meaning(name).is_some() || sidecar.is_some_and(described)
 }
 
-fn split(line: &str, separator: Separator) -> Vec<&str> {
+pub(super) fn split(line: &str, separator: Separator) -> Vec<&str> {
     let mut ranges = Vec::new();
     separator.split(line, &mut ranges);
     ranges.into_iter().map(|range| &line[range]).collect()

@@ -1,20 +1,17 @@
 //! What kind of file it is, told from its first bytes and lines, whatever its name: packed or plain, a table or
 //! sentences.
 
-use std::cell::RefCell;
-use std::io::{self, Cursor, ErrorKind, Read};
+use std::io::{self, Cursor, Read};
 use std::path::Path;
-use std::rc::Rc;
 
 use flate2::read::MultiGzDecoder;
-use sha2::{Digest, Sha256};
 
 use super::columnar::Kind;
 use super::error::Problem;
 use super::limits::RECORD;
-use super::lines::in_hex;
+use super::lines::{Hash, Hashed};
 use super::nmea;
-use crate::file::{self, FileError};
+use crate::file::{self, FileError, Limited};
 
 /// Bytes and lines that are looked at to tell sentences from a table.
 const LOOKED_AT: (u64, usize) = (1 << 14, 60);
@@ -36,58 +33,10 @@ pub(super) enum Content<'a> {
     Sentences(Text<'a>),
 }
 
-/// SHA-256 of what has been read of a file.
-#[derive(Clone, Default)]
-pub(super) struct Hash(Rc<RefCell<Sha256>>);
-
-impl Hash {
-    fn of(bytes: &[u8]) -> Self {
-        Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
-    }
-
-    /// The hash, hexadecimal; that of the file when its text has been read to the end.
-    pub fn finish(self) -> String {
-        in_hex(&self.0.take().finalize())
-    }
-}
-
-/// Hashes what is read.
-struct Hashed<R> {
-    inner: R,
-    hash: Hash,
-}
-
-impl<R: Read> Read for Hashed<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        self.hash.0.borrow_mut().update(&buffer[..count]);
-        Ok(count)
-    }
-}
-
 impl Problem {
     /// What went wrong while a file was read; a problem found by a reader below comes back as it was.
     pub(super) fn of_input(error: io::Error) -> Self {
         error.downcast::<Self>().unwrap_or_else(|error| FileError::from(error).into())
-    }
-}
-
-/// Stops where a packed file gives more than a record may have.
-struct Unpacked<R> {
-    inner: R,
-    left: u64,
-}
-
-impl<R: Read> Read for Unpacked<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.inner.read(buffer)?;
-        match self.left.checked_sub(count as u64) {
-            Some(left) => {
-                self.left = left;
-                Ok(count)
-            }
-            None => Err(io::Error::new(ErrorKind::FileTooLarge, FileError::TooLarge { kind: RECORD, size: None })),
-        }
     }
 }
 
@@ -121,10 +70,9 @@ pub(super) fn recognise<'a>(input: Box<dyn Read + 'a>) -> Result<Content<'a>, Pr
     let (mut first, mut bytes) = peek(input)?;
     let mut on_disk = None;
     if first.starts_with(&[0x1f, 0x8b]) {
-        let hash = Hash::default();
-        let hashed = Hashed { inner: bytes, hash: hash.clone() };
+        let (hashed, hash) = Hashed::new(bytes);
         on_disk = Some(hash);
-        let unpacked = Unpacked { inner: MultiGzDecoder::new(hashed), left: RECORD.largest };
+        let unpacked = Limited::new(Box::new(MultiGzDecoder::new(hashed)), RECORD, None);
         (first, bytes) = peek(Box::new(unpacked))?;
     }
     let refused = |format, cure| Err(Problem::Format { format, cure });

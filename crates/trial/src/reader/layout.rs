@@ -8,8 +8,8 @@ use super::limits::spoken;
 use crate::cells::{Cell, Separator, cell};
 use crate::channel::{Channel, Unit};
 use crate::clock::Stamp;
-use crate::names::{Said, said, with_unit};
-use crate::sidecar::{Quantity, Sidecar, SidecarProblem, Which};
+use crate::names::{ColumnMeaning, contract, meaning, with_unit};
+use crate::sidecar::{Sidecar, SidecarProblem, Which};
 use crate::words::shortened;
 
 /// What one column holds.
@@ -97,7 +97,7 @@ impl Layout {
             told: Vec::new(),
             names: head.names.clone(),
         };
-        let mut claims: Vec<Option<(Said, Rank)>> = vec![None; columns];
+        let mut claims: Vec<Option<(ColumnMeaning, Rank)>> = vec![None; columns];
         if has_header {
             for (place, name) in head.names.iter().enumerate() {
                 claims[place] = claim(name, head.units.get(place).copied().flatten());
@@ -149,14 +149,16 @@ impl Layout {
     }
 
     /// Gives every channel the column that says best that it holds it.
-    fn settle_channels(&mut self, claims: &mut [Option<(Said, Rank)>], signs: &[f64]) -> Result<(), Problem> {
+    fn settle_channels(&mut self, claims: &mut [Option<(ColumnMeaning, Rank)>], signs: &[f64]) -> Result<(), Problem> {
         for channel in Channel::ALL {
             let mut of_channel: Vec<(Rank, usize, Option<Unit>)> = claims
                 .iter()
                 .enumerate()
                 .filter_map(|(place, claim)| match (*claim)? {
-                    (Said::Channel(found, unit), rank) if found == channel => Some((rank, place, unit)),
-                    (Said::OverGround(unit), _) if channel == Channel::Speed => Some((Rank::Substitute, place, unit)),
+                    (ColumnMeaning::Channel(found, unit), rank) if found == channel => Some((rank, place, unit)),
+                    (ColumnMeaning::OverGround(unit), _) if channel == Channel::Speed => {
+                        Some((Rank::Substitute, place, unit))
+                    }
                     _ => None,
                 })
                 .collect();
@@ -186,8 +188,8 @@ impl Layout {
         }
         for (place, claim) in claims.iter().enumerate() {
             match claim {
-                Some((Said::Latitude, _)) => self.meanings[place] = Meaning::Latitude,
-                Some((Said::Longitude, _)) => self.meanings[place] = Meaning::Longitude,
+                Some((ColumnMeaning::Latitude, _)) => self.meanings[place] = Meaning::Latitude,
+                Some((ColumnMeaning::Longitude, _)) => self.meanings[place] = Meaning::Longitude,
                 _ => {}
             }
         }
@@ -195,7 +197,12 @@ impl Layout {
     }
 
     /// Finds the column of time, and the dates that belong to it.
-    fn settle_time(&mut self, claims: &[Option<(Said, Rank)>], signs: &[f64], head: &Head) -> Result<(), Problem> {
+    fn settle_time(
+        &mut self,
+        claims: &[Option<(ColumnMeaning, Rank)>],
+        signs: &[f64],
+        head: &Head,
+    ) -> Result<(), Problem> {
         let first = |place: usize| head.first.get(place).map_or("", String::as_str);
         let stamp = |place: usize| Stamp::parse(first(place));
         let is_number =
@@ -207,8 +214,8 @@ impl Layout {
             .filter_map(|(place, claim)| {
                 let (said, rank) = (*claim)?;
                 let unit = match said {
-                    Said::Time(unit) => unit,
-                    Said::Date if stamp(place).is_some_and(|stamp| stamp.has_time()) => None,
+                    ColumnMeaning::Time(unit) => unit,
+                    ColumnMeaning::Date if stamp(place).is_some_and(|stamp| stamp.has_time()) => None,
                     _ => return None,
                 };
                 let worth = match stamp(place).filter(|_| !is_number(place)) {
@@ -239,7 +246,7 @@ impl Layout {
         if is_stamp {
             self.meanings[place] = Meaning::Stamp;
             let dated = stamp(place).is_some_and(|stamp| stamp.has_date());
-            let dates = claims.iter().position(|claim| matches!(claim, Some((Said::Date, _))));
+            let dates = claims.iter().position(|claim| matches!(claim, Some((ColumnMeaning::Date, _))));
             if let Some(date) = dates.filter(|&date| !dated && date != place && stamp(date).is_some()) {
                 self.meanings[date] = Meaning::Date;
             }
@@ -254,14 +261,14 @@ impl Layout {
     }
 
     /// Refuses a table that has no rudder, or neither heading nor yaw rate.
-    fn check(&self, claims: &[Option<(Said, Rank)>]) -> Result<(), Problem> {
+    fn check(&self, claims: &[Option<(ColumnMeaning, Rank)>]) -> Result<(), Problem> {
         let line = self.line;
         if self.rudder().is_none() {
             let accepted = [Channel::Rudder, Channel::RudderOrder];
             return Err(Problem::no_column(line, &accepted, "rudder angle", &self.names));
         }
         if self.place(Channel::Heading).is_none() && self.place(Channel::YawRate).is_none() {
-            if let Some(place) = claims.iter().position(|claim| matches!(claim, Some((Said::Course, _)))) {
+            if let Some(place) = claims.iter().position(|claim| matches!(claim, Some((ColumnMeaning::Course, _)))) {
                 return Err(Problem::CourseOnly { line, column: self.names[place].clone() });
             }
             let accepted = [Channel::Heading, Channel::YawRate];
@@ -271,15 +278,16 @@ impl Layout {
     }
 }
 
-fn is_time(claim: &Option<(Said, Rank)>) -> bool {
-    matches!(claim, Some((Said::Time(_) | Said::Date, _)))
+fn is_time(claim: &Option<(ColumnMeaning, Rank)>) -> bool {
+    matches!(claim, Some((ColumnMeaning::Time(_) | ColumnMeaning::Date, _)))
 }
 
 /// What a name says, with the unit below it where it has none of its own.
-fn claim(name: &str, below: Option<Unit>) -> Option<(Said, Rank)> {
-    let said = said(name)?;
-    let rank = if Quantity::of(name).is_some() { Rank::Contract } else { Rank::Usual };
-    let open = matches!(said, Said::Time(None) | Said::Channel(_, None) | Said::OverGround(None));
+fn claim(name: &str, below: Option<Unit>) -> Option<(ColumnMeaning, Rank)> {
+    let said = meaning(name)?;
+    let rank = if contract(name).is_some() { Rank::Contract } else { Rank::Usual };
+    let open =
+        matches!(said, ColumnMeaning::Time(None) | ColumnMeaning::Channel(_, None) | ColumnMeaning::OverGround(None));
     let said = match below.filter(|_| open) {
         Some(unit) => with_unit(said, unit)?,
         None => said,
@@ -290,7 +298,7 @@ fn claim(name: &str, below: Option<Unit>) -> Option<(Said, Rank)> {
 /// Lets the sidecar speak: its words replace the meaning of the names.
 fn describe(
     names: &[String],
-    claims: &mut [Option<(Said, Rank)>],
+    claims: &mut [Option<(ColumnMeaning, Rank)>],
     signs: &mut [f64],
     meanings: &mut [Meaning],
     table: &Path,
@@ -317,15 +325,11 @@ fn describe(
             return fault(SidecarProblem::DescribedTwice { name: names[place].clone() });
         }
         signs[place] = if described.flip { -1.0 } else { 1.0 };
-        let said = described.quantity.map(|quantity| match quantity {
-            Quantity::Time(unit) => Said::Time(Some(unit)),
-            Quantity::Channel(channel, unit) => Said::Channel(channel, Some(unit)),
-        });
         if described.ignore {
             meanings[place] = Meaning::Ignored;
             claims[place] = None;
-        } else if let Some(said) = said {
-            claims[place] = Some((said, Rank::Described));
+        } else if let Some(meaning) = described.meaning {
+            claims[place] = Some((meaning, Rank::Described));
         } else if let Some((_, rank)) = &mut claims[place] {
             *rank = (*rank).min(Rank::Contract);
         } else {

@@ -1,7 +1,9 @@
 //! The lines of a file: bytes are hashed, checked to be text, cut at line ends and decoded, one line in memory at a
 //! time.
 
+use std::cell::RefCell;
 use std::io::{BufRead, BufReader, Read};
+use std::rc::Rc;
 
 use sha2::{Digest, Sha256};
 
@@ -11,23 +13,47 @@ use crate::encoding::{Encoding, windows_1252};
 /// Longest line that is taken for one of a table, bytes.
 pub const LONGEST_LINE: usize = 1 << 20;
 
-/// Takes the digest of all that passes, in large pieces: of lines, the digest would wait for the copying of each.
-struct Digested<R> {
-    input: R,
-    hasher: Sha256,
+/// SHA-256 of what has been read of a file.
+#[derive(Clone, Default)]
+pub struct Hash(Rc<RefCell<Sha256>>);
+
+impl Hash {
+    /// That of some bytes.
+    pub fn of(bytes: &[u8]) -> Self {
+        Self(Rc::new(RefCell::new(Sha256::new_with_prefix(bytes))))
+    }
+
+    /// The hash, hexadecimal; that of the file when it has been read to the end.
+    pub fn finish(self) -> String {
+        in_hex(&self.0.take().finalize())
+    }
 }
 
-impl<R: Read> Read for Digested<R> {
+/// Hashes all that passes, in large pieces: of lines, the hash would wait for the copying of each.
+pub struct Hashed<R> {
+    input: R,
+    hash: Hash,
+}
+
+impl<R> Hashed<R> {
+    pub fn new(input: R) -> (Self, Hash) {
+        let hash = Hash::default();
+        (Self { input, hash: hash.clone() }, hash)
+    }
+}
+
+impl<R: Read> Read for Hashed<R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let length = self.input.read(buffer)?;
-        self.hasher.update(&buffer[..length]);
+        self.hash.0.borrow_mut().update(&buffer[..length]);
         Ok(length)
     }
 }
 
 /// The lines of a file, one after the other.
 pub struct Lines<R> {
-    input: BufReader<Digested<R>>,
+    input: BufReader<Hashed<R>>,
+    hash: Hash,
     encoding: Encoding,
     bytes: Vec<u8>,
     text: String,
@@ -38,14 +64,9 @@ pub struct Lines<R> {
 impl<R: Read> Lines<R> {
     /// Lines of `input` in `encoding`.
     pub fn new(input: R, encoding: Encoding) -> Self {
-        Self {
-            input: BufReader::with_capacity(1 << 16, Digested { input, hasher: Sha256::new() }),
-            encoding,
-            bytes: Vec::new(),
-            text: String::new(),
-            number: 0,
-            consumed: 0,
-        }
+        let (hashed, hash) = Hashed::new(input);
+        let input = BufReader::with_capacity(1 << 16, hashed);
+        Self { input, hash, encoding, bytes: Vec::new(), text: String::new(), number: 0, consumed: 0 }
     }
 
     /// Number of the line read last, from 1; 0 before the first.
@@ -58,16 +79,23 @@ impl<R: Read> Lines<R> {
         self.consumed
     }
 
-    /// Reads past one line without decoding it; `false` at the end of the file.
-    pub fn skip(&mut self) -> Result<bool, Problem> {
+    /// Takes the bytes of a line, or of its begin where it is too long; how many there are, none at the end of the
+    /// file.
+    fn take_line(&mut self) -> Result<usize, Problem> {
         self.bytes.clear();
         let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
         let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::of_input)?;
+        self.number += usize::from(length > 0);
+        self.consumed += length as u64;
+        Ok(length)
+    }
+
+    /// Reads past one line without decoding it; `false` at the end of the file.
+    pub fn skip(&mut self) -> Result<bool, Problem> {
+        let length = self.take_line()?;
         if length == 0 {
             return Ok(false);
         }
-        self.number += 1;
-        self.consumed += length as u64;
         if self.number == 1 && (self.bytes.starts_with(&[0xff, 0xfe]) || self.bytes.starts_with(&[0xfe, 0xff])) {
             return Err(Problem::Utf16);
         }
@@ -112,14 +140,10 @@ impl<R: Read> Lines<R> {
     /// A line longer than [`LONGEST_LINE`] is cut one byte beyond that, and the rest of it read past; `None` at the end
     /// of the file.
     pub fn next_bytes(&mut self) -> Result<Option<&[u8]>, Problem> {
-        self.bytes.clear();
-        let mut limited = (&mut self.input).take(LONGEST_LINE as u64 + 1);
-        let length = limited.read_until(b'\n', &mut self.bytes).map_err(Problem::of_input)?;
+        let length = self.take_line()?;
         if length == 0 {
             return Ok(None);
         }
-        self.number += 1;
-        self.consumed += length as u64;
         if length > LONGEST_LINE && self.bytes.last() != Some(&b'\n') {
             self.pass_line_end()?;
         }
@@ -151,7 +175,7 @@ impl<R: Read> Lines<R> {
 
     /// SHA-256 of all bytes read, hexadecimal; that of the file after its last line.
     pub fn sha256(self) -> String {
-        in_hex(&self.input.into_inner().hasher.finalize())
+        self.hash.finish()
     }
 }
 
@@ -162,7 +186,7 @@ pub fn in_hex(hash: &[u8]) -> String {
 
 /// SHA-256 of a text, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    in_hex(&Sha256::digest(bytes))
+    Hash::of(bytes).finish()
 }
 
 #[cfg(test)]

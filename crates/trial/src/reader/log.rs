@@ -1,4 +1,4 @@
-//! A log: what one or several files hold, mended and on one clock, before a part of it becomes a record.
+//! A log: what one or several files hold, cleaned and on one clock, before a part of it becomes a record.
 
 use std::path::{Path, PathBuf};
 
@@ -11,12 +11,12 @@ use super::nmea;
 use super::source::{Piece, Series, Source};
 use super::table;
 use crate::channel::Channel;
+use crate::cleaning;
 use crate::clock::Clock;
 use crate::encoding::Encoding;
 use crate::file::called;
-use crate::hygiene;
 use crate::plausibility;
-use crate::record::{Columns, Mark, Origin, Trial, TrialError};
+use crate::record::{Columns, Origin, RejectedReading, Trial, TrialError};
 use crate::sidecar::{Sidecar, SidecarProblem};
 use ship::Particulars;
 
@@ -41,7 +41,7 @@ pub struct Log {
     part: Option<[f64; 2]>,
     /// What the reader had to decide or found remarkable, one sentence each.
     pub warnings: Vec<String>,
-    marks: Vec<Mark>,
+    marks: Vec<RejectedReading>,
 }
 
 impl Log {
@@ -103,7 +103,7 @@ impl Log {
         };
         let of_file = |warning: String| format!("{}: {warning}", other.display());
         self.warnings.extend(piece.warnings.into_iter().map(of_file));
-        self.marks.extend(piece.marks.into_iter().map(|mark| Mark { time: mark.time + offset, ..mark }));
+        self.marks.extend(piece.marks.into_iter().map(|mark| RejectedReading { time: mark.time + offset, ..mark }));
         let mut all = series(std::mem::take(&mut self.columns), 0.0);
         all.extend(series(piece.columns, offset));
         let (all, doubled) = once(all);
@@ -196,7 +196,7 @@ impl Log {
             None => trial.with_noise(noise),
         };
         let conditions = sidecar.as_ref().map(|sidecar| sidecar.conditions.clone()).unwrap_or_default();
-        let trial = trial.with_marks(marks).with_conditions(conditions);
+        let trial = trial.with_rejected(marks).with_conditions(conditions);
         match plausibility::check(&trial) {
             Ok(found) => warnings.extend(found),
             Err(implausible) if !checked => warnings.push(implausible.to_string()),
@@ -270,23 +270,23 @@ fn of_content(
     Ok(piece)
 }
 
-/// Channels with instants of their own, each mended by itself.
+/// Channels with instants of their own, each cleaned by itself.
 fn of_source(source: Source, checked: bool) -> Piece {
     let Source { series, clock, mut warnings, lines, sha256 } = source;
     let mut marks = Vec::new();
-    let mended = series.into_iter().map(|one| {
+    let cleaned = series.into_iter().map(|one| {
         let Series { channel, name, time, mut values } = one;
         if channel == Channel::Heading {
             ship::angle::unwrap_heading(&mut values);
         }
         let mut own = Columns { time, channels: [(channel, values)].into(), unknown: Vec::new() };
         if checked {
-            warnings.extend(hygiene::mend(&mut own, &mut marks));
+            warnings.extend(cleaning::clean(&mut own, &mut marks));
         }
         let values = own.channels.remove(&channel).unwrap_or_default();
         Series { channel, name, time: own.time, values }
     });
-    let columns = columns(mended.collect());
+    let columns = columns(cleaned.collect());
     Piece { columns, clock, warnings, marks, rows: lines, sha256 }
 }
 

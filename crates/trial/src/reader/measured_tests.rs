@@ -9,17 +9,7 @@ use super::*;
 use crate::channel::Channel;
 use crate::plausibility;
 use crate::record::{Columns, Trial};
-
-/// Folder of the measured trials, where it is there.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("TRIAL_DATA").map_or(beside, PathBuf::from);
-    if !folder.is_dir() {
-        println!("skipped: no measured trials in {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
+use crate::testing::data;
 
 fn measured_sidecar(stem: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenarios/measured").join(format!("{stem}.trial.toml"))

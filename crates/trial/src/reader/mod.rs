@@ -17,10 +17,10 @@ mod error;
 mod head;
 mod input;
 mod instants;
-mod kept;
 mod layout;
 mod limits;
 mod lines;
+mod read_table;
 
 mod log;
 #[cfg(test)]

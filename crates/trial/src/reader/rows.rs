@@ -1,5 +1,5 @@
 //! The rows of a table, one after the other: cells to SI units, the part and thinning asked for, rows that are left
-//! out, and the bound on memory. Only the rows kept are held; what becomes of them is in [`super::kept`].
+//! out, and the bound on memory. Only the rows kept are held; what becomes of them is in [`super::read_table`].
 
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use super::layout::{Layout, Meaning};
 use super::limits::{MAX_CELLS, MAX_ROWS, is_comment};
 use crate::cells::{Cell, Separator, cell};
 use crate::channel::Channel;
+use crate::cleaning::is_sentinel;
 use crate::clock::{Stamp, StampFault, Stamps};
-use crate::hygiene::is_sentinel;
 use crate::record::Trial;
 use crate::sidecar::Sidecar;
 use crate::words::shortened;
@@ -28,6 +28,19 @@ pub(super) struct Counts {
     pub astray: Vec<f64>,
     pub short: usize,
     pub decimal_commas: usize,
+}
+
+/// What was met in one column.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Met {
+    /// The last number, as it stands in the file.
+    last: Option<f64>,
+    /// The largest number, without its sign.
+    pub largest: f64,
+    /// How often there was a number that stands for no reading, and the last such number.
+    pub sentinels: (usize, f64),
+    /// Cells with text.
+    pub text: usize,
 }
 
 /// The last rows, to tell one that does not follow from one after which time starts anew.
@@ -65,22 +78,16 @@ pub(super) struct Rows<'a> {
     pub(super) columns: Vec<Vec<f64>>,
     cells: Vec<Range<usize>>,
     row: Vec<f64>,
-    /// The last number of every column, as it stands in the file.
-    last: Vec<Option<f64>>,
-    /// Largest number of every column, without its sign.
-    pub(super) largest: Vec<f64>,
+    /// What was met in every column.
+    pub(super) met: Vec<Met>,
     before: Before,
     last_heading: Option<f64>,
     /// Rows of the part with time and one of the wanted channels.
     pub(super) usable: usize,
     /// First and last time in the file.
     pub(super) span: Option<(f64, f64)>,
-    /// How often a column has a number that stands for no reading, and the last such number.
-    pub(super) sentinels: Vec<(usize, f64)>,
     /// Whether such numbers are looked for.
     checked: bool,
-    /// Cells with text, by column.
-    pub(super) text: Vec<usize>,
     pub(super) counts: Counts,
 }
 
@@ -115,15 +122,12 @@ impl<'a> Rows<'a> {
             used,
             cells: Vec::new(),
             row: vec![f64::NAN; columns],
-            last: vec![None; columns],
-            largest: vec![0.0; columns],
-            sentinels: vec![(0, 0.0); columns],
+            met: vec![Met::default(); columns],
             checked: sidecar.is_none_or(|sidecar| sidecar.plausibility),
             before: Before::default(),
             last_heading: None,
             usable: 0,
             span: None,
-            text: vec![0; columns],
             counts: Counts::default(),
         }
     }
@@ -255,26 +259,25 @@ impl<'a> Rows<'a> {
                 Cell::Text => side(text, meaning, self.separator).map_or(Cell::Text, Cell::Number),
                 read => read,
             };
+            let met = &mut self.met[place];
             self.row[place] = match read {
                 Cell::Number(value) | Cell::CommaNumber(value) => {
                     self.counts.decimal_commas += usize::from(matches!(read, Cell::CommaNumber(_)));
                     match meaning {
-                        Meaning::Channel(channel, _)
-                            if self.checked && is_sentinel(channel, value, self.last[place]) =>
-                        {
-                            self.sentinels[place] = (self.sentinels[place].0 + 1, value);
+                        Meaning::Channel(channel, _) if self.checked && is_sentinel(channel, value, met.last) => {
+                            met.sentinels = (met.sentinels.0 + 1, value);
                             f64::NAN
                         }
                         _ => {
-                            self.last[place] = Some(value);
-                            self.largest[place] = self.largest[place].max(value.abs());
+                            met.last = Some(value);
+                            met.largest = met.largest.max(value.abs());
                             value * factor
                         }
                     }
                 }
                 Cell::Missing => f64::NAN,
                 Cell::Text if meaning == Meaning::Unknown => {
-                    self.text[place] += 1;
+                    met.text += 1;
                     f64::NAN
                 }
                 Cell::Text => {

@@ -3,7 +3,7 @@
 
 use crate::channel::Channel;
 use crate::clock::Clock;
-use crate::record::{Columns, Mark};
+use crate::record::{Columns, RejectedReading};
 
 /// A channel at its own instants.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +39,7 @@ pub(super) struct Piece {
     pub clock: Option<Clock>,
     pub warnings: Vec<String>,
     /// Readings taken as missing or told as doubtful.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<RejectedReading>,
     /// Rows or lines of the file.
     pub rows: usize,
     pub sha256: String,

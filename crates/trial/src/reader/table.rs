@@ -12,8 +12,8 @@ use super::rows::Rows;
 use super::source::Piece;
 use super::units;
 use crate::cells::Separator;
+use crate::cleaning;
 use crate::encoding::Encoding;
-use crate::hygiene;
 use crate::sidecar::Sidecar;
 use crate::words::listed;
 
@@ -69,7 +69,7 @@ pub(super) fn read(
     warnings.extend(found);
     let mut marks = Vec::new();
     if sidecar.is_none_or(|sidecar| sidecar.plausibility) {
-        warnings.extend(hygiene::mend(&mut kept.columns, &mut marks));
+        warnings.extend(cleaning::clean(&mut kept.columns, &mut marks));
     }
     Ok(Piece { columns: kept.columns, clock: kept.clock, warnings, marks, rows: kept.rows, sha256 })
 }

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 
 use super::error::Problem;
-use super::kept::{Kept, Open};
 use super::limits::spoken;
+use super::read_table::{ReadTable, UnitlessColumn};
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
@@ -45,46 +45,34 @@ type Channels = BTreeMap<Channel, Vec<f64>>;
 /// Finds the open units; what was decided, in words.
 ///
 /// Fails where heading, rudder, a yaw rate that stands for the heading, or time could have two units.
-pub(super) fn settle(kept: &mut Kept, line: usize) -> Result<Vec<String>, Problem> {
+pub(super) fn settle(kept: &mut ReadTable, line: usize) -> Result<Vec<String>, Problem> {
     let mut decided = Vec::new();
     let mut left_out = Vec::new();
-    let open = std::mem::take(&mut kept.open);
-    let find = |channel| open.iter().find(|open| open.channel == channel);
-    let channels = &mut kept.columns.channels;
-    for channel in [Channel::Rudder, Channel::RudderOrder] {
-        if let Some(open) = find(channel) {
-            let unit = rudder(open).ok_or_else(|| refusal(open, line))?;
-            scale(channels, channel, unit);
-            decided.push(in_words(open, unit));
-        }
-    }
-    if let Some(open) = find(Channel::Heading) {
-        let unit = heading(channels, open).ok_or_else(|| refusal(open, line))?;
-        scale(channels, Channel::Heading, unit);
-        decided.push(in_words(open, unit));
-    }
-    if let Some(open) = find(Channel::YawRate) {
-        match yaw_rate(&kept.columns.time, channels) {
+    let mut open = std::mem::take(&mut kept.open);
+    // The unit of a heading is seen beside the rudder, that of a yaw rate beside the heading.
+    const FIRST: [Channel; 4] = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
+    open.sort_by_key(|open| FIRST.iter().position(|first| *first == open.channel).unwrap_or(FIRST.len()));
+    let (time, channels) = (&kept.columns.time, &mut kept.columns.channels);
+    for open in &open {
+        let is_angle = open.channel.units().contains(&Unit::Radian);
+        let unit = match open.channel {
+            Channel::Rudder | Channel::RudderOrder => rudder(open),
+            Channel::Heading => heading(channels, open),
+            Channel::YawRate => yaw_rate(time, channels),
+            _ if is_angle && open.largest > std::f64::consts::TAU + 0.01 => Some(Unit::Degree),
+            Channel::Speed => speed(time, channels),
+            _ => None,
+        };
+        let is_needed = FIRST.contains(&open.channel)
+            && (open.channel != Channel::YawRate || !channels.contains_key(&Channel::Heading));
+        match unit {
             Some(unit) => {
-                scale(channels, Channel::YawRate, unit);
+                scale(channels, open.channel, unit);
                 decided.push(in_words(open, unit));
             }
-            None if !channels.contains_key(&Channel::Heading) => return Err(refusal(open, line)),
-            None => left_out.push(open),
-        }
-    }
-    let done = [Channel::Rudder, Channel::RudderOrder, Channel::Heading, Channel::YawRate];
-    for open in open.iter().filter(|open| !done.contains(&open.channel)) {
-        let is_angle = open.channel.units().contains(&Unit::Radian);
-        if is_angle && open.largest > std::f64::consts::TAU + 0.01 {
-            decided.push(in_words(open, Unit::Degree));
-        } else if open.channel == Channel::Speed
-            && let Some(unit) = speed(&kept.columns.time, channels)
-        {
-            scale(channels, open.channel, unit);
-            decided.push(in_words(open, unit));
-        } else if open.channel.units().len() > 1 {
-            left_out.push(open);
+            None if is_needed => return Err(refusal(open, line)),
+            None if open.channel.units().len() > 1 => left_out.push(open),
+            None => {}
         }
     }
     for open in &left_out {
@@ -94,29 +82,28 @@ pub(super) fn settle(kept: &mut Kept, line: usize) -> Result<Vec<String>, Proble
     if !decided.is_empty() {
         told.push(format!("columns without a unit: {}, the only unit that fits their values", decided.join(", ")));
     }
-    for Open { channel, name, .. } in left_out {
-        let names: Vec<String> =
-            channel.units().iter().map(|unit| format!("`{}_{}`", channel.quantity(), unit.id())).collect();
+    for UnitlessColumn { channel, name, .. } in left_out {
+        let names: Vec<String> = channel.units().iter().map(|unit| format!("`{}`", channel.name_in(*unit))).collect();
         told.push(format!(
-            "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = {}` for it in a sidecar",
+            "the {} `{}` has no unit and is left out; to use it, name it {}, or write `is = \"{}\"` for it in a sidecar",
             spoken(*channel),
             shortened(name),
             names.join(" or "),
-            names[0].replace('`', "\"")
+            channel.column_name()
         ));
     }
     if let Some(name) = kept.open_time.take() {
-        told.extend(time(kept, &name, line)?);
+        told.extend(seconds(kept, &name, line)?);
     }
     Ok(told)
 }
 
-fn in_words(open: &Open, unit: Unit) -> String {
+fn in_words(open: &UnitlessColumn, unit: Unit) -> String {
     format!("`{}` is the {} in {}", shortened(&open.name), spoken(open.channel), unit.spoken())
 }
 
-fn refusal(open: &Open, line: usize) -> Problem {
-    let Open { channel, name, largest } = open.clone();
+fn refusal(open: &UnitlessColumn, line: usize) -> Problem {
+    let UnitlessColumn { channel, name, largest } = open.clone();
     Problem::OpenUnit { line, column: name, quantity: spoken(channel), largest, channel }
 }
 
@@ -130,7 +117,7 @@ fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     }
 }
 
-fn rudder(open: &Open) -> Option<Unit> {
+fn rudder(open: &UnitlessColumn) -> Option<Unit> {
     match open.largest {
         largest if largest <= RUDDER_RAD => Some(Unit::Radian),
         largest if largest > RUDDER_EITHER => Some(Unit::Degree),
@@ -139,7 +126,7 @@ fn rudder(open: &Open) -> Option<Unit> {
 }
 
 /// The unit of a heading that was read as degrees; removes the wrap at 2π where it is in radians.
-fn heading(channels: &mut Channels, open: &Open) -> Option<Unit> {
+fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     let degree = Unit::Degree.to_si();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
     let values = channels.get_mut(&Channel::Heading)?;
@@ -212,7 +199,7 @@ fn speed(time: &[f64], channels: &Channels) -> Option<Unit> {
 }
 
 /// Time without a unit: seconds where ships can turn like that, or the count of a clock.
-fn time(kept: &mut Kept, name: &str, line: usize) -> Result<Option<String>, Problem> {
+fn seconds(kept: &mut ReadTable, name: &str, line: usize) -> Result<Option<String>, Problem> {
     let name = shortened(name);
     let times = &mut kept.columns.time;
     let first = times[0];

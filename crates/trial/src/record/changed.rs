@@ -2,7 +2,7 @@
 
 use ship::Particulars;
 
-use super::{Mark, Rudder, Trial, signal};
+use super::{RejectedReading, Rudder, Trial, signal};
 use crate::channel::Channel;
 
 impl Trial {
@@ -53,7 +53,7 @@ impl Trial {
             values.iter_mut().for_each(|value| *value *= factor(*channel));
         }
         for mark in &mut scaled.marks {
-            *mark = Mark { time: mark.time * second, value: mark.value * factor(mark.channel), ..*mark };
+            *mark = RejectedReading { time: mark.time * second, value: mark.value * factor(mark.channel), ..*mark };
         }
         scaled.noise.yaw_rate = self.noise.yaw_rate.map(|sd| sd * factor(Channel::YawRate));
         scaled.particulars = Some(particulars);

@@ -10,6 +10,7 @@ use super::holds::{self, Hold};
 use super::local::Local;
 use super::median::median;
 use crate::channel::Channel;
+use crate::plausibility::range;
 use crate::quantity::Quantity;
 use crate::record::Trial;
 
@@ -192,7 +193,7 @@ fn nominal_pair(holds: &[Hold], reversals: &[Execute], middle: Quantity) -> Opti
     let mut angles: Vec<f64> =
         reversals.iter().map(|execute| to_deg((execute.heading.value - middle.value).abs())).collect();
     let angle = median(&mut angles)?;
-    if angles[angles.len() - 1] - angles[0] > 0.5 * angle {
+    if range(&angles) > 0.5 * angle {
         return None;
     }
     let slack = to_deg(2.0 * middle.sd.unwrap_or(0.0));

@@ -9,56 +9,28 @@ use crate::quantity::Quantity;
 
 /// Why a record has no zig-zag characteristics.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[expect(missing_docs, reason = "the message of a variant says what its fields are")]
 pub enum ZigZagError {
     /// The rudder is never laid.
     #[error("not a zig-zag: the rudder is laid to {largest_deg:.2} deg at most, a zig-zag needs {needed_deg:.1} deg")]
-    NoRudder {
-        /// Largest angle the rudder is laid to, degrees.
-        largest_deg: f64,
-        /// Angle needed, degrees.
-        needed_deg: f64,
-    },
+    NoRudder { largest_deg: f64, needed_deg: f64 },
     /// The rudder does not go from one side to the other often enough.
     #[error("not a zig-zag: {found} reversals of the rudder from one side to the other, a zig-zag needs {needed}")]
-    TooFewReversals {
-        /// Reversals found.
-        found: usize,
-        /// Reversals needed.
-        needed: usize,
-    },
+    TooFewReversals { found: usize, needed: usize },
     /// The rudder moves all the time, as under an autopilot or in a random manoeuvre.
     #[error(
         "not a zig-zag: the rudder is held for {:.0} % of the rows, a zig-zag needs {:.0} %", 100.0 * share, 100.0 * needed
     )]
-    NotHeld {
-        /// Share of the rows between first and last execute with the rudder held.
-        share: f64,
-        /// Share needed.
-        needed: f64,
-    },
+    NotHeld { share: f64, needed: f64 },
     /// Between two reversals the heading moved against the rudder: its sign is flipped, or this is another manoeuvre.
     #[error(
         "not a zig-zag: from {from:.1} s to {to:.1} s the rudder is at {rudder_deg:.1} deg and the heading changes by \
          {change_deg:.2} deg; is the rudder sign flipped?"
     )]
-    HeadingAgainstRudder {
-        /// Time of the first of the two reversals, s.
-        from: f64,
-        /// Time of the second, s.
-        to: f64,
-        /// Rudder held between them, degrees.
-        rudder_deg: f64,
-        /// Change of heading between them, degrees.
-        change_deg: f64,
-    },
+    HeadingAgainstRudder { from: f64, to: f64, rudder_deg: f64, change_deg: f64 },
     /// Headings are missing where the rudder was reversed.
     #[error("no heading within {reach:.1} s of the execute at {time:.1} s")]
-    NoHeading {
-        /// Time of the execute, s.
-        time: f64,
-        /// Half-width of the widest local fit, s.
-        reach: f64,
-    },
+    NoHeading { time: f64, reach: f64 },
 }
 
 /// A side of the ship.

@@ -203,7 +203,7 @@ impl Heading {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::zigzag::simulator::Gaussian;
+    use crate::testing::Gaussian;
     use approx::assert_relative_eq;
 
     fn sine(noise: f64) -> (Vec<f64>, Vec<f64>) {

@@ -1,16 +1,15 @@
 //! The middle of a few values.
 
 /// Median; the mean of the two middle values where their number is even, so that a mirrored set has the mirrored
-/// median.
+/// median. Found in linear time.
 ///
 /// `None` for an empty set. The values are reordered and must be finite.
 pub fn median(values: &mut [f64]) -> Option<f64> {
-    if values.is_empty() {
-        return None;
-    }
-    values.sort_unstable_by(f64::total_cmp);
+    let even = values.len().is_multiple_of(2);
     let middle = values.len() / 2;
-    Some(if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) })
+    let (below, &mut upper, _) = (!values.is_empty()).then(|| values.select_nth_unstable_by(middle, f64::total_cmp))?;
+    let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| even);
+    Some(lower.map_or(upper, |lower| 0.5 * (lower + upper)))
 }
 
 /// The middle value, the upper of two where their number is even; found in linear time, for very many values.

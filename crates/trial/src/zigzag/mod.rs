@@ -17,8 +17,6 @@ pub mod median;
 mod phase_plane;
 pub mod points;
 #[cfg(test)]
-pub(crate) mod simulator;
-#[cfg(test)]
 mod tests;
 
 pub use findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};

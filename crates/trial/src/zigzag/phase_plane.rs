@@ -48,8 +48,8 @@ impl PhasePlane {
 
 #[cfg(test)]
 mod tests {
-    use super::super::simulator::Plant;
     use super::*;
+    use crate::testing::Plant;
     use crate::{Channel, Columns, Origin};
 
     fn record(with_rate: bool) -> (Trial, Vec<f64>) {

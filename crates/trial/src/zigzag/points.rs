@@ -172,7 +172,7 @@ fn three_point_mean(values: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::zigzag::simulator::{Gaussian, Plant};
+    use crate::testing::{Gaussian, Plant};
     use approx::assert_relative_eq;
     use ship::angle::{from_deg, to_deg};
 

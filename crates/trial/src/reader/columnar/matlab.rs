@@ -26,47 +26,15 @@ const MOST_UNPACKED: u64 = 8 * MAX_CELLS as u64;
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
 
-/// How the numbers of a variable are stored.
-#[derive(Debug, Clone, Copy)]
-enum Stored {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-    I64,
-    U64,
-}
-
-impl Stored {
-    fn of(kind: u32) -> Option<Self> {
-        Some(match kind {
-            1 => Self::I8,
-            2 => Self::U8,
-            3 => Self::I16,
-            4 => Self::U16,
-            5 => Self::I32,
-            6 => Self::U32,
-            7 => Self::F32,
-            9 => Self::F64,
-            12 => Self::I64,
-            13 => Self::U64,
-            _ => return None,
-        })
-    }
-
-    /// Bytes of a number.
-    fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 | Self::I64 | Self::U64 => 8,
-        }
-    }
+/// Bytes of a number of a kind of data element; `None` for what is no number.
+fn size(kind: u32) -> Option<usize> {
+    Some(match kind {
+        1 | 2 => 1,
+        3 | 4 => 2,
+        5..=7 => 4,
+        9 | 12 | 13 => 8,
+        _ => return None,
+    })
 }
 
 /// A numeric variable.
@@ -74,7 +42,8 @@ struct Variable {
     name: String,
     rows: usize,
     columns: usize,
-    stored: Stored,
+    /// Kind of its numbers, and bytes of each.
+    stored: (u32, usize),
     /// The numbers, column by column.
     bytes: Vec<u8>,
 }
@@ -152,15 +121,15 @@ fn variable(bytes: &[u8], big_endian: bool) -> Option<Found> {
         dimensions.push(usize::try_from(sizes.word()?).ok()?);
     }
     let name = String::from_utf8_lossy(scan.element()?.1).into_owned();
-    let size = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
+    let sizes = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join("x");
     // What MATLAB keeps for objects is a variable of bytes without a name.
     if name.is_empty() || complex || dimensions.len() != 2 {
-        return Some(Found::Other(format!("{name} ({size})")));
+        return Some(Found::Other(format!("{name} ({sizes})")));
     }
     let (kind, data) = scan.element()?;
-    let stored = Stored::of(kind)?;
+    let stored = (kind, size(kind)?);
     let [rows, columns] = *dimensions.first_chunk()?;
-    (rows.checked_mul(columns)?.checked_mul(stored.size())? == data.len()).then_some(())?;
+    (rows.checked_mul(columns)?.checked_mul(stored.1)? == data.len()).then_some(())?;
     // A row is as good as a column.
     let (rows, columns) = if rows == 1 { (columns, 1) } else { (rows, columns) };
     Some(Found::Numbers(Variable { name, rows, columns, stored, bytes: data.to_vec() }))
@@ -234,7 +203,7 @@ pub fn text(bytes: Vec<u8>) -> Result<Box<dyn Read>, Problem> {
     let (numeric, mut others) = variables(&bytes)?;
     let worth = |rows: usize| {
         let of_length = || numeric.iter().filter(|variable| variable.rows == rows);
-        let known = of_length().filter(|variable| names::said(&variable.name).is_some()).count();
+        let known = of_length().filter(|variable| names::meaning(&variable.name).is_some()).count();
         (known, rows * of_length().map(|variable| variable.columns).sum::<usize>(), rows)
     };
     let mut lengths: Vec<usize> = numeric.iter().map(|variable| variable.rows).filter(|&rows| rows > 1).collect();
@@ -277,7 +246,7 @@ impl Lines for Rows {
 impl Variable {
     /// Writes a number by its place.
     fn write(&self, text: &mut String, place: usize, big_endian: bool) {
-        let size = self.stored.size();
+        let (kind, size) = self.stored;
         let mut bytes = [0; 8];
         let Some(own) = self.bytes.get(place * size..(place + 1) * size) else { return };
         bytes[..size].copy_from_slice(own);
@@ -285,14 +254,14 @@ impl Variable {
             bytes[..size].reverse();
         }
         let all = u64::from_le_bytes(bytes);
-        match self.stored {
-            Stored::I8 => text::whole(text, all as i8),
-            Stored::I16 => text::whole(text, all as i16),
-            Stored::I32 => text::whole(text, all as i32),
-            Stored::I64 => text::whole(text, all as i64),
-            Stored::U8 | Stored::U16 | Stored::U32 | Stored::U64 => text::whole(text, all),
-            Stored::F32 => text::single(text, f32::from_bits(all as u32)),
-            Stored::F64 => text::number(text, f64::from_bits(all)),
+        match kind {
+            1 => text::whole(text, all as i8),
+            3 => text::whole(text, all as i16),
+            5 => text::whole(text, all as i32),
+            12 => text::whole(text, all as i64),
+            7 => text::single(text, f32::from_bits(all as u32)),
+            9 => text::number(text, f64::from_bits(all)),
+            _ => text::whole(text, all),
         }
     }
 }

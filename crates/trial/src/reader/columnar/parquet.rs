@@ -6,7 +6,7 @@ use std::io::Read;
 use bytes::Bytes;
 use parquet::basic::{Compression, ConvertedType, LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{ByteArray, DataType, FixedLenByteArray, Int96};
+use parquet::data_type::{DataType, Int96};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
@@ -76,17 +76,8 @@ impl Meaning {
     }
 }
 
-/// Values of some rows, those that are there.
-enum Values {
-    Booleans(Vec<bool>),
-    Integers(Vec<i32>),
-    Longs(Vec<i64>),
-    Stamps(Vec<Int96>),
-    Singles(Vec<f32>),
-    Doubles(Vec<f64>),
-    Texts(Vec<ByteArray>),
-    Bytes(Vec<FixedLenByteArray>),
-}
+/// Writes one of the values that are there by its place.
+type Write = Box<dyn Fn(&mut String, usize)>;
 
 /// A column as far as it is decoded.
 struct Column {
@@ -95,7 +86,7 @@ struct Column {
     name: String,
     meaning: Meaning,
     reader: Option<ColumnReader>,
-    values: Values,
+    write: Write,
     /// For each row whether it has a value; empty where every row has one.
     present: Vec<i16>,
     /// Values written already.
@@ -152,8 +143,8 @@ impl Rows {
             let flat = column.max_rep_level() == 0 && column.path().parts().len() == 1;
             let Some(meaning) = Meaning::of(column).filter(|_| flat) else { continue };
             let name = column.name().to_owned();
-            let (values, present) = (Values::Booleans(Vec::new()), Vec::new());
-            columns.push(Column { place, name, meaning, reader: None, values, present, written: 0 });
+            let write = Box::new(|_: &mut String, _| {});
+            columns.push(Column { place, name, meaning, reader: None, write, present: Vec::new(), written: 0 });
         }
         if columns.is_empty() {
             let found = schema.columns().iter().map(|column| column.path().string()).collect();
@@ -225,30 +216,39 @@ impl Lines for Rows {
 
 impl Column {
     fn decode(&mut self, length: usize) -> Result<(), Problem> {
-        let Self { name, reader, values, present, .. } = self;
+        let Self { name, reader, present, meaning, .. } = self;
+        let meaning = *meaning;
         present.clear();
         self.written = 0;
         let early = || damaged(format!("its column `{}` ends too early", crate::words::shortened(name)));
-        *values = match reader.as_mut().ok_or_else(early)? {
-            ColumnReader::BoolColumnReader(reader) => Values::Booleans(read(reader, length, present)?),
-            ColumnReader::Int32ColumnReader(reader) => Values::Integers(read(reader, length, present)?),
-            ColumnReader::Int64ColumnReader(reader) => Values::Longs(read(reader, length, present)?),
-            ColumnReader::Int96ColumnReader(reader) => Values::Stamps(read(reader, length, present)?),
-            ColumnReader::FloatColumnReader(reader) => Values::Singles(read(reader, length, present)?),
-            ColumnReader::DoubleColumnReader(reader) => Values::Doubles(read(reader, length, present)?),
-            ColumnReader::ByteArrayColumnReader(reader) => Values::Texts(read(reader, length, present)?),
-            ColumnReader::FixedLenByteArrayColumnReader(reader) => Values::Bytes(read(reader, length, present)?),
-        };
-        let values = match values {
-            Values::Booleans(values) => values.len(),
-            Values::Integers(values) => values.len(),
-            Values::Longs(values) => values.len(),
-            Values::Stamps(values) => values.len(),
-            Values::Singles(values) => values.len(),
-            Values::Doubles(values) => values.len(),
-            Values::Texts(values) => values.len(),
-            Values::Bytes(values) => values.len(),
-        };
+        let (values, write) = match reader.as_mut().ok_or_else(early)? {
+            ColumnReader::BoolColumnReader(reader) => {
+                read(reader, length, present, |text, &value| text.push(if value { '1' } else { '0' }))
+            }
+            ColumnReader::Int32ColumnReader(reader) => {
+                read(reader, length, present, move |text, &value| match meaning {
+                    Meaning::Unsigned => text::whole(text, value as u32),
+                    _ => integer(text, i64::from(value), meaning),
+                })
+            }
+            ColumnReader::Int64ColumnReader(reader) => {
+                read(reader, length, present, move |text, &value| integer(text, value, meaning))
+            }
+            ColumnReader::Int96ColumnReader(reader) => read(reader, length, present, julian),
+            ColumnReader::FloatColumnReader(reader) => {
+                read(reader, length, present, |text, &value| text::single(text, value))
+            }
+            ColumnReader::DoubleColumnReader(reader) => {
+                read(reader, length, present, |text, &value| text::number(text, value))
+            }
+            ColumnReader::ByteArrayColumnReader(reader) => {
+                read(reader, length, present, move |text, value| bytes(text, value.data(), meaning))
+            }
+            ColumnReader::FixedLenByteArrayColumnReader(reader) => {
+                read(reader, length, present, move |text, value| bytes(text, value.data(), meaning))
+            }
+        }?;
+        self.write = write;
         let rows = if present.is_empty() { values } else { present.len() };
         let there = if present.is_empty() { rows } else { present.iter().filter(|&&level| level > 0).count() };
         if rows != length || there != values { Err(early()) } else { Ok(()) }
@@ -256,29 +256,19 @@ impl Column {
 
     /// Writes the value of a row; nothing where it has none. Rows are asked for in their order.
     fn write(&mut self, text: &mut String, row: usize) {
-        if self.present.get(row).is_some_and(|&level| level == 0) {
-            return;
-        }
-        let at = self.written;
-        self.written += 1;
-        match &self.values {
-            Values::Booleans(values) => text.push(if values[at] { '1' } else { '0' }),
-            Values::Integers(values) if self.meaning == Meaning::Unsigned => text::whole(text, values[at] as u32),
-            Values::Integers(values) => integer(text, i64::from(values[at]), self.meaning),
-            Values::Longs(values) => integer(text, values[at], self.meaning),
-            Values::Stamps(values) => {
-                let [low, high, day] = *values[at].data() else { return };
-                // Days of the Julian calendar of astronomers; 1970-01-01 is 2 440 588.
-                let nanoseconds = (u64::from(high) << 32 | u64::from(low)) as i64;
-                let seconds = (i64::from(day as i32) - 2_440_588) * 86_400 + nanoseconds.div_euclid(1_000_000_000);
-                text::stamp(text, seconds, nanoseconds.rem_euclid(1_000_000_000), false);
-            }
-            Values::Singles(values) => text::single(text, values[at]),
-            Values::Doubles(values) => text::number(text, values[at]),
-            Values::Texts(values) => bytes(text, values[at].data(), self.meaning),
-            Values::Bytes(values) => bytes(text, values[at].data(), self.meaning),
+        if self.present.get(row).is_none_or(|&level| level > 0) {
+            (self.write)(text, self.written);
+            self.written += 1;
         }
     }
+}
+
+/// A stamp in nanoseconds of a day, and days of the Julian calendar of astronomers; 1970-01-01 is 2 440 588.
+fn julian(text: &mut String, stamp: &Int96) {
+    let [low, high, day] = *stamp.data() else { return };
+    let nanoseconds = (u64::from(high) << 32 | u64::from(low)) as i64;
+    let seconds = (i64::from(day as i32) - 2_440_588) * 86_400 + nanoseconds.div_euclid(1_000_000_000);
+    text::stamp(text, seconds, nanoseconds.rem_euclid(1_000_000_000), false);
 }
 
 fn integer(text: &mut String, value: i64, meaning: Meaning) {
@@ -325,12 +315,13 @@ fn half(bits: u16) -> f32 {
     sign * size
 }
 
-/// The values of `length` rows, and into `present` which rows have one.
+/// How many values `length` rows have and how each is written, and into `present` which rows have one.
 fn read<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     length: usize,
     present: &mut Vec<i16>,
-) -> Result<Vec<T::T>, Problem> {
+    write: impl Fn(&mut String, &T::T) + 'static,
+) -> Result<(usize, Write), Problem> {
     let mut values = Vec::with_capacity(length);
     let mut read = 0;
     while read < length {
@@ -340,5 +331,5 @@ fn read<T: DataType>(
         }
         read += rows;
     }
-    Ok(values)
+    Ok((values.len(), Box::new(move |text, at| write(text, &values[at]))))
 }

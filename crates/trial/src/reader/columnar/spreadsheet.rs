@@ -116,8 +116,8 @@ fn look(cells: Cells) -> Result<Head, Problem> {
     let mut head = Head::default();
     each_row(cells, |row, cells| {
         let said = |value: &DataRef| match value {
-            DataRef::String(name) => names::said(name).is_some(),
-            DataRef::SharedString(name) => names::said(name).is_some(),
+            DataRef::String(name) => names::meaning(name).is_some(),
+            DataRef::SharedString(name) => names::meaning(name).is_some(),
             _ => false,
         };
         if head.width.is_none() && cells.iter().filter(|(_, value)| said(value)).count() >= 2 {

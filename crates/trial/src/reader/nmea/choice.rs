@@ -42,9 +42,9 @@ impl<'a> Choice<'a> {
         let mut choice = Self { log, series: Vec::new(), warnings: Vec::new() };
         choice.heading();
         choice.rudder();
-        choice.one("rudder order", &[Slot::RudderOrder], Channel::RudderOrder);
-        choice.one("yaw rate", &[Slot::YawRate], Channel::YawRate);
-        choice.roll();
+        choice.one("rudder order", Slot::RudderOrder, Channel::RudderOrder, |_| true);
+        choice.one("yaw rate", Slot::YawRate, Channel::YawRate, |_| true);
+        choice.one("roll angle", Slot::Transducer, Channel::Roll, |sensor| sensor.part[0] == b'O');
         choice.speed();
         choice.surge_and_sway();
         choice.position();
@@ -53,9 +53,10 @@ impl<'a> Choice<'a> {
         choice
     }
 
-    fn candidates(&self, slots: &[Slot], wanted: impl Fn(&Sensor) -> bool) -> Vec<Candidate> {
+    /// The instruments that give one of some quantities, each with the class of the quantity.
+    fn candidates(&self, slots: &[(Slot, usize)], wanted: impl Fn(&Sensor) -> bool) -> Vec<Candidate> {
         let mut found = Vec::new();
-        for (class, &slot) in slots.iter().enumerate() {
+        for &(slot, class) in slots {
             for (sensor, table) in self.log.sensors.iter().enumerate().filter(|(_, table)| wanted(table)) {
                 if let Some(place) = table.place(slot) {
                     found.push(Candidate { sensor, place, class, readings: table.readings(place) });
@@ -105,10 +106,12 @@ impl<'a> Choice<'a> {
         }
     }
 
-    fn push(&mut self, channel: Channel, name: String, time: &[f64], values: impl Iterator<Item = f64>) {
-        let room = || Vec::with_capacity(time.len());
-        let mut series = Series { channel, name, time: room(), values: room() };
-        for (&time, value) in time.iter().zip(values) {
+    /// Adds a channel with the instants of an instrument.
+    fn push(&mut self, channel: Channel, chosen: Candidate, values: impl Iterator<Item = f64>) {
+        let at = &self.log.sensors[chosen.sensor].at;
+        let room = || Vec::with_capacity(at.len());
+        let mut series = Series { channel, name: name(self.log, chosen.sensor), time: room(), values: room() };
+        for (&time, value) in at.iter().zip(values) {
             let time = rounded(time);
             // Two readings at one instant would be a step without time.
             if series.time.last().is_none_or(|&last| time > last) {
@@ -121,13 +124,12 @@ impl<'a> Choice<'a> {
 
     fn push_column(&mut self, channel: Channel, chosen: Candidate) {
         let log = self.log;
-        let sensor = &log.sensors[chosen.sensor];
-        self.push(channel, name(log, chosen.sensor), &sensor.at, sensor.columns[chosen.place].iter().copied());
+        self.push(channel, chosen, log.sensors[chosen.sensor].columns[chosen.place].iter().copied());
     }
 
     /// A channel that is one column of one instrument.
-    fn one(&mut self, what: &str, slots: &[Slot], channel: Channel) {
-        let candidates = self.candidates(slots, |_| true);
+    fn one(&mut self, what: &str, slot: Slot, channel: Channel, wanted: impl Fn(&Sensor) -> bool) {
+        let candidates = self.candidates(&[(slot, 0)], wanted);
         if let Some(chosen) = self.pick(what, candidates, false) {
             self.push_column(channel, chosen);
         }
@@ -141,7 +143,7 @@ impl<'a> Choice<'a> {
             sensor.place(Slot::Variation).map(|place| &sensor.columns[place])
         };
         let first = |column: &Vec<f64>| column.iter().copied().find(|value| value.is_finite());
-        let mut candidates = self.candidates(&[Slot::HeadingTrue, Slot::HeadingMagnetic], |_| true);
+        let mut candidates = self.candidates(&[(Slot::HeadingTrue, 0), (Slot::HeadingMagnetic, 1)], |_| true);
         for candidate in candidates.iter_mut().filter(|candidate| candidate.class == 1) {
             candidate.class = usize::from(variation(candidate.sensor).and_then(first).is_none());
         }
@@ -162,7 +164,7 @@ impl<'a> Choice<'a> {
                     }
                     if heading.is_finite() { turned(heading + held) } else { f64::NAN }
                 });
-                self.push(Channel::Heading, name(log, chosen.sensor), &sensor.at, values);
+                self.push(Channel::Heading, chosen, values);
             }
             None => self.push_column(Channel::Heading, chosen),
         }
@@ -171,11 +173,8 @@ impl<'a> Choice<'a> {
     /// One rudder, or the mean of two that go together.
     fn rudder(&mut self) {
         let log = self.log;
-        let both = [Slot::RudderStarboard, Slot::RudderPort];
-        let mut candidates = self.candidates(&both, |_| true);
-        candidates.iter_mut().for_each(|candidate| candidate.class = 0);
-        let transducers = self.candidates(&[Slot::Transducer], |sensor| sensor.part[0] == b'R');
-        candidates.extend(transducers.into_iter().map(|candidate| Candidate { class: 1, ..candidate }));
+        let mut candidates = self.candidates(&[(Slot::RudderStarboard, 0), (Slot::RudderPort, 0)], |_| true);
+        candidates.extend(self.candidates(&[(Slot::Transducer, 1)], |sensor| sensor.part[0] == b'R'));
         let Some(chosen) = self.pick("rudder angle", candidates, false) else { return };
         let sensor = &log.sensors[chosen.sensor];
         if sensor.kind != Kind::Rsa {
@@ -184,12 +183,11 @@ impl<'a> Choice<'a> {
         let [starboard, port] = [&sensor.columns[0], &sensor.columns[1]];
         let pairs = || starboard.iter().zip(port).filter(|(one, other)| one.is_finite() && other.is_finite());
         let number = pairs().count();
+        let side = ["starboard", "port"][chosen.place];
         // A second rudder that speaks now and then is no second reading.
         if 2 * number < chosen.readings {
-            let silent = if chosen.place == 0 { port } else { starboard };
-            let spoken = silent.iter().filter(|value| value.is_finite()).count();
+            let spoken = sensor.readings(1 - chosen.place);
             if chosen.place == 1 || spoken > 0 {
-                let side = if chosen.place == 0 { "starboard" } else { "port" };
                 self.warnings.push(format!(
                     "the rudder angle is that of the {side} rudder; the other one has {}",
                     counted(spoken, "reading")
@@ -200,7 +198,6 @@ impl<'a> Choice<'a> {
         let rms = (pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>() / number as f64).sqrt();
         let rms_deg = to_deg(rms);
         if rms_deg > RUDDERS_APART_DEG {
-            let side = if chosen.place == 0 { "starboard" } else { "port" };
             self.warnings.push(format!(
                 "the two rudders differ by {rms_deg:.1}° (rms); the rudder angle is that of the {side} rudder"
             ));
@@ -208,25 +205,17 @@ impl<'a> Choice<'a> {
         }
         self.warnings.push(format!("the rudder angle is the mean of two rudders, {rms_deg:.1}° apart (rms)"));
         let mean = starboard.iter().zip(port).map(|(one, other)| 0.5 * (one + other));
-        self.push(Channel::Rudder, name(log, chosen.sensor), &sensor.at, mean);
-    }
-
-    fn roll(&mut self) {
-        let candidates = self.candidates(&[Slot::Transducer], |sensor| sensor.part[0] == b'O');
-        if let Some(chosen) = self.pick("roll angle", candidates, false) {
-            self.push_column(Channel::Roll, chosen);
-        }
+        self.push(Channel::Rudder, chosen, mean);
     }
 
     /// Through the water before over ground.
     fn speed(&mut self) {
         let log = self.log;
-        let slots = [Slot::SpeedWater, Slot::SurgeWater, Slot::SpeedGround, Slot::SurgeGround];
-        let mut candidates = self.candidates(&slots, |_| true);
-        candidates.iter_mut().for_each(|candidate| candidate.class /= 2);
-        let usable: Vec<Candidate> = candidates.iter().copied().filter(|candidate| candidate.readings > 0).collect();
-        let most = usable.iter().map(|candidate| candidate.readings).max().unwrap_or(0);
-        let water = usable.iter().any(|candidate| candidate.class == 0 && candidate.readings * SPARSE >= most);
+        let slots = [(Slot::SpeedWater, 0), (Slot::SurgeWater, 0), (Slot::SpeedGround, 1), (Slot::SurgeGround, 1)];
+        let candidates = self.candidates(&slots, |_| true);
+        let most = candidates.iter().map(|candidate| candidate.readings).max().unwrap_or(0);
+        let is_water = |one: &Candidate| one.readings > 0 && one.class == 0 && one.readings * SPARSE >= most;
+        let water = candidates.iter().any(is_water);
         let what = if water { "speed through the water" } else { "speed over ground" };
         let Some(chosen) = self.pick(what, candidates, true) else { return };
         let sensor = &log.sensors[chosen.sensor];
@@ -234,7 +223,7 @@ impl<'a> Choice<'a> {
             // A log with one axis gives no sway.
             let (ahead, across) = (&sensor.columns[chosen.place], &sensor.columns[chosen.place + 1]);
             let speed = ahead.iter().zip(across).map(|(u, v)| if v.is_finite() { u.hypot(*v) } else { u.abs() });
-            self.push(Channel::Speed, name(log, chosen.sensor), &sensor.at, speed);
+            self.push(Channel::Speed, chosen, speed);
         } else {
             self.push_column(Channel::Speed, chosen);
         }
@@ -242,7 +231,7 @@ impl<'a> Choice<'a> {
 
     /// Both of one instrument and one reference.
     fn surge_and_sway(&mut self) {
-        let candidates = self.candidates(&[Slot::SurgeWater, Slot::SurgeGround], |_| true);
+        let candidates = self.candidates(&[(Slot::SurgeWater, 0), (Slot::SurgeGround, 1)], |_| true);
         let Some(surge) = self.pick("surge velocity", candidates, false) else { return };
         if surge.class == 1 {
             self.warnings.push(format!("surge and sway of {} are over ground", name(self.log, surge.sensor)));
@@ -257,19 +246,18 @@ impl<'a> Choice<'a> {
 
     fn position(&mut self) {
         let log = self.log;
-        let candidates = self.candidates(&[Slot::Latitude], |_| true);
+        let candidates = self.candidates(&[(Slot::Latitude, 0)], |_| true);
         let Some(chosen) = self.pick("position", candidates, false) else { return };
         let sensor = &log.sensors[chosen.sensor];
         let (north, east) = plane(&sensor.columns[chosen.place], &sensor.columns[chosen.place + 1]);
-        let label = name(log, chosen.sensor);
-        self.push(Channel::North, label.clone(), &sensor.at, north.into_iter());
-        self.push(Channel::East, label, &sensor.at, east.into_iter());
+        self.push(Channel::North, chosen, north.into_iter());
+        self.push(Channel::East, chosen, east.into_iter());
     }
 
     /// Shafts before engines; several shafts give their mean.
     fn propeller(&mut self) {
         let log = self.log;
-        let mut candidates = self.candidates(&[Slot::Revolutions], |_| true);
+        let mut candidates = self.candidates(&[(Slot::Revolutions, 0)], |_| true);
         candidates.retain(|candidate| candidate.readings > 0);
         let group = |candidate: &Candidate| {
             let sensor = &log.sensors[candidate.sensor];
@@ -319,47 +307,39 @@ impl<'a> Choice<'a> {
                 turned.join(" and ")
             ));
         }
-        self.push(Channel::PropellerRate, name(log, chosen.sensor), &lead.at, values.into_iter());
+        self.push(Channel::PropellerRate, chosen, values.into_iter());
     }
 
     fn wind(&mut self) {
         let reference = |letter: u8| move |sensor: &Sensor| sensor.kind == Kind::Mwv && sensor.part[0] == letter;
-        let relative = self.candidates(&[Slot::WindFrom], reference(b'R'));
+        let relative = self.candidates(&[(Slot::WindFrom, 0)], reference(b'R'));
         if let Some(chosen) = self.pick("relative wind", relative, false) {
             self.push_column(Channel::WindRelativeSpeed, Candidate { place: 0, ..chosen });
             self.push_column(Channel::WindRelativeFrom, chosen);
         }
         let log = self.log;
-        let mut real = self.candidates(&[Slot::WindFrom], |sensor| sensor.kind == Kind::Mwd);
-        let bow = self.candidates(&[Slot::WindFrom], reference(b'T'));
-        real.extend(bow.into_iter().map(|candidate| Candidate { class: 1, ..candidate }));
+        let mut real = self.candidates(&[(Slot::WindFrom, 0)], |sensor| sensor.kind == Kind::Mwd);
+        real.extend(self.candidates(&[(Slot::WindFrom, 1)], reference(b'T')));
         let Some(chosen) = self.pick("true wind", real, false) else { return };
         self.push_column(Channel::WindTrueSpeed, Candidate { place: 0, ..chosen });
         let sensor = &log.sensors[chosen.sensor];
         if sensor.kind == Kind::Mwd {
             return self.push_column(Channel::WindTrueFrom, chosen);
         }
-        let heading = self.series.iter().find(|series| series.channel == Channel::Heading);
-        let Some(heading) = heading else {
+        let from_bow = name(log, chosen.sensor);
+        let Some(heading) = self.series.iter().find(|series| series.channel == Channel::Heading) else {
             self.warnings.push(format!(
-                "{} gives the true wind from the bow; without a heading its direction is left out",
-                name(log, chosen.sensor)
+                "{from_bow} gives the true wind from the bow; without a heading its direction is left out"
             ));
             return;
         };
         let mut near = Nearest::new(&heading.time, &heading.values);
-        let values: Vec<f64> = sensor
-            .at
-            .iter()
-            .zip(&sensor.columns[chosen.place])
-            .map(|(&time, from)| from + near.at(time))
-            .map(|from| if from.is_finite() { turned(from) } else { f64::NAN })
-            .collect();
-        self.push(Channel::WindTrueFrom, name(log, chosen.sensor), &sensor.at, values.into_iter());
-        self.warnings.push(format!(
-            "{} gives the direction of the true wind from the bow; the heading is added to it",
-            name(log, chosen.sensor)
-        ));
+        let readings = sensor.at.iter().zip(&sensor.columns[chosen.place]);
+        let north = readings.map(|(&time, from)| from + near.at(time));
+        let values: Vec<f64> = north.map(|from| if from.is_finite() { turned(from) } else { f64::NAN }).collect();
+        self.push(Channel::WindTrueFrom, chosen, values.into_iter());
+        self.warnings
+            .push(format!("{from_bow} gives the direction of the true wind from the bow; the heading is added to it"));
     }
 }
 

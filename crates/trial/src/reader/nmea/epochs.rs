@@ -47,29 +47,16 @@ pub(super) fn from_stamps(log: &mut Log) -> Timed {
         drop_rows(sensor);
         spread += usize::from(spread_stamps(&mut sensor.at));
     }
-    let mut warnings = Vec::new();
-    if log.counts.strayed > 0 {
-        warnings.push(format!(
-            "{} with a stamp far from {} neighbours {} left out",
-            counted(log.counts.strayed, "sentence"),
-            if log.counts.strayed == 1 { "its" } else { "their" },
-            are(log.counts.strayed)
-        ));
-    }
-    if disordered > 0 {
-        warnings.push(format!(
-            "{} with an earlier stamp than the one before of the same instrument {} left out",
-            counted(disordered, "sentence"),
-            are(disordered)
-        ));
-    }
-    if log.counts.unstamped > 0 {
-        warnings.push(format!(
-            "{} without a time stamp {} left out",
-            counted(log.counts.unstamped, "sentence"),
-            are(log.counts.unstamped)
-        ));
-    }
+    let neighbours = if log.counts.strayed == 1 { "its" } else { "their" };
+    let mut warnings: Vec<String> = [
+        (log.counts.strayed, format!("with a stamp far from {neighbours} neighbours")),
+        (disordered, "with an earlier stamp than the one before of the same instrument".to_owned()),
+        (log.counts.unstamped, "without a time stamp".to_owned()),
+    ]
+    .into_iter()
+    .filter(|(number, _)| *number > 0)
+    .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
+    .collect();
     if spread > 0 {
         warnings.push(
             "several sentences of one instrument have the same time stamp; they are spread evenly over the time to the \
@@ -85,23 +72,27 @@ fn spread_stamps(at: &mut [f64]) -> bool {
     if at.windows(2).all(|pair| pair[0] < pair[1]) {
         return false;
     }
-    let mut groups: Vec<Group> = Vec::new();
-    for (row, &time) in at.iter().enumerate() {
-        match groups.last_mut() {
-            Some(group) if group.time == time => group.end = row + 1,
-            _ => groups.push(Group { begin: row, end: row + 1, time, length: 0.0 }),
-        }
-    }
-    if groups.len() < 2 {
-        return false;
-    }
-    for place in 0..groups.len() - 1 {
-        groups[place].length = groups[place + 1].time - groups[place].time;
-    }
-    let last = groups.len() - 1;
-    groups[last].length = groups[last - 1].length;
-    let usual = median(groups.iter().map(|group| group.length));
+    let mut begins: Vec<usize> = (0..at.len()).filter(|&row| row == 0 || at[row] != at[row - 1]).collect();
+    let times: Vec<f64> = begins.iter().map(|&row| at[row]).collect();
+    let Some((lengths, usual)) = lengths(&times) else { return false };
+    begins.push(at.len());
+    let group = |(place, pair): (usize, &[usize])| Group {
+        begin: pair[0],
+        end: pair[1],
+        time: times[place],
+        length: lengths[place],
+    };
+    let groups: Vec<Group> = begins.windows(2).enumerate().map(group).collect();
     spread(at, &groups, usual)
+}
+
+/// Times from each of some instants to the next, the last as long as the one before, and the usual one; `None` for
+/// fewer than two.
+fn lengths(times: &[f64]) -> Option<(Vec<f64>, f64)> {
+    let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    lengths.push(*lengths.last()?);
+    let usual = median(lengths.iter().copied());
+    Some((lengths, usual))
 }
 
 /// Gives every sentence its instant where the time is in some of the sentences.
@@ -116,19 +107,12 @@ pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
     });
     let none = |clocks| Problem::NoClock { sentences: log.counts.sentences, clocks };
     let driver = driver.ok_or_else(|| none(0))?;
-    let (mut epochs, mut clock, strayed) = epochs(&log.sensors[driver])?;
-    if epochs.len() < 2 {
-        return Err(none(epochs.len()));
-    }
+    let (epochs, mut clock, strayed) = epochs(&log.sensors[driver])?;
+    let times_of_epochs: Vec<f64> = epochs.iter().map(|epoch| epoch.time).collect();
+    let (lengths, usual) = lengths(&times_of_epochs).ok_or_else(|| none(epochs.len()))?;
     if clock.day.is_none() {
         clock.day = log.sensors.iter().find_map(|sensor| first_day(sensor, &epochs, clock.second));
     }
-    for place in 0..epochs.len() - 1 {
-        epochs[place].length = epochs[place + 1].time - epochs[place].time;
-    }
-    let last = epochs.len() - 1;
-    epochs[last].length = epochs[last - 1].length;
-    let usual = median(epochs.iter().map(|epoch| epoch.length));
     let (mut several, mut before) = (false, 0);
     let mut groups = Vec::new();
     let name = name(log, driver);
@@ -143,7 +127,7 @@ pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
             let until = epochs.get(place + 1).map_or(f64::INFINITY, |next| next.line);
             row += sensor.at[row..].iter().take_while(|&&line| line < until).count();
             if row > begin {
-                groups.push(Group { begin, end: row, time: epoch.time, length: epoch.length });
+                groups.push(Group { begin, end: row, time: epoch.time, length: lengths[place] });
             }
         }
         several |= spread(&mut sensor.at, &groups, usual);
@@ -168,7 +152,6 @@ pub(super) fn from_sentences(log: &mut Log) -> Result<Timed, Problem> {
 struct Epoch {
     line: f64,
     time: f64,
-    length: f64,
 }
 
 /// The times of one instrument, strictly increasing, what the clock shows at time 0, and times that were left out.
@@ -180,7 +163,7 @@ fn epochs(sensor: &Sensor) -> Result<(Vec<Epoch>, Clock, usize), Problem> {
     let mut stamps = Stamps::default();
     let read = |row: usize| {
         let stamp = Stamp::of(dated.map(|days| days[row] as i64), second[row]);
-        stamps.seconds(stamp).ok().map(|time| Epoch { line: sensor.at[row], time: rounded(time), length: 0.0 })
+        stamps.seconds(stamp).ok().map(|time| Epoch { line: sensor.at[row], time: rounded(time) })
     };
     let all: Vec<Epoch> = (0..second.len()).filter(|&row| second[row].is_finite()).filter_map(read).collect();
     let clock = stamps.clock().expect("there is a time, and each has a second");

@@ -2,6 +2,8 @@
 //! NMEA 0183 (start, address, fields, checksum) and plain numbers, and nothing of what a sentence says. It allocates
 //! nothing.
 
+use crate::cells::plain_number;
+
 /// What a line is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Line<'a> {
@@ -167,41 +169,19 @@ pub(super) enum Number {
 }
 
 /// Reads a plain decimal number, exactly as the standard library does.
-///
-/// Up to fifteen digits and ten to the power of their decimals are numbers a `f64` holds without error, so that their
-/// quotient is the nearest one to the decimal number; more digits go the long way.
 pub(super) fn number(field: &[u8]) -> Number {
-    const TENS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
     let field = field.trim_ascii();
-    let (negative, digits) = match field {
-        [] => return Number::Empty,
-        [b'-', rest @ ..] => (true, rest),
-        [b'+', rest @ ..] => (false, rest),
-        rest => (false, rest),
+    let digits = match field {
+        [b'+', b'0'..=b'9' | b'.', ..] => &field[1..],
+        field => field,
     };
-    let (mut value, mut decimals, mut point, mut count) = (0_u64, 0, false, 0);
-    for byte in digits {
-        match byte {
-            b'0'..=b'9' => {
-                count += 1;
-                if count > 15 {
-                    return long_number(field);
-                }
-                value = 10 * value + u64::from(byte - b'0');
-                decimals += usize::from(point);
-            }
-            b'.' if !point => point = true,
-            _ => return Number::Not,
-        }
+    if let Some(value) = plain_number(digits) {
+        return Number::Of(value);
     }
-    if count == 0 {
-        return Number::Not;
+    if field.is_empty() {
+        return Number::Empty;
     }
-    let value = value as f64 / TENS[decimals];
-    Number::Of(if negative { -value } else { value })
-}
-
-fn long_number(field: &[u8]) -> Number {
+    // More digits than one division of two exact numbers takes.
     let plain = field.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+'));
     let value = std::str::from_utf8(field).ok().filter(|_| plain).and_then(|text| text.parse::<f64>().ok());
     value.filter(|value| value.is_finite()).map_or(Number::Not, Number::Of)

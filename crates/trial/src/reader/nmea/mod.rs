@@ -129,21 +129,15 @@ fn begin_at_zero(series: &mut [Series], clock: Option<Clock>) -> Option<Clock> {
 
 /// What was left out, one sentence each.
 fn of_counts(counts: &Counts, lines: usize) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let of_lines = |number: usize| format!("{number} of {}", counted(lines, "line"));
-    if counts.wrong > 0 {
-        let number = counts.wrong;
-        warnings.push(format!("{} had a wrong checksum and {} left out", of_lines(number), are(number)));
-    }
-    if counts.broken > 0 {
-        let number = counts.broken;
-        warnings.push(format!("{} {} cut short or not text, and left out", of_lines(number), are(number)));
-    }
-    if counts.text > 0 {
-        let number = counts.text;
-        let hold = if number == 1 { "holds" } else { "hold" };
-        warnings.push(format!("{} {hold} no sentence and {} left out", of_lines(number), are(number)));
-    }
+    let hold = if counts.text == 1 { "holds" } else { "hold" };
+    let faults = [
+        (counts.wrong, format!("had a wrong checksum and {} left out", are(counts.wrong))),
+        (counts.broken, format!("{} cut short or not text, and left out", are(counts.broken))),
+        (counts.text, format!("{hold} no sentence and {} left out", are(counts.text))),
+    ];
+    let found = faults.into_iter().filter(|(number, _)| *number > 0);
+    let mut warnings: Vec<String> =
+        found.map(|(number, fault)| format!("{number} of {} {fault}", counted(lines, "line"))).collect();
     if counts.unsummed > 0 {
         let number = counts.unsummed;
         let (have, them) = if number == 1 { ("has", "it") } else { ("have", "them") };

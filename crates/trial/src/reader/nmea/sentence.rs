@@ -81,53 +81,48 @@ pub(super) enum Slot {
 /// Most quantities of one sentence.
 pub(super) const MOST_SLOTS: usize = 5;
 
+/// A sentence with its formatters and quantities.
+type Sentence = (Kind, &'static [&'static [u8]], &'static [Slot]);
+
+/// The sentences that are read: formatters, and quantities in the order of [`Row::values`].
+const SENTENCES: [Sentence; 18] = {
+    use Slot::*;
+    [
+        (Kind::Hdt, &[b"HDT"], &[HeadingTrue]),
+        (Kind::Ths, &[b"THS"], &[HeadingTrue]),
+        (Kind::Hdg, &[b"HDG"], &[HeadingMagnetic, Variation]),
+        (Kind::Hdm, &[b"HDM"], &[HeadingMagnetic]),
+        (Kind::Rot, &[b"ROT"], &[YawRate]),
+        (Kind::Rsa, &[b"RSA"], &[RudderStarboard, RudderPort]),
+        (Kind::Htc, &[b"HTC", b"HTD"], &[RudderOrder]),
+        (Kind::Vhw, &[b"VHW"], &[HeadingTrue, HeadingMagnetic, SpeedWater]),
+        (Kind::Vbw, &[b"VBW"], &[SurgeWater, SwayWater, SurgeGround, SwayGround]),
+        (Kind::Vtg, &[b"VTG"], &[SpeedGround]),
+        (Kind::Rmc, &[b"RMC"], &[Second, Day, Latitude, Longitude, SpeedGround]),
+        (Kind::Gga, &[b"GGA"], &[Second, Latitude, Longitude]),
+        (Kind::Gll, &[b"GLL"], &[Second, Latitude, Longitude]),
+        (Kind::Zda, &[b"ZDA"], &[Second, Day]),
+        (Kind::Rpm, &[b"RPM"], &[Revolutions]),
+        (Kind::Mwv, &[b"MWV"], &[WindSpeed, WindFrom]),
+        (Kind::Mwd, &[b"MWD"], &[WindSpeed, WindFrom]),
+        (Kind::Xdr, &[b"XDR"], &[Transducer]),
+    ]
+};
+
 impl Kind {
     /// The sentence with this formatter.
     pub fn of(formatter: &[u8]) -> Option<Self> {
-        Some(match formatter {
-            b"HDT" => Kind::Hdt,
-            b"THS" => Kind::Ths,
-            b"HDG" => Kind::Hdg,
-            b"HDM" => Kind::Hdm,
-            b"ROT" => Kind::Rot,
-            b"RSA" => Kind::Rsa,
-            b"HTC" | b"HTD" => Kind::Htc,
-            b"VHW" => Kind::Vhw,
-            b"VBW" => Kind::Vbw,
-            b"VTG" => Kind::Vtg,
-            b"RMC" => Kind::Rmc,
-            b"GGA" => Kind::Gga,
-            b"GLL" => Kind::Gll,
-            b"ZDA" => Kind::Zda,
-            b"RPM" => Kind::Rpm,
-            b"MWV" => Kind::Mwv,
-            b"MWD" => Kind::Mwd,
-            b"XDR" => Kind::Xdr,
-            _ => return None,
-        })
+        SENTENCES.iter().find(|(_, formatters, _)| formatters.contains(&formatter)).map(|(kind, ..)| *kind)
     }
 
     /// Its quantities, in the order of [`Row::values`].
     pub fn slots(self) -> &'static [Slot] {
-        match self {
-            Kind::Hdt | Kind::Ths => &[Slot::HeadingTrue],
-            Kind::Hdg => &[Slot::HeadingMagnetic, Slot::Variation],
-            Kind::Hdm => &[Slot::HeadingMagnetic],
-            Kind::Rot => &[Slot::YawRate],
-            Kind::Rsa => &[Slot::RudderStarboard, Slot::RudderPort],
-            Kind::Htc => &[Slot::RudderOrder],
-            Kind::Vhw => &[Slot::HeadingTrue, Slot::HeadingMagnetic, Slot::SpeedWater],
-            Kind::Vbw => &[Slot::SurgeWater, Slot::SwayWater, Slot::SurgeGround, Slot::SwayGround],
-            Kind::Vtg => &[Slot::SpeedGround],
-            Kind::Rmc => &[Slot::Second, Slot::Day, Slot::Latitude, Slot::Longitude, Slot::SpeedGround],
-            Kind::Gga | Kind::Gll => &[Slot::Second, Slot::Latitude, Slot::Longitude],
-            Kind::Zda => &[Slot::Second, Slot::Day],
-            Kind::Rpm => &[Slot::Revolutions],
-            Kind::Mwv | Kind::Mwd => &[Slot::WindSpeed, Slot::WindFrom],
-            Kind::Xdr => &[Slot::Transducer],
-        }
+        SENTENCES[self as usize].2
     }
 }
+
+/// A number with its bounds, and its factor to SI units and radians.
+type Bounded = (Number, (f64, f64), f64);
 
 /// What one sentence says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,6 +148,12 @@ impl Row {
             Number::Empty => {}
             Number::Of(_) | Number::Not => self.odd[place] = true,
         }
+    }
+
+    /// Takes the first of two numbers, each with its bounds and factor, or the second where there is none.
+    fn take_either(&mut self, place: usize, one: Bounded, other: Bounded) {
+        let (number, bounds, factor) = if one.0 == Number::Empty { other } else { one };
+        self.take(place, number, bounds, factor);
     }
 
     /// Takes an angle of [0°, 360°].
@@ -231,10 +232,7 @@ pub(super) fn read(kind: Kind, fields: &Fields) -> Row {
         Kind::Vhw => {
             row.take_direction(0, fields.number(1));
             row.take_direction(1, fields.number(3));
-            match fields.number(5) {
-                Number::Empty => row.take(2, fields.number(7), (-185.0, 185.0), 1.0 / 3.6),
-                knots => row.take(2, knots, SPEED, KNOT),
-            }
+            row.take_either(2, (fields.number(5), SPEED, KNOT), (fields.number(7), (-185.0, 185.0), 1.0 / 3.6));
         }
         Kind::Vbw => {
             for (place, field, status) in [(0, 1, 3), (1, 2, 3), (2, 4, 6), (3, 5, 6)] {
@@ -243,10 +241,10 @@ pub(super) fn read(kind: Kind, fields: &Fields) -> Row {
                 }
             }
         }
-        Kind::Vtg if !fields.is(9, b'N') && fields.is(6, b'N') => match fields.number(5) {
-            Number::Empty => row.take(0, fields.number(7), (0.0, 185.0), 1.0 / 3.6),
-            knots => row.take(0, knots, (0.0, SPEED.1), KNOT),
-        },
+        Kind::Vtg if !fields.is(9, b'N') && fields.is(6, b'N') => {
+            let kmh = (fields.number(7), (0.0, 185.0), 1.0 / 3.6);
+            row.take_either(0, (fields.number(5), (0.0, SPEED.1), KNOT), kmh);
+        }
         Kind::Rmc if fields.is(2, b'A') => {
             row.take_second(0, fields.at(1));
             let day = date(fields.at(9));
@@ -280,10 +278,7 @@ pub(super) fn read(kind: Kind, fields: &Fields) -> Row {
             if fields.is(2, b'T') {
                 row.take_direction(1, fields.number(1));
             }
-            match fields.number(7) {
-                Number::Empty => row.take(0, fields.number(5), (0.0, 200.0), KNOT),
-                metres => row.take(0, metres, (0.0, 100.0), 1.0),
-            }
+            row.take_either(0, (fields.number(7), (0.0, 100.0), 1.0), (fields.number(5), (0.0, 200.0), KNOT));
         }
         _ => {}
     }

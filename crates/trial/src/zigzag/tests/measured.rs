@@ -1,38 +1,14 @@
 //! Measured trials: what is read off them against what the raw samples show.
 
-use std::path::PathBuf;
-
 use ship::angle::{from_deg, to_deg};
 
 use crate::zigzag::{BaseCourseSource, Side, ZigZag, ZigZagError};
-use crate::{Channel, Columns, Origin, Trial};
+use crate::{Origin, Trial, testing};
 
-/// A measured record with the columns this module needs; `None` (and one line) where the data are not there.
+/// A measured record; `None` where the data are not there.
 fn measured(file: &str) -> Option<Trial> {
-    let folder = std::env::var_os("TRIAL_DATA")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
-    let path = folder.join(file);
-    if !path.exists() {
-        println!("skipped: no measured record {file}");
-        return None;
-    }
-    let mut table = csv::Reader::from_path(path).expect("a readable file");
-    let names = table.headers().expect("a header").clone();
-    let column = |name: &str| names.iter().position(|found| found == name).expect("a known column");
-    let wanted = ["t_s", "heading_deg", "rudder_deg", "speed_m_s"].map(column);
-    let mut columns: [Vec<f64>; 4] = Default::default();
-    for row in table.records() {
-        let row = row.expect("a row");
-        for (column, &index) in columns.iter_mut().zip(&wanted) {
-            column.push(row[index].parse().expect("a number"));
-        }
-    }
-    let [time, mut heading, mut rudder, speed] = columns;
-    heading.iter_mut().chain(&mut rudder).for_each(|angle| *angle = from_deg(*angle));
-    let channels =
-        [(Channel::Heading, heading), (Channel::Rudder, rudder), (Channel::Speed, speed)].into_iter().collect();
     let origin = Origin::Measured { file: file.into(), sha256: String::new() };
-    Some(Trial::new(file, origin, Columns { time, channels, unknown: Vec::new() }).expect("consistent columns"))
+    Some(Trial::new(file, origin, testing::measured(file)?).expect("consistent columns"))
 }
 
 /// What the rows of a record show to the eye: pair, first side, time of the first execute, number of executes and of

@@ -7,10 +7,10 @@ mod measured;
 use approx::assert_relative_eq;
 use ship::angle::{from_deg, to_deg};
 
-use super::simulator::{Gaussian, Plant, trial};
 use super::*;
 use crate::Noise;
 use crate::quantity::Quantity;
+use crate::testing::{Gaussian, Plant, trial};
 
 fn of_plant(plant: Plant, duration: f64, step: f64) -> ZigZag {
     let (time, heading, rudder) = plant.record(duration, step);

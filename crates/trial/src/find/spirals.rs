@@ -1,10 +1,10 @@
 //! Spirals after Dieudonné in a log: the rudder goes from side to side in steps and rests at each until the ship turns
 //! steadily. Reverse spirals, where the rate is ordered and the rudder looked for, are not recognised.
 
-use super::rest::Stretch;
-use crate::kind::Kind;
-use crate::record::{Pattern, Record};
-use trial::zigzag::median::median;
+use super::kind::Kind;
+use super::pattern::{Pattern, Prepared};
+use super::rest::Hold;
+use crate::zigzag::median::median;
 
 /// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.
 const FEWEST: usize = 5;
@@ -19,7 +19,7 @@ const BOTH_SIDES: f64 = 2.0_f64.to_radians();
 /// Longest movement from hold to hold as a share of the shorter one.
 const QUICK: f64 = 0.5;
 
-/// A stretch shorter than this share of both neighbours is a pause of a movement.
+/// A rest shorter than this share of both neighbours is a pause of a movement.
 const PAUSE: f64 = 0.2;
 
 /// Shortest hold as a share of the usual one.
@@ -34,14 +34,14 @@ const STEADY: f64 = 0.04;
 const AGAINST: f64 = 0.15;
 
 /// The spirals of a log.
-pub(crate) fn spirals(record: &Record) -> Vec<Pattern> {
-    let all = &record.rest.stretches;
+pub(crate) fn spirals(record: &Prepared) -> Vec<Pattern> {
+    let all = &record.rest.holds;
     let is_pause = |index: usize| {
-        let shorter = |other: Option<&Stretch>| other.is_some_and(|x| all[index].duration() < PAUSE * x.duration());
+        let shorter = |other: Option<&Hold>| other.is_some_and(|x| all[index].duration() < PAUSE * x.duration());
         index > 0 && shorter(all.get(index - 1)) && shorter(all.get(index + 1))
     };
-    let holds: Vec<Stretch> = (0..all.len()).filter(|&index| !is_pause(index)).map(|index| all[index]).collect();
-    let ways: Vec<&[Stretch]> = ways(&holds).into_iter().filter(|way| is_answered(record, way)).collect();
+    let holds: Vec<Hold> = (0..all.len()).filter(|&index| !is_pause(index)).map(|index| all[index]).collect();
+    let ways: Vec<&[Hold]> = ways(&holds).into_iter().filter(|way| is_answered(record, way)).collect();
     let mut found: Vec<Pattern> = Vec::new();
     // Ways share the hold at which the rudder turns back.
     for group in ways.chunk_by(|a, b| a[a.len() - 1].first == b[0].first) {
@@ -51,7 +51,7 @@ pub(crate) fn spirals(record: &Record) -> Vec<Pattern> {
         let mut holds = group[0].to_vec();
         group[1..].iter().for_each(|way| holds.extend(&way[1..]));
         let largest = holds.iter().map(|hold| hold.level.abs()).fold(0.0, f64::max);
-        let mut durations: Vec<f64> = holds.iter().map(Stretch::duration).collect();
+        let mut durations: Vec<f64> = holds.iter().map(Hold::duration).collect();
         let Some(scale) = median(&mut durations) else { continue };
         let turns = holds.iter().filter_map(|hold| record.course.change(hold.from, hold.until));
         let swing = turns.map(f64::abs).fold(0.0, f64::max);
@@ -61,7 +61,7 @@ pub(crate) fn spirals(record: &Record) -> Vec<Pattern> {
 }
 
 /// Runs of holds, each further to the same side than the one before.
-fn ways(holds: &[Stretch]) -> Vec<&[Stretch]> {
+fn ways(holds: &[Hold]) -> Vec<&[Hold]> {
     let step = |index: usize| {
         let (a, b) = (&holds[index], &holds[index + 1]);
         let step = b.level - a.level;
@@ -84,21 +84,20 @@ fn ways(holds: &[Stretch]) -> Vec<&[Stretch]> {
     ways
 }
 
-fn is_from_side_to_side(way: &[Stretch]) -> bool {
+fn is_from_side_to_side(way: &[Hold]) -> bool {
     let (first, last) = (way[0].level, way[way.len() - 1].level);
     let (port, starboard) = (-first.min(last), first.max(last));
     way.len() >= FEWEST && port.min(starboard) >= BOTH_SIDES && port.max(starboard) <= SIDES * port.min(starboard)
 }
 
 /// Whether the ship turns steadily in every hold, the more to the side the rudder went to.
-fn is_answered(record: &Record, way: &[Stretch]) -> bool {
-    let mut durations: Vec<f64> = way.iter().map(Stretch::duration).collect();
+fn is_answered(record: &Prepared, way: &[Hold]) -> bool {
+    let mut durations: Vec<f64> = way.iter().map(Hold::duration).collect();
     let Some(usual) = median(&mut durations) else { return false };
-    // Sorted by `median`.
-    if durations[0] < SHORTEST * usual {
+    if durations.iter().any(|duration| *duration < SHORTEST * usual) {
         return false;
     }
-    let thirds = |hold: &Stretch| {
+    let thirds = |hold: &Hold| {
         let third = hold.duration() / 3.0;
         let late = hold.until - third;
         record.course.rate(late - third, late).zip(record.course.rate(late, hold.until))

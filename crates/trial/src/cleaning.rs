@@ -1,11 +1,11 @@
-//! What is mended in the columns of a table before they are a record: rudder angles that no rudder has, channels that
+//! What is cleaned in the columns of a table before they are a record: rudder angles that no rudder has, channels that
 //! repeat an old value until the next one comes, a heading that stood still while the ship turned, and single readings
-//! that are wrong. Each is located and told; nothing is mended where a sound record could look the same.
+//! that are wrong. Each is located and told; nothing is changed where a sound record could look the same.
 
 mod readings;
 
 use crate::channel::Channel;
-use crate::record::{Columns, Mark};
+use crate::record::{Columns, RejectedReading};
 use crate::words::counted;
 
 /// Angle beyond which no rudder goes, rad.
@@ -57,8 +57,8 @@ pub(crate) fn is_sentinel(channel: Channel, value: f64, last: Option<f64>) -> bo
         && last.is_none_or(|last| (value - last).abs() > NO_READING)
 }
 
-/// Mends the columns; a sentence for everything that was done. The single readings it was done to go to `marks`.
-pub(crate) fn mend(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<String> {
+/// Cleans the columns; a sentence for everything that was done. The single readings it was done to go to `marks`.
+pub(crate) fn clean(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Vec<String> {
     let mut done = Vec::new();
     done.extend(leave_out_no_rudder(columns, marks));
     done.extend(straighten_rudder(columns));
@@ -72,7 +72,7 @@ pub(crate) fn mend(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<String> 
 }
 
 /// Leaves out rows whose rudder angle no rudder has, where they are few.
-fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
+fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Option<String> {
     let rudder = columns.channels.get(&Channel::Rudder)?;
     let wild: Vec<usize> = (0..rudder.len()).filter(|&row| rudder[row].abs() > NO_RUDDER).collect();
     let rest = rudder.iter().map(|delta| delta.abs()).filter(|size| *size <= NO_RUDDER).fold(0.0, f64::max);
@@ -80,7 +80,7 @@ fn leave_out_no_rudder(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<S
         return None;
     }
     let times: Vec<f64> = wild.iter().map(|&row| columns.time[row]).collect();
-    marks.extend(wild.iter().map(|&row| Mark::at(Channel::Rudder, &columns.time, rudder, row)));
+    marks.extend(wild.iter().map(|&row| RejectedReading::at(Channel::Rudder, &columns.time, rudder, row)));
     let largest =
         wild.iter().map(|&row| rudder[row]).fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
     let mut keep = vec![true; columns.time.len()];
@@ -222,7 +222,7 @@ fn rests(values: &[f64]) -> bool {
 
 /// Takes a heading as missing where it stood still: it leaves the value faster than the ship turns, or the ship turned
 /// before and after by much more than the heading resolves.
-fn drop_frozen(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
+fn drop_frozen(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Option<String> {
     let time = &columns.time;
     let heading = columns.channels.get_mut(&Channel::Heading)?;
     if !rests(heading) {
@@ -259,7 +259,7 @@ fn drop_frozen(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
     let told: Vec<String> =
         frozen.iter().map(|rows| format!("from {} s to {} s", time[rows[0]], time[rows[rows.len() - 1]])).collect();
     for &row in frozen.iter().flat_map(|rows| &rows[1..]) {
-        marks.push(Mark::at(Channel::Heading, time, heading, row));
+        marks.push(RejectedReading::at(Channel::Heading, time, heading, row));
         heading[row] = f64::NAN;
     }
     (!told.is_empty()).then(|| format!("the heading is frozen {}; it is taken as missing there", told.join(", ")))
@@ -269,8 +269,8 @@ fn drop_frozen(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
 mod tests {
     use super::*;
 
-    pub(super) fn mend(columns: &mut Columns) -> Vec<String> {
-        super::mend(columns, &mut Vec::new())
+    pub(super) fn clean(columns: &mut Columns) -> Vec<String> {
+        super::clean(columns, &mut Vec::new())
     }
 
     /// A zig-zag by hand: the rudder goes to 10° and back at 2.5°/s, the heading swings; 10 Hz, 300 s.
@@ -324,7 +324,7 @@ mod tests {
             with(Channel::Heading, straight),
         ] {
             let before = sound.channels.clone();
-            assert_eq!(mend(&mut sound), [] as [String; 0]);
+            assert_eq!(clean(&mut sound), [] as [String; 0]);
             assert_eq!(sound.channels, before);
         }
     }
@@ -332,12 +332,12 @@ mod tests {
     #[test]
     fn a_reading_no_rudder_has_is_left_out() {
         let mut wild = with(Channel::Rudder, |row, values| if row == 700 { -5.7 } else { values[row] });
-        let [told] = mend(&mut wild).try_into().expect("one sentence");
+        let [told] = clean(&mut wild).try_into().expect("one sentence");
         assert!(told.contains("1 row") && told.contains("-327°") && told.contains("t = 70 s"), "{told}");
         assert_eq!((wild.time.len(), wild.channels[&Channel::Heading].len()), (2999, 2999));
         // All of a record in degrees under a name of radians is no reading that is off.
         let mut degrees = with(Channel::Rudder, |row, values| values[row].to_degrees());
-        assert_eq!(mend(&mut degrees), [] as [String; 0]);
+        assert_eq!(clean(&mut degrees), [] as [String; 0]);
     }
 
     #[test]
@@ -345,14 +345,14 @@ mod tests {
         for phase in [0, 3] {
             let mut stale =
                 with(Channel::Rudder, |row, values| values[((row + 10 - phase) / 10 * 10 + phase).saturating_sub(10)]);
-            let [told] = mend(&mut stale).try_into().expect("one sentence");
+            let [told] = clean(&mut stale).try_into().expect("one sentence");
             assert!(told.contains("every 10th row"), "{told}");
             let truth = &columns().channels[&Channel::Rudder];
             let far = stale.channels[&Channel::Rudder].iter().zip(truth).map(|(one, other)| (one - other).abs());
             assert!(far.fold(0.0, f64::max).to_degrees() < 0.7);
         }
         let mut stale = with(Channel::Heading, |row, values| values[row / 5 * 5]);
-        assert!(mend(&mut stale)[0].contains("every 5th row"));
+        assert!(clean(&mut stale)[0].contains("every 5th row"));
         let left = stale.channels[&Channel::Heading].iter().filter(|psi| psi.is_finite()).count();
         assert_eq!(left, 600);
     }
@@ -365,7 +365,7 @@ mod tests {
                 let value = [frozen(row, values)];
                 rounded(degrees)(0, &value)
             });
-            let [told] = mend(&mut stuck).try_into().expect("one sentence");
+            let [told] = clean(&mut stuck).try_into().expect("one sentence");
             assert!(told.contains("s to 129.9 s"), "{told}");
             let missing = stuck.channels[&Channel::Heading].iter().filter(|psi| psi.is_nan()).count();
             assert!((299..=315).contains(&missing), "{missing}");

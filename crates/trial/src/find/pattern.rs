@@ -1,14 +1,14 @@
 //! A log with what is derived from it once, and the patterns that are looked for in it.
 
-use crate::course::Course;
-use crate::kind::Kind;
-use crate::log::Log;
-use crate::rest::{Rest, Stretch};
+use super::course::Course;
+use super::kind::Kind;
+use super::rest::{Hold, Rest};
+use super::signals::Signals;
 
 /// A log with what is derived from it once.
 #[derive(Clone, Copy)]
-pub(crate) struct Record<'a> {
-    pub log: &'a Log<'a>,
+pub(crate) struct Prepared<'a> {
+    pub log: &'a Signals<'a>,
     pub rest: &'a Rest,
     pub course: &'a Course,
 }
@@ -18,7 +18,7 @@ pub(crate) struct Record<'a> {
 pub(crate) struct Pattern {
     pub kind: Kind,
     /// Where the rudder was held; never empty.
-    pub holds: Vec<Stretch>,
+    pub holds: Vec<Hold>,
     /// Longest approach that belongs to it, s; also its time scale.
     pub scale: f64,
     /// Change of heading that is large for it, rad.

@@ -1,8 +1,8 @@
 //! The heading of a log where it was read: what it is near a time, and how it changes between two. Gaps are bridged
 //! only as far as the caller says.
 
-use crate::log::Log;
-use trial::zigzag::median::median;
+use super::signals::Signals;
+use crate::zigzag::median::median;
 
 /// Most rows that a middle value is taken of: more make it no better, and the search slower.
 const ENOUGH: usize = 64;
@@ -17,7 +17,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    pub fn of(log: &Log) -> Self {
+    pub fn of(log: &Signals) -> Self {
         let read = log.time.iter().zip(log.heading).filter(|(_, psi)| psi.is_finite());
         let (time, heading) = read.map(|(&t, &psi)| (t, psi)).unzip();
         Self { time, heading }

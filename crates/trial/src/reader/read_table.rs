@@ -8,7 +8,7 @@ use super::instants::spread;
 use super::layout::Meaning;
 use super::limits::no_rows;
 use super::limits::spoken;
-use super::rows::Rows;
+use super::rows::{Met, Rows};
 use crate::channel::Channel;
 use crate::clock::{Clock, Stamps};
 use crate::record::Columns;
@@ -16,7 +16,7 @@ use crate::words::{counted, shortened};
 
 /// A channel whose unit its values have to show.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Open {
+pub(super) struct UnitlessColumn {
     pub channel: Channel,
     /// Name of its column.
     pub name: String,
@@ -26,13 +26,13 @@ pub(super) struct Open {
 
 /// The columns of a table.
 #[derive(Debug)]
-pub(super) struct Kept {
+pub(super) struct ReadTable {
     pub columns: Columns,
     /// Rows of the file.
     pub rows: usize,
     /// What the clock shows at time 0, where the table has stamps.
     pub clock: Option<Clock>,
-    pub open: Vec<Open>,
+    pub open: Vec<UnitlessColumn>,
     /// Name of the column of time where its unit is open.
     pub open_time: Option<String>,
     /// Latitude and longitude, deg.
@@ -41,7 +41,7 @@ pub(super) struct Kept {
 
 impl Rows<'_> {
     /// The columns of all rows kept, with warnings.
-    pub fn finish(mut self) -> Result<(Kept, Vec<String>), Problem> {
+    pub fn finish(mut self) -> Result<(ReadTable, Vec<String>), Problem> {
         let layout = self.layout;
         if self.counts.rows == 0 {
             return Err(no_rows(layout.line));
@@ -76,18 +76,18 @@ impl Rows<'_> {
                 }
                 Meaning::Channel(channel, _) => {
                     if layout.open[place] {
-                        open.push(Open { channel, name: name.clone(), largest: self.largest[place] });
+                        open.push(UnitlessColumn { channel, name: name.clone(), largest: self.met[place].largest });
                     }
                     channels.insert(channel, values);
                 }
                 Meaning::Latitude => latitude = Some(values),
                 Meaning::Longitude => longitude = Some(values),
-                _ if missing && self.text[place] > 0 => {}
+                _ if missing && self.met[place].text > 0 => {}
                 _ => unknown.push((name.clone(), values)),
             }
         }
         let open_time = self.time_place.filter(|&place| layout.open[place]).map(|place| layout.names[place].clone());
-        let kept = Kept {
+        let kept = ReadTable {
             columns: Columns { time: self.time, channels, unknown },
             rows: self.counts.rows,
             clock: self.stamps.as_ref().and_then(Stamps::clock),
@@ -134,7 +134,6 @@ impl Rows<'_> {
 
     fn warnings(&self) -> Vec<String> {
         let counts = &self.counts;
-        let names = &self.layout.names;
         let mut warnings = self.layout.told.clone();
         let mut count = |number: usize, text: &str| {
             if number > 0 {
@@ -155,16 +154,13 @@ impl Rows<'_> {
         if counts.decimal_commas > 0 {
             warnings.push(format!("{} numbers were read with a decimal comma", counts.decimal_commas));
         }
-        for (name, &text) in names.iter().zip(&self.text) {
-            if text > 0 {
-                warnings.push(format!("the column `{}` holds text in {text} rows, taken as missing", shortened(name)));
-            }
+        let columns = || self.layout.names.iter().map(|name| shortened(name)).zip(&self.met);
+        for (name, Met { text, .. }) in columns().filter(|(_, met)| met.text > 0) {
+            warnings.push(format!("the column `{name}` holds text in {text} rows, taken as missing"));
         }
-        for (name, (count, value)) in names.iter().zip(&self.sentinels) {
-            if *count > 0 {
-                let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
-                warnings.push(format!("the column `{}` holds {value} {times}, taken as missing", shortened(name)));
-            }
+        for (name, Met { sentinels: (count, value), .. }) in columns().filter(|(_, met)| met.sentinels.0 > 0) {
+            let times = if *count == 1 { String::from("once") } else { format!("{count} times") };
+            warnings.push(format!("the column `{name}` holds {value} {times}, taken as missing"));
         }
         warnings
     }

@@ -1,56 +1,19 @@
 //! Measured trials: the parts that the search finds against those bounded by hand.
 
-use std::path::PathBuf;
+use crate::find::{Approach, Manoeuvre, Signals, manoeuvres};
+use crate::testing::measured;
+use crate::{Channel, Columns};
 
-use ship::angle::from_deg;
-
-use crate::{Approach, Log, Manoeuvre, manoeuvres};
-
-/// The columns of a measured record that a search looks at.
-struct Table {
-    time: Vec<f64>,
-    rudder: Vec<f64>,
-    heading: Vec<f64>,
-    speed: Vec<f64>,
-    propeller: Vec<f64>,
-}
-
-/// `None` (and one line) where the data are not there.
-fn measured(file: &str) -> Option<Table> {
-    let folder = std::env::var_os("TRIAL_DATA")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
-    let path = folder.join(file);
-    if !path.exists() {
-        println!("skipped: no measured record {file}");
-        return None;
-    }
-    let mut table = csv::Reader::from_path(path).expect("a readable file");
-    let names = table.headers().expect("a header").clone();
-    let column = |name: &str| names.iter().position(|found| found.starts_with(name)).expect("a known column");
-    let wanted = ["t_s", "rudder_deg", "heading_deg", "speed_m_s", "propeller_rp"].map(column);
-    let mut columns: [Vec<f64>; 5] = Default::default();
-    for row in table.records() {
-        let row = row.expect("a row");
-        for (column, &index) in columns.iter_mut().zip(&wanted) {
-            column.push(row[index].parse().expect("a number"));
-        }
-    }
-    let [time, mut rudder, mut heading, speed, propeller] = columns;
-    heading.iter_mut().chain(&mut rudder).for_each(|angle| *angle = from_deg(*angle));
-    Some(Table { time, rudder, heading, speed, propeller })
-}
-
-impl Table {
-    fn manoeuvres(&self) -> Vec<Manoeuvre> {
-        let log = Log {
-            time: &self.time,
-            rudder: &self.rudder,
-            heading: &self.heading,
-            speed: Some(&self.speed),
-            propeller: Some(&self.propeller),
-        };
-        manoeuvres(&log)
-    }
+/// The manoeuvres of a measured record.
+fn searched(columns: &Columns) -> Vec<Manoeuvre> {
+    let channel = |channel| columns.channels.get(&channel).map(Vec::as_slice);
+    manoeuvres(&Signals {
+        time: &columns.time,
+        rudder: channel(Channel::Rudder).expect("a column"),
+        heading: channel(Channel::Heading).expect("a column"),
+        speed: channel(Channel::Speed),
+        propeller: channel(Channel::PropellerRate),
+    })
 }
 
 /// Parts bounded by hand (`scenarios/measured`): the row in which the first full order is given, and the last before
@@ -67,7 +30,7 @@ const BY_HAND: [(&str, &str, f64, f64); 5] = [
 fn whole_logs_of_esso_osaka_give_the_parts_bounded_by_hand() {
     for (file, name, from, until) in BY_HAND {
         let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
-        let found = table.manoeuvres();
+        let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
         assert_eq!(found[0].kind.name(), name, "{file}");
         assert!((found[0].from - from).abs() < 0.11, "{file}: from {}", found[0].from);
@@ -88,7 +51,7 @@ const CIRCLES: [(&str, &str, f64, f64); 4] = [
 fn turns_of_esso_osaka_are_found() {
     for (file, name, from, until) in CIRCLES {
         let Some(table) = measured(&format!("esso_osaka/{file}.csv")) else { return };
-        let found = table.manoeuvres();
+        let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
         assert_eq!(found[0].kind.name(), name, "{file}");
         assert!((found[0].from - from).abs() < 0.21, "{file}: from {}", found[0].from);
@@ -115,7 +78,7 @@ const FILLED: [(&str, &str, f64, usize); 11] = [
 fn records_filled_by_a_zig_zag_are_taken_whole() {
     for (file, name, start, executes) in FILLED {
         let Some(table) = measured(file) else { return };
-        let found = table.manoeuvres();
+        let found = searched(&table);
         assert_eq!(found.len(), 1, "{file}: {found:?}");
         assert_eq!((found[0].kind.name().as_str(), found[0].executes), (name, executes), "{file}");
         let ends = (table.time[0], table.time[table.time.len() - 1]);
@@ -130,7 +93,7 @@ fn records_filled_by_a_zig_zag_are_taken_whole() {
 #[test]
 fn a_turning_circle_is_followed_by_its_pull_out() {
     let Some(table) = measured("kvlcc2_marin/turning_35.csv") else { return };
-    let found = table.manoeuvres();
+    let found = searched(&table);
     let names: Vec<String> = found.iter().map(|found| found.kind.name()).collect();
     assert_eq!(names, ["turning circle 35 to port", "pull-out"]);
     assert_eq!(found[0].from, 0.0);

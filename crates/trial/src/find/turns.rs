@@ -3,9 +3,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::rest::Stretch;
-use crate::kind::Kind;
-use crate::record::{Pattern, Record};
+use super::kind::Kind;
+use super::pattern::{Pattern, Prepared};
+use super::rest::Hold;
 
 /// Smallest rudder angle of a turn, rad.
 const SMALLEST_RUDDER: f64 = 3.0_f64.to_radians();
@@ -28,23 +28,23 @@ const FEWEST_TIMES: f64 = 2.0;
 /// Change of the rate from one such time to the next, as a share of the rate of the turn, below which it is steady.
 const STEADY: f64 = 0.04;
 
-/// The turning circles and pull-outs among stretches that are in order of time.
-pub(crate) fn turns(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
+/// The turning circles and pull-outs among holds that are in order of time.
+pub(crate) fn turns(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
     let mut found = Vec::new();
-    for (index, hold) in stretches.iter().enumerate() {
+    for (index, hold) in holds.iter().enumerate() {
         let Some(turned) = turned(record, hold) else { continue };
         let rate = turned.abs() / hold.duration();
         if turned.abs() >= CIRCLE {
             let kind = Kind::TurningCircle { rudder: hold.level, turned };
             found.push(Pattern { kind, holds: vec![*hold], scale: TURN / rate, swing: TURN });
         }
-        found.extend(pull_out(record, hold, &stretches[index + 1..]));
+        found.extend(pull_out(record, hold, &holds[index + 1..]));
     }
     found
 }
 
-/// Change of heading in a turn, rad; `None` for a stretch that is none.
-fn turned(record: &Record, hold: &Stretch) -> Option<f64> {
+/// Change of heading in a turn, rad; `None` for a hold that is none.
+fn turned(record: &Prepared, hold: &Hold) -> Option<f64> {
     let rudder = hold.level - record.rest.neutral;
     let is_over = hold.level.abs() >= SMALLEST_RUDDER && rudder.abs() >= SMALLEST_RUDDER;
     let turned = record.course.change(hold.from, hold.until).filter(|_| is_over && is_whole(record, hold))?;
@@ -52,20 +52,20 @@ fn turned(record: &Record, hold: &Stretch) -> Option<f64> {
 }
 
 /// Whether the log has no gap in a turn in which the rudder may have been elsewhere.
-fn is_whole(record: &Record, hold: &Stretch) -> bool {
+fn is_whole(record: &Prepared, hold: &Hold) -> bool {
     let rows = &record.log.time[hold.first..=hold.last];
     rows.windows(2).all(|pair| pair[1] - pair[0] <= 0.25 * hold.duration())
 }
 
 /// The rudder amidships from the end of a turn until the rate is steady or the rudder moves.
-fn pull_out(record: &Record, turn: &Stretch, next: &[Stretch]) -> Option<Pattern> {
+fn pull_out(record: &Prepared, turn: &Hold, next: &[Hold]) -> Option<Pattern> {
     let end_of_turn = turn.until - 0.25 * turn.duration();
     let rate = record.course.rate(end_of_turn, turn.until)?.abs();
     let time = PULL_OUT / rate;
-    let soon = |stretch: &&Stretch| stretch.from - turn.until <= time.max(0.25 * turn.duration());
+    let soon = |hold: &&Hold| hold.from - turn.until <= time.max(0.25 * turn.duration());
     // Between two turns the rudder was not amidships.
-    let mut reach = next.iter().take_while(soon).take_while(|stretch| turned(record, stretch).is_none());
-    let amidships = reach.find(|stretch| stretch.duration() >= FEWEST_TIMES * time)?;
+    let mut reach = next.iter().take_while(soon).take_while(|hold| turned(record, hold).is_none());
+    let amidships = reach.find(|hold| hold.duration() >= FEWEST_TIMES * time)?;
     let neutral = record.rest.neutral;
     let off = (amidships.level - neutral).abs();
     let is_amidships = off <= AMIDSHIPS * (turn.level - neutral).abs() && off < SMALLEST_RUDDER;
@@ -90,6 +90,6 @@ fn pull_out(record: &Record, turn: &Stretch, next: &[Stretch]) -> Option<Pattern
     // The rudder moves from the row after the turn on.
     let first = (turn.last + 1).min(amidships.first);
     let [from, until] = [first, last].map(|row| record.log.time[row]);
-    let hold = Stretch { first, last, from, until, level: amidships.level };
+    let hold = Hold { first, last, from, until, level: amidships.level };
     Some(Pattern { kind: Kind::PullOut { rudder: turn.level }, holds: vec![hold], scale: time, swing: PULL_OUT })
 }

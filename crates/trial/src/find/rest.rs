@@ -1,9 +1,10 @@
-//! Where the rudder of a log rests: stretches of rows about one angle, whatever the noise, the rounding and the spikes
+//! Where the rudder of a log rests: holds of rows about one angle, whatever the noise, the rounding and the spikes
 //! of the channel. Which of them belong to a manoeuvre is not decided here.
 
 use std::ops::RangeInclusive;
 
 use super::course::{middle, thinned};
+use crate::zigzag::median::median;
 
 /// Narrowest band about a level in which the rudder rests, rad: orders and feedback agree to about half a degree.
 const NARROWEST_BAND: f64 = 0.5_f64.to_radians();
@@ -20,27 +21,27 @@ const RESOLUTION: f64 = 0.05_f64.to_radians();
 /// Largest rudder angle that may keep a straight course, rad.
 const LARGEST_NEUTRAL: f64 = 2.5_f64.to_radians();
 
-/// Difference of neighbouring stretches that are taken together, as a share of the larger level.
+/// Difference of neighbouring holds that are taken together, as a share of the larger level.
 const SAME_LEVEL: f64 = 0.15;
 
-/// Pause between such stretches as a share of their time together.
+/// Pause between such holds as a share of their time together.
 const SHORT_PAUSE: f64 = 0.5;
 
-/// A stretch shorter than this share of another is no hold beside it.
+/// A rest shorter than this share of another is no hold beside it.
 const SHORT: f64 = 0.2;
 
-/// Rows off the level that do not end a stretch.
+/// Rows off the level that do not end a hold.
 const STRAY_ROWS: usize = 2;
 
-/// Fewest rows of a stretch.
+/// Fewest rows of a hold.
 const FEWEST_ROWS: usize = 3;
 
-/// A step between rows of so many usual ones ends a stretch: nobody knows what the rudder did meanwhile.
+/// A step between rows of so many usual ones ends a hold: nobody knows what the rudder did meanwhile.
 const GAP: f64 = 30.0;
 
-/// A stretch of rows with the rudder at rest.
+/// A hold of rows with the rudder at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stretch {
+pub(crate) struct Hold {
     /// First row.
     pub first: usize,
     /// Last row.
@@ -53,7 +54,7 @@ pub(crate) struct Stretch {
     pub level: f64,
 }
 
-impl Stretch {
+impl Hold {
     /// Time at rest, s.
     pub fn duration(&self) -> f64 {
         self.until - self.from
@@ -79,14 +80,14 @@ pub(crate) struct Rest {
     pub step: f64,
     /// Rudder angle of a straight course, rad: what the rudder has mostly, or 0 where that is no small angle.
     pub neutral: f64,
-    /// Every stretch, in order.
-    pub stretches: Vec<Stretch>,
+    /// Every hold, in order.
+    pub holds: Vec<Hold>,
     /// The same with neighbours of nearly the same level taken together.
-    pub merged: Vec<Stretch>,
+    pub merged: Vec<Hold>,
 }
 
 impl Rest {
-    /// Fails never; a log of less than three rows has no stretches.
+    /// Fails never; a log of less than three rows has no holds.
     pub fn of(time: &[f64], rudder: &[f64]) -> Self {
         let angle = without_spikes(rudder);
         let step = usual(time.windows(2).map(|pair| pair[1] - pair[0]));
@@ -96,20 +97,20 @@ impl Rest {
         let floor = (3.0 * noise).max(1.1 * quantum).clamp(NARROWEST_BAND, WIDEST_BAND);
         let most = usual(angle.iter().copied());
         let neutral = if most.abs() <= LARGEST_NEUTRAL { most } else { 0.0 };
-        let mut rest = Self { angle, noise, floor, step, neutral, stretches: Vec::new(), merged: Vec::new() };
-        rest.stretches = rest.cut(time);
+        let mut rest = Self { angle, noise, floor, step, neutral, holds: Vec::new(), merged: Vec::new() };
+        rest.holds = rest.cut(time);
         rest.merged = rest.merged();
         rest
     }
 
-    /// Whether the rudder of a stretch is that of a straight course.
-    pub fn is_amidships(&self, stretch: &Stretch) -> bool {
-        stretch.level.abs().min((stretch.level - self.neutral).abs()) < self.floor
+    /// Whether the rudder of a hold is that of a straight course.
+    pub fn is_amidships(&self, hold: &Hold) -> bool {
+        hold.level.abs().min((hold.level - self.neutral).abs()) < self.floor
     }
 
     /// Cuts the log where the rudder leaves the band about the mean of the rows since the last cut.
-    fn cut(&self, time: &[f64]) -> Vec<Stretch> {
-        let mut stretches = Vec::new();
+    fn cut(&self, time: &[f64]) -> Vec<Hold> {
+        let mut holds = Vec::new();
         let (mut first, mut last, mut sum, mut count) = (0, 0, 0.0, 0.0);
         for row in 0..self.angle.len() {
             let gap = row > 0 && time[row] - time[row - 1] > GAP * self.step;
@@ -120,22 +121,22 @@ impl Rest {
                 continue;
             }
             if count > 0.0 && (gap || !inside(row)) {
-                stretches.extend(self.stretch(time, first, last, band));
+                holds.extend(self.hold(time, first, last, band));
                 (first, sum, count) = (row, 0.0, 0.0);
             }
             (sum, count, last) = (sum + self.angle[row], count + 1.0, row);
         }
         if count > 0.0 {
             let band = self.floor.max(BAND * (sum / count).abs());
-            stretches.extend(self.stretch(time, first, last, band));
+            holds.extend(self.hold(time, first, last, band));
         }
-        stretches
+        holds
     }
 
-    /// The stretches with neighbours of nearly the same level taken together, and what little is between them.
-    fn merged(&self) -> Vec<Stretch> {
-        let mut merged: Vec<Stretch> = Vec::new();
-        for &next in &self.stretches {
+    /// The holds with neighbours of nearly the same level taken together, and what little is between them.
+    fn merged(&self) -> Vec<Hold> {
+        let mut merged: Vec<Hold> = Vec::new();
+        for &next in &self.holds {
             // What is short beside both is a pause or the end of a movement; beside hours on a straight course
             // everything is short.
             if let [.., before, between] = merged.as_slice()
@@ -154,7 +155,7 @@ impl Rest {
     }
 
     /// The rows of a cut without the ends of the movements about them; `None` where the rudder moved all the time.
-    fn stretch(&self, time: &[f64], first: usize, last: usize, band: f64) -> Option<Stretch> {
+    fn hold(&self, time: &[f64], first: usize, last: usize, band: f64) -> Option<Hold> {
         if last + 1 - first < FEWEST_ROWS {
             return None;
         }
@@ -169,7 +170,7 @@ impl Rest {
         let (early, late) = (self.settled(early, band)?, self.settled(late, band)?);
         let begin = (first..=last).find(|&row| early.contains(&self.angle[row]))?;
         let end = (begin..=last).rev().find(|&row| late.contains(&self.angle[row]))?;
-        (end + 1 - begin >= FEWEST_ROWS).then_some(Stretch {
+        (end + 1 - begin >= FEWEST_ROWS).then_some(Hold {
             first: begin,
             last: end,
             from: time[begin],
@@ -189,7 +190,7 @@ impl Rest {
     }
 }
 
-fn is_same(a: &Stretch, b: &Stretch, floor: f64) -> bool {
+fn is_same(a: &Hold, b: &Hold, floor: f64) -> bool {
     let (shorter, longer) = (a.duration().min(b.duration()), a.duration().max(b.duration()));
     // The end of a movement is near the level, too.
     let tolerance =
@@ -206,17 +207,9 @@ fn without_spikes(values: &[f64]) -> Vec<f64> {
     calm
 }
 
-/// Median of any number of values, 0 of none; in time proportional to their number.
+/// Median of the finite values, 0 of none.
 pub(crate) fn usual(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.filter(|x| x.is_finite()).collect();
-    let half = values.len() / 2;
-    if values.is_empty() {
-        return 0.0;
-    }
-    let even = values.len().is_multiple_of(2);
-    let (below, &mut upper, _) = values.select_nth_unstable_by(half, f64::total_cmp);
-    let lower = below.iter().copied().max_by(f64::total_cmp).filter(|_| even);
-    lower.map_or(upper, |lower| 0.5 * (lower + upper))
+    median(&mut values.filter(|x| x.is_finite()).collect::<Vec<f64>>()).unwrap_or(0.0)
 }
 
 /// Step of a rounded rudder that flickers, rad: one of the smallest differences between rows; 0 where the rudder seldom
@@ -255,7 +248,7 @@ mod tests {
         for sign in [1.0, -1.0] {
             let rudder: Vec<f64> = degrees.iter().map(|x| sign * from_deg(*x)).collect();
             let rest = Rest::of(&time, &rudder);
-            let found: Vec<(usize, usize)> = rest.merged.iter().map(|stretch| (stretch.first, stretch.last)).collect();
+            let found: Vec<(usize, usize)> = rest.merged.iter().map(|hold| (hold.first, hold.last)).collect();
             assert_eq!(found, rows);
             assert_eq!(rest.merged[2].level, -sign * from_deg(20.0));
         }

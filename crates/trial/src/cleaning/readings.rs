@@ -3,7 +3,7 @@
 
 use super::at;
 use crate::channel::Channel;
-use crate::record::{Columns, Mark};
+use crate::record::{Columns, RejectedReading};
 use crate::zigzag::median::upper_median;
 
 /// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
@@ -51,7 +51,7 @@ fn usual(time: &[f64], values: &[f64]) -> Option<f64> {
 }
 
 /// Takes single readings far from both neighbours as missing, of heading and rudder, and tells of jumps of the heading.
-pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<String> {
+pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Vec<String> {
     let time = &columns.time;
     let mut told = Vec::new();
     for (channel, name) in [(Channel::Heading, "heading"), (Channel::Rudder, "rudder angle")] {
@@ -69,7 +69,7 @@ pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<S
             let largest = spikes.iter().map(|(_, deviation)| deviation.abs()).fold(0.0, f64::max);
             let times: Vec<f64> = spikes.iter().map(|&(row, _)| time[row]).collect();
             for &(row, _) in &spikes {
-                marks.push(Mark::at(channel, time, values, row));
+                marks.push(RejectedReading::at(channel, time, values, row));
                 values[row] = f64::NAN;
             }
             told.push(format!(
@@ -88,7 +88,7 @@ pub(super) fn drop_spikes(columns: &mut Columns, marks: &mut Vec<Mark>) -> Vec<S
 }
 
 /// Tells of steps between two headings that no ship makes: far more than the steps before and after.
-fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<Mark>) -> Option<String> {
+fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<RejectedReading>) -> Option<String> {
     let mut found = Vec::new();
     let mut last: [Option<usize>; 3] = [None; 3];
     for row in readings(heading) {
@@ -108,7 +108,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<Mark>) -> Op
     }
     let largest = found.iter().map(|(_, step)| *step).fold(0.0, f64::max);
     let times: Vec<f64> = found.iter().map(|&(row, _)| time[row]).collect();
-    marks.extend(found.iter().map(|&(row, _)| Mark::at(Channel::Heading, time, heading, row)));
+    marks.extend(found.iter().map(|&(row, _)| RejectedReading::at(Channel::Heading, time, heading, row)));
     Some(format!(
         "the heading jumps (by up to {:.1}°) as no ship turns, {}; it is left as it is, for nobody can say which side is right",
         largest.to_degrees(),
@@ -117,7 +117,7 @@ fn jumps(time: &[f64], heading: &[f64], least: f64, marks: &mut Vec<Mark>) -> Op
 }
 
 /// Takes a yaw rate as missing where it stays at the end of its scale while the heading turns faster.
-pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<Mark>) -> Option<String> {
+pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<RejectedReading>) -> Option<String> {
     let time = &columns.time;
     let (heading, rate) = (columns.channels.get(&Channel::Heading)?, columns.channels.get(&Channel::YawRate)?);
     let end = rate.iter().filter(|rate| rate.is_finite()).fold(0.0, |end: f64, rate| end.max(rate.abs()));
@@ -141,7 +141,7 @@ pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<Mark>) -> Opti
     }
     let rate = columns.channels.get_mut(&Channel::YawRate)?;
     for &row in &at_end {
-        marks.push(Mark::at(Channel::YawRate, &columns.time, rate, row));
+        marks.push(RejectedReading::at(Channel::YawRate, &columns.time, rate, row));
         rate[row] = f64::NAN;
     }
     Some(format!(
@@ -153,14 +153,14 @@ pub(super) fn drop_clipped(columns: &mut Columns, marks: &mut Vec<Mark>) -> Opti
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{columns, mend, with};
+    use super::super::tests::{clean, columns, with};
     use super::*;
 
     #[test]
     fn a_spike_is_left_out_and_a_jump_is_told() {
         let spike = |row: usize, values: &[f64]| values[row] + if row == 900 { 0.1 } else { 0.0 };
         let mut spiked = with(Channel::Heading, spike);
-        let [told] = mend(&mut spiked).try_into().expect("one sentence");
+        let [told] = clean(&mut spiked).try_into().expect("one sentence");
         assert!(
             told.starts_with("1 heading far from both neighbours (by up to 5.7°)") && told.ends_with("t = 90 s"),
             "{told}"
@@ -168,7 +168,7 @@ mod tests {
         assert!(spiked.channels[&Channel::Heading][900].is_nan());
         let jump = |row: usize, values: &[f64]| values[row] + if (900..950).contains(&row) { 0.1 } else { 0.0 };
         let mut jumped = with(Channel::Heading, jump);
-        let [told] = mend(&mut jumped).try_into().expect("one sentence");
+        let [told] = clean(&mut jumped).try_into().expect("one sentence");
         assert!(told.contains("jumps (by up to 5.8°)") && told.contains("t = 90, 95 s"), "{told}");
     }
 
@@ -179,10 +179,10 @@ mod tests {
         let rate = |row: usize| (heading[(row + 1).min(2999)] - heading[row.saturating_sub(1)]) / 0.2;
         let largest = 0.7 * (0..3000).map(rate).fold(0.0, f64::max);
         clipped.channels.insert(Channel::YawRate, (0..3000).map(|row| rate(row).clamp(-largest, largest)).collect());
-        let [told] = mend(&mut clipped).try_into().expect("one sentence");
+        let [told] = clean(&mut clipped).try_into().expect("one sentence");
         assert!(told.contains("end of its scale"), "{told}");
         let mut sound = columns();
         sound.channels.insert(Channel::YawRate, (0..3000).map(rate).collect());
-        assert_eq!(mend(&mut sound), [] as [String; 0]);
+        assert_eq!(clean(&mut sound), [] as [String; 0]);
     }
 }

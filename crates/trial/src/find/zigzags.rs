@@ -3,10 +3,10 @@
 
 use super::bounds::first_execute;
 use super::course::middle;
-use super::rest::Stretch;
-use crate::kind::Kind;
-use crate::record::{Pattern, Record};
-use trial::zigzag::median::median;
+use super::kind::Kind;
+use super::pattern::{Pattern, Prepared};
+use super::rest::Hold;
+use crate::zigzag::median::median;
 
 /// Largest ratio of the rudder angles to both sides.
 const SIDES: f64 = 1.6;
@@ -18,7 +18,7 @@ const SAME_SIDE_AT_LEAST: f64 = 1.5_f64.to_radians();
 /// Longest movement from side to side, as a share of the longer hold beside it. A first hold may be short.
 const QUICK: f64 = 1.25;
 
-/// A stretch shorter than this share of the hold before it is a pause of the movement.
+/// A rest shorter than this share of the hold before it is a pause of the movement.
 const PAUSE: f64 = 0.3;
 
 /// How long after a hold, as a multiple of it, such pauses are passed over.
@@ -59,19 +59,18 @@ const TURN: f64 = 4.0;
 /// Fewest holds.
 const FEWEST: usize = 3;
 
-/// The zig-zags among stretches that are in order of time.
-pub(crate) fn zigzags(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
+/// The zig-zags among holds that are in order of time.
+pub(crate) fn zigzags(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
     let mut found: Vec<Pattern> = Vec::new();
     let mut start = 0;
-    while start < stretches.len() {
-        if record.rest.is_amidships(&stretches[start]) {
+    while start < holds.len() {
+        if record.rest.is_amidships(&holds[start]) {
             start += 1;
             continue;
         }
-        let chain = Chain::from(start, stretches, record.rest.neutral);
+        let chain = Chain::from(start, holds, record.rest.neutral);
         found.extend(answered(record, &chain.holds));
-        let ends =
-            found.last().is_some_and(|pattern| pattern.last() >= stretches[chain.next.min(stretches.len() - 1)].last);
+        let ends = found.last().is_some_and(|pattern| pattern.last() >= holds[chain.next.min(holds.len() - 1)].last);
         start = chain.next + usize::from(ends);
     }
     found
@@ -79,44 +78,42 @@ pub(crate) fn zigzags(record: &Record, stretches: &[Stretch]) -> Vec<Pattern> {
 
 /// Holds to alternate sides.
 struct Chain {
-    holds: Vec<Stretch>,
+    holds: Vec<Hold>,
     /// Where the search goes on: the last hold of this chain may be the first of the next.
     next: usize,
 }
 
 impl Chain {
-    fn from(start: usize, stretches: &[Stretch], neutral: f64) -> Self {
-        let mut holds = vec![stretches[start]];
+    fn from(start: usize, all: &[Hold], neutral: f64) -> Self {
+        let mut holds = vec![all[start]];
         let mut next = start + 1;
-        for (index, &stretch) in stretches.iter().enumerate().skip(start + 1) {
+        for (index, &hold) in all.iter().enumerate().skip(start + 1) {
             let count = holds.len();
             let last = holds[count - 1];
-            let gap = stretch.from - last.until;
-            let (shorter, longer) = (last.duration().min(stretch.duration()), last.duration().max(stretch.duration()));
+            let gap = hold.from - last.until;
+            let (shorter, longer) = (last.duration().min(hold.duration()), last.duration().max(hold.duration()));
             let same_side = count.checked_sub(2).map(|other| holds[other].level);
-            if is_opposed(last.level, stretch.level, neutral)
+            if is_opposed(last.level, hold.level, neutral)
                 && gap <= QUICK * longer
-                && same_side.is_none_or(|level| is_level(level, stretch.level))
+                && same_side.is_none_or(|level| is_level(level, hold.level))
             {
-                holds.push(stretch);
+                holds.push(hold);
                 next = index;
-            } else if is_level(last.level, stretch.level)
+            } else if is_level(last.level, hold.level)
                 && gap <= 0.5 * shorter
-                && stretch.duration() >= PAUSE * last.duration()
+                && hold.duration() >= PAUSE * last.duration()
             {
-                holds[count - 1] = last.joined(stretch);
+                holds[count - 1] = last.joined(hold);
                 next = index;
-            } else if last.level * stretch.level > 0.0
-                && last.duration() < PAUSE * stretch.duration()
-                && gap <= QUICK * stretch.duration()
-                && count.checked_sub(3).is_none_or(|same| is_level(holds[same].level, stretch.level))
+            } else if last.level * hold.level > 0.0
+                && last.duration() < PAUSE * hold.duration()
+                && gap <= QUICK * hold.duration()
+                && count.checked_sub(3).is_none_or(|same| is_level(holds[same].level, hold.level))
             {
                 // The rudder paused on its way to this hold.
-                holds[count - 1] = stretch;
+                holds[count - 1] = hold;
                 next = index;
-            } else if stretch.duration() < PAUSE * last.duration()
-                && stretch.until - last.until <= REACH * last.duration()
-            {
+            } else if hold.duration() < PAUSE * last.duration() && hold.until - last.until <= REACH * last.duration() {
                 continue;
             } else {
                 break;
@@ -141,7 +138,7 @@ fn is_level(a: f64, b: f64) -> bool {
 }
 
 /// The parts of a chain that the heading answers as in a zig-zag.
-fn answered(record: &Record, holds: &[Stretch]) -> Vec<Pattern> {
+fn answered(record: &Prepared, holds: &[Hold]) -> Vec<Pattern> {
     if holds.len() < FEWEST {
         return Vec::new();
     }
@@ -181,19 +178,19 @@ fn answered(record: &Record, holds: &[Stretch]) -> Vec<Pattern> {
 }
 
 /// +1 where a hold is to starboard of the one beside it.
-fn side(holds: &[Stretch], index: usize) -> f64 {
+fn side(holds: &[Hold], index: usize) -> f64 {
     let other = if index > 0 { index - 1 } else { index + 1 };
     (holds[index].level - holds[other].level).signum()
 }
 
 /// Heading when the rudder leaves a hold: between its last row and the next.
-fn heading_at_end(record: &Record, hold: &Stretch) -> Option<f64> {
+fn heading_at_end(record: &Prepared, hold: &Hold) -> Option<f64> {
     let scale = hold.duration();
     record.course.near(hold.until + 0.5 * record.rest.step, 0.02 * scale, 0.5 * scale)
 }
 
 /// A zig-zag of holds whose swings agree, with the headings at their ends; `None` where it is none.
-fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Option<Pattern> {
+fn pattern(record: &Prepared, holds: &[Hold], headings: &[Option<f64>]) -> Option<Pattern> {
     let mut sizes = Vec::new();
     for pair in headings[..headings.len() - 1].windows(2) {
         sizes.push((pair[1]? - pair[0]?).abs());
@@ -225,7 +222,7 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
     let heading = deviation(holds, headings)?;
     let clear = rudder >= CLEAR_RUDDER || heading >= CLEAR_HEADING;
     let kind = Kind::ZigZag { rudder, heading };
-    let mut durations: Vec<f64> = holds[..holds.len() - 1].iter().map(Stretch::duration).collect();
+    let mut durations: Vec<f64> = holds[..holds.len() - 1].iter().map(Hold::duration).collect();
     let scale = median(&mut durations)?;
     (clear && rudder >= SMALLEST_RUDDER && (SMALLEST_HEADING..=LARGEST_HEADING).contains(&heading)).then(|| Pattern {
         kind,
@@ -237,7 +234,7 @@ fn pattern(record: &Record, holds: &[Stretch], headings: &[Option<f64>]) -> Opti
 
 /// Whether the ship went straight with the rudder about amidships before the first of three holds, which began at
 /// the time and heading `began`; also where the log does not tell.
-fn is_straight_before(record: &Record, holds: &[Stretch], (from, began): (f64, f64), swing: f64) -> bool {
+fn is_straight_before(record: &Prepared, holds: &[Hold], (from, began): (f64, f64), swing: f64) -> bool {
     // The second hold has twice the way of heading to go, and stops a turn first.
     if holds[1].duration() <= holds[0].duration() {
         return false;
@@ -252,8 +249,8 @@ fn is_straight_before(record: &Record, holds: &[Stretch], (from, began): (f64, f
 }
 
 /// Whether the rudder is held most of the time, and no gap of the log hides a hold.
-fn is_held(record: &Record, holds: &[Stretch]) -> bool {
-    let held: f64 = holds.iter().map(Stretch::duration).sum();
+fn is_held(record: &Prepared, holds: &[Hold]) -> bool {
+    let held: f64 = holds.iter().map(Hold::duration).sum();
     let (first, last) = (holds[0], holds[holds.len() - 1]);
     let mean = held / holds.len() as f64;
     let rows = &record.log.time[first.first..=last.last];
@@ -261,7 +258,7 @@ fn is_held(record: &Record, holds: &[Stretch]) -> bool {
 }
 
 /// Median change of heading from the base course to the reversals, rad; the base course is midway between the sides.
-fn deviation(holds: &[Stretch], headings: &[Option<f64>]) -> Option<f64> {
+fn deviation(holds: &[Hold], headings: &[Option<f64>]) -> Option<f64> {
     let reversals = headings.len() - 1;
     let mut sides = [Vec::new(), Vec::new()];
     for index in 0..reversals {

@@ -3,7 +3,7 @@
 
 use ship::angle::to_deg;
 
-use crate::record::Record;
+use super::pattern::Prepared;
 
 /// Share of missing headings worth a remark.
 const MISSING: f64 = 0.01;
@@ -49,7 +49,7 @@ pub struct Quality {
 
 impl Quality {
     /// What the rows of a part tell by themselves.
-    pub(crate) fn of(record: &Record, first: usize, last: usize) -> Self {
+    pub(crate) fn of(record: &Prepared, first: usize, last: usize) -> Self {
         let (time, heading) = (&record.log.time[first..=last], &record.log.heading[first..=last]);
         let mut longest = 0.0_f64;
         let (mut read, mut missing) = (time[0], 0);

@@ -3,7 +3,7 @@
 
 use ship::angle::from_deg;
 
-use crate::{Kind, Log, Manoeuvre, manoeuvres};
+use crate::find::{Kind, Manoeuvre, Signals, manoeuvres};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -131,8 +131,8 @@ impl Sea {
         (start, self.now() - self.step)
     }
 
-    pub fn log(&self) -> Log<'_> {
-        Log {
+    pub fn log(&self) -> Signals<'_> {
+        Signals {
             time: &self.time,
             rudder: &self.rudder,
             heading: &self.heading,

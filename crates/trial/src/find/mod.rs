@@ -1,8 +1,8 @@
 //! Finds the manoeuvres inside a long log: zig-zags, turning circles, pull-outs, spirals and straight pieces, each with
-//! the part of the log that is to be analysed. It reads no characteristics off them (see [`trial::zigzag`]), identifies
-//! nothing and mends nothing.
+//! the part of the log that is to be analysed. It reads no characteristics off them (see [`crate::zigzag`]), identifies
+//! nothing and cleans nothing.
 //!
-//! A log is first cut into stretches where the rudder rests (`rest`); every manoeuvre is a pattern of such stretches
+//! A log is first cut into holds, where the rudder rests (`rest`); every manoeuvre is a pattern of such holds
 //! that the heading answers (`zigzags`, `spirals`, `turns`), and what lies between them may be straight (`straights`).
 //! Where a part begins and ends is decided last, and in one place (`bounds`).
 //!
@@ -13,10 +13,11 @@
 mod bounds;
 mod course;
 mod kind;
-mod log;
 mod manoeuvre;
+mod pattern;
 mod quality;
-mod record;
+mod signals;
+
 mod rest;
 mod spirals;
 mod straights;
@@ -26,30 +27,30 @@ mod turns;
 mod zigzags;
 
 use course::Course;
-use record::{Pattern, Record};
-use rest::{Rest, Stretch};
+use pattern::{Pattern, Prepared};
+use rest::{Hold, Rest};
 
 pub use kind::Kind;
-pub use log::Log;
 pub use manoeuvre::Manoeuvre;
 pub use quality::{Approach, Quality};
+pub use signals::Signals;
 
 /// The manoeuvres of a log in order of time; they do not overlap.
 ///
-/// Empty where nothing is recognised, and for a log that is not as [`Log`] says. Time and memory grow in proportion to
-/// the rows.
-pub fn manoeuvres(log: &Log) -> Vec<Manoeuvre> {
+/// Empty where nothing is recognised, and for a log that is not as [`Signals`] says. Time and memory grow in
+/// proportion to the rows.
+pub fn manoeuvres(log: &Signals) -> Vec<Manoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
     let course = Course::of(log);
     let rest = Rest::of(log.time, log.rudder);
-    let record = Record { log, rest: &rest, course: &course };
+    let record = Prepared { log, rest: &rest, course: &course };
     let mut found = spirals::spirals(&record);
-    let free = rest.merged.iter().copied().filter(|stretch| !overlaps(&found, stretch)).collect::<Vec<_>>();
+    let free = rest.merged.iter().copied().filter(|hold| !overlaps(&found, hold)).collect::<Vec<_>>();
     found.extend(zigzags::zigzags(&record, &free));
     found.sort_by_key(|pattern| pattern.holds[0].first);
-    let free = rest.merged.iter().copied().filter(|stretch| !overlaps(&found, stretch)).collect::<Vec<_>>();
+    let free = rest.merged.iter().copied().filter(|hold| !overlaps(&found, hold)).collect::<Vec<_>>();
     // A pull-out begins where its turn ends, and something else may lie between.
     let turns = turns::turns(&record, &free).into_iter().filter(|turn| !overlaps(&found, &turn.holds[0]));
     found.extend(turns.collect::<Vec<_>>());
@@ -59,8 +60,8 @@ pub fn manoeuvres(log: &Log) -> Vec<Manoeuvre> {
     list
 }
 
-/// Whether a stretch shares rows with one of the patterns, which are in order of time and apart.
-fn overlaps(found: &[Pattern], stretch: &Stretch) -> bool {
-    let next = found.partition_point(|pattern| pattern.last() < stretch.first);
-    found.get(next).is_some_and(|pattern| pattern.first() <= stretch.last)
+/// Whether a hold shares rows with one of the patterns, which are in order of time and apart.
+fn overlaps(found: &[Pattern], hold: &Hold) -> bool {
+    let next = found.partition_point(|pattern| pattern.last() < hold.first);
+    found.get(next).is_some_and(|pattern| pattern.first() <= hold.last)
 }

@@ -2,13 +2,13 @@
 //! the last row before the rudder leaves its last hold or the propeller stops.
 
 use super::course::middle;
+use super::kind::Kind;
+use super::manoeuvre::Manoeuvre;
+use super::pattern::{Pattern, Prepared};
 use super::quality::{Approach, Quality, STEADY_SPEED};
-use super::rest::{Stretch, usual};
-use crate::kind::Kind;
-use crate::manoeuvre::Manoeuvre;
-use crate::record::{Pattern, Record};
-use trial::zigzag::executes::Rudder;
-use trial::zigzag::holds::{Hold, LAID};
+use super::rest::{Hold, usual};
+use crate::zigzag::executes::Rudder;
+use crate::zigzag::holds::{self, LAID};
 
 /// Rudder off its middle in a steady approach, and how far its middle may be off amidships, as shares of the rudder
 /// of the manoeuvre.
@@ -41,7 +41,7 @@ const FEWEST_ON_RAMP: usize = 3;
 const ENOUGH_ROWS: usize = 8;
 
 /// The manoeuvres of patterns that are in order of time and apart.
-pub(crate) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
+pub(crate) fn bounded(record: &Prepared, found: &[Pattern]) -> Vec<Manoeuvre> {
     let time = record.log.time;
     let mut free = 0;
     let mut list = Vec::new();
@@ -51,10 +51,10 @@ pub(crate) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
             Kind::PullOut { .. } => (pattern.first(), None),
             _ => {
                 let start = first_execute(record, &pattern.holds, pattern.scale, free);
-                (start, Some(Lead::of(record, pattern, start, free)))
+                (start, Some(ApproachSegment::of(record, pattern, start, free)))
             }
         };
-        let first = approach.as_ref().map_or(start, |lead| lead.first);
+        let first = approach.as_ref().map_or(start, |segment| segment.first);
         let last = last.max(start);
         let executes = match pattern.kind {
             Kind::Straight => 0,
@@ -62,9 +62,9 @@ pub(crate) fn bounded(record: &Record, found: &[Pattern]) -> Vec<Manoeuvre> {
         };
         let mut quality = Quality::of(record, first, last);
         quality.rudder_spread = spread(pattern);
-        if let Some(lead) = approach {
-            quality.approach = Some(lead.approach);
-            quality.speed_change = lead.speed_change;
+        if let Some(segment) = approach {
+            quality.approach = Some(segment.approach);
+            quality.speed_change = segment.speed_change;
         }
         list.push(Manoeuvre {
             kind: pattern.kind,
@@ -92,7 +92,7 @@ fn spread(pattern: &Pattern) -> f64 {
 }
 
 /// Last row of a manoeuvre in which the propeller turns.
-fn before_stop(record: &Record, pattern: &Pattern) -> usize {
+fn before_stop(record: &Prepared, pattern: &Pattern) -> usize {
     let (first, last) = (pattern.first(), pattern.last());
     let Some(propeller) = record.log.propeller.and_then(|values| values.get(first..=last)) else { return last };
     let stopped = STOPPED * usual(propeller.iter().map(|n| n.abs()));
@@ -105,23 +105,23 @@ fn before_stop(record: &Record, pattern: &Pattern) -> usize {
 
 /// First row in which the rudder moves into the first of some holds, looked for from row `free` on and `scale` seconds
 /// before the hold or, where the rudder is slow, somewhat earlier.
-pub(crate) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free: usize) -> usize {
+pub(crate) fn first_execute(record: &Prepared, holds: &[Hold], scale: f64, free: usize) -> usize {
     let time = record.log.time;
     let holds = &holds[..holds.len().min(ENOUGH_HOLDS)];
     let hold = holds[0];
     // A slow rudder takes longer than a short first hold.
     let longest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
     let movement = longest(&mut holds.windows(2).map(|pair| pair[1].from - pair[0].until));
-    let scale = scale.max(movement + longest(&mut holds.iter().map(Stretch::duration)));
+    let scale = scale.max(movement + longest(&mut holds.iter().map(Hold::duration)));
     let window = time.partition_point(|&t| t < hold.from - scale).max(free).min(hold.first);
     let end = holds[holds.len() - 1].last;
-    let local = |hold: &Stretch| Hold {
+    let local = |hold: &Hold| holds::Hold {
         side: if hold.level < 0.0 { -1.0 } else { 1.0 },
         first: hold.first - window,
         last: hold.last - window,
         level: hold.level,
     };
-    let mut local: Vec<Hold> = holds.iter().map(local).collect();
+    let mut local: Vec<holds::Hold> = holds.iter().map(local).collect();
     // The last of a movement is slow and says nothing of its speed: there a hold begins before the rudder rests.
     let angle = &record.rest.angle[window..=end];
     let laid = |&row: &usize| {
@@ -144,7 +144,7 @@ pub(crate) fn first_execute(record: &Record, holds: &[Stretch], scale: f64, free
 
 /// First row on the line through a movement into a hold at a rate, rad/s. Steering to the same side just before moves
 /// the foot of that line, but is not on it.
-fn on_ramp(time: &[f64], angle: &[f64], hold: &Hold, rate: f64, floor: f64) -> usize {
+fn on_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, rate: f64, floor: f64) -> usize {
     let half = (0..hold.first).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs()).unwrap_or(0);
     let off = |row: usize| (angle[row] - angle[half] - hold.side * rate * (time[row] - time[half])).abs();
     // The other half tells how well the rows of a movement keep to a line: rounding and uneven times take them off.
@@ -162,7 +162,7 @@ fn on_ramp(time: &[f64], angle: &[f64], hold: &Hold, rate: f64, floor: f64) -> u
 
 /// First row of the movement into the only hold of a manoeuvre, which no other movement tells the speed of; `None`
 /// where the record does not show it.
-fn single_ramp(time: &[f64], angle: &[f64], hold: &Hold, noise: f64) -> Option<usize> {
+fn single_ramp(time: &[f64], angle: &[f64], hold: &holds::Hold, noise: f64) -> Option<usize> {
     let laid = hold.first;
     let half = (0..laid).rev().find(|&row| hold.side * angle[row] <= 0.5 * hold.level.abs())?;
     let rate = (angle[laid] - angle[half]) / (time[laid] - time[half]);
@@ -184,14 +184,14 @@ fn single_ramp(time: &[f64], angle: &[f64], hold: &Hold, noise: f64) -> Option<u
 }
 
 /// What of the approach belongs to a manoeuvre.
-struct Lead {
+struct ApproachSegment {
     first: usize,
     approach: Approach,
     speed_change: Option<f64>,
 }
 
-impl Lead {
-    fn of(record: &Record, pattern: &Pattern, start: usize, free: usize) -> Self {
+impl ApproachSegment {
+    fn of(record: &Prepared, pattern: &Pattern, start: usize, free: usize) -> Self {
         let time = record.log.time;
         let earliest = time.partition_point(|&t| t < time[start] - pattern.scale).max(free).min(start);
         let speed_change = change(record.log.speed, earliest, start);
@@ -224,7 +224,7 @@ impl Lead {
 }
 
 /// First row from which on the rudder stays about amidships until row `start`; `None` where it does not in the end.
-fn steady_rudder(record: &Record, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
+fn steady_rudder(record: &Prepared, pattern: &Pattern, earliest: usize, start: usize) -> Option<usize> {
     let (time, angle) = (record.log.time, &record.rest.angle);
     let levels = || pattern.holds.iter().map(|hold| hold.level);
     let largest = levels().map(f64::abs).fold(0.0, f64::max);

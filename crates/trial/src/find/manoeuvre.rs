@@ -1,7 +1,7 @@
 //! What a search gives: a manoeuvre with the part of the log that is to be analysed.
 
-use crate::kind::Kind;
-use crate::quality::Quality;
+use super::kind::Kind;
+use super::quality::Quality;
 
 /// A manoeuvre inside a log.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use ship::angle::{from_deg, to_deg};
 
 use super::ship::Gaussian;
 use super::ship::Sea;
-use crate::{Log, manoeuvres};
+use crate::find::{Signals, manoeuvres};
 
 #[test]
 fn an_autopilot_keeps_a_straight_piece() {
@@ -98,7 +98,7 @@ fn between_two_turns_there_is_no_pull_out() {
             heading.push(psi);
         }
     }
-    let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller: None };
+    let log = Signals { time: &time, rudder: &rudder, heading: &heading, speed: None, propeller: None };
     let list = manoeuvres(&log);
     let names: Vec<String> = list.iter().map(|found| found.kind.name()).collect();
     assert_eq!(names, ["turning circle 10 to starboard", "turning circle 25 to port", "pull-out", "straight"]);
@@ -114,9 +114,10 @@ fn logs_that_are_none() {
             for heading in [0.0, f64::NAN, f64::INFINITY] {
                 let (rudder, heading) = (vec![rudder; time.len()], vec![heading; time.len()]);
                 let channel = Some(&rudder[..]);
-                let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: channel, propeller: channel };
+                let log =
+                    Signals { time: &time, rudder: &rudder, heading: &heading, speed: channel, propeller: channel };
                 assert_eq!(manoeuvres(&log), []);
-                let shorter = Log { rudder: &rudder[..rudder.len() / 2], propeller: Some(&[]), ..log };
+                let shorter = Signals { rudder: &rudder[..rudder.len() / 2], propeller: Some(&[]), ..log };
                 assert_eq!(manoeuvres(&shorter), []);
             }
         }
@@ -149,7 +150,7 @@ proptest! {
             time.iter_mut().skip(row).for_each(|t| *t += gap);
         }
         let any = Some(&heading[..]);
-        let log = Log { time: &time, rudder: &rudder, heading: &heading, speed: any, propeller: any };
+        let log = Signals { time: &time, rudder: &rudder, heading: &heading, speed: any, propeller: any };
         let list = manoeuvres(&log);
         for found in &list {
             prop_assert!(time[0] <= found.from && found.from <= found.start && found.start <= found.until);

@@ -4,7 +4,7 @@
 ///
 /// All have the length of `time`. Time increases strictly; its spacing may be uneven and have gaps.
 #[derive(Debug, Clone, Copy)]
-pub struct Log<'a> {
+pub struct Signals<'a> {
     /// Time, s.
     pub time: &'a [f64],
     /// Rudder angle or order, rad; finite in every row.
@@ -17,7 +17,7 @@ pub struct Log<'a> {
     pub propeller: Option<&'a [f64]>,
 }
 
-impl Log<'_> {
+impl Signals<'_> {
     /// Whether the channels are as documented: a search in anything else finds nothing.
     pub(crate) fn is_sound(&self) -> bool {
         let rows = self.time.len();

@@ -2,11 +2,11 @@
 //! hand, by autopilot or without either. A ship at rest keeps her heading, too, and is left out where her speed or her
 //! propeller tells.
 
+use super::kind::Kind;
+use super::manoeuvre::Manoeuvre;
+use super::pattern::{Pattern, Prepared};
 use super::quality::Quality;
 use super::rest::usual;
-use crate::kind::Kind;
-use crate::manoeuvre::Manoeuvre;
-use crate::record::{Pattern, Record};
 
 /// Range of headings on one course, rad: an autopilot keeps ±1 degree, in waves ±2.
 const COURSE: f64 = 5.0_f64.to_radians();
@@ -27,7 +27,7 @@ const FEWEST_ROWS: usize = 20;
 const AT_REST: f64 = 0.2;
 
 /// Adds the straight pieces to the manoeuvres of a log, in order of time.
-pub(crate) fn add(record: &Record, found: &[Pattern], list: &mut Vec<Manoeuvre>) {
+pub(crate) fn add(record: &Prepared, found: &[Pattern], list: &mut Vec<Manoeuvre>) {
     let time = record.log.time;
     let Some((&begin, &end)) = time.first().zip(time.last()) else { return };
     let scale = usual(found.iter().map(|pattern| pattern.scale));
@@ -69,13 +69,13 @@ fn pieces_in(steering: &Steering, first: usize, end: usize, shortest: f64) -> Ve
 
 /// What of a row, but for its heading, tells that the ship goes straight.
 struct Steering<'a> {
-    record: &'a Record<'a>,
+    record: &'a Prepared<'a>,
     /// Speed and revolutions where they are known, and the least of each for a ship under way.
     under_way: [Option<(&'a [f64], f64)>; 2],
 }
 
 impl<'a> Steering<'a> {
-    fn of(record: &'a Record<'a>) -> Self {
+    fn of(record: &'a Prepared<'a>) -> Self {
         let log = record.log;
         let under_way = [log.speed, log.propeller].map(|channel| {
             let values = channel.filter(|values| values.len() == log.time.len())?;
@@ -117,7 +117,7 @@ impl Piece {
         near
     }
 
-    fn manoeuvre(&self, record: &Record, shortest: f64) -> Option<Manoeuvre> {
+    fn manoeuvre(&self, record: &Prepared, shortest: f64) -> Option<Manoeuvre> {
         let [from, until] = [self.first, self.last].map(|row| record.log.time[row]);
         (until - from >= shortest && self.last + 1 - self.first >= FEWEST_ROWS).then(|| Manoeuvre {
             kind: Kind::Straight,
