@@ -3,9 +3,9 @@
 use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::replay;
 use identify::{Identifier, maximum_likelihood};
-use motion::{Hull, Planar};
 use predict::KnownShip;
 use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
+use predict::motion::{self, Hull, Planar};
 use ship::angle::{from_deg, to_deg};
 use ship::{Particulars, Response};
 use trace::Analysis;

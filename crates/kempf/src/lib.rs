@@ -8,7 +8,7 @@
 //! | describe a ship, its effects, a hull | [`ship`] |
 //! | read a measured record, find its overshoots | [`trial`] |
 //! | find manoeuvres in a long log | [`find`] |
-//! | fit speed and drift, draw the track of a turn | [`motion`] |
+//! | fit speed and drift, draw the track of a turn | [`predict::motion`] |
 //! | predict a manoeuvre that was not made, with intervals | [`predict`] |
 //! | make a record | [`simulate`] |
 //! | find K, T and δ_r with their intervals | [`identify`] |
@@ -36,7 +36,7 @@
 //! The examples of this package fit a CSV, compare an answer with the truth, trace a record, and run a method of your
 //! own in a study.
 
-pub use {campaign, find, identify, likelihood, motion, predict, scenario, ship, simulate, trace, trial};
+pub use {campaign, find, identify, likelihood, predict, scenario, ship, simulate, trace, trial};
 
 /// What most programs need, under one `use`.
 pub mod prelude {

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
+use crate::motion::{Hull, Planar};
 pub use likelihood::Moment;
-use motion::{Hull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Response, ResponseModel};

@@ -8,6 +8,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what is known of a ship, as files hold it | [`known`] |
+//! | speed, drift and hulls fitted to records, tracks, turning circles | [`motion`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres | [`kind`] |
 //! | figures of merit | [`figures`] |
@@ -37,6 +38,7 @@ pub mod known;
 #[cfg(test)]
 mod made_up;
 pub mod mixture;
+pub mod motion;
 pub mod passage;
 pub mod prediction;
 pub mod replay;

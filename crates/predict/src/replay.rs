@@ -1,6 +1,6 @@
 //! A recorded rudder replayed and held against its record: the record is not fitted, so it says whether intervals hold.
 
-use motion::Current;
+use crate::motion::Current;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;

@@ -3,17 +3,17 @@
 use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
-use crate::coefficients::COEFFICIENTS;
-use crate::course::{Course, OUTPUTS};
-use crate::covariance::newey_west;
-use crate::error::MotionError;
-use crate::fit::fit;
-use crate::hull::{HULL_COEFFICIENTS, Hull, HullRecord, Spread};
-use crate::hull_search::Windows;
-use crate::moment::moment;
-use crate::planar::Planar;
-use crate::search::{Local, Squares, free, minimise, part};
-use crate::yaw::{TYPICAL_YAW, YAW_SYMBOLS, Yaw};
+use super::coefficients::COEFFICIENTS;
+use super::course::{Course, OUTPUTS};
+use super::covariance::newey_west;
+use super::error::MotionError;
+use super::fit::fit;
+use super::hull::{HULL_COEFFICIENTS, Hull, HullRecord, Spread};
+use super::hull_search::Windows;
+use super::moment::moment;
+use super::planar::Planar;
+use super::search::{Local, Squares, free, minimise, part};
+use super::yaw::{TYPICAL_YAW, YAW_SYMBOLS, Yaw};
 
 /// Times the weights of the kinds of output are taken anew from their residuals.
 const REWEIGHTED: usize = 2;
@@ -33,7 +33,7 @@ const JACKKNIFE: usize = 3;
 /// Fits surge, sway and yaw to records of a ship of length `length` (m) that have rudder, heading or yaw rate, surge
 /// and sway; others are left out.
 ///
-/// Surge and sway are fitted first, by [`fit()`](crate::fit()). The yaw equation follows by output error: driven by
+/// Surge and sway are fitted first, by [`fit()`](super::fit::fit()). The yaw equation follows by output error: driven by
 /// measured surge, sway and rudder it is integrated over windows of 10 L/U₀ that begin at measured states (all of them
 /// smoothed by a parabola within 0.25 L/U₀), and heading and yaw rate are compared, weighed with their standard
 /// deviations, which are taken twice from the residuals. With surge and sway measured the equation is damped, also
@@ -42,7 +42,7 @@ const JACKKNIFE: usize = 3;
 /// The covariance is that of the jackknife over records when there are three or more and every fit to the others has
 /// an answer, (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ; else that of a sandwich. Field `spread` says which.
 ///
-/// Fails as [`fit()`](crate::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
+/// Fails as [`fit()`](super::fit::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
 /// with [`MotionError::Undetermined`] when the records leave a coefficient of yaw open.
 pub fn fit_hull(trials: &[Trial], length: f64) -> Result<Hull, MotionError> {
     if !(length.is_finite() && length > 0.0) {

@@ -3,13 +3,13 @@
 use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
-use crate::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, SYMBOLS, TYPICAL};
-use crate::covariance::newey_west;
-use crate::error::MotionError;
-use crate::model::{Drive, velocities};
-use crate::planar::{Planar, RecordFit, Residual, pooled};
-use crate::record::{Output, Record, median, range};
-use crate::search::{Local, Squares, free, minimise, part};
+use super::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, SYMBOLS, TYPICAL};
+use super::covariance::newey_west;
+use super::error::MotionError;
+use super::model::{Drive, velocities};
+use super::planar::{Planar, RecordFit, Residual, pooled};
+use super::record::{Output, Record, median, range};
+use super::search::{Local, Squares, free, minimise, part};
 
 /// Range of the heading that at least one record must have, rad (5°).
 const TURNS: f64 = 0.087;
@@ -153,7 +153,7 @@ impl<'a> Problem<'a> {
                 Output::Position => {
                     let current = if record.current { [own[5], own[6]] } else { [0.0; 2] };
                     let (surge, sway): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
-                    let path = crate::circle::track(record.time, &record.heading, &surge, &sway);
+                    let path = super::circle::track(record.time, &record.heading, &surge, &sway);
                     for axis in 0..2 {
                         let place = |row: usize| {
                             own[3 + axis] + path[row][axis] + current[axis] * (record.time[row] - record.time[0])

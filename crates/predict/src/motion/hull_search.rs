@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, TYPICAL};
-use crate::course::{Course, OUTPUTS};
-use crate::hull::HULL_COEFFICIENTS;
-use crate::search::{Local, Squares};
-use crate::yaw::{YAW_BOUNDS, Yaw};
+use super::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, TYPICAL};
+use super::course::{Course, OUTPUTS};
+use super::hull::HULL_COEFFICIENTS;
+use super::search::{Local, Squares};
+use super::yaw::{YAW_BOUNDS, Yaw};
 
 /// Windows with the weights of their outputs.
 pub(crate) struct Windows<'a> {
