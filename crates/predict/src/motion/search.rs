@@ -1,6 +1,13 @@
-//! Least squares by damped Gauss–Newton steps between bounds (Levenberg 1944; Marquardt 1963).
+//! Least squares by damped Gauss–Newton steps between bounds (Levenberg 1944; Marquardt 1963), and the covariance of what
+//! is found.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
+
+use super::covariance::newey_west;
+use super::error::MotionError;
+
+/// One column of residuals, zero where nothing was read.
+pub(crate) type Column = Vec<f64>;
 
 /// Sum of squares about a point: normal matrix JᵀJ, gradient Jᵀr and rᵀr.
 pub(crate) struct Local {
@@ -9,16 +16,128 @@ pub(crate) struct Local {
     pub square: f64,
 }
 
-/// What is minimised.
+/// What is minimised: residuals in groups, each of some of the unknowns.
 pub(crate) trait Squares {
-    /// Sum of squares; not finite where the model has no answer.
-    fn square(&self, at: &DVector<f64>) -> f64;
+    /// Residuals of one row that follow one another in a column.
+    const WIDTH: usize;
 
-    /// The same with its derivatives.
-    fn local(&self, at: &DVector<f64>) -> Local;
+    /// Number of unknowns.
+    fn unknowns(&self) -> usize;
+
+    /// Number of groups: records, or windows of records.
+    fn groups(&self) -> usize;
+
+    /// Residuals of a group over their deviations, column by column; not finite where the model has no answer.
+    fn residuals(&self, group: usize, at: &[f64]) -> Vec<Column>;
+
+    /// Residuals of a group and their derivatives by its unknowns.
+    fn derivatives(&self, group: usize, at: &[f64]) -> (Vec<Column>, Vec<Vec<Column>>);
+
+    /// The unknown of the whole problem behind one of a group.
+    fn global(&self, group: usize, unknown: usize) -> usize;
 
     /// Least and largest value of an unknown.
     fn bounds(&self, unknown: usize) -> [f64; 2];
+
+    /// Sum of squares.
+    fn square(&self, at: &DVector<f64>) -> f64 {
+        let of = |group| -> f64 { self.residuals(group, at.as_slice()).iter().flatten().map(|x| x * x).sum() };
+        (0..self.groups()).map(of).sum()
+    }
+
+    /// The same with its derivatives.
+    fn local(&self, at: &DVector<f64>) -> Local {
+        let mut normal = DMatrix::zeros(self.unknowns(), self.unknowns());
+        let mut gradient = DVector::zeros(self.unknowns());
+        let mut square = 0.0;
+        let dot = |x: &[Column], y: &[Column]| -> f64 {
+            x.iter().zip(y).map(|(x, y)| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>()).sum()
+        };
+        for group in 0..self.groups() {
+            let (residuals, slopes) = self.derivatives(group, at.as_slice());
+            square += dot(&residuals, &residuals);
+            for (i, slope) in slopes.iter().enumerate() {
+                let row = self.global(group, i);
+                gradient[row] += dot(slope, &residuals);
+                for (j, other) in slopes[..=i].iter().enumerate() {
+                    let (column, product) = (self.global(group, j), dot(slope, other));
+                    normal[(row, column)] += product;
+                    if row != column {
+                        normal[(column, row)] += product;
+                    }
+                }
+            }
+        }
+        Local { normal, gradient, square }
+    }
+
+    /// Sum of the long-run covariances of the scores of all groups, of the unknowns that are wanted.
+    fn long_run(&self, at: &DVector<f64>, is_wanted: impl Fn(usize) -> bool) -> DMatrix<f64> {
+        let mut middle = DMatrix::zeros(self.unknowns(), self.unknowns());
+        for group in 0..self.groups() {
+            let (residuals, slopes) = self.derivatives(group, at.as_slice());
+            let rows = residuals[0].len() / Self::WIDTH;
+            let score = |slope: &Vec<Column>| -> Vec<f64> {
+                let of_row = |row: usize| -> f64 {
+                    let own = row * Self::WIDTH..(row + 1) * Self::WIDTH;
+                    let product = |(r, s): (&Column, &Column)| -> f64 { own.clone().map(|k| r[k] * s[k]).sum() };
+                    residuals.iter().zip(slope).map(product).sum()
+                };
+                (0..rows).map(of_row).collect()
+            };
+            let places: Vec<usize> =
+                (0..slopes.len()).map(|i| self.global(group, i)).filter(|place| is_wanted(*place)).collect();
+            let own = (0..slopes.len()).filter(|&i| is_wanted(self.global(group, i)));
+            let long_run = newey_west(&own.map(|i| score(&slopes[i])).collect::<Vec<_>>());
+            for (i, &row) in places.iter().enumerate() {
+                for (j, &column) in places.iter().enumerate() {
+                    middle[(row, column)] += long_run[(i, j)];
+                }
+            }
+        }
+        middle
+    }
+}
+
+/// Least eigenvalue of a normal matrix with a diagonal of ones.
+const OPEN: f64 = 1e-11;
+
+/// The normal matrix of the free unknowns with a diagonal of ones: its scales and its eigenvalues.
+///
+/// Fails with [`MotionError::Undetermined`] and the symbol of the coefficient that weighs most in what is open.
+pub(crate) fn determined(
+    normal: &DMatrix<f64>,
+    free: &[usize],
+    symbol: impl Fn(usize) -> Option<&'static str>,
+) -> Result<(Vec<f64>, SymmetricEigen<f64, Dyn>), MotionError> {
+    let scale: Vec<f64> = free.iter().map(|&i| normal[(i, i)].sqrt()).collect();
+    let unknown = |open: usize| MotionError::Undetermined { symbol: symbol(free[open]).unwrap_or("a record") };
+    if let Some(open) = scale.iter().position(|scale| scale.is_nan() || *scale <= 0.0) {
+        return Err(unknown(open));
+    }
+    let unit = DMatrix::from_fn(free.len(), free.len(), |i, j| normal[(free[i], free[j])] / (scale[i] * scale[j]));
+    let eigen = unit.symmetric_eigen();
+    let (least, value) = eigen.eigenvalues.argmin();
+    if value.is_nan() || value < OPEN {
+        let direction = eigen.eigenvectors.column(least);
+        let weighs = (0..free.len())
+            .filter(|&i| symbol(free[i]).is_some())
+            .max_by(|&i, &j| direction[i].abs().total_cmp(&direction[j].abs()));
+        return Err(unknown(weighs.unwrap_or(0)));
+    }
+    Ok((scale, eigen))
+}
+
+/// A⁻¹ S A⁻¹ of all unknowns from the inverse A⁻¹ of those that are free; zero of the others.
+pub(crate) fn sandwich(inverse: &DMatrix<f64>, middle: &DMatrix<f64>, free: &[usize]) -> DMatrix<f64> {
+    let own = inverse * part(middle, free) * inverse;
+    let mut covariance = DMatrix::zeros(middle.nrows(), middle.ncols());
+    for (i, &row) in free.iter().enumerate() {
+        for (j, &column) in free.iter().enumerate() {
+            covariance[(row, column)] = 0.5 * (own[(i, j)] + own[(j, i)]);
+        }
+    }
+    covariance
 }
 
 /// Iterations after which a search is given up.
