@@ -41,11 +41,11 @@ pub fn foretold(predictions: &Predictions, known: KnownShip, deeds: &Deeds) -> B
     for (kind, deeds) in predictions.kinds.iter().zip(&deeds.0) {
         let Some(deeds) = deeds else { continue };
         let Ok(prediction) = mixture.predict(kind, predictions.draws, false) else { continue };
-        for figure in prediction.figures {
-            let truth = deeds.iter().find(|(name, _)| *name == figure.name).and_then(|(_, value)| *value);
+        for (name, figure) in prediction.figures {
+            let truth = deeds.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value);
             let Some(truth) = truth else { continue };
             all.push(Foretold {
-                name: format!("{kind} {}", figure.name).into(),
+                name: format!("{kind} {name}").into(),
                 truth,
                 median: figure.interval.median,
                 ci90: figure.interval.ci90,

@@ -3,9 +3,9 @@
 use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::replay;
 use identify::{Identifier, maximum_likelihood};
-use motion::{Hull, Planar};
 use predict::KnownShip;
 use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
+use predict::motion::{self, Hull, Planar};
 use ship::angle::{from_deg, to_deg};
 use ship::{Particulars, Response};
 use trace::Analysis;
@@ -337,10 +337,10 @@ mod tests {
         assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
         let kind: Kind = "zig-zag:20/20".parse().expect("known");
         let prediction = Mixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
-        let first = prediction.figures.iter().find(|figure| figure.name == "first_overshoot_deg").expect("a zig-zag");
+        let first = &prediction.figures["first_overshoot_deg"];
         assert!((first.interval.median - 19.71).abs() < 0.5, "{:?}", first.interval);
         assert!(first.interval.ci90[1] - first.interval.ci90[0] < 1.5, "{:?}", first.interval);
-        assert!(prediction.extrapolated, "20 deg of rudder after 10");
+        assert!(prediction.is_extrapolated(), "20 deg of rudder after 10");
     }
 
     #[test]

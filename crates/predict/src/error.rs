@@ -53,7 +53,7 @@ pub enum PredictError {
     },
     /// Speed and drift of the ship make no sense.
     #[error("speed and drift: {0}")]
-    Motion(#[from] motion::MotionError),
+    Motion(#[from] crate::motion::MotionError),
     /// A manoeuvre that is not known.
     #[error(
         "`{found}` is no manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \

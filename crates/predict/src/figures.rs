@@ -3,7 +3,7 @@
 use ship::Particulars;
 use ship::angle::to_deg;
 
-use crate::kind::{EXECUTES, INITIAL_TURN, Kind};
+use crate::kind::{EXECUTES, INITIAL_TURN, Kind, Pattern};
 use crate::passage::Passage;
 
 /// A figure of merit with its value.
@@ -20,36 +20,37 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 /// The way of the initial turning is V times its time where nothing is known of the speed.
 pub fn of(kind: &Kind, passage: &Passage, particulars: Option<Particulars>) -> Vec<Figure> {
     let mut figures = Vec::new();
-    match *kind {
-        Kind::ZigZag { heading, first, .. } => {
-            let turning = passage.reached(heading, first.sign());
+    let side = kind.side.sign();
+    match kind.pattern {
+        Pattern::ZigZag { heading } => {
+            let turning = passage.reached(heading, side);
             figures.push(("initial_turning_time_s", turning));
             figures.extend(lengths(passage, turning, particulars));
             zig_zag(passage, &mut figures);
         }
-        Kind::InitialTurning { side, .. } => {
-            let turning = passage.reached(INITIAL_TURN - 1e-9, side.sign()).or(Some(end(passage)));
+        Pattern::InitialTurning => {
+            let turning = passage.reached(INITIAL_TURN - 1e-9, side).or(Some(end(passage)));
             figures.push(("initial_turning_time_s", turning));
             figures.extend(lengths(passage, turning, particulars));
         }
-        Kind::TurningCircle { side, .. } => {
-            turn(passage, side.sign(), &mut figures);
+        Pattern::TurningCircle => {
+            turn(passage, side, &mut figures);
             circle(passage, 0.0, &mut figures);
         }
-        Kind::PullOut { side, .. } => {
+        Pattern::PullOut => {
             let middle = passage.heading.len() / 2;
-            figures.push(("rate_before_deg_s", mean_rate(passage, middle, side.sign())));
-            figures.push(("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side.sign())));
+            figures.push(("rate_before_deg_s", mean_rate(passage, middle, side)));
+            figures.push(("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side)));
         }
-        Kind::Williamson { side, .. } => {
+        Pattern::Williamson => {
             let last = passage.heading.last().copied();
             // She comes back from the other side: the opposite course is 180° to it.
             figures.push(("second_execute_s", passage.executes.get(1).map(|execute| execute.time)));
             figures.push(("third_execute_s", passage.executes.get(2).map(|execute| execute.time)));
-            let error = |heading: f64| to_deg(-side.sign() * heading - std::f64::consts::PI);
+            let error = |heading: f64| to_deg(-side * heading - std::f64::consts::PI);
             figures.push(("course_error_deg", last.map(error)));
         }
-        Kind::Spiral { .. } => {}
+        Pattern::Spiral => {}
     }
     figures
 }
@@ -128,7 +129,7 @@ mod tests {
     use super::*;
     use ship::FirstOrder;
     use ship::angle::from_deg;
-    use simulate::{Disturbances, Side, SteeringGear, StreamKey};
+    use simulate::{Disturbances, SteeringGear, StreamKey};
 
     use crate::mixture::Drawn;
 
@@ -187,8 +188,7 @@ mod tests {
                 assert!((a - b).abs() < 1e-9, "{name} {a} {b}");
             }
         }
-        let side = Side::Starboard;
-        let kind = Kind::InitialTurning { rudder: from_deg(10.0), side };
+        let kind: Kind = "initial-turning:10".parse().expect("known");
         let turning = of(&kind, &yukun(&kind), Some(Particulars { length: 75.0, speed: 6.0 }));
         let time = value(&turning, "initial_turning_time_s");
         assert!(time > 20.0 && time < 30.0, "{time}");

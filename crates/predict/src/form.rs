@@ -6,19 +6,93 @@
 //!
 //! Source: MSC/Circ.1053 (2002), appendix 6; limits of MSC.137(76), 5.3.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use ship::Particulars;
-use trial::imo;
-use trial::{Conditions, Loading};
+use trial::imo::Unit;
+use trial::{Conditions, Loading, Trial};
 
-use crate::form_entries::{self, Manoeuvre};
-pub use crate::form_entry::{Basis, Entry, Form, Record, Value};
+use crate::correction::Correction;
+use crate::form_record::{self, Tested};
 use crate::form_remarks;
-use crate::form_tested::{self, Tested};
+use crate::imo::{LIMITS, Limit};
+use crate::interval::Interval;
 use crate::kind::Kind;
 use crate::prediction::Prediction;
+use crate::replay::file_of;
+use crate::turn::Current;
 
 /// Longest track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
 pub const TRACK_REACH_LENGTHS: f64 = 15.0;
+
+/// Section of the stopping trial.
+pub const STOPPING: &str = "stopping";
+
+/// Most decimals of a result: no trial tells a hundredth of a degree or of a ship length.
+pub const DECIMALS: usize = 2;
+
+/// An entry of the form.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Entry {
+    /// Heading it stands under.
+    pub section: String,
+    /// What it is called.
+    pub field: String,
+    /// "port" or "starboard", where the form has one for either side.
+    pub side: Option<String>,
+    /// A declared word, or a declared or measured number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<Value>,
+    /// Standard deviation of a measured number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sd: Option<f64>,
+    /// Median of a predicted or corrected number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub median: Option<f64>,
+    /// The interval of nine tenths of the draws.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ci90: Option<[f64; 2]>,
+    /// Unit of value and limit.
+    pub unit: String,
+    /// Largest value allowed.
+    pub limit: Option<f64>,
+    /// Of a predicted entry whether the manoeuvre is beyond what the records have seen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extrapolated: Option<bool>,
+    /// Of a predicted entry the share of the drawn ships that keep within the limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability_of_passing: Option<f64>,
+    /// Where it comes from.
+    pub source: String,
+}
+
+/// The form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Form {
+    /// Entries in the order of the form.
+    pub entries: Vec<Entry>,
+    /// Conditions that are not met or not known, and what else is to be said.
+    pub remarks: Vec<String>,
+}
+
+/// A record with what corrects it to full load.
+#[derive(Debug, Clone, Copy)]
+pub struct Record<'a> {
+    /// The record.
+    pub trial: &'a Trial,
+    /// Its correction, where a model of its condition was given.
+    pub correction: Option<&'a Correction>,
+    /// The current that was taken out of its positions.
+    pub current: Option<Current>,
+}
+
+impl Record<'_> {
+    /// How the ship was loaded; a record that is to be corrected was at partial load whatever else is known.
+    pub(crate) fn loading(&self) -> Option<Loading> {
+        self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
+    }
+}
 
 /// The manoeuvres of the form, to both sides.
 ///
@@ -27,94 +101,209 @@ pub fn manoeuvres() -> Vec<Kind> {
     Kind::of_imo().into_iter().flat_map(|kind| [kind.to_port(), kind]).collect()
 }
 
+/// What a file declares, with the length of the ship, m.
+struct Declared<'a> {
+    file: &'a str,
+    form: &'a Conditions,
+    length: Option<f64>,
+}
+
+const SHIP: &str = "ship data (full load)";
+const TRIALS: &str = "trials data";
+
+/// Ratio L/V, which is that of the predictions.
+const SCALE: &str = "L/V";
+
+/// Section, name, unit and value of what is declared.
+type Field = (&'static str, &'static str, &'static str, fn(&Declared) -> Option<Value>);
+
+const FIELDS: [Field; 17] = [
+    ("", "administration", "", |own| words(&own.form.administration)),
+    (SHIP, "ship type", "", |own| words(&own.form.ship_type)),
+    (SHIP, SCALE, "s", |_| None),
+    (SHIP, "L/B", "1", |own| number(own.length? / own.form.beam?)),
+    (SHIP, "B/T", "1", |own| number(own.form.beam? / own.form.draught_at_full_load()?)),
+    (SHIP, "block coefficient", "1", |own| number(own.form.block_coefficient?)),
+    (SHIP, "rudder type", "", |own| words(&own.form.rudder_type)),
+    (SHIP, "total rudder area/LT", "1", |own| {
+        number(own.form.rudder_area? / (own.length? * own.form.draught_at_full_load()?))
+    }),
+    (SHIP, "number of rudders", "1", |own| number(own.form.rudders?)),
+    (SHIP, "propeller type", "", |own| words(&own.form.propeller_type)),
+    (SHIP, "number of propellers", "1", |own| number(own.form.propellers?)),
+    (SHIP, "trim (by the stern)", "m", |own| number(own.form.trim?)),
+    (SHIP, "engine type", "", |own| words(&own.form.engine_type)),
+    (SHIP, "ballast condition", "", |own| words(&own.form.ballast)),
+    (TRIALS, "water depth/trial draught", "1", |own| number(own.form.depth_in_draughts()?)),
+    (TRIALS, "wind: Beaufort number", "1", |own| number(own.form.wind_beaufort?)),
+    (TRIALS, "wave: sea state", "1", |own| number(own.form.sea_state?)),
+];
+
+fn words(words: &Option<String>) -> Option<Value> {
+    words.clone().map(Value::from)
+}
+
+fn number(value: impl Into<f64>) -> Option<Value> {
+    Some(Value::from(value.into()))
+}
+
+/// An entry of one value; without one its source says that it is missing.
+fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: String) -> Entry {
+    let source = if value.is_some() { source } else { String::from("not in the records") };
+    Entry { section: section.into(), field: field.into(), unit: unit.into(), value, source, ..Entry::default() }
+}
+
 /// Fills in the form.
 ///
-/// `particulars` are the scale of the predictions, whose L/V decides the limits of the 10/10 zig-zag. What is declared
-/// of the ship is that of the first record that says it; `declared` are such words without a record, from `file`.
+/// `particulars` are the scale of the predictions, whose L/V decides the limits of the 10/10 zig-zag; `models` is what
+/// their source is called. What is declared of the ship is that of the first record that says it; `declared` are such
+/// words without a record, from a file.
 pub fn fill(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
+    models: &str,
     records: &[Record],
     declared: Option<(&str, &Conditions)>,
 ) -> Form {
-    let tested: Vec<Tested> = records.iter().map(form_tested::of).collect();
-    let mut said: Vec<(&str, &Conditions, Option<f64>)> = records
-        .iter()
-        .map(|record| (record.file(), record.trial.conditions(), record.trial.particulars().map(|own| own.length)))
-        .collect();
-    said.extend(declared.map(|(file, conditions)| (file, conditions, None)));
-    let mut entries = form_entries::ship(&said, particulars);
+    let tested: Vec<Tested> = records.iter().map(form_record::of).collect();
+    let files = records.iter().map(|Record { trial, .. }| (file_of(trial), trial.conditions(), trial.particulars()));
+    let said = files.chain(declared.map(|(file, form)| (file, form, None))).map(|(file, form, own)| {
+        let length = form.particulars.or(own).map(|own| own.length);
+        Declared { file, form, length }
+    });
+    let said: Vec<Declared> = said.collect();
+    let field = |&(section, name, unit, of): &Field| {
+        let found = said.iter().find_map(|own| Some((format!("declared with {}", own.file), of(own)?)));
+        let scale = particulars.filter(|_| name == SCALE).map(|own| Value::from(own.length / own.speed));
+        let (source, value) = found.or_else(|| Some(("scale of the prediction".into(), scale?))).unzip();
+        entry(section, name, unit, value, source.unwrap_or_default())
+    };
+    let mut entries: Vec<Entry> = FIELDS.iter().map(field).collect();
     entries.push(loading(records, &tested));
-    let limit = |of: fn(Particulars) -> f64| particulars.map(of);
-    let [first, second] = [imo::first_overshoot_10_10_limit_deg, imo::second_overshoot_10_10_limit_deg].map(limit);
-    let of =
-        |name, section, manoeuvre, figure, unit, limit| Manoeuvre { name, section, manoeuvre, figure, unit, limit };
-    let lengths = "ship lengths";
-    let [circle, ten, twenty] = ["turning circle, rudder 35°", "zig-zag 10°/10°", "zig-zag 20°/20°"];
-    let rows = [
-        of("advance", circle, form_tested::CIRCLE, "advance_lengths", lengths, Some(imo::ADVANCE_LENGTHS)),
-        of(
-            "tactical diameter",
-            circle,
-            form_tested::CIRCLE,
-            "tactical_diameter_lengths",
-            lengths,
-            Some(imo::TACTICAL_DIAMETER_LENGTHS),
-        ),
-        of("1st overshoot angle", ten, form_tested::TEN, "first_overshoot_deg", "deg", first),
-        of("2nd overshoot angle", ten, form_tested::TEN, "second_overshoot_deg", "deg", second),
-        of(
-            "1st overshoot angle",
-            twenty,
-            form_tested::TWENTY,
-            "first_overshoot_deg",
-            "deg",
-            Some(imo::FIRST_OVERSHOOT_20_20_DEG),
-        ),
-        of(
-            "distance to turn 10° with 10° rudder",
-            "initial turning",
-            form_tested::TEN,
-            "initial_turning_lengths",
-            lengths,
-            Some(imo::INITIAL_TURNING_LENGTHS),
-        ),
-    ];
-    for row in &rows {
-        entries.extend(row.entries(predictions, records, &tested));
+    // The order of the form.
+    for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &LIMITS[place]) {
+        for side in ["port", "starboard"] {
+            let found = measured(limit, side, records, &tested);
+            entries.push(Entry {
+                section: limit.section.into(),
+                field: limit.field.into(),
+                side: Some(side.into()),
+                unit: if limit.unit == Unit::Degrees { "deg" } else { "ship lengths" }.into(),
+                limit: (limit.of)(particulars),
+                ..found.unwrap_or_else(|| predicted(limit, side, predictions, particulars, models))
+            });
+        }
     }
     entries.push(Entry {
-        section: "stopping",
-        name: "track reach",
-        side: None,
-        value: None,
-        unit: lengths,
         limit: Some(TRACK_REACH_LENGTHS),
-        basis: Basis::NotTold {
-            why: "never predicted: no model of this program goes astern; stop the ship and measure",
-        },
+        source: "never predicted: no model of this program goes astern; stop the ship and measure".into(),
+        ..entry(STOPPING, "track reach", "ship lengths", None, String::new())
     });
     let remarks = form_remarks::remarks(&entries, records, &tested, declared, particulars);
     Form { entries, remarks }
+}
+
+/// Value and source of a figure that a record shows: what needs no correction, or has one, goes before what was made at
+/// partial load.
+fn measured(limit: &Limit, side: &str, records: &[Record], tested: &[Tested]) -> Option<Entry> {
+    let show = |(record, tested): (&Record, &Tested)| {
+        let quantity = tested.figure(limit.manoeuvre, side, limit.figure)?;
+        let file = file_of(record.trial);
+        let corrected = record.correction.and_then(|own| Some((own, own.figures.get(limit.figure)?)));
+        if let Some((correction, figure)) = corrected {
+            let is_doubtful = !(figure.warnings.is_empty() && correction.warnings.is_empty());
+            let doubt = if is_doubtful { "; see the remarks" } else { "" };
+            let source = format!(
+                "measured at partial load, {file}, and corrected by F/B = {} {}, 90 % {}{doubt}",
+                fixed(figure.factor.median, decimals(&figure.factor)),
+                range(&figure.factor),
+                range(&figure.result),
+            );
+            return Some((false, Entry { source, ..of_interval(&figure.result) }));
+        }
+        let is_partial = record.loading() == Some(Loading::Partial);
+        let load = if is_partial { ", at partial load, not corrected" } else { "" };
+        let sd = quantity.sd.map_or_else(String::new, |sd| format!(" ± {}", one_digit(sd)));
+        let source = format!("measured, {file}{sd}{load}");
+        Some((is_partial, Entry { value: number(quantity.value), sd: quantity.sd, source, ..Entry::default() }))
+    };
+    let found: Vec<(bool, Entry)> = records.iter().zip(tested).filter_map(show).collect();
+    found.into_iter().min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
+}
+
+/// Value and source of a figure that is predicted.
+fn predicted(
+    limit: &Limit,
+    side: &str,
+    predictions: &[Prediction],
+    particulars: Option<Particulars>,
+    models: &str,
+) -> Entry {
+    let untold = |why: &str| Entry { source: why.into(), ..Entry::default() };
+    let kind: Kind = limit.manoeuvre.parse().expect("the name of a manoeuvre");
+    let kind = if side == "port" { kind.to_port() } else { kind };
+    let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
+        return untold("hardly a drawn ship comes to the end of the manoeuvre");
+    };
+    let Some(figure) = prediction.figures.get(limit.figure) else {
+        return untold("the length of the ship, or her speed and drift, are not known");
+    };
+    let passing = (limit.of)(particulars).map(|limit| figure.share_within(limit));
+    let beyond = if figure.extrapolated { ", extrapolated" } else { "" };
+    let pass = passing.map_or_else(String::new, |share| format!("; {:.0} % pass", 100.0 * share));
+    Entry {
+        extrapolated: Some(figure.extrapolated),
+        probability_of_passing: passing,
+        source: format!("predicted from {models}, 90 % {}{beyond}{pass}", range(&figure.interval)),
+        ..of_interval(&figure.interval)
+    }
+}
+
+fn of_interval(interval: &Interval) -> Entry {
+    Entry { median: Some(interval.median), ci90: Some(interval.ci90), ..Entry::default() }
+}
+
+/// Decimals of an entry.
+fn decimals(interval: &Interval) -> usize {
+    interval.decimals().min(DECIMALS)
+}
+
+/// A number with a true minus sign, none before a zero.
+fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|byte| matches!(byte, b'0' | b'.')) => rest.to_owned(),
+        Some(rest) => format!("−{rest}"),
+        None => text,
+    }
+}
+
+/// A standard deviation with one digit that is not zero.
+fn one_digit(value: f64) -> String {
+    if value < 1.0 { ship::Shown::rounded(value, 1).to_string() } else { format!("{value:.0}") }
+}
+
+/// The interval of nine tenths of the draws.
+fn range(interval: &Interval) -> String {
+    let [low, high] = interval.ci90.map(|end| fixed(end, decimals(interval)));
+    format!("[{low}, {high}]")
 }
 
 /// How the ship was loaded when she was tested.
 fn loading(records: &[Record], tested: &[Tested]) -> Entry {
     let used: Vec<&Record> =
         records.iter().zip(tested).filter(|(_, tested)| tested.is_used()).map(|(record, _)| record).collect();
-    let has = |loading: Option<Loading>| used.iter().any(|record| record.loading() == loading);
-    let corrected = used.iter().any(|record| record.correction.is_some());
-    let mut words = Vec::new();
-    words.extend(has(Some(Loading::Full)).then_some("tested at full load"));
-    words.extend(corrected.then_some("tested at partial load and corrected"));
-    let uncorrected = |record: &&&Record| record.correction.is_none() && record.loading() == Some(Loading::Partial);
-    words.extend(used.iter().find(uncorrected).map(|_| "tested at partial load, not corrected"));
-    let (value, basis) = match (words.is_empty(), used.is_empty()) {
-        (false, _) => (Some(Value::Text(words.join("; "))), Basis::Loading),
-        (true, false) => (None, Basis::NotInRecords),
-        (true, true) => (Some(Value::Text(String::from("not tested: every result is predicted"))), Basis::Loading),
-    };
-    Entry { section: "manoeuvring data", name: "loading condition", side: None, value, unit: "", limit: None, basis }
+    let any = |is: &dyn Fn(&Record) -> bool| used.iter().any(|record| is(record));
+    let is_partial = |record: &Record| record.loading() == Some(Loading::Partial);
+    let found = [
+        (any(&|record| record.loading() == Some(Loading::Full)), "tested at full load"),
+        (any(&|record| record.correction.is_some()), "tested at partial load and corrected"),
+        (any(&|record| record.correction.is_none() && is_partial(record)), "tested at partial load, not corrected"),
+        (used.is_empty(), "not tested: every result is predicted"),
+    ];
+    let words: Vec<&str> = found.into_iter().filter(|(is, _)| *is).map(|(_, words)| words).collect();
+    let value = (!words.is_empty()).then(|| Value::from(words.join("; ")));
+    entry("manoeuvring data", "loading condition", "", value, "from the records given".into())
 }
 
 #[cfg(test)]
@@ -150,7 +339,8 @@ mod tests {
     }
 
     fn entry<'a>(form: &'a Form, section: &str, name: &str, side: Option<&str>) -> &'a Entry {
-        let is_it = |entry: &&Entry| entry.section.contains(section) && entry.name == name && entry.side == side;
+        let is_it =
+            |entry: &&Entry| entry.section.contains(section) && entry.field == name && entry.side.as_deref() == side;
         form.entries.iter().find(is_it).unwrap_or_else(|| panic!("{section} {name}: {form:?}"))
     }
 
@@ -184,30 +374,28 @@ mod tests {
         let ship = mixture();
         let trial = record(&ship, "zig-zag:-10/10", calm(Loading::Full));
         let records = [Record { trial: &trial, correction: None, current: None }];
-        let form = fill(&predictions(&ship), ship.particulars(), &records, None);
+        let form = fill(&predictions(&ship), ship.particulars(), "fit.json", &records, None);
         let port = entry(&form, "10°/10°", "1st overshoot angle", Some("port"));
         let starboard = entry(&form, "10°/10°", "1st overshoot angle", Some("starboard"));
-        assert!(matches!(port.basis, Basis::Measured { partial: false, .. }), "{port:?}");
-        assert!(matches!(starboard.basis, Basis::Predicted { extrapolated: false, passing: Some(_) }), "{starboard:?}");
+        assert!(port.source.starts_with("measured, ") && !port.source.contains("partial"), "{port:?}");
+        assert!(starboard.source.starts_with("predicted from fit.json, 90 % ["), "{starboard:?}");
+        assert!(starboard.extrapolated == Some(false) && starboard.probability_of_passing.is_some());
         // L/V = 12.5 s: 11.25 and 26.875 deg.
         assert!((port.limit.expect("known") - 11.25).abs() < 1e-12);
-        let (Some(Value::Measured { value, sd: Some(sd) }), Some(Value::Interval(told))) =
-            (&port.value, &starboard.value)
-        else {
-            panic!("{port:?} {starboard:?}")
-        };
-        assert!((value - told.median).abs() < 1.5 && *sd < 0.2, "{value} {sd} {told:?}");
+        let value = |entry: &Entry| entry.value.as_ref().and_then(Value::as_f64);
+        let (value, told) = (value(port).expect("measured"), starboard.median.expect("predicted"));
+        assert!((value - told).abs() < 1.5 && port.sd.is_some_and(|sd| sd < 0.2), "{port:?} {told}");
         let turning = entry(&form, "initial", "distance to turn 10° with 10° rudder", Some("port"));
-        assert!(matches!(turning.basis, Basis::Measured { .. }), "{turning:?}");
-        assert_eq!(entry(&form, "ship", "L/B", None).value, Some(Value::Number(5.0)));
-        assert_eq!(entry(&form, "ship", "B/T", None).value, Some(Value::Number(3.0)));
-        assert_eq!(entry(&form, "ship", "total rudder area/LT", None).value, Some(Value::Number(0.02)));
-        assert_eq!(entry(&form, "trials", "water depth/trial draught", None).value, Some(Value::Number(12.0)));
-        assert_eq!(entry(&form, "ship", "rudder type", None).basis, Basis::NotInRecords);
+        assert!(turning.source.starts_with("measured, "), "{turning:?}");
+        assert_eq!(entry(&form, "ship", "L/B", None).value, Some(5.0.into()));
+        assert_eq!(entry(&form, "ship", "B/T", None).value, Some(3.0.into()));
+        assert_eq!(entry(&form, "ship", "total rudder area/LT", None).value, Some(0.02.into()));
+        assert_eq!(entry(&form, "trials", "water depth/trial draught", None).value, Some(12.0.into()));
+        assert_eq!(entry(&form, "ship", "rudder type", None).source, "not in the records");
         let loading = entry(&form, "manoeuvring", "loading condition", None);
-        assert_eq!(loading.value, Some(Value::Text("tested at full load".into())));
+        assert_eq!(loading.value, Some("tested at full load".into()));
         // No speed and no drift: nobody tells the circle; nobody ever tells the stopping trial.
-        assert!(matches!(entry(&form, "circle", "advance", Some("port")).basis, Basis::NotTold { .. }));
+        assert!(entry(&form, "circle", "advance", Some("port")).source.contains("are not known"));
         assert!(entry(&form, "stopping", "track reach", None).value.is_none());
         for part in ["sea state 6", "tried to port only", "20/20 zig-zag: not tried", "no speed is recorded"] {
             assert!(form.remarks.iter().any(|remark| remark.contains(part)), "{part}: {:?}", form.remarks);
@@ -224,16 +412,17 @@ mod tests {
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, 60).expect("both sail");
         let told = predictions(&full);
-        let with =
-            |correction| fill(&told, full.particulars(), &[Record { trial: &trial, correction, current: None }], None);
+        let with = |correction| {
+            fill(&told, full.particulars(), "", &[Record { trial: &trial, correction, current: None }], None)
+        };
         let of = |form: &Form| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
         let corrected = of(&with(Some(&correction)));
-        assert!(matches!(corrected.basis, Basis::Corrected { .. }), "{corrected:?}");
-        let loading = with(Some(&correction)).entries.into_iter().find(|entry| entry.name == "loading condition");
-        let words = Value::Text("tested at partial load and corrected".into());
-        assert_eq!(loading.and_then(|entry| entry.value), Some(words));
+        assert!(corrected.source.contains("corrected by F/B = 0."), "{corrected:?}");
+        let form = with(Some(&correction));
+        let loading = &entry(&form, "manoeuvring", "loading condition", None).value;
+        assert_eq!(loading, &Some("tested at partial load and corrected".into()));
         let plain = with(None);
-        assert!(matches!(of(&plain).basis, Basis::Measured { partial: true, .. }), "{:?}", of(&plain));
+        assert!(of(&plain).source.contains("at partial load, not corrected"), "{:?}", of(&plain));
         assert!(plain.remarks.iter().any(|remark| remark.contains("--ballast")), "{:?}", plain.remarks);
     }
 
@@ -246,10 +435,11 @@ mod tests {
             let form = fill(
                 &predictions(&ship),
                 ship.particulars(),
+                "",
                 &[Record { trial: &trial, correction: None, current: None }],
                 None,
             );
-            let measured = |entry: &Entry| matches!(entry.basis, Basis::Measured { .. });
+            let measured = |entry: &Entry| entry.source.starts_with("measured");
             assert!(!form.entries.iter().any(measured), "{kind}");
             form.remarks.join("\n")
         };
@@ -257,8 +447,8 @@ mod tests {
         assert!(circle.contains("15.0° of rudder") && circle.contains("here 75.00 m at 6.00 m/s"), "{circle}");
         assert!(said("zig-zag:10/20").contains("a zig-zag of 10/20"));
         let declared = Conditions { ship_type: Some("ferry".into()), ..Conditions::default() };
-        let form = fill(&predictions(&ship), None, &[], Some(("ship.toml", &declared)));
-        assert_eq!(entry(&form, "ship", "ship type", None).value, Some(Value::Text("ferry".into())));
+        let form = fill(&predictions(&ship), None, "", &[], Some(("ship.toml", &declared)));
+        assert_eq!(entry(&form, "ship", "ship type", None).value, Some("ferry".into()));
         assert_eq!(entry(&form, "ship", "L/V", None).value, None);
         assert_eq!(entry(&form, "10°/10°", "1st overshoot angle", Some("port")).limit, None);
     }

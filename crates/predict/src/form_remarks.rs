@@ -2,11 +2,12 @@
 //! that are no manoeuvre of the form, and what is to be known of predicted entries.
 
 use ship::Particulars;
-use ship::angle::to_deg;
 use trial::{Conditions, Loading};
 
-use crate::form_entry::{Basis, Entry, Record};
-use crate::form_tested::{CIRCLE, TEN, TWENTY, Tested};
+use crate::form::{Entry, Record};
+use crate::form_record::Tested;
+use crate::imo::{CIRCLE, TEN, TWENTY};
+use crate::replay::file_of;
 
 /// Length from which the criteria hold, m. Source: MSC.137(76), 2.
 const SHORTEST_SHIP: f64 = 100.0;
@@ -30,15 +31,15 @@ pub(crate) fn remarks(
     let mut of_files = OfFiles::default();
     for (record, tested) in records.iter().zip(tested) {
         for text in of_record(record, tested) {
-            of_files.add(record.file(), text);
+            of_files.add(file_of(record.trial), text);
         }
     }
     if let Some((file, text)) = declared.and_then(|(file, form)| Some((file, form.remark.clone()?))) {
         of_files.add(file, text);
     }
     remarks.extend(of_files.0.into_iter().map(|(text, files)| format!("{}: {text}", files.join(", "))));
-    for (sort, name) in [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")] {
-        let has = |side: &'static str| tested.iter().any(|tested| tested.what == Some((sort, side)));
+    for (manoeuvre, name) in [(TEN, "10/10 zig-zag"), (TWENTY, "20/20 zig-zag"), (CIRCLE, "turning circle")] {
+        let has = |side: &'static str| tested.iter().any(|tested| tested.what == Some((manoeuvre, side)));
         match [has("port"), has("starboard")] {
             [true, true] => {}
             [true, false] => remarks.push(format!("{name}: tried to port only; trials are asked for to both sides")),
@@ -54,37 +55,37 @@ pub(crate) fn remarks(
         ));
     }
     for (record, tested) in records.iter().zip(tested) {
-        let is_circle = tested.what.is_some_and(|(sort, _)| sort == CIRCLE);
+        let is_circle = tested.what.is_some_and(|(manoeuvre, _)| manoeuvre == CIRCLE);
         match record.current {
             Some(current) => remarks.push(format!(
                 "{}: a current of {:.2} m/s that sets to {:.0}° was taken out of the track",
-                record.file(),
-                current.speed(),
-                to_deg(current.set())
+                file_of(record.trial),
+                current.speed_m_s,
+                current.set_deg
             )),
             None if is_circle => remarks.push(format!(
                 "{}: the turn is shorter than the 720° that show a current; what one did to the track is not known",
-                record.file()
+                file_of(record.trial)
             )),
             None => {}
         }
     }
-    for (sort, side) in
-        [TEN, TWENTY, CIRCLE].into_iter().flat_map(|sort| ["port", "starboard"].map(|side| (sort, side)))
+    for (manoeuvre, side) in
+        [TEN, TWENTY, CIRCLE].into_iter().flat_map(|manoeuvre| ["port", "starboard"].map(|side| (manoeuvre, side)))
     {
-        if tested.iter().filter(|tested| tested.what == Some((sort, side))).count() > 1 {
+        if tested.iter().filter(|tested| tested.what == Some((manoeuvre, side))).count() > 1 {
             remarks.push(format!(
-                "{sort} to {side}: several records; the first that is at full load or corrected is used"
+                "{manoeuvre} to {side}: several records; the first that is at full load or corrected is used"
             ));
         }
     }
-    if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { .. })) {
+    if entries.iter().any(|entry| entry.extrapolated.is_some()) {
         remarks.push(String::from(
             "predicted entries hold for the loading, the water depth and the weather of the records that the models were \
              fitted to, which a model does not say; they are no trial",
         ));
     }
-    if entries.iter().any(|entry| matches!(entry.basis, Basis::Predicted { extrapolated: true, .. })) {
+    if entries.iter().any(|entry| entry.extrapolated == Some(true)) {
         remarks.push(String::from("extrapolated entries are beyond the rudder or the yaw rate of those records"));
     }
     remarks
@@ -116,11 +117,11 @@ fn of_record(record: &Record, tested: &Tested) -> Vec<String> {
             ));
         }
         if let Some(correction) = record.correction {
-            remarks.extend(correction.doubts.iter().map(|doubt| format!("correction to full load: {doubt}")));
+            remarks.extend(correction.warnings.iter().map(|doubt| format!("correction to full load: {doubt}")));
             let is_entry = |name: &str| tested.figures.iter().any(|(own, _)| *own == name);
-            for figure in correction.figures.iter().filter(|figure| is_entry(figure.name)) {
-                let name = figure.name.replace('_', " ");
-                remarks.extend(figure.doubts.iter().map(|doubt| format!("correction of {name}: {doubt}")));
+            for (name, figure) in correction.figures.iter().filter(|(name, _)| is_entry(name)) {
+                let name = name.replace('_', " ");
+                remarks.extend(figure.warnings.iter().map(|doubt| format!("correction of {name}: {doubt}")));
             }
         }
     }

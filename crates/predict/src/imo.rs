@@ -1,81 +1,159 @@
 //! The criteria of IMO resolution MSC.137(76), as the probability that the ship passes them.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::Particulars;
-use trial::imo;
+use ship::angle::to_deg;
+use trial::imo::{self, Unit};
 
 use crate::interval::Interval;
-use crate::kind::Kind;
+use crate::kind::{Kind, Pattern};
 use crate::prediction::Prediction;
 
 /// One criterion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Criterion {
     /// What is limited.
-    pub name: &'static str,
+    pub criterion: String,
     /// The manoeuvre it is read from.
     pub manoeuvre: String,
     /// Largest value allowed.
     pub limit: f64,
     /// Unit of limit and interval.
-    pub unit: imo::Unit,
+    pub unit: String,
     /// Predicted value.
-    pub interval: Interval,
+    pub median: f64,
+    /// The interval of half of the draws; no part of the document.
+    #[serde(skip)]
+    pub ci50: [f64; 2],
+    /// The interval of nine tenths of the draws.
+    pub ci90: [f64; 2],
     /// Share of the drawn ships that keep within the limit; a ship without the figure does not.
-    pub probability: f64,
+    pub probability_of_passing: f64,
     /// Whether the manoeuvre is beyond what the records have seen.
     pub extrapolated: bool,
 }
 
+impl Criterion {
+    /// The predicted value with its intervals.
+    pub fn interval(&self) -> Interval {
+        Interval { median: self.median, ci50: self.ci50, ci90: self.ci90 }
+    }
+}
+
+/// A manoeuvre of the criteria and of the form of MSC/Circ.1053, as it is asked for at a positive rudder.
+pub(crate) type FormManoeuvre = &'static str;
+
+pub(crate) const TEN: FormManoeuvre = "zig-zag 10/10";
+pub(crate) const TWENTY: FormManoeuvre = "zig-zag 20/20";
+pub(crate) const CIRCLE: FormManoeuvre = "turning-circle 35";
+
+/// A limit of the resolution.
+pub(crate) struct Limit {
+    /// What it is called, and its section and name in the form.
+    pub name: &'static str,
+    pub section: &'static str,
+    pub field: &'static str,
+    /// The manoeuvre and its figure of merit.
+    pub manoeuvre: FormManoeuvre,
+    pub figure: &'static str,
+    pub unit: Unit,
+    /// Largest value; `None` where it follows L/V, which is not known.
+    pub of: fn(Option<Particulars>) -> Option<f64>,
+}
+
+const IN_CIRCLE: Limit = Limit {
+    name: "advance",
+    section: "turning circle, rudder 35°",
+    field: "advance",
+    manoeuvre: CIRCLE,
+    figure: "advance_lengths",
+    unit: Unit::ShipLengths,
+    of: |_| Some(imo::ADVANCE_LENGTHS),
+};
+
+const IN_TEN: Limit = Limit {
+    name: "10/10 first overshoot",
+    section: "zig-zag 10°/10°",
+    field: "1st overshoot angle",
+    manoeuvre: TEN,
+    figure: "first_overshoot_deg",
+    unit: Unit::Degrees,
+    of: |own| own.map(imo::first_overshoot_10_10_limit_deg),
+};
+
+/// All limits. Source: MSC.137(76), 5.3.
+pub(crate) const LIMITS: [Limit; 6] = [
+    Limit {
+        name: "initial turning",
+        section: "initial turning",
+        field: "distance to turn 10° with 10° rudder",
+        figure: "initial_turning_lengths",
+        unit: Unit::ShipLengths,
+        of: |_| Some(imo::INITIAL_TURNING_LENGTHS),
+        ..IN_TEN
+    },
+    IN_TEN,
+    Limit {
+        name: "10/10 second overshoot",
+        field: "2nd overshoot angle",
+        figure: "second_overshoot_deg",
+        of: |own| own.map(imo::second_overshoot_10_10_limit_deg),
+        ..IN_TEN
+    },
+    Limit {
+        name: "20/20 first overshoot",
+        section: "zig-zag 20°/20°",
+        manoeuvre: TWENTY,
+        of: |_| Some(imo::FIRST_OVERSHOOT_20_20_DEG),
+        ..IN_TEN
+    },
+    IN_CIRCLE,
+    Limit {
+        name: "tactical diameter",
+        field: "tactical diameter",
+        figure: "tactical_diameter_lengths",
+        of: |_| Some(imo::TACTICAL_DIAMETER_LENGTHS),
+        ..IN_CIRCLE
+    },
+];
+
+impl Limit {
+    /// Whether a manoeuvre answers it, to either side: circles with any rudder, and a turn with 10° as well as a 10/10.
+    fn is_answered_by(&self, kind: &Kind) -> bool {
+        let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
+        let is_pair =
+            |deg| matches!(kind.pattern, Pattern::ZigZag { heading } if is(heading, deg) && is(kind.rudder, deg));
+        match self.manoeuvre {
+            CIRCLE => kind.pattern == Pattern::TurningCircle,
+            TWENTY => is_pair(20.0),
+            _ => is_pair(10.0) || (kind.pattern == Pattern::InitialTurning && is(kind.rudder, 10.0)),
+        }
+    }
+}
+
 /// The criteria that some predicted manoeuvres answer, for a ship of this length and speed.
 pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Criterion> {
-    let angle = |kind: &Kind, deg: f64| match *kind {
-        Kind::ZigZag { rudder, heading, .. } => {
-            let is = |angle: f64| (ship::angle::to_deg(angle) - deg).abs() < 1e-6;
-            is(rudder) && is(heading)
-        }
-        _ => false,
-    };
-    let is_initial_turning = |kind: &Kind| {
-        let ten = |rudder: f64| (ship::angle::to_deg(rudder) - 10.0).abs() < 1e-6;
-        angle(kind, 10.0) || matches!(*kind, Kind::InitialTurning { rudder, .. } if ten(rudder))
+    let answer = |prediction: &Prediction, limit: &Limit| {
+        let figure = prediction.figures.get(limit.figure)?;
+        let most = (limit.of)(Some(particulars))?;
+        let Interval { median, ci50, ci90 } = figure.interval;
+        Some(Criterion {
+            criterion: limit.name.to_owned(),
+            manoeuvre: prediction.kind.to_string(),
+            limit: most,
+            unit: limit.unit.symbol().to_owned(),
+            median,
+            ci50,
+            ci90,
+            probability_of_passing: figure.share_within(most),
+            extrapolated: figure.extrapolated,
+        })
     };
     let mut criteria = Vec::new();
     for prediction in predictions {
-        let kind = &prediction.kind;
-        let mut add = |name: &'static str, figure: &str, limit: f64, unit: imo::Unit| {
-            let Some(figure) = prediction.figures.iter().find(|own| own.name == figure) else { return };
-            criteria.push(Criterion {
-                name,
-                manoeuvre: kind.to_string(),
-                limit,
-                unit,
-                interval: figure.interval,
-                probability: figure.share_within(limit),
-                extrapolated: prediction.extrapolated,
-            });
-        };
-        if is_initial_turning(kind) {
-            add("initial turning", "initial_turning_lengths", imo::INITIAL_TURNING_LENGTHS, imo::Unit::ShipLengths);
-        }
-        if angle(kind, 10.0) {
-            let first = imo::first_overshoot_10_10_limit_deg(particulars);
-            let second = imo::second_overshoot_10_10_limit_deg(particulars);
-            add("10/10 first overshoot", "first_overshoot_deg", first, imo::Unit::Degrees);
-            add("10/10 second overshoot", "second_overshoot_deg", second, imo::Unit::Degrees);
-        }
-        if angle(kind, 20.0) {
-            let limit = imo::FIRST_OVERSHOOT_20_20_DEG;
-            add("20/20 first overshoot", "first_overshoot_deg", limit, imo::Unit::Degrees);
-        }
-        if let Kind::TurningCircle { .. } = kind {
-            add("advance", "advance_lengths", imo::ADVANCE_LENGTHS, imo::Unit::ShipLengths);
-            add(
-                "tactical diameter",
-                "tactical_diameter_lengths",
-                imo::TACTICAL_DIAMETER_LENGTHS,
-                imo::Unit::ShipLengths,
-            );
-        }
+        let limits = LIMITS.iter().filter(|limit| limit.is_answered_by(&prediction.kind));
+        criteria.extend(limits.filter_map(|limit| answer(prediction, limit)));
     }
     criteria
 }
@@ -92,15 +170,15 @@ mod tests {
         let predictions: Vec<Prediction> =
             Kind::of_imo().iter().map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre")).collect();
         let found = criteria(&predictions, mixture.particulars().expect("made up"));
-        let names: Vec<&str> = found.iter().map(|criterion| criterion.name).collect();
+        let names: Vec<&str> = found.iter().map(|criterion| criterion.criterion.as_str()).collect();
         assert_eq!(
             names,
             ["initial turning", "10/10 first overshoot", "10/10 second overshoot", "20/20 first overshoot"],
             "a response without speed and drift has no track"
         );
         for criterion in &found {
-            let passes = criterion.interval.ci90[1] <= criterion.limit;
-            assert!(!passes || criterion.probability >= 0.95, "{criterion:?}");
+            let passes = criterion.ci90[1] <= criterion.limit;
+            assert!(!passes || criterion.probability_of_passing >= 0.95, "{criterion:?}");
         }
         // L/V = 12.5 s.
         assert!((found[1].limit - 11.25).abs() < 1e-12);

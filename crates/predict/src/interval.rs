@@ -1,7 +1,10 @@
-//! Quantiles of drawn values.
+//! Quantiles of drawn values, and how many digits of them are worth writing.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Median with the intervals that hold half and nine tenths of the draws.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Interval {
     /// Half of the draws are below.
     pub median: f64,
@@ -12,11 +15,20 @@ pub struct Interval {
 }
 
 /// Quantile of sorted values, linear between them (Hyndman and Fan 1996, type 7).
-pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
+fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let (low, part) = (place.floor() as usize, place.fract());
     let high = (low + 1).min(sorted.len() - 1);
     sorted[low] + part * (sorted[high] - sorted[low])
+}
+
+/// The middle of some values.
+///
+/// # Panics
+/// Without a value.
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    quantile(&values, 0.5)
 }
 
 /// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are put in order.
@@ -33,6 +45,13 @@ impl Interval {
     pub fn of(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
         Some(Self { median, ci50: [low, high], ci90: [lowest, highest] })
+    }
+
+    /// Decimals that its width asks for: two digits of it, at most six.
+    pub fn decimals(&self) -> usize {
+        let width = self.ci90[1] - self.ci90[0];
+        let decimals = if width > 0.0 { (1.0 - width.log10().floor()).max(0.0) } else { 2.0 };
+        (decimals as usize).min(6)
     }
 
     /// Whether a value lies within nine tenths of the draws.

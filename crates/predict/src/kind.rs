@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::{Deserialize, Serialize};
 use ship::angle::{from_deg, to_deg};
 use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, Williamson, ZigZag, ZigZagEnd};
 use simulate::{Manoeuvre, Side};
@@ -22,51 +23,37 @@ const PULL_OUT: f64 = 40.0;
 /// Times of the ship after the last order of a Williamson turn.
 const AFTER_WILLIAMSON: f64 = 20.0;
 
-/// A manoeuvre, angles in rad.
+/// What is done with the rudder.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
-    /// Zig-zag with this rudder and heading.
+pub enum Pattern {
+    /// The rudder is reversed when the heading deviates by this angle, rad, positive.
     ZigZag {
-        /// Rudder angle, positive.
-        rudder: f64,
-        /// Deviation of the heading at which the rudder is reversed, positive.
+        /// Deviation of the heading.
         heading: f64,
-        /// Side of the first execute.
-        first: Side,
     },
     /// A turn until the heading has changed by 10°, MSC.137(76).
-    InitialTurning {
-        /// Rudder angle, positive.
-        rudder: f64,
-        /// Side.
-        side: Side,
-    },
+    InitialTurning,
     /// Turning circle over one and a half rounds.
-    TurningCircle {
-        /// Rudder angle, positive.
-        rudder: f64,
-        /// Side.
-        side: Side,
-    },
+    TurningCircle,
     /// Pull-out.
-    PullOut {
-        /// Rudder angle, positive.
-        rudder: f64,
-        /// Side.
-        side: Side,
-    },
-    /// Steady turns up to this rudder to either side, their unstable branch included.
-    Spiral {
-        /// Largest rudder angle, positive.
-        rudder: f64,
-    },
+    PullOut,
+    /// Steady turns up to a rudder to either side, their unstable branch included.
+    Spiral,
     /// Williamson turn.
-    Williamson {
-        /// Rudder angle, positive.
-        rudder: f64,
-        /// Side of the first turn.
-        side: Side,
-    },
+    Williamson,
+}
+
+/// A manoeuvre; in files the words of its [`Display`](fmt::Display), which are also read.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(into = "String", try_from = "String")]
+#[schemars(with = "String")]
+pub struct Kind {
+    /// What is done with the rudder.
+    pub pattern: Pattern,
+    /// Largest rudder angle, rad, positive.
+    pub rudder: f64,
+    /// Side of the first execute; starboard for a spiral, which goes to either side.
+    pub side: Side,
 }
 
 /// Rudder of a Williamson turn whose rudder is not given.
@@ -78,79 +65,69 @@ pub(crate) const INITIAL_TURN: f64 = 10.0 * ship::angle::DEGREE;
 impl Kind {
     /// The manoeuvres of the IMO criteria.
     pub fn of_imo() -> Vec<Self> {
-        let zig_zag = |angle_deg: f64| {
-            let angle = from_deg(angle_deg);
-            Self::ZigZag { rudder: angle, heading: angle, first: Side::Starboard }
-        };
-        vec![
-            zig_zag(10.0),
-            zig_zag(20.0),
-            Self::TurningCircle { rudder: from_deg(HARD_OVER_DEG), side: Side::Starboard },
-        ]
+        let to_starboard = |pattern, rudder_deg| Self { pattern, rudder: from_deg(rudder_deg), side: Side::Starboard };
+        let zig_zag = |angle_deg| to_starboard(Pattern::ZigZag { heading: from_deg(angle_deg) }, angle_deg);
+        vec![zig_zag(10.0), zig_zag(20.0), to_starboard(Pattern::TurningCircle, HARD_OVER_DEG)]
     }
 
     /// The same manoeuvre to port; a spiral goes to either side.
-    pub fn to_port(mut self) -> Self {
-        match &mut self {
-            Self::ZigZag { first: side, .. }
-            | Self::InitialTurning { side, .. }
-            | Self::TurningCircle { side, .. }
-            | Self::PullOut { side, .. }
-            | Self::Williamson { side, .. } => *side = Side::Port,
-            Self::Spiral { .. } => {}
-        }
-        self
-    }
-
-    /// Largest rudder angle, rad.
-    pub fn rudder(&self) -> f64 {
-        match *self {
-            Self::ZigZag { rudder, .. }
-            | Self::InitialTurning { rudder, .. }
-            | Self::TurningCircle { rudder, .. }
-            | Self::PullOut { rudder, .. }
-            | Self::Spiral { rudder }
-            | Self::Williamson { rudder, .. } => rudder,
-        }
+    pub fn to_port(self) -> Self {
+        let side = if self.pattern == Pattern::Spiral { self.side } else { Side::Port };
+        Self { side, ..self }
     }
 
     /// What the helm does, for a ship with this time, s; `None` for a spiral, which is a curve of steady turns.
     pub fn manoeuvre(&self, timescale: f64) -> Option<Manoeuvre> {
-        Some(match *self {
-            Self::ZigZag { rudder, heading, first } => {
-                Manoeuvre::ZigZag(ZigZag { rudder, heading, first, end: ZigZagEnd::Executes(EXECUTES) })
+        let Self { pattern, rudder, side } = *self;
+        let turn =
+            |angle: f64| Manoeuvre::TurningCircle(TurningCircle { rudder, side, end: TurnEnd::HeadingChange(angle) });
+        Some(match pattern {
+            Pattern::ZigZag { heading } => {
+                Manoeuvre::ZigZag(ZigZag { rudder, heading, first: side, end: ZigZagEnd::Executes(EXECUTES) })
             }
-            Self::InitialTurning { rudder, side } => {
-                Manoeuvre::TurningCircle(TurningCircle { rudder, side, end: TurnEnd::HeadingChange(INITIAL_TURN) })
-            }
-            Self::TurningCircle { rudder, side } => {
-                Manoeuvre::TurningCircle(TurningCircle { rudder, side, end: TurnEnd::HeadingChange(TURN) })
-            }
-            Self::PullOut { rudder, side } => {
+            Pattern::InitialTurning => turn(INITIAL_TURN),
+            Pattern::TurningCircle => turn(TURN),
+            Pattern::PullOut => {
                 let hold = PULL_OUT * timescale;
                 Manoeuvre::PullOut(PullOut { rudder, side, hold, duration: hold })
             }
-            Self::Williamson { rudder, side } => {
+            Pattern::Williamson => {
                 Manoeuvre::Williamson(Williamson { rudder, side, duration: AFTER_WILLIAMSON * timescale })
             }
-            Self::Spiral { .. } => return None,
+            Pattern::Spiral => return None,
         })
     }
 }
 
 impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let signed = |angle: f64, side: Side| to_deg(angle * side.sign());
-        match *self {
-            Self::ZigZag { rudder, heading, first } => {
-                write!(f, "zig-zag {}/{}", Tidy(signed(rudder, first)), Tidy(to_deg(heading)))
-            }
-            Self::InitialTurning { rudder, side } => write!(f, "initial-turning {}", Tidy(signed(rudder, side))),
-            Self::TurningCircle { rudder, side } => write!(f, "turning-circle {}", Tidy(signed(rudder, side))),
-            Self::PullOut { rudder, side } => write!(f, "pull-out {}", Tidy(signed(rudder, side))),
-            Self::Spiral { rudder } => write!(f, "spiral {}", Tidy(to_deg(rudder))),
-            Self::Williamson { rudder, side } => write!(f, "williamson {}", Tidy(signed(rudder, side))),
+        let name = match self.pattern {
+            Pattern::ZigZag { .. } => "zig-zag",
+            Pattern::InitialTurning => "initial-turning",
+            Pattern::TurningCircle => "turning-circle",
+            Pattern::PullOut => "pull-out",
+            Pattern::Spiral => "spiral",
+            Pattern::Williamson => "williamson",
+        };
+        write!(f, "{name} {}", Tidy(to_deg(self.rudder * self.side.sign())))?;
+        match self.pattern {
+            Pattern::ZigZag { heading } => write!(f, "/{}", Tidy(to_deg(heading))),
+            _ => Ok(()),
         }
+    }
+}
+
+impl From<Kind> for String {
+    fn from(kind: Kind) -> Self {
+        kind.to_string()
+    }
+}
+
+impl TryFrom<String> for Kind {
+    type Error = PredictError;
+
+    fn try_from(text: String) -> Result<Self, PredictError> {
+        text.parse()
     }
 }
 
@@ -176,22 +153,22 @@ impl FromStr for Kind {
             }
             Ok((from_deg(value.abs()), if value < 0.0 { Side::Port } else { Side::Starboard }))
         };
-        match name {
-            "zig-zag" => {
-                let (rudder, heading) = rest.split_once('/').ok_or_else(refused)?;
-                let ((rudder, first), (heading, _)) = (angle(rudder)?, angle(heading)?);
-                Ok(Self::ZigZag { rudder, heading, first })
-            }
-            "initial-turning" => angle(rest).map(|(rudder, side)| Self::InitialTurning { rudder, side }),
-            "turning-circle" => angle(rest).map(|(rudder, side)| Self::TurningCircle { rudder, side }),
-            "pull-out" => angle(rest).map(|(rudder, side)| Self::PullOut { rudder, side }),
-            "spiral" => angle(rest).map(|(rudder, _)| Self::Spiral { rudder }),
-            "williamson" if rest.is_empty() => {
-                Ok(Self::Williamson { rudder: from_deg(HARD_OVER_DEG), side: Side::Starboard })
-            }
-            "williamson" => angle(rest).map(|(rudder, side)| Self::Williamson { rudder, side }),
-            _ => Err(refused()),
-        }
+        let pattern = match name {
+            "zig-zag" => Pattern::ZigZag { heading: angle(rest.split_once('/').ok_or_else(refused)?.1)?.0 },
+            "initial-turning" => Pattern::InitialTurning,
+            "turning-circle" => Pattern::TurningCircle,
+            "pull-out" => Pattern::PullOut,
+            "spiral" => Pattern::Spiral,
+            "williamson" => Pattern::Williamson,
+            _ => return Err(refused()),
+        };
+        let (rudder, side) = match (pattern, rest) {
+            (Pattern::Williamson, "") => (from_deg(HARD_OVER_DEG), Side::Starboard),
+            (Pattern::Spiral, rudder) => (angle(rudder)?.0, Side::Starboard),
+            (Pattern::ZigZag { .. }, angles) => angle(angles.split('/').next().unwrap_or_default())?,
+            (_, rudder) => angle(rudder)?,
+        };
+        Ok(Self { pattern, rudder, side })
     }
 }
 

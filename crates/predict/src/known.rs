@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use motion::{Hull, Planar};
+use crate::motion::{Hull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Response, ResponseModel};

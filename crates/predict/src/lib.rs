@@ -8,6 +8,7 @@
 //! | to learn about | read |
 //! |---|---|
 //! | what is known of a ship, as files hold it | [`known`] |
+//! | speed, drift and hulls fitted to records, tracks, turning circles | [`motion`] |
 //! | ships drawn from it | [`mixture`] |
 //! | the manoeuvres | [`kind`] |
 //! | figures of merit | [`figures`] |
@@ -18,18 +19,17 @@
 //! | the criteria of IMO | [`imo`] |
 //! | a trial in ballast corrected to full load | [`correction`] |
 //! | the form of MSC/Circ.1053 | [`form`] |
+//! | all of it as a file holds it | [`document`] |
 //!
 //! Time is in seconds from the first execute; everything else is in SI units and radians unless a name says otherwise.
 
 pub mod correction;
-mod doubt;
+pub mod document;
 pub mod error;
 pub mod figures;
 pub mod form;
-mod form_entries;
-mod form_entry;
+mod form_record;
 mod form_remarks;
-mod form_tested;
 pub mod imo;
 pub mod interval;
 pub mod kind;
@@ -37,6 +37,7 @@ pub mod known;
 #[cfg(test)]
 mod made_up;
 pub mod mixture;
+pub mod motion;
 pub mod passage;
 pub mod prediction;
 pub mod replay;
@@ -44,6 +45,7 @@ pub mod steady;
 mod steered;
 pub mod turn;
 
+pub use document::PredictDocument;
 pub use error::PredictError;
 pub use interval::Interval;
 pub use kind::Kind;

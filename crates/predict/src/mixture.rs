@@ -1,7 +1,7 @@
 //! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
 //! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
 
-use motion::{Hull, Planar};
+use crate::motion::{Hull, Planar};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use motion::{Planar, PlanarShip, Turn, TurningCircle};
+use crate::motion::{Planar, PlanarShip, Turn, TurningCircle};
 use ship::Regressor;
 use simulate::helm::Execute;
 use simulate::simulation::Truth;
@@ -88,7 +88,7 @@ fn vessel(ship: &Drawn) -> Vessel {
 fn way(planar: &Planar, truth: &Truth) -> Way {
     let velocities = planar.drive(&truth.time, &truth.yaw_rate, &truth.rudder, [planar.approach_speed, 0.0]);
     let (surge, sway): (Vec<f64>, Vec<f64>) = velocities.into_iter().map(|[u, v]| (u, v)).unzip();
-    let track = motion::track(&truth.time, &truth.heading, &surge, &sway);
+    let track = crate::motion::track(&truth.time, &truth.heading, &surge, &sway);
     Way { length: planar.length, surge, sway, track }
 }
 
@@ -98,7 +98,7 @@ impl Passage {
         let Way { surge, sway, track, .. } = self.way.as_ref()?;
         let time: Vec<f64> = (0..self.heading.len()).map(|row| self.time(row)).collect();
         let turn = Turn { time: &time, heading: &self.heading, track, surge, sway, yaw_rate: &self.yaw_rate };
-        Some(motion::turning_circle(&turn, execute))
+        Some(crate::motion::turning_circle(&turn, execute))
     }
 
     /// A series on the rows of the passage at a time, s.

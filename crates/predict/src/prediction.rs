@@ -1,12 +1,16 @@
 //! A manoeuvre predicted: every figure of merit with its intervals and where they come from, and bands of its curves.
 
+use indexmap::IndexMap;
 use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::Particulars;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figure};
-use crate::interval::{Interval, band, quantile};
+use crate::interval::{Interval, band, median};
 use crate::kind::Kind;
+use crate::known::Seen;
 use crate::mixture::{Mixture, Source};
 use crate::passage::{self, Passage};
 use crate::steady::SteadyCurve;
@@ -22,17 +26,19 @@ const FEWEST: f64 = 0.5;
 const MARGIN: f64 = 1.05;
 
 /// A figure of merit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Predicted {
-    /// Its name, with the unit.
-    pub name: &'static str,
     /// Median and intervals of the draws that have it.
+    #[serde(flatten)]
     pub interval: Interval,
-    /// Share of the draws that have it.
+    /// Whether rudder or yaw rate of the manoeuvre are beyond those of the records.
+    pub extrapolated: bool,
+    /// Share of the draws that have the figure.
     pub defined: f64,
-    /// Share of every source of doubt in the spread, all together 1; empty where they were not asked for.
-    pub shares: Vec<(Source, f64)>,
+    /// Share of every source of doubt in the spread.
+    pub shares: IndexMap<String, f64>,
     /// The draws, in the order of their numbers.
+    #[serde(skip)]
     pub draws: Vec<Option<f64>>,
 }
 
@@ -55,25 +61,34 @@ pub struct Bands {
     pub quantiles: Vec<[f64; 5]>,
 }
 
-/// A manoeuvre predicted.
-#[derive(Debug, Clone, PartialEq)]
+/// A manoeuvre predicted; its curves are no part of the document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
     pub kind: Kind,
-    /// Its figures.
-    pub figures: Vec<Predicted>,
+    /// Its figures by name, with the unit.
+    pub figures: IndexMap<String, Predicted>,
+    /// Draws that did not come to the end.
+    pub lost: usize,
     /// Heading, but for a spiral.
+    #[serde(skip)]
     pub heading: Bands,
     /// The most probable ship without chance, but for a spiral.
+    #[serde(skip)]
     pub most_probable: Option<Passage>,
     /// Tracks of some of the draws, north and east, m; empty where nothing is known of speed and drift.
+    #[serde(skip)]
     pub tracks: Vec<Vec<[f64; 2]>>,
     /// Steady curves of the most probable ship and of some others, for a spiral.
+    #[serde(skip)]
     pub curves: Vec<SteadyCurve>,
-    /// Whether rudder or yaw rate are beyond what the records have seen.
-    pub extrapolated: bool,
-    /// Draws that did not come to the end of it.
-    pub lost: usize,
+}
+
+impl Prediction {
+    /// Whether rudder or yaw rate are beyond those of the records.
+    pub fn is_extrapolated(&self) -> bool {
+        self.figures.values().any(|figure| figure.extrapolated)
+    }
 }
 
 /// One draw of a manoeuvre.
@@ -85,7 +100,7 @@ struct Draw {
 }
 
 /// Draws whose tracks are kept.
-const TRACKS: usize = 40;
+const TRACKS: u64 = 40;
 
 /// Refuses what less than half of the drawn ships come to the end of.
 pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(), PredictError> {
@@ -106,119 +121,95 @@ impl Mixture {
     ///
     /// Fails where less than half of the drawn ships come to the end of it.
     pub fn predict(&self, kind: &Kind, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
-        if let Kind::Spiral { rudder } = *kind {
-            return Ok(self.spiral(rudder, draws, shares));
-        }
-        let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else { unreachable!("all but a spiral are steered") };
-        let sail = |number: usize, sources: &[Source]| {
-            let passage = Passage::sail(&self.draw(number as u64, sources), &manoeuvre, self.timescale()).ok()?;
+        let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else { return Ok(self.spiral(kind, draws, shares)) };
+        let sail = |number: u64, sources: &[Source]| {
+            let passage = Passage::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
         };
-        let all: Vec<Option<Draw>> = (0..draws)
-            .into_par_iter()
-            .map(|number| {
-                let (figures, passage) = sail(number, &Source::ALL)?;
-                let largest_rate = passage.largest_rate();
-                let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
-                Some(Draw { figures, heading: passage.heading, largest_rate, track })
-            })
-            .collect();
+        let all: Vec<Option<Draw>> = drawn(draws, |number| {
+            let (figures, passage) = sail(number, &Source::ALL)?;
+            let largest_rate = passage.largest_rate();
+            let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
+            Some(Draw { figures, heading: passage.heading, largest_rate, track })
+        });
         let made: Vec<&Draw> = all.iter().flatten().collect();
         enough(kind, made.len(), draws)?;
         let values: Vec<Option<&[Figure]>> =
             all.iter().map(|draw| draw.as_ref().map(|draw| draw.figures.as_slice())).collect();
-        let alone = shares.then(|| {
-            Source::ALL.map(|source| {
-                let one = |number| sail(number, &[source]).map(|(figures, _)| figures);
-                let few: Vec<Option<Vec<Figure>>> = (0..draws.div_ceil(ALONE)).into_par_iter().map(one).collect();
-                (source, few)
-            })
-        });
-        let figures = predicted(&values, alone.as_ref().map(|alone| alone.as_slice()).unwrap_or_default());
+        let extrapolated = self.is_unseen(kind.rudder, median(made.iter().map(|draw| draw.largest_rate).collect()));
+        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(sail(number, &[source])?.0));
+        let sources: &[Source] = if shares { &Source::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
-        let mut rates: Vec<f64> = made.iter().map(|draw| draw.largest_rate).collect();
-        rates.sort_by(f64::total_cmp);
-        let heading = bands(&made, most_probable.as_ref(), passage::period(self.timescale()));
         Ok(Prediction {
             kind: *kind,
-            figures,
-            heading,
-            extrapolated: self.is_unseen(kind.rudder(), quantile(&rates, 0.5)),
+            figures: predicted(&values, extrapolated, sources, alone),
+            heading: bands(&made, most_probable.as_ref(), passage::period(self.timescale())),
             lost: draws - made.len(),
             most_probable,
-            tracks: all.iter().flatten().filter_map(|draw| draw.track.clone()).collect(),
+            tracks: made.iter().filter_map(|draw| draw.track.clone()).collect(),
             curves: Vec::new(),
         })
     }
 
     /// Steady turns; chance has no part in them.
-    fn spiral(&self, rudder: f64, draws: usize, shares: bool) -> Prediction {
-        let curve = |number: usize, sources: &[Source]| {
-            SteadyCurve::of(&self.draw(number as u64, sources), rudder, self.timescale())
-        };
-        let all: Vec<SteadyCurve> = (0..draws).into_par_iter().map(|number| curve(number, &Source::ALL)).collect();
-        let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(rudder)).collect();
+    fn spiral(&self, kind: &Kind, draws: usize, shares: bool) -> Prediction {
+        let curve =
+            |number, sources: &[Source]| SteadyCurve::of(&self.draw(number, sources), kind.rudder, self.timescale());
+        let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &Source::ALL));
+        let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(kind.rudder)).collect();
         let values: Vec<Option<&[Figure]>> = own.iter().map(|figures| Some(figures.as_slice())).collect();
-        let alone: Vec<(Source, Vec<Option<Vec<Figure>>>)> = match shares {
-            true => [Source::Parameters, Source::Structure]
-                .into_iter()
-                .map(|source| {
-                    let one = |number| Some(curve(number, &[source]).figures(rudder));
-                    (source, (0..draws.div_ceil(ALONE)).into_par_iter().map(one).collect())
-                })
-                .collect(),
-            false => Vec::new(),
-        };
+        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder)));
+        let sources: &[Source] = if shares { &[Source::Parameters, Source::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
-        let mut curves = vec![most_probable];
-        curves.extend(all);
         Prediction {
-            kind: Kind::Spiral { rudder },
-            figures: predicted(&values, &alone),
+            kind: *kind,
+            figures: predicted(&values, self.is_unseen(kind.rudder, largest), sources, alone),
+            lost: 0,
             heading: Bands::default(),
             most_probable: None,
             tracks: Vec::new(),
-            curves,
-            extrapolated: self.is_unseen(rudder, largest),
-            lost: 0,
+            curves: std::iter::once(most_probable).chain(all).collect(),
         }
     }
 
     /// Whether a rudder (rad) or a yaw rate (rad/s) is beyond what the records have seen.
     pub(crate) fn is_unseen(&self, rudder: f64, rate: f64) -> bool {
-        let most = |value: fn(&crate::known::Seen) -> f64| {
-            self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max)
-        };
+        let most = |value: fn(&Seen) -> f64| self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max);
         rudder > MARGIN * most(|seen| seen.rudder_rad) || rate > MARGIN * most(|seen| seen.yaw_rate_rad_s)
     }
 }
 
-/// Figures from the draws, with the shares of sources that were drawn alone.
-fn predicted(draws: &[Option<&[Figure]>], alone: &[(Source, Vec<Option<Vec<Figure>>>)]) -> Vec<Predicted> {
-    let Some(names) = draws.iter().flatten().next() else { return Vec::new() };
-    names
-        .iter()
-        .enumerate()
-        .filter_map(|(place, &(name, _))| {
-            let of_draws: Vec<Option<f64>> =
-                draws.iter().map(|draw| draw.and_then(|figures| figures[place].1)).collect();
-            let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
-            let defined = values.len() as f64 / draws.len() as f64;
-            let interval = Interval::of(&mut values)?;
-            let spread = |few: &[Option<Vec<Figure>>]| {
-                let mut values: Vec<f64> = few.iter().flatten().filter_map(|figures| figures[place].1).collect();
-                Interval::of(&mut values).map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
-            };
-            let spreads: Vec<(Source, f64)> = alone.iter().map(|(source, few)| (*source, spread(few))).collect();
-            let sum: f64 = spreads.iter().map(|(_, spread)| spread).sum();
-            let shares = match sum > 0.0 {
-                true => spreads.into_iter().map(|(source, spread)| (source, spread / sum)).collect(),
-                false => Vec::new(),
-            };
-            Some(Predicted { name, interval, defined, shares, draws: of_draws })
-        })
-        .collect()
+/// What is made of so many draws, in the order of their numbers.
+pub(crate) fn drawn<T: Send>(draws: usize, one: impl Fn(u64) -> T + Sync + Send) -> Vec<T> {
+    (0..draws as u64).into_par_iter().map(one).collect()
+}
+
+/// Figures from the draws, with the shares of sources that are drawn alone.
+fn predicted(
+    draws: &[Option<&[Figure]>],
+    extrapolated: bool,
+    sources: &[Source],
+    alone: impl Fn(Source) -> Vec<Option<Vec<Figure>>>,
+) -> IndexMap<String, Predicted> {
+    let Some(names) = draws.iter().flatten().next() else { return IndexMap::new() };
+    let alone: Vec<_> = sources.iter().map(|source| (source.as_str(), alone(*source))).collect();
+    let figure = |(place, &(name, _)): (usize, &Figure)| {
+        let of_draws: Vec<Option<f64>> = draws.iter().map(|draw| draw.and_then(|figures| figures[place].1)).collect();
+        let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
+        let defined = values.len() as f64 / draws.len() as f64;
+        let interval = Interval::of(&mut values)?;
+        let spread = |few: &[Option<Vec<Figure>>]| {
+            let mut values: Vec<f64> = few.iter().flatten().filter_map(|figures| figures[place].1).collect();
+            Interval::of(&mut values).map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
+        };
+        let spreads: Vec<(&str, f64)> = alone.iter().map(|(source, few)| (*source, spread(few))).collect();
+        let sum: f64 = spreads.iter().map(|(_, spread)| spread).sum();
+        let shares = spreads.into_iter().filter(|_| sum > 0.0);
+        let shares = shares.map(|(source, spread)| (source.to_owned(), spread / sum)).collect();
+        Some((name.to_owned(), Predicted { interval, extrapolated, defined, shares, draws: of_draws }))
+    };
+    names.iter().enumerate().filter_map(figure).collect()
 }
 
 /// Quantiles row by row, as long as nine tenths of the draws go on.
@@ -266,11 +257,11 @@ mod tests {
             known.approach_yaw_rate_rad_s = 0.0;
         });
         let prediction = sure.predict(&kind("zig-zag:10/10"), 8, true).expect("a manoeuvre");
-        for figure in &prediction.figures {
-            assert_eq!(figure.interval.ci90[0], figure.interval.ci90[1], "{}", figure.name);
+        for (name, figure) in &prediction.figures {
+            assert_eq!(figure.interval.ci90[0], figure.interval.ci90[1], "{name}");
             assert!(figure.shares.is_empty() && figure.defined == 1.0);
         }
-        assert!(!prediction.extrapolated && prediction.lost == 0);
+        assert!(!prediction.is_extrapolated() && prediction.lost == 0);
         assert!(prediction.heading.time.len() > 100);
     }
 
@@ -282,9 +273,9 @@ mod tests {
             known.members[0].fitted.clear();
         });
         let prediction = noisy.predict(&kind("zig-zag:10/10"), 200, true).expect("a manoeuvre");
-        let first = prediction.figures.iter().find(|figure| figure.name == "first_overshoot_deg").expect("a zig-zag");
-        let share = |of: Source| first.shares.iter().find(|(source, _)| *source == of).map_or(0.0, |(_, share)| *share);
-        assert!((first.shares.iter().map(|(_, share)| share).sum::<f64>() - 1.0).abs() < 1e-12);
+        let first = &prediction.figures["first_overshoot_deg"];
+        let share = |of: Source| first.shares[of.as_str()];
+        assert!((first.shares.values().sum::<f64>() - 1.0).abs() < 1e-12);
         assert_eq!((share(Source::Parameters), share(Source::Structure)), (0.0, 0.0));
         assert!(share(Source::ProcessNoise) > 0.3, "{:?}", first.shares);
         let [low, high] = first.interval.ci90;
@@ -294,8 +285,8 @@ mod tests {
     #[test]
     fn beyond_what_was_seen_is_said() {
         let ship = mixture(|_| {});
-        assert!(ship.predict(&kind("turning-circle:35"), 8, false).expect("a turn").extrapolated);
-        assert!(!ship.predict(&kind("zig-zag:10/10"), 8, false).expect("a zig-zag").extrapolated);
+        assert!(ship.predict(&kind("turning-circle:35"), 8, false).expect("a turn").is_extrapolated());
+        assert!(!ship.predict(&kind("zig-zag:10/10"), 8, false).expect("a zig-zag").is_extrapolated());
         let spiral = ship.predict(&kind("spiral:15"), 8, true).expect("a curve");
         assert_eq!(spiral.curves.len(), 9);
         assert_eq!(spiral.figures[2].interval.median, 0.0, "a stable ship has no loop");

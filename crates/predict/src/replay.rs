@@ -1,19 +1,22 @@
 //! A recorded rudder replayed and held against its record: the record is not fitted, so it says whether intervals hold.
 
-use motion::Current;
+use crate::motion::Current;
+use indexmap::IndexMap;
 use rand::RngExt;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::Polyline;
+use ship::angle::to_deg;
 use simulate::{Manoeuvre, Purpose};
-use trial::{Quantity, Trial, ZigZag as Measured};
+use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::figures::Figure;
 use crate::interval::{Interval, band};
 use crate::mixture::{Mixture, Source};
 use crate::passage::Passage;
-use crate::prediction::{Bands, enough};
+use crate::prediction::{Bands, drawn, enough};
 use crate::steered::{self, Steered};
 use crate::turn::{self, Turn};
 
@@ -24,33 +27,50 @@ const BEGINNING: f64 = 1.0;
 const FEWEST: usize = 5;
 
 /// A figure of a record with its prediction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Compared {
-    /// Its name, with the unit.
-    pub name: &'static str,
     /// What the record shows.
     pub measured: f64,
-    /// Standard deviation of that, where the record tells it.
-    pub sd: Option<f64>,
     /// What was predicted.
+    #[serde(flatten)]
     pub interval: Interval,
+    /// Whether the 90 % interval holds what was measured.
+    pub inside90: bool,
 }
 
-/// A record with its prediction.
-#[derive(Debug, Clone, PartialEq)]
+/// A record with its prediction; its curves are no part of the document.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Replayed {
+    /// The file as the user named it.
+    pub file: String,
     /// Share of the measured headings inside the 90 % band of a reading.
     pub band_coverage_90: f64,
-    /// Root mean square difference between the headings and the most probable ship, rad.
-    pub rms: f64,
-    /// Figures that the record shows.
-    pub figures: Vec<Compared>,
-    /// The current that was taken out of the track of the record.
+    /// Root mean square difference between the headings and the most probable ship.
+    pub heading_rmse_deg: f64,
+    /// What was taken out of the track.
     pub current: Option<Current>,
+    /// Figures that the record shows, by name.
+    pub figures: IndexMap<String, Compared>,
+    /// Name of the record.
+    #[serde(skip)]
+    pub name: String,
+    /// Time from the first row, s, and rudder, rad.
+    #[serde(skip)]
+    pub rudder: [Vec<f64>; 2],
     /// Heading with the band of a reading, at the rows of the record.
+    #[serde(skip)]
     pub heading: Bands,
     /// Measured headings at these rows, rad.
+    #[serde(skip)]
     pub measured: Vec<f64>,
+}
+
+/// The file of a record as the user named it.
+pub fn file_of(trial: &Trial) -> &str {
+    match trial.origin() {
+        Origin::Measured { file, .. } => file,
+        Origin::Simulated { .. } => trial.name(),
+    }
 }
 
 /// First heading (rad) and yaw rate (rad/s) of a record with their standard deviations: a straight line through what
@@ -117,8 +137,8 @@ impl Mixture {
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
         let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
-        let sail = |number: usize, sources: &[Source]| {
-            let mut ship = self.draw(number as u64, sources);
+        let sail = |number: u64, sources: &[Source]| {
+            let mut ship = self.draw(number, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let doubt = if sources.is_empty() { 0.0 } else { 1.0 };
@@ -132,16 +152,14 @@ impl Mixture {
         let at_rows = |passage: &Passage| -> Vec<f64> {
             rows.iter().map(|&row| passage.at(&passage.heading, trial.time()[row] - start)).collect()
         };
-        let made: Vec<(Passage, Vec<f64>)> = (0..draws)
-            .into_par_iter()
-            .filter_map(|number| {
-                let (passage, mut rng) = sail(number, &Source::ALL)?;
-                let noise = self.first().noise.heading_sd_rad;
-                let mut headings = at_rows(&passage);
-                headings.iter_mut().for_each(|heading| *heading += noise * rng.sample::<f64, _>(StandardNormal));
-                Some((passage, headings))
-            })
-            .collect();
+        let of_draw = |number| {
+            let (passage, mut rng) = sail(number, &Source::ALL)?;
+            let noise = self.first().noise.heading_sd_rad;
+            let mut headings = at_rows(&passage);
+            headings.iter_mut().for_each(|heading| *heading += noise * rng.sample::<f64, _>(StandardNormal));
+            Some((passage, headings))
+        };
+        let made: Vec<(Passage, Vec<f64>)> = drawn(draws, of_draw).into_iter().flatten().collect();
         let most_probable = sail(0, &[]).map(|(passage, _)| passage);
         enough(trial.name(), made.len(), draws)?;
         let Some(most_probable) = most_probable else { return Err(lost(made.len())) };
@@ -165,8 +183,11 @@ impl Mixture {
             _ => turns(trial, &made, self.timescale(), current),
         };
         Ok(Some(Replayed {
+            file: file_of(trial).to_owned(),
+            name: trial.name().to_owned(),
+            rudder: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
             band_coverage_90: held as f64 / rows.len() as f64,
-            rms: (square / rows.len() as f64).sqrt(),
+            heading_rmse_deg: to_deg((square / rows.len() as f64).sqrt()),
             figures,
             current,
             heading,
@@ -175,12 +196,14 @@ impl Mixture {
     }
 
     /// Overshoots, times and period of a measured zig-zag, steered anew.
-    fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<Vec<Compared>, PredictError> {
-        let Some(steered) = Steered::of(measured, self.first().approach_yaw_rate_rad_s) else { return Ok(Vec::new()) };
+    fn zig_zag(&self, trial: &Trial, measured: &Measured, draws: usize) -> Result<ByName, PredictError> {
+        let Some(steered) = Steered::of(measured, self.first().approach_yaw_rate_rad_s) else {
+            return Ok(ByName::new());
+        };
         let drawn: Vec<Vec<Figure>> =
             steered.draws(self, draws).into_iter().flatten().map(|sailed| sailed.figures).collect();
         enough(steered.kind, drawn.len(), draws)?;
-        Ok(compared(&drawn, |name| self.shown(trial, measured, name)))
+        Ok(compared(&drawn, |name| Some(self.shown(trial, measured, name)?.value)))
     }
 
     /// A figure of a measured zig-zag. V times the time of the initial turning is its way where the ship has no speed
@@ -202,42 +225,41 @@ impl Mixture {
     }
 }
 
+/// Figures by name.
+type ByName = IndexMap<String, Compared>;
+
 /// Figures that were measured, beside their draws.
-fn compared(drawn: &[Vec<Figure>], measured: impl Fn(&str) -> Option<Quantity>) -> Vec<Compared> {
-    let Some(names) = drawn.first() else { return Vec::new() };
-    names
-        .iter()
-        .enumerate()
-        .filter_map(|(place, &(name, _))| {
-            let Quantity { value, sd, .. } = measured(name)?;
-            let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[place].1).collect();
-            Some(Compared { name, measured: value, sd, interval: Interval::of(&mut values)? })
-        })
-        .collect()
+fn compared(drawn: &[Vec<Figure>], shown: impl Fn(&str) -> Option<f64>) -> ByName {
+    let Some(names) = drawn.first() else { return ByName::new() };
+    let figure = |(place, &(name, _)): (usize, &Figure)| {
+        let measured = shown(name)?;
+        let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[place].1).collect();
+        let interval = Interval::of(&mut values)?;
+        Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
+    };
+    names.iter().enumerate().filter_map(figure).collect()
 }
 
 /// Figures of a record that is a turn.
 ///
 /// The doubt about a current that was taken out of its track is one of the prediction.
-fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64, current: Option<Current>) -> Vec<Compared> {
-    let Some(turn) = Turn::of(trial.rudder_signal()) else { return Vec::new() };
-    let Some((sample, _)) = made.first() else { return Vec::new() };
+fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64, current: Option<Current>) -> ByName {
+    let (Some(turn), Some((sample, _))) = (Turn::of(trial.rudder_signal()), made.first()) else { return ByName::new() };
     let length = sample.way.as_ref().map(|way| way.length);
-    let Some(record) = turn::recorded(trial, timescale, length) else { return Vec::new() };
+    let Some(record) = turn::recorded(trial, timescale, length) else { return ByName::new() };
     let start = trial.time()[0];
     let figures = |passage: &Passage| turn.figures(&passage.until(turn.until - start), start);
     let measured = figures(&record);
     let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
     if !is_turn {
-        return Vec::new();
+        return ByName::new();
     }
     let doubtful = |(number, (passage, _)): (usize, &(Passage, Vec<f64>))| match current {
         None => figures(passage),
         Some(current) => figures(&turn::in_doubt(passage, &current, number as u64)),
     };
     let drawn: Vec<Vec<Figure>> = made.iter().enumerate().map(doubtful).collect();
-    let shown = |name: &str| measured.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value);
-    compared(&drawn, |name| shown(name).map(Quantity::bare))
+    compared(&drawn, |name| measured.iter().find(|(own, _)| *own == name)?.1)
 }
 
 #[cfg(test)]
@@ -271,7 +293,7 @@ mod tests {
         for number in 0..records {
             let trial = record(&mixture, manoeuvre.clone(), 1000 + number);
             let replayed = mixture.replay(&trial, 100, None).expect("it sails").expect("it begins");
-            let held = replayed.figures.iter().filter(|figure| figure.interval.holds90(figure.measured)).count();
+            let held = replayed.figures.values().filter(|figure| figure.inside90).count();
             inside += held;
             all += replayed.figures.len();
             band += replayed.band_coverage_90 / f64::from(records as u32);
@@ -297,9 +319,9 @@ mod tests {
         let kind: Kind = "turning-circle:-15".parse().expect("known");
         let trial = record(&mixture, kind.manoeuvre(mixture.timescale()).expect("steered"), 3);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
-        let names: Vec<&str> = replayed.figures.iter().map(|figure| figure.name).collect();
+        let names: Vec<&String> = replayed.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);
-        for figure in &replayed.figures {
+        for figure in replayed.figures.values() {
             assert!((figure.measured / figure.interval.median - 1.0).abs() < 0.2, "{figure:?}");
         }
     }

@@ -1,16 +1,16 @@
 //! A measured zig-zag steered anew: a helm that reverses the rudder where the record did, because a rudder that is
 //! replayed knows nothing of the heading. What the record shows of it stands beside.
 
-use rayon::prelude::*;
 use ship::Particulars;
 use ship::angle::to_deg;
 use simulate::Side;
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
-use crate::kind::Kind;
+use crate::kind::{Kind, Pattern};
 use crate::mixture::{Mixture, Source};
 use crate::passage::Passage;
+use crate::prediction::drawn;
 
 /// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
 const NOMINAL: f64 = 0.05;
@@ -21,13 +21,6 @@ pub(crate) struct Sailed {
     pub figures: Vec<Figure>,
     /// Largest |yaw rate|, rad/s.
     pub largest_rate: f64,
-}
-
-impl Sailed {
-    pub fn new(figures: Vec<Figure>, passage: &Passage) -> Self {
-        let largest_rate = passage.largest_rate();
-        Self { figures, largest_rate }
-    }
 }
 
 /// A measured zig-zag as a helm steers it.
@@ -58,7 +51,7 @@ impl Steered {
                 .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
             None => [rudder, heading],
         };
-        let first = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
+        let side = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
         // An approach is nearly straight, and a slope that is read off a few headings is not known well.
         let yaw_rate = executes[0].yaw_rate.map_or(0.0, |rate| {
             let doubt = rate.sd.unwrap_or(0.0);
@@ -68,25 +61,23 @@ impl Steered {
                 0.0
             }
         });
-        let kind = Kind::ZigZag { rudder, heading, first };
+        let kind = Kind { pattern: Pattern::ZigZag { heading }, rudder, side };
         Some(Self { kind, yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
     pub fn draws(&self, mixture: &Mixture, draws: usize) -> Vec<Option<Sailed>> {
         let manoeuvre = self.kind.manoeuvre(mixture.timescale()).expect("a zig-zag is steered");
-        (0..draws)
-            .into_par_iter()
-            .map(|number| {
-                let mut ship = mixture.draw(number as u64, &Source::ALL);
-                ship.yaw_rate = self.yaw_rate;
-                if let Some(rate) = self.rudder_rate {
-                    ship.gear.rate = rate;
-                }
-                let passage = Passage::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
-                Some(Sailed::new(figures::of(&self.kind, &passage, mixture.particulars()), &passage))
-            })
-            .collect()
+        drawn(draws, |number| {
+            let mut ship = mixture.draw(number, &Source::ALL);
+            ship.yaw_rate = self.yaw_rate;
+            if let Some(rate) = self.rudder_rate {
+                ship.gear.rate = rate;
+            }
+            let passage = Passage::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
+            let figures = figures::of(&self.kind, &passage, mixture.particulars());
+            Some(Sailed { figures, largest_rate: passage.largest_rate() })
+        })
     }
 }
 

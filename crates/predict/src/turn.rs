@@ -1,7 +1,7 @@
 //! A rudder that is put over and held, as a record shows it: its figures, and those of drawn ships under the same
 //! rudder.
 
-pub use motion::Current;
+pub use crate::motion::Current;
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::Polyline;
@@ -26,14 +26,14 @@ pub fn current_of(trial: &Trial) -> Option<Current> {
     let rows: Vec<usize> = trial.observed_rows().filter(is_there).filter(is_turning).collect();
     let of = |values: &[f64]| -> Vec<f64> { rows.iter().map(|&row| values[row]).collect() };
     let track: Vec<[f64; 2]> = rows.iter().map(|&row| [north[row], east[row]]).collect();
-    motion::current(&of(trial.time()), &of(trial.heading()), &track)
+    crate::motion::current(&of(trial.time()), &of(trial.heading()), &track)
 }
 
 /// A record whose positions no current has moved, and the current that was taken out: the one that is given, else the
 /// one that the record shows, where it shows one.
 pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<Current>) {
     match given.or_else(|| current_of(&trial)).filter(|_| trial.channel(Channel::North).is_some()) {
-        Some(current) => (trial.without_current(current.velocity), Some(current)),
+        Some(current) => (trial.without_current([current.north_m_s, current.east_m_s]), Some(current)),
         None => (trial, None),
     }
 }
@@ -41,7 +41,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
 /// A drawn passage with what is not known of a current, from its execute on.
 pub(crate) fn in_doubt(passage: &Passage, current: &Current, number: u64) -> Passage {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
-    let error = current.deviation.map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
+    let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
     let mut passage = passage.clone();
     let period = passage.period;
     for (row, place) in passage.way.iter_mut().flat_map(|way| &mut way.track).enumerate() {

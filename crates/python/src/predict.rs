@@ -6,7 +6,6 @@ use pyo3::prelude::*;
 use scenario::failure::Failure;
 use study::options::PredictRequest;
 use study::views::document;
-use study::views::predict_file::PredictFile;
 use study::work::predict::{Asked, Model, asked_scale, manoeuvres};
 
 use crate::asked::request;
@@ -49,6 +48,6 @@ pub fn predict(
             true,
             &mut warnings,
         )?;
-        Ok((document::text(&PredictFile::of(&predicted)).map_err(Failure::work)?, warnings))
+        Ok((document::text(&predicted).map_err(Failure::work)?, warnings))
     })
 }

@@ -1,6 +1,7 @@
 //! What every answer of a scenario has to predict: `[predict]`.
 
 use predict::Kind;
+use predict::kind::Pattern;
 use serde::{Deserialize, Serialize};
 
 use crate::problem::{KeyPath, Problem};
@@ -57,7 +58,7 @@ impl PredictWire {
                 Problem::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
             };
             let kind: Kind = text.parse().map_err(|error: predict::PredictError| refused(&error.to_string()))?;
-            if let Kind::Spiral { .. } = kind {
+            if kind.pattern == Pattern::Spiral {
                 return Err(refused("expected a manoeuvre that is steered; a spiral is a curve"));
             }
             if kinds.contains(&kind) {

@@ -10,8 +10,7 @@ use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
-use crate::views::predict_file::{self, PredictFile};
-use crate::views::{document, predict_figures, predict_form, predict_page, predict_tables};
+use crate::views::{document, predict_curves, predict_figures, predict_form, predict_page, predict_tables};
 use crate::work::predict::{Asked, Model, asked_scale, manoeuvres, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
@@ -65,16 +64,16 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(asked, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let path = folder.path().join(PREDICT);
-    let document = document::text(&PredictFile::of(&predicted)).on("describe", &path)?;
+    let document = document::text(&predicted).on("describe", &path)?;
     folder.keep(PREDICT, document.as_str())?;
     let drawn = predict_figures::draw(&predicted, &theme, &folder)?;
-    for (stem, table) in predict_file::curves(&predicted) {
+    for (stem, table) in predict_curves::curves(&predicted) {
         folder.write(&format!("{stem}.csv"), table)?;
     }
     write_page(&folder, &predict_page::page(&predicted, &drawn))?;
     let mut notes = String::new();
-    if let Some(form) = &predicted.form {
-        folder.write(FORM, predict_form::page(form, &predicted))?;
+    if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
+        folder.write(FORM, predict_form::page(form, remarks))?;
         notes += &format!("\nform:    {}", folder.path().join(FORM).display());
     }
     notes = format!("\nresults: {}", path.display()) + &notes;

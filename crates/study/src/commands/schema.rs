@@ -1,6 +1,7 @@
 //! `study schema`: the JSON schema of a file that people or programs write or read.
 
 use campaign::manifest::Manifest;
+use predict::PredictDocument;
 use scenario::failure::{Failure, OnPath};
 use scenario::schema::plain;
 use schemars::generate::SchemaSettings;
@@ -12,7 +13,6 @@ use crate::documents::trace::TraceDocument;
 use crate::options::{Common, Described};
 use crate::screen;
 use crate::views::document;
-use crate::views::predict_file::PredictFile;
 
 /// Prints the schema.
 pub fn run(what: Described, common: &Common) -> Result<(), Failure> {
@@ -27,7 +27,7 @@ pub fn schema(what: Described) -> Schema {
         Described::Sidecar => trial::sidecar::schema(),
         Described::Fit => of::<FitDocument>(),
         Described::Trace => of::<TraceDocument>(),
-        Described::Predict => of::<PredictFile>(),
+        Described::Predict => of::<PredictDocument>(),
         Described::Manifest => of::<Manifest>(),
     }
 }

@@ -2,10 +2,12 @@
 //! limits of IMO.
 
 use predict::imo::Criterion;
+use predict::interval::Interval;
+use predict::kind::Pattern;
 use predict::known::Seen;
 use predict::prediction::Bands;
 use predict::steady::SteadyCurve;
-use predict::{Kind, Prediction};
+use predict::{PredictDocument, Prediction};
 use rayon::prelude::*;
 use report::figures::{self, OvershootRow, Overshoots, PhasePlane, PredictionBands, SteadyCurves, Track};
 use report::{Curve, Figure, Theme};
@@ -14,8 +16,7 @@ use trial::imo::Unit;
 
 use super::index_figures;
 use super::picture::{first_failure, write_figure};
-use super::predict_file::stems;
-use super::predict_report::Predicted;
+use super::predict_curves::stems;
 use super::predict_tables::words;
 use campaign::folder::ResultFolder;
 use scenario::failure::Failure;
@@ -30,21 +31,25 @@ const HEADINGS: usize = 12;
 type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
 
 /// Draws everything into `folder` and returns stems and captions.
-pub fn draw(predicted: &Predicted, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
+pub fn draw(
+    document: &PredictDocument,
+    theme: &Theme,
+    folder: &ResultFolder,
+) -> Result<Vec<(String, String)>, Failure> {
     let mut drawings: Vec<Drawing> = Vec::new();
-    let stems = stems(predicted);
-    for (prediction, stem) in predicted.manoeuvres.iter().zip(&stems) {
+    let stems = stems(document);
+    for (prediction, stem) in document.manoeuvres.iter().zip(&stems) {
         let kind = prediction.kind.to_string();
-        if let Kind::Spiral { .. } = prediction.kind {
+        if prediction.kind.pattern == Pattern::Spiral {
             let caption =
                 format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
-            let draw = move || figures::steady_curves(&steady(&prediction.curves, predicted.seen), theme);
+            let draw = move || figures::steady_curves(&steady(&prediction.curves, document.seen), theme);
             drawings.push((stem.clone(), caption, Box::new(draw)));
             continue;
         }
-        let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", predicted.draws);
+        let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
         drawings.push((stem.clone(), caption, Box::new(move || bands_of(prediction, theme))));
-        if let (Kind::ZigZag { .. }, Some(passage)) = (&prediction.kind, &prediction.most_probable) {
+        if let (Pattern::ZigZag { .. }, Some(passage)) = (prediction.kind.pattern, &prediction.most_probable) {
             let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
             let draw = move || {
                 let way = index_figures::phase_named("most probable ship", &passage.heading, &passage.yaw_rate);
@@ -59,17 +64,16 @@ pub fn draw(predicted: &Predicted, theme: &Theme, folder: &ResultFolder) -> Resu
             drawings.push((format!("{stem}-track"), caption, Box::new(move || track(prediction, theme))));
         }
     }
-    for ((trial, replayed), stem) in predicted.replays.iter().zip(&stems[predicted.manoeuvres.len()..]) {
-        let caption = format!("{}: the record and its rudder replayed, nothing fitted to it.", trial.name());
+    for (replayed, stem) in document.replays.iter().zip(&stems[document.manoeuvres.len()..]) {
+        let caption = format!("{}: the record and its rudder replayed, nothing fitted to it.", replayed.name);
         let draw = move || {
-            let degrees: Vec<f64> = replayed.measured.iter().copied().map(to_deg).collect();
-            let rudder: Vec<f64> = trial.rudder().iter().copied().map(to_deg).collect();
-            let time: Vec<f64> = trial.time().iter().map(|time| time - trial.time()[0]).collect();
+            let [degrees, rudder] = [&replayed.measured, &replayed.rudder[1]]
+                .map(|angles| angles.iter().copied().map(to_deg).collect::<Vec<f64>>());
             let recorded = Some(Curve::new(replayed.heading.time.as_slice(), degrees));
             let data = PredictionBands {
-                title: Some(format!("{}, predicted", trial.name())),
+                title: Some(format!("{}, predicted", replayed.name)),
                 recorded,
-                rudder: Curve::new(time, rudder),
+                rudder: Curve::new(replayed.rudder[0].as_slice(), rudder),
                 ..bands(&replayed.heading)
             };
             figures::prediction_bands(&data, theme)
@@ -77,14 +81,15 @@ pub fn draw(predicted: &Predicted, theme: &Theme, folder: &ResultFolder) -> Resu
         drawings.push((stem.clone(), caption, Box::new(draw)));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
-        let criteria: Vec<&Criterion> = predicted.criteria.iter().filter(|criterion| criterion.unit == unit).collect();
+        let criteria: Vec<&Criterion> =
+            document.imo.iter().filter(|criterion| criterion.unit == unit.symbol()).collect();
         if !criteria.is_empty() {
             let caption = String::from("Criteria of IMO MSC.137(76): what is predicted and what is allowed.");
             let draw = move || figures::overshoots(&limits(&criteria, unit), theme);
             drawings.push((stem.to_owned(), caption, Box::new(draw)));
         }
     }
-    let measured: Vec<OvershootRow> = measured(predicted);
+    let measured: Vec<OvershootRow> = measured(document);
     if !measured.is_empty() {
         let caption = String::from("Overshoots of the records and what was predicted of them.");
         let data = Overshoots {
@@ -171,13 +176,9 @@ pub fn steady(curves: &[SteadyCurve], seen: Seen) -> SteadyCurves {
 
 fn limits(criteria: &[&Criterion], unit: Unit) -> Overshoots {
     let row = |criterion: &&Criterion| OvershootRow {
-        label: criterion.name.to_owned(),
-        median: criterion.interval.median,
-        ci50: criterion.interval.ci50,
-        ci90: criterion.interval.ci90,
-        measured: None,
         limit: Some(criterion.limit),
         extrapolated: criterion.extrapolated,
+        ..row(criterion.criterion.clone(), &criterion.interval())
     };
     Overshoots {
         title: Some(String::from("IMO MSC.137(76)")),
@@ -186,20 +187,17 @@ fn limits(criteria: &[&Criterion], unit: Unit) -> Overshoots {
     }
 }
 
+fn row(label: String, &Interval { median, ci50, ci90 }: &Interval) -> OvershootRow {
+    OvershootRow { label, median, ci50, ci90, measured: None, limit: None, extrapolated: false }
+}
+
 /// Overshoots of replayed records.
-fn measured(predicted: &Predicted) -> Vec<OvershootRow> {
+fn measured(document: &PredictDocument) -> Vec<OvershootRow> {
     let mut rows = Vec::new();
-    for (trial, replayed) in &predicted.replays {
-        for figure in replayed.figures.iter().filter(|figure| figure.name.ends_with("overshoot_deg")) {
-            rows.push(OvershootRow {
-                label: format!("{} {}", trial.name(), words(figure.name).0),
-                median: figure.interval.median,
-                ci50: figure.interval.ci50,
-                ci90: figure.interval.ci90,
-                measured: Some(figure.measured),
-                limit: None,
-                extrapolated: false,
-            });
+    for replayed in &document.replays {
+        for (name, figure) in replayed.figures.iter().filter(|(name, _)| name.ends_with("overshoot_deg")) {
+            let label = format!("{} {}", replayed.name, words(name).0);
+            rows.push(OvershootRow { measured: Some(figure.measured), ..row(label, &figure.interval) });
         }
     }
     rows

@@ -1,148 +1,47 @@
-//! The form for reporting manoeuvring data to IMO (MSC/Circ.1053, appendix 6): as a page and as entries of
-//! `predict.json`.
+//! The form for reporting manoeuvring data to IMO (MSC/Circ.1053, appendix 6) as a page.
 
-use predict::form::{Basis, Entry, Form, TRACK_REACH_LENGTHS, Value};
+use predict::form::{DECIMALS, Entry, STOPPING, TRACK_REACH_LENGTHS};
+use predict::interval::Interval;
 use report::markdown::text;
 use report::number::{fixed, significant};
 use report::{Column, Table};
-use serde::Serialize;
-
-use super::predict_report::Predicted;
-use super::predict_tables::{bracket, digits};
 
 /// What stands for an entry that nobody can fill in.
 const EMPTY: &str = "–";
-
-/// Most decimals of a result: no trial tells a hundredth of a degree or of a ship length.
-const DECIMALS: usize = 2;
 
 /// Decimals of a measured result: as many as its standard deviation supports.
 fn decimals_of(sd: Option<f64>) -> usize {
     sd.filter(|sd| *sd > 0.0).map_or(DECIMALS, |sd| ((-sd.log10()).ceil().max(0.0) as usize).min(DECIMALS))
 }
 
-/// An entry of the form for other programs.
-#[derive(Debug, Serialize, schemars::JsonSchema)]
-pub struct FormEntry {
-    section: &'static str,
-    field: &'static str,
-    side: Option<&'static str>,
-    /// A declared word, or a declared or measured number.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    value: Option<serde_json::Value>,
-    /// Standard deviation of a measured number.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sd: Option<f64>,
-    /// Median of a predicted or corrected number.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    median: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ci90: Option<[f64; 2]>,
-    unit: &'static str,
-    limit: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    extrapolated: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    probability_of_passing: Option<f64>,
-    source: String,
-}
-
-/// The entries in the order of the form.
-pub fn entries(form: &Form, predicted: &Predicted) -> Vec<FormEntry> {
-    form.entries.iter().map(|entry| of(entry, predicted)).collect()
-}
-
-fn of(entry: &Entry, predicted: &Predicted) -> FormEntry {
-    let (value, sd, interval) = match &entry.value {
-        None => (None, None, None),
-        Some(Value::Text(words)) => (Some(words.as_str().into()), None, None),
-        Some(Value::Number(number)) => (Some((*number).into()), None, None),
-        Some(Value::Measured { value, sd }) => (Some((*value).into()), *sd, None),
-        Some(Value::Interval(interval)) => (None, None, Some(interval)),
-    };
-    let (extrapolated, probability_of_passing) = match entry.basis {
-        Basis::Predicted { extrapolated, passing } => (Some(extrapolated), passing),
-        _ => (None, None),
-    };
-    FormEntry {
-        section: entry.section,
-        field: entry.name,
-        side: entry.side,
-        value,
-        sd,
-        median: interval.map(|interval| interval.median),
-        ci90: interval.map(|interval| interval.ci90),
-        unit: entry.unit,
-        limit: entry.limit,
-        extrapolated,
-        probability_of_passing,
-        source: source(entry, predicted),
-    }
-}
-
-/// A value as it is filled in, without its unit.
+/// A value as it is filled in, without its unit. Numbers of one side are results, others are declared.
 fn filled(entry: &Entry) -> String {
-    match &entry.value {
-        None => EMPTY.to_owned(),
-        Some(Value::Text(words)) => words.clone(),
-        Some(Value::Number(number)) => significant(*number, if number.fract() == 0.0 { 1 } else { 3 }),
-        Some(Value::Measured { value, sd }) => fixed(*value, decimals_of(*sd)),
-        Some(Value::Interval(told)) => fixed(told.median, digits(told).min(DECIMALS)),
+    if let (Some(median), Some(ci90)) = (entry.median, entry.ci90) {
+        return fixed(median, Interval { median, ci50: ci90, ci90 }.decimals().min(DECIMALS));
     }
-}
-
-/// Where an entry comes from, in words.
-fn source(entry: &Entry, predicted: &Predicted) -> String {
-    let range = match &entry.value {
-        Some(Value::Interval(told)) => bracket(told.ci90, digits(told).min(DECIMALS)),
-        _ => String::new(),
-    };
-    match &entry.basis {
-        Basis::Declared { file } => format!("declared with {file}"),
-        Basis::Scale => String::from("scale of the prediction"),
-        Basis::Loading => String::from("from the records given"),
-        Basis::NotInRecords => String::from("not in the records"),
-        Basis::NotTold { why } => (*why).to_owned(),
-        Basis::Measured { file, partial } => {
-            let sd = match &entry.value {
-                Some(Value::Measured { sd: Some(sd), .. }) => format!(" ± {}", significant(*sd, 1)),
-                _ => String::new(),
-            };
-            let load = if *partial { ", at partial load, not corrected" } else { "" };
-            format!("measured, {file}{sd}{load}")
-        }
-        Basis::Corrected { file, factor, doubtful } => {
-            let doubt = if *doubtful { "; see the remarks" } else { "" };
-            format!(
-                "measured at partial load, {file}, and corrected by F/B = {} {}, 90 % {range}{doubt}",
-                fixed(factor.median, digits(factor).min(DECIMALS)),
-                bracket(factor.ci90, digits(factor).min(DECIMALS))
-            )
-        }
-        Basis::Predicted { extrapolated, passing } => {
-            let files: Vec<&str> = predicted.models.iter().map(|(file, _)| file.as_str()).collect();
-            let beyond = if *extrapolated { ", extrapolated" } else { "" };
-            let passing = passing.map_or_else(String::new, |share| format!("; {} % pass", fixed(100.0 * share, 0)));
-            format!("predicted from {}, 90 % {range}{beyond}{passing}", files.join(", "))
-        }
+    match entry.value.as_ref().map(|value| value.as_f64().ok_or(value)) {
+        Some(Ok(number)) if entry.side.is_some() => fixed(number, decimals_of(entry.sd)),
+        Some(Ok(number)) => significant(number, if number.fract() == 0.0 { 1 } else { 3 }),
+        Some(Err(words)) => words.as_str().unwrap_or_default().to_owned(),
+        None => EMPTY.to_owned(),
     }
 }
 
 /// The page of the form.
-pub fn page(form: &Form, predicted: &Predicted) -> String {
+pub fn page(entries: &[Entry], remarks: &[String]) -> String {
     let mut page = String::from(
         "# Form for reporting manoeuvring data to IMO\n\nMSC/Circ.1053 (2002), appendix 6; criteria of resolution \
          MSC.137(76). Every entry names its source; what is predicted is no trial.\n",
     );
     let mut sections: Vec<&str> = Vec::new();
-    for entry in &form.entries {
-        if !sections.contains(&entry.section) {
-            sections.push(entry.section);
+    for entry in entries {
+        if !sections.contains(&entry.section.as_str()) {
+            sections.push(&entry.section);
         }
     }
     let (declared, tested): (Vec<&str>, Vec<&str>) = sections.into_iter().partition(|section| {
-        form.entries.iter().filter(|entry| entry.section == *section).all(|entry| entry.side.is_none())
-            && *section != "stopping"
+        entries.iter().filter(|entry| entry.section == *section).all(|entry| entry.side.is_none())
+            && *section != STOPPING
     });
     for section in declared {
         if !section.is_empty() {
@@ -152,9 +51,8 @@ pub fn page(form: &Form, predicted: &Predicted) -> String {
         }
         let mut table =
             Table::new([Column::left("entry"), Column::left("value"), Column::left("unit"), Column::left("source")]);
-        for entry in form.entries.iter().filter(|entry| entry.section == section) {
-            let source = source(entry, predicted);
-            table.push([entry.name.to_owned(), filled(entry), unit(entry).to_owned(), source]);
+        for entry in entries.iter().filter(|entry| entry.section == section) {
+            table.push([entry.field.clone(), filled(entry), unit(entry).to_owned(), entry.source.clone()]);
         }
         page += &table.to_markdown();
     }
@@ -168,23 +66,23 @@ pub fn page(form: &Form, predicted: &Predicted) -> String {
         Column::left("IMO criterion"),
         Column::left("source"),
     ]);
-    for entry in form.entries.iter().filter(|entry| tested.contains(&entry.section)) {
+    for entry in entries.iter().filter(|entry| tested.contains(&entry.section.as_str())) {
         table.push([
-            entry.section.to_owned(),
-            entry.name.to_owned(),
-            entry.side.unwrap_or_default().to_owned(),
+            entry.section.clone(),
+            entry.field.clone(),
+            entry.side.clone().unwrap_or_default(),
             filled(entry),
             unit(entry).to_owned(),
             criterion(entry),
-            source(entry, predicted),
+            entry.source.clone(),
         ]);
     }
     page += &table.to_markdown();
     page += "\n## Remarks\n\n";
-    for remark in &form.remarks {
+    for remark in remarks {
         page += &format!("- {}\n", text(remark));
     }
-    if form.remarks.is_empty() {
+    if remarks.is_empty() {
         page += "None.\n";
     }
     page
@@ -192,7 +90,7 @@ pub fn page(form: &Form, predicted: &Predicted) -> String {
 
 fn criterion(entry: &Entry) -> String {
     match entry.limit {
-        Some(limit) if limit == TRACK_REACH_LENGTHS && entry.section == "stopping" => {
+        Some(TRACK_REACH_LENGTHS) if entry.section == STOPPING => {
             String::from("≤ 15, up to 20 where the Administration allows")
         }
         Some(limit) => format!("≤ {}", fixed(limit, 1)),
@@ -200,8 +98,8 @@ fn criterion(entry: &Entry) -> String {
     }
 }
 
-fn unit(entry: &Entry) -> &'static str {
-    if entry.unit == "1" { "" } else { entry.unit }
+fn unit(entry: &Entry) -> &str {
+    if entry.unit == "1" { "" } else { &entry.unit }
 }
 
 fn capital(words: &str) -> String {

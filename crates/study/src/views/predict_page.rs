@@ -1,58 +1,64 @@
 //! The page of a prediction: words, tables and figures.
 
-use predict::Kind;
+use predict::kind::Pattern;
 use predict::replay::Replayed;
+use predict::{PredictDocument, Prediction};
 use report::markdown::text;
 use report::number::{fixed, with_uncertainty};
 use ship::angle::to_deg;
 
-use super::predict_report::Predicted;
-use super::{predict_correction, predict_tables};
+use super::predict_tables;
 
 /// What was predicted from what.
-pub fn words(predicted: &Predicted) -> String {
-    let files: Vec<&str> = predicted.models.iter().map(|(file, _)| file.as_str()).collect();
-    let weather = match predicted.calm {
+pub fn words(document: &PredictDocument) -> String {
+    let weather = match document.calm {
         true => "in a calm",
         false => "in the weather of the records",
     };
-    let mut words = format!("{}: {} ships drawn, {weather}\n", files.join(", "), predicted.draws);
-    if predicted.hull {
+    let mut words = format!("{}: {} ships drawn, {weather}\n", document.model_files(), document.draws);
+    if document.hull {
         words += "the records have surge and sway: the ship is the hull fitted to them, not the yaw response\n";
     }
-    if predicted.manoeuvres.iter().any(|prediction| prediction.extrapolated) {
+    if document.manoeuvres.iter().any(Prediction::is_extrapolated) {
         words += &format!(
             "extrapolated: beyond the rudder of {}° and the yaw rate of {}°/s of the records\n",
-            fixed(to_deg(predicted.seen.rudder_rad), 1),
-            fixed(to_deg(predicted.seen.yaw_rate_rad_s), 2)
+            fixed(to_deg(document.seen.rudder_rad), 1),
+            fixed(to_deg(document.seen.yaw_rate_rad_s), 2)
         );
     }
-    let turns = predicted.manoeuvres.iter().filter(|one| matches!(one.kind, Kind::TurningCircle { .. }));
+    let turns = document.manoeuvres.iter().filter(|one| one.kind.pattern == Pattern::TurningCircle);
     if turns.filter_map(|one| one.most_probable.as_ref()).any(|passage| passage.way.is_none()) {
         words += "no track: the length of the ship is not known, or its records do not tell speed loss and drift\n";
     }
-    if !predicted.ballast.is_empty() {
+    if !document.ballast.is_empty() {
         words += &format!(
             "records are replayed with {}, manoeuvres are told of the ship above\n",
-            predicted.ballast.join(", ")
+            document.ballast.join(", ")
         );
     }
-    for prediction in predicted.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
+    for prediction in document.manoeuvres.iter().filter(|prediction| prediction.lost > 0) {
         words += &format!("{}: {} drawn ships do not come to its end\n", prediction.kind, prediction.lost);
     }
     words
 }
 
 /// What follows the table on the screen.
-pub fn rest(predicted: &Predicted) -> String {
+pub fn rest(document: &PredictDocument) -> String {
     let mut rest = String::new();
-    for (trial, replayed) in &predicted.replays {
-        rest += &format!("\n{}: {}\n", trial.name(), coverage(replayed));
+    for replayed in &document.replays {
+        rest += &format!("\n{}: {}\n", replayed.name, coverage(replayed));
     }
-    rest += &predict_correction::on_screen(predicted);
-    if !predicted.criteria.is_empty() {
-        rest += &format!("\nIMO MSC.137(76)\n{}", predict_tables::criteria(predicted).to_text());
-    } else if predicted.particulars.is_none() && !predicted.manoeuvres.is_empty() {
+    if !document.corrected.is_empty() {
+        let table = predict_tables::corrected(document).to_text();
+        rest += &format!(
+            "\nCorrected to full load, R = T F/B (MSC/Circ.1053, 3.4.1.2)\n{}\n{table}",
+            corrected_from(document)
+        );
+        doubts(document).for_each(|doubt| rest += &format!("{doubt}\n"));
+    }
+    if !document.imo.is_empty() {
+        rest += &format!("\nIMO MSC.137(76)\n{}", predict_tables::criteria(document).to_text());
+    } else if (document.length_m.is_none() || document.speed_m_s.is_none()) && !document.manoeuvres.is_empty() {
         rest += "\nIMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
     }
     rest
@@ -63,41 +69,61 @@ fn coverage(replayed: &Replayed) -> String {
     let mut words = format!(
         "{} % of the headings are inside the 90 % band, rms {}°",
         fixed(100.0 * replayed.band_coverage_90, 0),
-        fixed(to_deg(replayed.rms), 2)
+        fixed(replayed.heading_rmse_deg, 2)
     );
     if let Some(current) = replayed.current {
-        let doubt = current.deviation[0].hypot(current.deviation[1]);
-        let (speed, set) = (with_uncertainty(current.speed(), Some(doubt)), fixed(to_deg(current.set()), 0));
+        let doubt = current.north_sd_m_s.hypot(current.east_sd_m_s);
+        let (speed, set) = (with_uncertainty(current.speed_m_s, Some(doubt)), fixed(current.set_deg, 0));
         words += &format!("; a current of {speed} m/s that sets to {set}° is not part of its track");
     }
     words
 }
 
+/// The models of a correction.
+fn corrected_from(document: &PredictDocument) -> String {
+    format!("F from {}, B from {}", document.model_files(), document.ballast.join(", "))
+}
+
+/// What is to be said of whole records that were corrected, a line each.
+fn doubts(document: &PredictDocument) -> impl Iterator<Item = String> {
+    document.corrected.iter().flat_map(|own| own.warnings.iter().map(|doubt| format!("{}: {doubt}", own.name)))
+}
+
 /// The page.
-pub fn page(predicted: &Predicted, drawn: &[(String, String)]) -> String {
+pub fn page(document: &PredictDocument, drawn: &[(String, String)]) -> String {
     let mut page = String::from("# Prediction\n\n");
-    for line in words(predicted).lines() {
+    for line in words(document).lines() {
         page += &format!("{}\n\n", text(line));
     }
     page += "Every row is a figure of merit of ships that are drawn from the model: a structure by its probability, \
              parameters by their covariance, a random moment, a rate of the rudder and a first yaw rate as the records \
              have them. Intervals hold 50 and 90 % of them. \"Mostly from\" names the source that makes most of the \
              interval, each source drawn alone.\n\n";
-    page += &predict_tables::figures(predicted).to_markdown();
-    if !predicted.criteria.is_empty() {
+    page += &predict_tables::figures(document).to_markdown();
+    if !document.imo.is_empty() {
         page += "\n## IMO MSC.137(76)\n\nThe share of the drawn ships that keep within the limit. The criteria are for \
                  full load, even keel, deep water and calm.\n\n";
-        page += &predict_tables::criteria(predicted).to_markdown();
+        page += &predict_tables::criteria(document).to_markdown();
     }
-    if !predicted.replays.is_empty() {
+    if !document.replays.is_empty() {
         page += "\n## Records\n\nNothing is fitted to these records. The band is that of the recorded rudder; figures of a \
                  zig-zag are those of a helm that reverses the rudder at the headings of the record.\n\n";
-        for (trial, replayed) in &predicted.replays {
-            page += &format!("- {}: {}\n", text(trial.name()), coverage(replayed));
+        for replayed in &document.replays {
+            page += &format!("- {}: {}\n", text(&replayed.name), coverage(replayed));
         }
     }
-    page += &predict_correction::section(predicted);
-    if predicted.form.is_some() {
+    if !document.corrected.is_empty() {
+        page += &format!(
+            "\n## Corrected to full load\n\nR = T F/B (MSC/Circ.1053, 3.4.1.2): T is measured, B is what the model of the \
+             condition of the trial does in the same manoeuvre, F what the model at full load does. {}\n\n",
+            text(&corrected_from(document))
+        );
+        page += &predict_tables::corrected(document).to_markdown();
+        page += "\nThe intervals hold the errors of both models, drawn apart, the random moment of a trial in each, and the \
+                 reading of T.\n";
+        doubts(document).for_each(|doubt| page += &format!("\n- {}\n", text(&doubt)));
+    }
+    if document.form.is_some() {
         page += "\nThe form of MSC/Circ.1053 is in [trial-form.md](trial-form.md).\n";
     }
     for (stem, caption) in drawn {

@@ -1,11 +1,10 @@
 //! Tables of predictions.
 
+use predict::correction::Corrected;
 use predict::interval::Interval;
-use predict::prediction::Predicted as Figure;
-use report::number::{MISSING, fixed, significant};
+use predict::{PredictDocument, Prediction};
+use report::number::{MISSING, fixed, significant, with_uncertainty};
 use report::{Column, Table};
-
-use super::predict_report::Predicted;
 
 /// Name and unit of a figure whose unit is the end of its name.
 pub fn words(name: &str) -> (String, &'static str) {
@@ -23,29 +22,20 @@ pub fn words(name: &str) -> (String, &'static str) {
     (stem.replace('_', " "), unit)
 }
 
-/// Numbers of an interval with as many decimals as its width asks for.
-pub fn digits(interval: &Interval) -> usize {
-    let width = interval.ci90[1] - interval.ci90[0];
-    let decimals = if width > 0.0 { (1.0 - width.log10().floor()).max(0.0) } else { 2.0 };
-    (decimals as usize).min(6)
-}
-
 /// An interval in brackets.
 pub fn bracket(ends: [f64; 2], decimals: usize) -> String {
     format!("[{}, {}]", fixed(ends[0], decimals), fixed(ends[1], decimals))
 }
 
-/// The largest source of doubt with its share.
-fn largest(figure: &Figure) -> String {
-    let most = figure.shares.iter().max_by(|one, other| one.1.total_cmp(&other.1));
-    most.map_or_else(
-        || MISSING.to_owned(),
-        |(source, share)| format!("{} {} %", source.as_str(), fixed(100.0 * share, 0)),
-    )
+/// Median and both intervals, with as many decimals as the width asks for.
+fn cells(interval: &Interval) -> [String; 3] {
+    let decimals = interval.decimals();
+    let [half, most] = [interval.ci50, interval.ci90].map(|ends| bracket(ends, decimals));
+    [fixed(interval.median, decimals), half, most]
 }
 
-/// Every figure of every manoeuvre.
-pub fn figures(predicted: &Predicted) -> Table {
+/// Every figure of every manoeuvre and of every record.
+pub fn figures(document: &PredictDocument) -> Table {
     let mut table = Table::new([
         Column::left("manoeuvre"),
         Column::left("figure"),
@@ -56,51 +46,35 @@ pub fn figures(predicted: &Predicted) -> Table {
         Column::left("mostly from"),
         Column::left("remark"),
     ]);
-    for prediction in &predicted.manoeuvres {
-        for figure in &prediction.figures {
-            let (name, unit) = words(figure.name);
-            let decimals = digits(&figure.interval);
-            let mut remarks = Vec::new();
-            if prediction.extrapolated {
-                remarks.push(String::from("extrapolated"));
-            }
-            if figure.defined < 1.0 {
-                remarks.push(format!("in {} % of the draws", significant(100.0 * figure.defined, 3)));
-            }
-            table.push([
-                prediction.kind.to_string(),
-                name,
-                unit.to_owned(),
-                fixed(figure.interval.median, decimals),
-                bracket(figure.interval.ci50, decimals),
-                bracket(figure.interval.ci90, decimals),
-                largest(figure),
-                remarks.join(", "),
-            ]);
+    let mut push = |manoeuvre: &str, name: &str, interval: &Interval, source: String, remark: String| {
+        let ((name, unit), [median, half, most]) = (words(name), cells(interval));
+        table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
+    };
+    for Prediction { kind, figures, .. } in &document.manoeuvres {
+        for (name, figure) in figures {
+            let source = figure.shares.iter().max_by(|one, other| one.1.total_cmp(other.1)).map_or_else(
+                || MISSING.to_owned(),
+                |(source, share)| format!("{source} {} %", fixed(100.0 * share, 0)),
+            );
+            let in_some = || format!("in {} % of the draws", significant(100.0 * figure.defined, 3));
+            let remarks =
+                [figure.extrapolated.then(|| String::from("extrapolated")), (figure.defined < 1.0).then(in_some)];
+            let remark = remarks.into_iter().flatten().collect::<Vec<_>>().join(", ");
+            push(&kind.to_string(), name, &figure.interval, source, remark);
         }
     }
-    for (trial, replayed) in &predicted.replays {
-        for figure in &replayed.figures {
-            let (name, unit) = words(figure.name);
-            let decimals = digits(&figure.interval);
-            let place = if figure.interval.holds90(figure.measured) { "inside" } else { "outside" };
-            table.push([
-                trial.name().to_owned(),
-                name,
-                unit.to_owned(),
-                fixed(figure.interval.median, decimals),
-                bracket(figure.interval.ci50, decimals),
-                bracket(figure.interval.ci90, decimals),
-                String::new(),
-                format!("measured {}, {place}", fixed(figure.measured, decimals)),
-            ]);
+    for replayed in &document.replays {
+        for (name, figure) in &replayed.figures {
+            let place = if figure.inside90 { "inside" } else { "outside" };
+            let remark = format!("measured {}, {place}", fixed(figure.measured, figure.interval.decimals()));
+            push(&replayed.name, name, &figure.interval, String::new(), remark);
         }
     }
     table
 }
 
 /// The criteria of IMO.
-pub fn criteria(predicted: &Predicted) -> Table {
+pub fn criteria(document: &PredictDocument) -> Table {
     let mut table = Table::new([
         Column::left("criterion"),
         Column::left("manoeuvre"),
@@ -111,18 +85,47 @@ pub fn criteria(predicted: &Predicted) -> Table {
         Column::decimal("passes").unit("%"),
         Column::left("remark"),
     ]);
-    for criterion in &predicted.criteria {
-        let decimals = digits(&criterion.interval);
+    for criterion in &document.imo {
+        let [median, _, most] = cells(&criterion.interval());
         table.push([
-            criterion.name.to_owned(),
+            criterion.criterion.clone(),
             criterion.manoeuvre.clone(),
             fixed(criterion.limit, 1),
-            criterion.unit.symbol().to_owned(),
-            fixed(criterion.interval.median, decimals),
-            bracket(criterion.interval.ci90, decimals),
-            fixed(100.0 * criterion.probability, 1),
+            criterion.unit.clone(),
+            median,
+            most,
+            fixed(100.0 * criterion.probability_of_passing, 1),
             if criterion.extrapolated { "extrapolated".to_owned() } else { String::new() },
         ]);
+    }
+    table
+}
+
+/// Every figure that was corrected to full load.
+pub fn corrected(document: &PredictDocument) -> Table {
+    let mut table = Table::new([
+        Column::left("record"),
+        Column::left("figure"),
+        Column::left("unit"),
+        Column::left("T measured"),
+        Column::decimal("F/B"),
+        Column::left("F/B 90 %"),
+        Column::decimal("R"),
+        Column::left("R 50 %"),
+        Column::left("R 90 %"),
+        Column::left("remark"),
+    ]);
+    for correction in &document.corrected {
+        for (name, Corrected { measured, sd, factor, result, warnings, .. }) in &correction.figures {
+            let ([factor, _, of_factor], [median, half, most]) = (cells(factor), cells(result));
+            let measured = match sd {
+                Some(_) => with_uncertainty(*measured, *sd),
+                None => fixed(*measured, result.decimals()),
+            };
+            let ((name, unit), remark) = (words(name), warnings.join("; "));
+            let record = correction.name.clone();
+            table.push([record, name, unit.to_owned(), measured, factor, of_factor, median, half, most, remark]);
+        }
     }
     table
 }
@@ -138,6 +141,6 @@ mod tests {
         assert_eq!(words("advance_lengths"), (String::from("advance"), "L"));
         assert_eq!(words("time_to_90_s"), (String::from("time to 90"), "s"));
         let interval = Interval { median: 6.35, ci50: [6.3, 6.4], ci90: [6.2, 6.5] };
-        assert_eq!(bracket(interval.ci90, digits(&interval)), "[6.20, 6.50]");
+        assert_eq!(bracket(interval.ci90, interval.decimals()), "[6.20, 6.50]");
     }
 }

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use predict::correction::{self, Correction, Doubt};
+use predict::correction::{self, Correction};
+use predict::document::ModelWeight;
 use predict::form::{self, Record};
 use predict::kind::Kind;
 use predict::known::is_same_length;
 use predict::replay::Replayed;
 use predict::turn::{self, Current};
-use predict::{KnownShip, Mixture, PredictError, Prediction, imo};
+use predict::{KnownShip, Mixture, PredictDocument, PredictError, Prediction, imo};
 use report::number::fixed;
 use scenario::failure::Failure;
 use scenario::name;
@@ -20,7 +21,6 @@ use trial::{Conditions, Trial, file};
 use crate::options::{PredictRequest, ReadingOptions};
 use crate::progress;
 use crate::records::file_of;
-use crate::views::predict_report::Predicted;
 
 /// Methods of fit.json in the order in which they are asked; those that are not named come last.
 const METHODS: [&str; 3] = ["maximum-likelihood", "output-error", "srivc"];
@@ -163,7 +163,7 @@ pub fn asked_scale(options: &ReadingOptions) -> Option<Particulars> {
 ///
 /// Fails when a model cannot be brought to the scale that is asked for, when a record does not say how the ship began,
 /// and when hardly any drawn ship comes to the end of every manoeuvre.
-pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<Predicted, Failure> {
+pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<PredictDocument, Failure> {
     let Asked { models, ballast, records, current, manoeuvres: kinds, draws, calm, scale, form, declared } = asked;
     let records: Vec<(Trial, Option<Current>)> = records
         .into_iter()
@@ -191,35 +191,34 @@ pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<
         return Err(refused(error));
     }
     let (mut replays, mut corrections) = (Vec::with_capacity(records.len()), Vec::with_capacity(records.len()));
-    for (record, current) in records {
-        let (replayed, correction) = held_against((&record, current), [models, ballast], (scale, draws), warnings)?;
-        replays.push((record, replayed));
+    for (record, current) in &records {
+        let (replayed, correction) = held_against((record, *current), [models, ballast], (scale, draws), warnings)?;
+        replays.push(replayed);
         corrections.push(correction);
     }
     busy.finish_and_clear();
     let particulars = mixture.particulars();
-    let form = form.then(|| {
-        let records: Vec<Record> = (replays.iter().zip(&corrections))
-            .map(|((trial, replayed), correction)| Record {
-                trial,
-                correction: correction.as_ref(),
-                current: replayed.current,
-            })
-            .collect();
-        form::fill(&manoeuvres, particulars, &records, declared)
-    });
+    let files = |models: &[Model]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
+    let held: Vec<Record> = (records.iter().zip(&corrections))
+        .map(|((trial, current), correction)| Record { trial, correction: correction.as_ref(), current: *current })
+        .collect();
+    let form = form.then(|| form::fill(&manoeuvres, particulars, &files(models).join(", "), &held, declared));
+    let (form, form_remarks) = form.map(|form| (form.entries, form.remarks)).unzip();
     let weight = 1.0 / models.len() as f64;
-    Ok(Predicted {
-        criteria: particulars.map(|particulars| imo::criteria(&manoeuvres, particulars)).unwrap_or_default(),
-        models: models.iter().map(|model| (model.file.clone(), weight)).collect(),
-        ballast: ballast.iter().map(|model| model.file.clone()).collect(),
-        corrections,
-        form,
+    Ok(PredictDocument {
+        schema: String::from("predict/1"),
+        models: files(models).into_iter().map(|file| ModelWeight { file, weight }).collect(),
         draws,
         calm,
+        length_m: particulars.map(|own| own.length),
+        speed_m_s: particulars.map(|own| own.speed),
+        imo: particulars.map(|own| imo::criteria(&manoeuvres, own)).unwrap_or_default(),
         manoeuvres,
         replays,
-        particulars,
+        corrected: corrections.into_iter().flatten().collect(),
+        form,
+        form_remarks,
+        ballast: files(ballast),
         hull: mixture.first().hull.is_some(),
         seen: mixture.first().seen,
     })
@@ -282,10 +281,11 @@ fn held_against(
     }
     let mut of_models = correction::differences(&full[0].known, &ballast[0].known);
     if full[0].method != ballast[0].method {
-        let [full, trial] = [full, ballast].map(|models| models[0].method.clone());
-        of_models.push(Doubt::Method { full, trial });
+        of_models.push(correction::different("methods", &full[0].method, &ballast[0].method));
     }
-    correction.doubts.splice(0..0, of_models);
+    correction.warnings.splice(0..0, of_models);
+    [correction.full, correction.ballast] =
+        [full, ballast].map(|models| models.iter().map(|model| model.file.clone()).collect());
     Ok((replayed, Some(correction)))
 }
 

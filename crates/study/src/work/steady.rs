@@ -1,9 +1,11 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
+use predict::kind::Pattern;
 use predict::known::Seen;
 use predict::steady::SteadyCurve;
 use predict::{Kind, KnownShip, Mixture};
 use ship::angle::from_deg;
+use simulate::Side;
 
 /// Ships that are drawn.
 const DRAWS: usize = 40;
@@ -19,7 +21,8 @@ pub fn of_ship(known: &KnownShip) -> Option<(Vec<SteadyCurve>, Seen)> {
     let ship = KnownShip { hull: None, ..known.in_calm().ok()? };
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
-    let kind = Kind::Spiral { rudder: (BEYOND * seen.rudder_rad).clamp(least, most) };
+    let kind =
+        Kind { pattern: Pattern::Spiral, rudder: (BEYOND * seen.rudder_rad).clamp(least, most), side: Side::Starboard };
     let curves = Mixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves;
     let has_turns = curves.first().is_some_and(|curve| curve.rudder.len() > 2);
     has_turns.then_some((curves, seen))

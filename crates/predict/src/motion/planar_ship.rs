@@ -2,7 +2,7 @@
 
 use ship::{Dynamics, Input, Measured, Motion, Response};
 
-use crate::planar::Planar;
+use super::planar::Planar;
 
 /// A yaw response completed by speed and drift.
 ///

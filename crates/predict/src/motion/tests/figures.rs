@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
 
-use crate::{Turn, TurningCircle, track, turning_circle};
+use crate::motion::{Turn, TurningCircle, track, turning_circle};
 
 const SURGE: f64 = 5.0;
 const SWAY: f64 = -1.2;

@@ -3,17 +3,16 @@
 use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
-use crate::coefficients::COEFFICIENTS;
-use crate::course::{Course, OUTPUTS};
-use crate::covariance::newey_west;
-use crate::error::MotionError;
-use crate::fit::fit;
-use crate::hull::{HULL_COEFFICIENTS, Hull, HullRecord, Spread};
-use crate::hull_search::Windows;
-use crate::moment::moment;
-use crate::planar::Planar;
-use crate::search::{Local, Squares, free, minimise, part};
-use crate::yaw::{TYPICAL_YAW, YAW_SYMBOLS, Yaw};
+use super::coefficients::COEFFICIENTS;
+use super::course::{Course, OUTPUTS};
+use super::error::MotionError;
+use super::fit::fit;
+use super::hull::{HULL_COEFFICIENTS, Hull, HullRecord, Spread};
+use super::hull_search::Windows;
+use super::moment::moment;
+use super::planar::Planar;
+use super::search::{Local, Squares, determined, free, minimise, part, sandwich};
+use super::yaw::{TYPICAL_YAW, YAW_SYMBOLS, Yaw};
 
 /// Times the weights of the kinds of output are taken anew from their residuals.
 const REWEIGHTED: usize = 2;
@@ -24,16 +23,13 @@ const FIRST: [f64; OUTPUTS] = [0.01, 0.02, 0.01, 0.01];
 /// Least residuals that are believed, in the same units.
 const LEAST: f64 = 1e-6;
 
-/// Least eigenvalue of the normal matrix with a diagonal of ones.
-const OPEN: f64 = 1e-11;
-
 /// Records from which their differences tell how well coefficients are known.
 const JACKKNIFE: usize = 3;
 
 /// Fits surge, sway and yaw to records of a ship of length `length` (m) that have rudder, heading or yaw rate, surge
 /// and sway; others are left out.
 ///
-/// Surge and sway are fitted first, by [`fit()`](crate::fit()). The yaw equation follows by output error: driven by
+/// Surge and sway are fitted first, by [`fit()`](super::fit::fit()). The yaw equation follows by output error: driven by
 /// measured surge, sway and rudder it is integrated over windows of 10 L/U₀ that begin at measured states (all of them
 /// smoothed by a parabola within 0.25 L/U₀), and heading and yaw rate are compared, weighed with their standard
 /// deviations, which are taken twice from the residuals. With surge and sway measured the equation is damped, also
@@ -42,7 +38,7 @@ const JACKKNIFE: usize = 3;
 /// The covariance is that of the jackknife over records when there are three or more and every fit to the others has
 /// an answer, (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ; else that of a sandwich. Field `spread` says which.
 ///
-/// Fails as [`fit()`](crate::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
+/// Fails as [`fit()`](super::fit::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
 /// with [`MotionError::Undetermined`] when the records leave a coefficient of yaw open.
 pub fn fit_hull(trials: &[Trial], length: f64) -> Result<Hull, MotionError> {
     if !(length.is_finite() && length > 0.0) {
@@ -60,10 +56,10 @@ pub fn fit_hull(trials: &[Trial], length: f64) -> Result<Hull, MotionError> {
     };
     let Fitted { planar, yaw, courses } = &whole;
     let second = length / planar.approach_speed;
-    let coefficients = [planar.coefficients(), yaw.to_array().to_vec()].concat();
+    let coefficients = whole.coefficients();
     let record = |(trial, course): (&Trial, &Course)| {
-        let windows = Windows { courses: vec![course], driven: false, deviations: [1.0; OUTPUTS] };
-        let [heading, yaw_rate, ..] = windows.rms(&coefficients);
+        let windows = Windows::new(vec![course], false, [1.0; OUTPUTS]);
+        let [heading, yaw_rate, ..] = windows.rms(coefficients.as_slice());
         HullRecord { name: trial.name().to_owned(), heading, yaw_rate: yaw_rate / second }
     };
     let records = all.iter().zip(courses).map(record).collect();
@@ -91,7 +87,7 @@ impl Fitted {
         let speeds = planar.records.iter().map(|record| record.approach_speed);
         let course = |(trial, speed)| Course::of(trial, length, speed).expect("it has surge and sway");
         let courses: Vec<Course> = trials.iter().zip(speeds).map(course).collect();
-        let mut windows = Windows { courses: courses.iter().collect(), driven: true, deviations: FIRST };
+        let mut windows = Windows::new(courses.iter().collect(), true, FIRST);
         let mut at = DVector::from_vec([planar.coefficients(), start.to_array().to_vec()].concat());
         for round in 0..=REWEIGHTED {
             at = minimise(&windows, at).map_err(|iterations| MotionError::NoConvergence { iterations })?;
@@ -99,69 +95,41 @@ impl Fitted {
                 windows.deviations = windows.rms(at.as_slice()).map(|rms| rms.max(LEAST));
             }
         }
-        windows.check(&at)?;
+        let (normal, free) = of_yaw(&windows, &at);
+        determined(&normal, &free, symbol)?;
         let yaw = Yaw::from_array(std::array::from_fn(|i| at[COEFFICIENTS + i]));
         Ok(Self { planar, yaw, courses })
     }
 
+    /// All coefficients.
+    fn coefficients(&self) -> DVector<f64> {
+        DVector::from_vec([self.planar.coefficients(), self.yaw.to_array().to_vec()].concat())
+    }
+
     /// Block diagonal: that of surge and sway, and A⁻¹ S A⁻¹ of yaw.
     fn sandwich(&self) -> Result<DMatrix<f64>, MotionError> {
-        let mut windows = Windows { courses: self.courses.iter().collect(), driven: true, deviations: [1.0; OUTPUTS] };
-        let at = DVector::from_vec([self.planar.coefficients(), self.yaw.to_array().to_vec()].concat());
+        let mut windows = Windows::new(self.courses.iter().collect(), true, [1.0; OUTPUTS]);
+        let at = self.coefficients();
         windows.deviations = windows.rms(at.as_slice()).map(|rms| rms.max(LEAST));
-        let Local { normal, gradient, .. } = windows.local(&at);
-        let free: Vec<usize> = free(&windows, &at, &gradient).into_iter().filter(|i| *i >= COEFFICIENTS).collect();
-        let mut middle = DMatrix::zeros(HULL_COEFFICIENTS, HULL_COEFFICIENTS);
-        for place in windows.places() {
-            let (residuals, slopes) = windows.derivatives(place, at.as_slice());
-            let score = |i: &usize| -> Vec<f64> {
-                let products = residuals.iter().zip(&slopes[*i]).map(|(r, s)| r * s).collect::<Vec<_>>();
-                products.chunks(2).map(|row| row.iter().sum()).collect()
-            };
-            let long_run = newey_west(&free.iter().map(score).collect::<Vec<_>>());
-            for (i, &row) in free.iter().enumerate() {
-                for (j, &column) in free.iter().enumerate() {
-                    middle[(row, column)] += long_run[(i, j)];
-                }
-            }
-        }
+        let (normal, free) = of_yaw(&windows, &at);
         let open = MotionError::Undetermined { symbol: YAW_SYMBOLS[0] };
         let inverse = part(&normal, &free).try_inverse().ok_or(open)?;
-        let own = &inverse * part(&middle, &free) * &inverse;
-        let mut covariance = DMatrix::zeros(HULL_COEFFICIENTS, HULL_COEFFICIENTS);
-        for i in 0..COEFFICIENTS {
-            for j in 0..COEFFICIENTS {
-                covariance[(i, j)] = self.planar.covariance[i][j];
-            }
-        }
-        for (i, &row) in free.iter().enumerate() {
-            for (j, &column) in free.iter().enumerate() {
-                covariance[(row, column)] = 0.5 * (own[(i, j)] + own[(j, i)]);
-            }
-        }
+        let mut covariance = sandwich(&inverse, &windows.long_run(&at, |place| free.contains(&place)), &free);
+        let of_planar = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| self.planar.covariance[i][j]);
+        covariance.view_mut((0, 0), (COEFFICIENTS, COEFFICIENTS)).copy_from(&of_planar);
         Ok(covariance)
     }
 }
 
-impl Windows<'_> {
-    /// Fails when the yaw coefficients are not told.
-    fn check(&self, at: &DVector<f64>) -> Result<(), MotionError> {
-        let Local { normal, gradient, .. } = self.local(at);
-        let free: Vec<usize> = free(self, at, &gradient).into_iter().filter(|i| *i >= COEFFICIENTS).collect();
-        let symbol = |i: usize| YAW_SYMBOLS[free[i] - COEFFICIENTS];
-        let scale: Vec<f64> = free.iter().map(|&i| normal[(i, i)].sqrt()).collect();
-        if let Some(open) = scale.iter().position(|scale| scale.is_nan() || *scale <= 0.0) {
-            return Err(MotionError::Undetermined { symbol: symbol(open) });
-        }
-        let unit = DMatrix::from_fn(free.len(), free.len(), |i, j| normal[(free[i], free[j])] / (scale[i] * scale[j]));
-        let eigen = unit.symmetric_eigen();
-        let (least, value) = eigen.eigenvalues.argmin();
-        if value.is_nan() || value < OPEN {
-            let weighs = eigen.eigenvectors.column(least).iamax();
-            return Err(MotionError::Undetermined { symbol: symbol(weighs) });
-        }
-        Ok(())
-    }
+fn symbol(unknown: usize) -> Option<&'static str> {
+    YAW_SYMBOLS.get(unknown.checked_sub(COEFFICIENTS)?).copied()
+}
+
+/// The normal matrix, and the yaw coefficients that are at no bound.
+fn of_yaw(windows: &Windows, at: &DVector<f64>) -> (DMatrix<f64>, Vec<usize>) {
+    let Local { normal, gradient, .. } = windows.local(at);
+    let free = free(windows, at, &gradient).into_iter().filter(|i| *i >= COEFFICIENTS).collect();
+    (normal, free)
 }
 
 /// (n − 1)/n Σ (θᵢ − θ̄)(θᵢ − θ̄)ᵀ over the fits to all records but one; `None` with too few records or where one of
@@ -174,8 +142,7 @@ fn jackknife(trials: &[Trial], length: f64, start: Yaw) -> Option<DMatrix<f64>> 
     let without = |left_out: usize| {
         let mut rest = trials.to_vec();
         rest.remove(left_out);
-        let found = Fitted::of(&rest, length, start).ok()?;
-        Some(DVector::from_vec([found.planar.coefficients(), found.yaw.to_array().to_vec()].concat()))
+        Some(Fitted::of(&rest, length, start).ok()?.coefficients())
     };
     let found = (0..count).map(without).collect::<Option<Vec<_>>>()?;
     let mean = found.iter().sum::<DVector<f64>>() / count as f64;

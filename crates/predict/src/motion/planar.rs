@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::coefficients::{COEFFICIENTS, Coefficients};
-use crate::error::MotionError;
-use crate::model::{Drive, velocities};
-use crate::record::Output;
+use super::coefficients::{COEFFICIENTS, Coefficients};
+use super::error::MotionError;
+use super::model::{Drive, velocities};
+use super::record::Output;
 
 /// Speed and drift of one ship: coefficients, length, approach speed, and what the fit tells about them.
 ///
-/// Made by [`fit()`](crate::fit()) or from known coefficients; immutable.
+/// Made by [`fit()`](super::fit::fit()) or from known coefficients; immutable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Planar {
@@ -19,7 +19,7 @@ pub struct Planar {
     pub length: f64,
     /// Speed of the straight approach U₀, m/s.
     pub approach_speed: f64,
-    /// Covariance of the coefficients in the order of [`SYMBOLS`](crate::SYMBOLS); zero for one that is known or that
+    /// Covariance of the coefficients in the order of [`SYMBOLS`](super::coefficients::SYMBOLS); zero for one that is known or that
     /// lies at the end of what its sign allows.
     pub covariance: [[f64; COEFFICIENTS]; COEFFICIENTS],
     /// The records of the fit, in their order; none where the coefficients were given.
@@ -78,12 +78,12 @@ impl Planar {
         Ok(Self { length, approach_speed, ..self.clone() })
     }
 
-    /// The coefficients in the order of [`SYMBOLS`](crate::SYMBOLS).
+    /// The coefficients in the order of [`SYMBOLS`](super::coefficients::SYMBOLS).
     pub fn coefficients(&self) -> Vec<f64> {
         self.coefficients.to_array().to_vec()
     }
 
-    /// The same ship with other coefficients, in the order of [`SYMBOLS`](crate::SYMBOLS): a draw from the covariance.
+    /// The same ship with other coefficients, in the order of [`SYMBOLS`](super::coefficients::SYMBOLS): a draw from the covariance.
     ///
     /// A value of a sign that the equations do not allow is put to the nearest that they do. Fails with
     /// [`MotionError::Coefficients`] when the number is wrong or one is not finite.

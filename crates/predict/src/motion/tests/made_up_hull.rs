@@ -11,7 +11,7 @@ use ship::{Dynamics, Input};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::steered::{Helm, steer};
-use crate::{Coefficients, HULL_COEFFICIENTS, Hull, MotionError, Planar, Spread, Yaw, fit_hull};
+use crate::motion::{Coefficients, HULL_COEFFICIENTS, Hull, MotionError, Planar, Spread, Yaw, fit_hull};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
@@ -122,7 +122,7 @@ fn a_hull_at_the_same_froude_number_moves_alike() {
         assert_relative_eq!(*small, large, max_relative = 1e-12);
     }
     assert_relative_eq!(ship.largest_step(), model.largest_step() * time, max_relative = 1e-12);
-    let random = Hull { moment: crate::Moment { deviation: 0.01, correlation_time: 2.0 }, ..model };
+    let random = Hull { moment: crate::motion::Moment { deviation: 0.01, correlation_time: 2.0 }, ..model };
     let random = random.scaled_to(320.0, SPEED * time).expect("a ship").moment;
     assert_relative_eq!(random.correlation_time, 2.0 * time, max_relative = 1e-12);
 }

@@ -1,6 +1,6 @@
 //! The planar equations stepped through a given yaw rate and rudder, in units of length and approach speed.
 
-use crate::coefficients::Coefficients;
+use super::coefficients::Coefficients;
 
 /// Longest step in units of L/U₀; a ship loses its drift in about one.
 pub(crate) const LARGEST_STEP: f64 = 0.05;

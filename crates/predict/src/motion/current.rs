@@ -2,6 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
+use serde::{Deserialize, Serialize};
+use ship::angle::to_deg;
+
 /// Heading change from which a turn is steady enough, rad.
 const STEADY: f64 = PI;
 
@@ -12,24 +15,20 @@ const ENOUGH: f64 = 2.0 * TAU;
 const BETWEEN: f64 = PI / 18.0;
 
 /// Water that moves over ground, and wind that moves the ship through it: a turn cannot tell one from the other.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Current {
-    /// North and east, m/s.
-    pub velocity: [f64; 2],
-    /// Standard deviation of each, m/s: by how much the pairs differ.
-    pub deviation: [f64; 2],
-}
-
-impl Current {
-    /// Its speed, m/s.
-    pub fn speed(&self) -> f64 {
-        self.velocity[0].hypot(self.velocity[1])
-    }
-
-    /// The direction it sets to, rad clockwise from north, 0 to 2π.
-    pub fn set(&self) -> f64 {
-        self.velocity[1].atan2(self.velocity[0]).rem_euclid(TAU)
-    }
+    /// Its speed.
+    pub speed_m_s: f64,
+    /// Direction it sets to, clockwise from north, 0 to 360.
+    pub set_deg: f64,
+    /// Towards north.
+    pub north_m_s: f64,
+    /// Towards east.
+    pub east_m_s: f64,
+    /// Standard deviation of that towards north: by how much the pairs differ.
+    pub north_sd_m_s: f64,
+    /// Standard deviation of that towards east.
+    pub east_sd_m_s: f64,
 }
 
 /// The current of a turn: the mean way over ground between two instants at which the heading is the same, a round
@@ -71,9 +70,12 @@ pub fn current(time: &[f64], heading: &[f64], track: &[[f64; 2]]) -> Option<Curr
         .collect();
     let count = drifts.len() as f64;
     let mean = [0, 1].map(|axis| drifts.iter().map(|drift| drift[axis]).sum::<f64>() / count);
+    let [north_m_s, east_m_s] = mean;
     let spread = |axis: usize| drifts.iter().map(|drift| (drift[axis] - mean[axis]).powi(2)).sum::<f64>();
-    let deviation = [0, 1].map(|axis| (spread(axis) / (count - 1.0)).sqrt());
-    (drifts.len() > 2).then_some(Current { velocity: mean, deviation })
+    let [north_sd_m_s, east_sd_m_s] = [0, 1].map(|axis| (spread(axis) / (count - 1.0)).sqrt());
+    let (speed_m_s, set_deg) = (north_m_s.hypot(east_m_s), to_deg(east_m_s.atan2(north_m_s).rem_euclid(TAU)));
+    let found = Current { speed_m_s, set_deg, north_m_s, east_m_s, north_sd_m_s, east_sd_m_s };
+    (drifts.len() > 2).then_some(found)
 }
 
 #[cfg(test)]
@@ -101,9 +103,9 @@ mod tests {
         for side in [-1.0, 1.0] {
             let (time, heading, track) = turn(2.2, side, [0.4, -0.3]);
             let found = current(&time, &heading, &track).expect("two rounds");
-            assert!((found.velocity[0] - 0.4).abs() < 1e-3 && (found.velocity[1] + 0.3).abs() < 1e-3, "{found:?}");
-            assert!((found.speed() - 0.5).abs() < 1e-3 && found.deviation.iter().all(|sd| *sd < 1e-3));
-            assert!((found.set().to_degrees() - 323.13).abs() < 0.2, "{}", found.set().to_degrees());
+            assert!((found.north_m_s - 0.4).abs() < 1e-3 && (found.east_m_s + 0.3).abs() < 1e-3, "{found:?}");
+            assert!((found.speed_m_s - 0.5).abs() < 1e-3 && found.north_sd_m_s.max(found.east_sd_m_s) < 1e-3);
+            assert!((found.set_deg - 323.13).abs() < 0.2, "{found:?}");
         }
     }
 

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use trial::zigzag::median::upper_median;
 use trial::{Channel, Trial};
 
-use crate::error::MotionError;
+use super::error::MotionError;
 
 /// A kind of output that the equations are fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
@@ -181,7 +181,7 @@ impl<'a> Record<'a> {
     /// `None` for a record without speed and position.
     ///
     /// Outputs are surge and sway where the record has them, the speed where it has no surge, positions where it lacks
-    /// surge or sway. [`fit()`](crate::fit()) says where the approach speed is from.
+    /// surge or sway. [`fit()`](super::fit::fit()) says where the approach speed is from.
     pub(crate) fn of(trial: &'a Trial, length: f64) -> Result<Option<Self>, MotionError> {
         let has = |channel| trial.channel(channel).filter(|values| values.iter().any(|value| value.is_finite()));
         let (surge, sway, speed) = (has(Channel::Surge), has(Channel::Sway), has(Channel::Speed));

@@ -3,13 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
-use crate::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, SYMBOLS, TYPICAL};
-use crate::covariance::newey_west;
-use crate::error::MotionError;
-use crate::model::{Drive, velocities};
-use crate::planar::{Planar, RecordFit, Residual, pooled};
-use crate::record::{Output, Record, median, range};
-use crate::search::{Local, Squares, free, minimise, part};
+use super::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, SYMBOLS, TYPICAL};
+use super::error::MotionError;
+use super::model::{Drive, velocities};
+use super::planar::{Planar, RecordFit, Residual, pooled};
+use super::record::{Output, Record, median, range};
+use super::search::{Column, Local, Squares, determined, free, minimise, sandwich};
 
 /// Range of the heading that at least one record must have, rad (5°).
 const TURNS: f64 = 0.087;
@@ -22,9 +21,6 @@ const FIRST_SHARE: f64 = 0.01;
 
 /// Least residuals that are believed, as a share of approach speed or length.
 const LEAST_SHARE: f64 = 1e-6;
-
-/// Least eigenvalue of the normal matrix with a diagonal of ones.
-const OPEN: f64 = 1e-11;
 
 /// Fits the planar equations to records of a ship of length `length` (m), all of them together.
 ///
@@ -75,7 +71,7 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     let covariance = problem.covariance(&at)?;
     let records = problem.summary(&at);
     let approach_speed = median(records.iter().map(|record| record.approach_speed)).expect("there are records");
-    Ok(Planar { coefficients: problem.coefficients(&at), length, approach_speed, covariance, records })
+    Ok(Planar { coefficients: problem.coefficients(at.as_slice()), length, approach_speed, covariance, records })
 }
 
 /// Unknowns of one record after the coefficients: surge, sway, approach speed, and of positions north, east, current.
@@ -94,9 +90,6 @@ struct Problem<'a> {
     /// In the order of [`Output::ALL`].
     deviations: [f64; 4],
 }
-
-/// One column of residuals, zero where nothing was read.
-type Column = Vec<f64>;
 
 impl<'a> Problem<'a> {
     fn new(records: Vec<Record<'a>>, length: f64, deviations: [f64; 4]) -> Self {
@@ -123,98 +116,18 @@ impl<'a> Problem<'a> {
         at
     }
 
-    fn coefficients(&self, at: &DVector<f64>) -> Coefficients {
+    fn coefficients(&self, at: &[f64]) -> Coefficients {
         Coefficients::from_array(std::array::from_fn(|i| at[i]))
     }
 
-    /// Residuals of one record over their deviations, column by column: what is known of the approach speed (in the
-    /// first row), then model minus reading.
-    fn residuals(&self, index: usize, coefficients: &Coefficients, own: &[f64]) -> Vec<Column> {
-        let record = &self.records[index];
-        let drive = Drive { time: record.time, yaw_rate: &record.yaw_rate, rudder: record.rudder };
-        let speed = own[2];
-        let found = velocities(coefficients, [self.length, speed], drive, [own[0], own[1]]);
-        let mut approach = vec![0.0; record.time.len()];
-        let expected = if record.approach.is_start { own[0] } else { record.approach.speed };
-        approach[0] = (speed - expected) / record.approach.deviation;
-        let mut columns = vec![approach];
-        for (output, readings) in &record.outputs {
-            let weight = 1.0 / self.deviations[*output as usize];
-            let compare = |readings: &[f64], model: &dyn Fn(usize) -> f64| -> Column {
-                let residual = |(row, reading): (usize, &f64)| {
-                    if reading.is_finite() { (model(row) - reading) * weight } else { 0.0 }
-                };
-                readings.iter().enumerate().map(residual).collect()
-            };
-            match output {
-                Output::Surge => columns.push(compare(readings[0], &|row| found[row][0])),
-                Output::Sway => columns.push(compare(readings[0], &|row| found[row][1])),
-                Output::Speed => columns.push(compare(readings[0], &|row| found[row][0].hypot(found[row][1]))),
-                Output::Position => {
-                    let current = if record.current { [own[5], own[6]] } else { [0.0; 2] };
-                    let (surge, sway): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
-                    let path = crate::circle::track(record.time, &record.heading, &surge, &sway);
-                    for axis in 0..2 {
-                        let place = |row: usize| {
-                            own[3 + axis] + path[row][axis] + current[axis] * (record.time[row] - record.time[0])
-                        };
-                        columns.push(compare(readings[axis], &place));
-                    }
-                }
-            }
-        }
-        columns
-    }
-
-    fn own<'b>(&self, index: usize, at: &'b DVector<f64>) -> &'b [f64] {
-        &at.as_slice()[self.places[index]..self.places[index] + unknowns(&self.records[index])]
-    }
-
-    /// Residuals of one record and their derivatives by the coefficients and its own unknowns: central differences.
-    fn derivatives(&self, index: usize, at: &DVector<f64>) -> (Vec<Column>, Vec<Vec<Column>>) {
-        let (here, own) = (self.coefficients(at).to_array(), self.own(index, at));
-        let speed = self.records[index].approach.speed;
-        let by = |unknown: usize| {
-            let side = |sign: f64| {
-                let (mut coefficients, mut own) = (here, own.to_vec());
-                let step = match unknown.checked_sub(COEFFICIENTS) {
-                    None => 1e-6 * TYPICAL.to_array()[unknown].max(here[unknown].abs()),
-                    Some(0..=2) => 1e-6 * speed,
-                    Some(3 | 4) => 1e-4 * self.length,
-                    Some(_) => 1e-4 * speed,
-                };
-                match unknown.checked_sub(COEFFICIENTS) {
-                    None => coefficients[unknown] += sign * step,
-                    Some(place) => own[place] += sign * step,
-                }
-                // At a bound the difference is one-sided.
-                let moved = Coefficients::from_array(coefficients);
-                let width = match unknown < COEFFICIENTS {
-                    true => (moved.to_array()[unknown] - here[unknown]).abs(),
-                    false => step,
-                };
-                (self.residuals(index, &moved, &own), width)
-            };
-            let ((above, up), (below, down)) = (side(1.0), side(-1.0));
-            let slope = |(above, below): (&Column, &Column)| -> Column {
-                above.iter().zip(below).map(|(above, below)| (above - below) / (up + down)).collect()
-            };
-            above.iter().zip(&below).map(slope).collect::<Vec<Column>>()
-        };
-        let slopes = (0..COEFFICIENTS + own.len()).map(by).collect();
-        (self.residuals(index, &self.coefficients(at), own), slopes)
-    }
-
-    /// The unknown of the whole problem behind one of a record.
-    fn global(&self, index: usize, unknown: usize) -> usize {
-        unknown.checked_sub(COEFFICIENTS).map_or(unknown, |place| self.places[index] + place)
+    fn own<'b>(&self, index: usize, at: &'b [f64]) -> &'b [f64] {
+        &at[self.places[index]..self.places[index] + unknowns(&self.records[index])]
     }
 
     fn summary(&self, at: &DVector<f64>) -> Vec<RecordFit> {
-        let coefficients = self.coefficients(at);
         let one = |(index, record): (usize, &Record)| {
-            let own = self.own(index, at);
-            let columns = self.residuals(index, &coefficients, own);
+            let own = self.own(index, at.as_slice());
+            let columns = self.residuals(index, at.as_slice());
             let mut columns = columns[1..].iter();
             let residuals = record.outputs.iter().map(|(output, readings)| {
                 let square: f64 = columns.by_ref().take(readings.len()).flatten().map(|x| x * x).sum();
@@ -237,83 +150,99 @@ impl<'a> Problem<'a> {
     fn covariance(&self, at: &DVector<f64>) -> Result<[[f64; COEFFICIENTS]; COEFFICIENTS], MotionError> {
         let Local { normal, gradient, .. } = self.local(at);
         let free = free(self, at, &gradient);
-        let scale: Vec<f64> = free.iter().map(|&i| normal[(i, i)].sqrt()).collect();
-        if let Some(open) = scale.iter().position(|scale| *scale <= 0.0) {
-            return Err(MotionError::Undetermined { symbol: SYMBOLS[free[open].min(COEFFICIENTS - 1)] });
-        }
-        let own = part(&normal, &free);
-        let unit = DMatrix::from_fn(free.len(), free.len(), |i, j| own[(i, j)] / (scale[i] * scale[j]));
-        let eigen = unit.symmetric_eigen();
-        let (least, value) = eigen.eigenvalues.argmin();
-        if value < OPEN {
-            let direction = eigen.eigenvectors.column(least);
-            let weighs = (0..free.len())
-                .filter(|&i| free[i] < COEFFICIENTS)
-                .max_by(|&i, &j| direction[i].abs().total_cmp(&direction[j].abs()));
-            return Err(MotionError::Undetermined { symbol: SYMBOLS[weighs.map_or(0, |i| free[i])] });
-        }
-        let mut middle = DMatrix::zeros(self.unknowns, self.unknowns);
-        for index in 0..self.records.len() {
-            let (residuals, slopes) = self.derivatives(index, at);
-            let rows = self.records[index].time.len();
-            let score = |slope: &Vec<Column>| -> Vec<f64> {
-                (0..rows).map(|row| residuals.iter().zip(slope).map(|(r, s)| r[row] * s[row]).sum()).collect()
-            };
-            let long_run = newey_west(&slopes.iter().map(score).collect::<Vec<_>>());
-            for i in 0..slopes.len() {
-                for j in 0..slopes.len() {
-                    middle[(self.global(index, i), self.global(index, j))] += long_run[(i, j)];
-                }
-            }
-        }
+        let (scale, eigen) = determined(&normal, &free, |unknown| SYMBOLS.get(unknown).copied())?;
         let inverse = DMatrix::from_fn(free.len(), free.len(), |i, j| {
             let sum =
                 (0..free.len()).map(|k| eigen.eigenvectors[(i, k)] * eigen.eigenvectors[(j, k)] / eigen.eigenvalues[k]);
             sum.sum::<f64>() / (scale[i] * scale[j])
         });
-        let sandwich = &inverse * part(&middle, &free) * &inverse;
-        let mut covariance = [[0.0; COEFFICIENTS]; COEFFICIENTS];
-        for (i, &row) in free.iter().enumerate().filter(|(_, row)| **row < COEFFICIENTS) {
-            for (j, &column) in free.iter().enumerate().filter(|(_, column)| **column < COEFFICIENTS) {
-                covariance[row][column] = 0.5 * (sandwich[(i, j)] + sandwich[(j, i)]);
-            }
-        }
-        Ok(covariance)
+        let all = sandwich(&inverse, &self.long_run(at, |_| true), &free);
+        Ok(std::array::from_fn(|i| std::array::from_fn(|j| all[(i, j)])))
     }
 }
 
 impl Squares for Problem<'_> {
-    fn square(&self, at: &DVector<f64>) -> f64 {
-        let coefficients = self.coefficients(at);
-        let of = |index: usize| -> f64 {
-            self.residuals(index, &coefficients, self.own(index, at)).iter().flatten().map(|x| x * x).sum()
-        };
-        (0..self.records.len()).map(of).sum()
+    const WIDTH: usize = 1;
+
+    fn unknowns(&self) -> usize {
+        self.unknowns
     }
 
-    fn local(&self, at: &DVector<f64>) -> Local {
-        let mut normal = DMatrix::zeros(self.unknowns, self.unknowns);
-        let mut gradient = DVector::zeros(self.unknowns);
-        let mut square = 0.0;
-        let dot = |x: &[Column], y: &[Column]| -> f64 {
-            x.iter().zip(y).map(|(x, y)| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>()).sum()
-        };
-        for index in 0..self.records.len() {
-            let (residuals, slopes) = self.derivatives(index, at);
-            square += dot(&residuals, &residuals);
-            for (i, slope) in slopes.iter().enumerate() {
-                let row = self.global(index, i);
-                gradient[row] += dot(slope, &residuals);
-                for (j, other) in slopes[..=i].iter().enumerate() {
-                    let (column, product) = (self.global(index, j), dot(slope, other));
-                    normal[(row, column)] += product;
-                    if row != column {
-                        normal[(column, row)] += product;
+    fn groups(&self) -> usize {
+        self.records.len()
+    }
+
+    /// What is known of the approach speed (in the first row), then model minus reading.
+    fn residuals(&self, index: usize, at: &[f64]) -> Vec<Column> {
+        let (record, own, coefficients) = (&self.records[index], self.own(index, at), &self.coefficients(at));
+        let drive = Drive { time: record.time, yaw_rate: &record.yaw_rate, rudder: record.rudder };
+        let speed = own[2];
+        let found = velocities(coefficients, [self.length, speed], drive, [own[0], own[1]]);
+        let mut approach = vec![0.0; record.time.len()];
+        let expected = if record.approach.is_start { own[0] } else { record.approach.speed };
+        approach[0] = (speed - expected) / record.approach.deviation;
+        let mut columns = vec![approach];
+        for (output, readings) in &record.outputs {
+            let weight = 1.0 / self.deviations[*output as usize];
+            let compare = |readings: &[f64], model: &dyn Fn(usize) -> f64| -> Column {
+                let residual = |(row, reading): (usize, &f64)| {
+                    if reading.is_finite() { (model(row) - reading) * weight } else { 0.0 }
+                };
+                readings.iter().enumerate().map(residual).collect()
+            };
+            match output {
+                Output::Surge => columns.push(compare(readings[0], &|row| found[row][0])),
+                Output::Sway => columns.push(compare(readings[0], &|row| found[row][1])),
+                Output::Speed => columns.push(compare(readings[0], &|row| found[row][0].hypot(found[row][1]))),
+                Output::Position => {
+                    let current = if record.current { [own[5], own[6]] } else { [0.0; 2] };
+                    let (surge, sway): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
+                    let path = super::circle::track(record.time, &record.heading, &surge, &sway);
+                    for axis in 0..2 {
+                        let place = |row: usize| {
+                            own[3 + axis] + path[row][axis] + current[axis] * (record.time[row] - record.time[0])
+                        };
+                        columns.push(compare(readings[axis], &place));
                     }
                 }
             }
         }
-        Local { normal, gradient, square }
+        columns
+    }
+
+    /// Central differences.
+    fn derivatives(&self, index: usize, at: &[f64]) -> (Vec<Column>, Vec<Vec<Column>>) {
+        let speed = self.records[index].approach.speed;
+        let by = |unknown: usize| {
+            let place = self.global(index, unknown);
+            let step = match unknown.checked_sub(COEFFICIENTS) {
+                None => 1e-6 * TYPICAL.to_array()[unknown].max(at[unknown].abs()),
+                Some(0..=2) => 1e-6 * speed,
+                Some(3 | 4) => 1e-4 * self.length,
+                Some(_) => 1e-4 * speed,
+            };
+            let side = |sign: f64| {
+                let mut moved = at.to_vec();
+                moved[place] += sign * step;
+                // At a bound of a coefficient the difference is one-sided.
+                let width = BOUNDS.get(unknown).map_or(step, |[least, most]| {
+                    moved[place] = moved[place].clamp(*least, *most);
+                    (moved[place] - at[place]).abs()
+                });
+                (self.residuals(index, &moved), width)
+            };
+            let ((above, up), (below, down)) = (side(1.0), side(-1.0));
+            let slope = |(above, below): (&Column, &Column)| -> Column {
+                above.iter().zip(below).map(|(above, below)| (above - below) / (up + down)).collect()
+            };
+            above.iter().zip(&below).map(slope).collect::<Vec<Column>>()
+        };
+        let slopes = (0..COEFFICIENTS + unknowns(&self.records[index])).map(by).collect();
+        (self.residuals(index, at), slopes)
+    }
+
+    fn global(&self, index: usize, unknown: usize) -> usize {
+        unknown.checked_sub(COEFFICIENTS).map_or(unknown, |place| self.places[index] + place)
     }
 
     fn bounds(&self, unknown: usize) -> [f64; 2] {

@@ -11,7 +11,7 @@ use ship::{Dynamics, FirstOrder, Particulars, Polyline, Response, ResponseModel}
 use std::sync::Arc;
 use trial::{Channel, Columns, Origin, Trial};
 
-use crate::{COEFFICIENTS, Coefficients, MotionError, Output, Planar, PlanarShip, SYMBOLS, fit, track};
+use crate::motion::{COEFFICIENTS, Coefficients, MotionError, Output, Planar, PlanarShip, SYMBOLS, fit, track};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;

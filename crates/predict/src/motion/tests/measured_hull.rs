@@ -5,7 +5,7 @@ use trial::{Channel, Trial};
 
 use super::measured::measured;
 use super::steered::{Helm, overshoots, steer};
-use crate::{Hull, Spread, Turn, TurningCircle, fit_hull, track, turning_circle};
+use crate::motion::{Hull, Spread, Turn, TurningCircle, fit_hull, track, turning_circle};
 
 const ZIG_ZAGS: [&str; 8] = ["05_01", "10_05", "10_10_s", "15_05", "20_05", "20_10_s", "30_05", "35_05"];
 

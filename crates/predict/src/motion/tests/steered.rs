@@ -3,7 +3,7 @@
 use ship::integrate::RungeKutta4;
 use ship::{Dynamics, Input};
 
-use crate::Hull;
+use crate::motion::Hull;
 
 /// How the rudder is moved.
 pub(super) enum Helm {

@@ -1,9 +1,9 @@
 //! A record cut into windows that begin at measured states, and the hull stepped through them.
 
-use crate::coefficients::Coefficients;
-use crate::model::LARGEST_STEP;
-use crate::record::{filled, smoothed};
-use crate::yaw::Yaw;
+use super::coefficients::Coefficients;
+use super::model::LARGEST_STEP;
+use super::record::{filled, smoothed};
+use super::yaw::Yaw;
 use trial::{Channel, Trial};
 
 /// Length of a window in units of L/U₀: half a zig-zag of a full ship, too short for its instability to rule.

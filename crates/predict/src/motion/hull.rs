@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 use ship::{Dynamics, Input, Motion};
 
-use crate::coefficients::{COEFFICIENTS, SYMBOLS};
-use crate::error::MotionError;
-use crate::planar::Planar;
-use crate::yaw::{YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};
+use super::coefficients::{COEFFICIENTS, SYMBOLS};
+use super::error::MotionError;
+use super::planar::Planar;
+use super::yaw::{YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};
 
 /// Number of coefficients of a hull: those of surge and sway, then those of yaw.
 pub const HULL_COEFFICIENTS: usize = COEFFICIENTS + YAW_COEFFICIENTS;
@@ -50,9 +50,9 @@ pub struct HullRecord {
 
 /// A ship with surge, sway and yaw: coefficients, what is known of them, and what they leave open.
 ///
-/// States ψ (rad), r (rad/s), u and v (m/s). ψ' = r; u' and v' as in [`Coefficients`](crate::Coefficients), r' as in
+/// States ψ (rad), r (rad/s), u and v (m/s). ψ' = r; u' and v' as in [`Coefficients`](super::coefficients::Coefficients), r' as in
 /// [`Yaw`]. The disturbance of an input is added to the rudder of the yaw equation alone; the force of that rudder in
-/// surge and sway is left out. Made by [`fit_hull`](crate::fit_hull) or from known coefficients; immutable.
+/// surge and sway is left out. Made by [`fit_hull`](super::hull_fit::fit_hull) or from known coefficients; immutable.
 ///
 /// The equations hold for rudders, speeds and yaw rates like those of the records. A full ship may be unstable on a
 /// straight course; replays without a helmsman then drift apart however good the coefficients are.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use trial::{Channel, Columns, Origin, Trial};
 
-use crate::{Output, Planar, SYMBOLS, Turn, TurningCircle, fit, track, turning_circle};
+use crate::motion::{Output, Planar, SYMBOLS, Turn, TurningCircle, fit, track, turning_circle};
 
 /// `None` (and one line) where the data are not there.
 pub(super) fn measured(file: &str) -> Option<Trial> {

@@ -1,9 +1,9 @@
 //! What is random in yaw.
 
-use crate::course::Course;
-use crate::hull::Moment;
-use crate::record::smoothed;
-use crate::yaw::Yaw;
+use super::course::Course;
+use super::hull::Moment;
+use super::record::smoothed;
+use super::yaw::Yaw;
 
 /// Half width of the window in which the slope of the yaw rate is taken, in units of L/U₀.
 const HALF: f64 = 0.25;
