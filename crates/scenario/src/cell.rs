@@ -152,7 +152,10 @@ impl Drawn {
         for (draw, &value) in self.draws.iter().zip(values) {
             let key = draw.key.parts();
             let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
-            debug_assert!(is_set, "{}", draw.key);
+            if !is_set {
+                let found = format!("`{}` holds no number that can be drawn", draw.key);
+                return Err(Problem::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
+            }
         }
         resolve::specification(&ship, &wire, &self.folder)
     }

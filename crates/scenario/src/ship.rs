@@ -12,10 +12,10 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use simulate::numbers;
 use simulate::settings::Numbers;
-use toml::Table;
+use toml::{Table, Value};
 
 use crate::problem::{KeyPath, Problem, suggestion};
-use crate::reader;
+use crate::{reader, sweep};
 
 /// A ship that a scenario names or describes.
 #[derive(Clone)]
@@ -219,7 +219,8 @@ fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f6
     let mut own = numbers.iter().filter(|number| number.0 == symbol);
     let (name, value) = own.find_map(|&(_, key, value)| Some((key, value?))).unwrap_or(("rudder-bias-deg", bias_deg));
     let key = key.child(name);
-    Problem::value(key.clone(), format!("`{key}` is {}", Shown(value)), expected, "change the number")
+    let found = format!("`{key}` is {}", sweep::written(&Value::Float(value)));
+    Problem::value(key, found, expected, "change the number")
 }
 
 fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> Result<Option<Particulars>, Problem> {
