@@ -4,13 +4,14 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use simulate::StreamKey;
+use simulate::settings::Numbers as _;
 use toml::{Table, Value};
 
 use crate::draw::Draw;
-use crate::gaps::Gaps;
 use crate::method::{Method, Procedure, methods};
 use crate::part::Part;
 use crate::problem::{KeyPath, Problem};
+use crate::ship::ShipWire;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
 use crate::{limits, reader, resolve, sweep};
@@ -32,10 +33,9 @@ pub struct Cell {
 /// What a trial with drawn values is made from.
 struct Drawn {
     draws: Vec<Draw>,
-    /// The document of the cell, as far as it says how a trial is made, with every drawn value in the middle.
-    document: Table,
-    /// Where the drawn values stand in it.
-    gaps: Gaps,
+    /// The settings of the cell, with every drawn value in the middle.
+    wire: ScenarioWire,
+    ship: ShipWire,
     folder: PathBuf,
 }
 
@@ -124,7 +124,7 @@ impl Drawn {
             return Ok(None);
         }
         let blamed = |index: usize, problem: Problem| {
-            let of_key = draws.iter().position(|draw| draw.key.meets(&problem.key));
+            let of_key = draws.iter().position(|draw| draw.key.is_related(&problem.key));
             (of_key.unwrap_or(index), problem)
         };
         let middle: Vec<f64> = draws.iter().map(Draw::middle).collect();
@@ -132,8 +132,9 @@ impl Drawn {
         for (draw, &value) in draws.iter().zip(&middle) {
             sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
         }
-        let gaps = Gaps::new(draws.iter().map(|draw| &draw.key));
-        let drawn = Self { draws: draws.to_vec(), document, gaps, folder: folder.to_owned() };
+        let wire: ScenarioWire = reader::document(&document).map_err(|problem| blamed(0, problem))?;
+        let ship = ShipWire::read(&wire.ship).map_err(|problem| blamed(0, problem))?;
+        let drawn = Self { draws: draws.to_vec(), wire, ship, folder: folder.to_owned() };
         let specification = drawn.specification(&middle).map_err(|problem| blamed(0, problem))?;
         for (index, draw) in draws.iter().enumerate() {
             for value in draw.ends() {
@@ -147,8 +148,16 @@ impl Drawn {
 
     /// The specification with these values; what they do not touch is as it is in the middle.
     fn specification(&self, values: &[f64]) -> Result<Specification, Problem> {
-        let values: Vec<Value> = values.iter().copied().map(Value::Float).collect();
-        resolve::specification(&reader::filled(&self.document, &self.gaps, &values)?, &self.folder)
+        let (mut wire, mut ship) = (self.wire.clone(), self.ship.clone());
+        for (draw, &value) in self.draws.iter().zip(values) {
+            let key = draw.key.parts();
+            let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
+            if !is_set {
+                let found = format!("`{}` holds no number that can be drawn", draw.key);
+                return Err(Problem::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
+            }
+        }
+        resolve::specification(&ship, &wire, &self.folder)
     }
 }
 
@@ -179,7 +188,7 @@ pub(crate) fn swept(
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
     // several.
     let blame = |problem: Problem| {
-        let of_key = settings().rfind(|setting| setting.key.meets(&problem.key));
+        let of_key = settings().rfind(|setting| setting.key.is_related(&problem.key));
         match of_key.or_else(|| settings().next_back()) {
             Some(setting) => setting.blamed(problem, cell.as_deref()),
             None => problem,
@@ -190,7 +199,8 @@ pub(crate) fn swept(
         sweep::set(&mut changed, &setting.key, setting.value.clone()).map_err(blame)?;
     }
     let wire: ScenarioWire = reader::document(&changed).map_err(blame)?;
-    let specification = resolve::specification(&wire, folder).map_err(blame)?;
+    let specification = ShipWire::read(&wire.ship).and_then(|ship| resolve::specification(&ship, &wire, folder));
+    let specification = specification.map_err(blame)?;
     let methods = methods(&wire.identifier, folder).map_err(blame)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
         return Err(blame(Problem::value(

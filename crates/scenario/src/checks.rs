@@ -64,9 +64,9 @@ pub fn draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
     for (index, draw) in draws.iter().enumerate() {
         let own = KeyPath::dotted(draw.key());
         let place = KeyPath::dotted("draw").child(index).child("key");
-        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).meets(&own));
+        let by_draw = draws[..index].iter().any(|other| KeyPath::dotted(other.key()).is_related(&own));
         let by_sweep =
-            axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.meets(&own));
+            axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.is_related(&own));
         if by_draw || by_sweep {
             return Err(Problem::value(
                 place,

@@ -4,8 +4,8 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | what a file says, and how it is read | `wire`, `reader`, `gaps`, [`part`], [`words`] |
-//! | what is wrong with it, and where | `fault`, [`problem`], `locate`, [`failure`] |
+//! | what a file says, and how it is read | `wire`, `ship`, `effect`, `reader`, [`part`], [`words`] |
+//! | what is wrong with it, and where | [`problem`], `locate`, [`failure`] |
 //! | the design: sweeps, draws, cells, methods | [`sweep`], `draw`, [`cell`], [`method`], [`stop`], [`predictions`] |
 //! | answers that were found elsewhere | [`answers`] |
 //! | the checks | `resolve`, `checks`, `limits`, [`name`] |
@@ -19,8 +19,6 @@ mod checks;
 mod draw;
 mod effect;
 pub mod failure;
-mod fault;
-mod gaps;
 pub mod identity;
 pub mod keys;
 mod limits;
@@ -35,7 +33,7 @@ mod resolve;
 mod resolved;
 mod scenario;
 pub mod schema;
-mod ship_schema;
+mod ship;
 mod specification;
 pub mod stop;
 pub mod sweep;

@@ -32,8 +32,13 @@ impl KeyPath {
         self.0.last().map_or("", String::as_str)
     }
 
+    /// The path of the table this key stands in.
+    pub fn above(&self) -> Self {
+        Self(self.0[..self.0.len().saturating_sub(1)].to_vec())
+    }
+
     /// Whether one of the two paths leads to the other.
-    pub fn meets(&self, other: &Self) -> bool {
+    pub fn is_related(&self, other: &Self) -> bool {
         self.0.starts_with(&other.0) || other.0.starts_with(&self.0)
     }
 }
@@ -151,7 +156,7 @@ mod tests {
         let set = KeyPath::dotted("sweep.0.points.1.set").child("recording.sampling-s");
         assert_eq!(set.parts().len(), 6);
         assert_eq!(set.last(), "recording.sampling-s");
-        assert!(KeyPath::dotted("a.b.c").meets(&KeyPath::dotted("a.b")));
-        assert!(!KeyPath::dotted("a.bc").meets(&KeyPath::dotted("a.b")));
+        assert!(KeyPath::dotted("a.b.c").is_related(&KeyPath::dotted("a.b")));
+        assert!(!KeyPath::dotted("a.bc").is_related(&KeyPath::dotted("a.b")));
     }
 }

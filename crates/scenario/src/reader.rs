@@ -1,102 +1,248 @@
-//! Reads typed values out of a TOML document that is already in memory, and knows for every fault which key it belongs
-//! to. So a scenario as it is written and a scenario that a sweep has changed, which stands in no file, give the same
-//! messages.
+//! Reads typed values out of a TOML document that is already in memory, and says of every fault which key it belongs to,
+//! what was found there and what was expected. So a scenario as it is written and a scenario that a sweep has changed,
+//! which stands in no file, give the same messages.
 
-use serde::de::value::StrDeserializer;
-use serde::de::{DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor};
+use std::fmt::Display;
+
+use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
+use serde::de::{self, Deserializer, Expected, IntoDeserializer, Unexpected, Visitor};
 use serde::{Deserialize, forward_to_deserialize_any};
+use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
-use crate::fault::{A_LIST, A_TABLE, Error, Fault, Place};
-use crate::gaps::{Filling, Gaps};
 use crate::name::shown;
-use crate::problem::{KeyPath, Mark, Problem};
+use crate::problem::{KeyPath, Problem, listed, suggestion};
 
 /// Reads a whole document.
 ///
 /// Fails with the key, what was found and what was expected.
-pub fn document<'de, T: Deserialize<'de>>(table: &'de Table) -> Result<T, Problem> {
-    read(table, &KeyPath::default(), None)
-}
-
-/// Reads a whole document with `values` at the keys of `gaps`, as if they stood in it.
-///
-/// Fails like [`document`].
-pub fn filled<'de, T: Deserialize<'de>>(table: &'de Table, gaps: &Gaps, values: &'de [Value]) -> Result<T, Problem> {
-    read(table, &KeyPath::default(), Some(Filling { gaps, values }))
+pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, Problem> {
+    table(document, &KeyPath::default())
 }
 
 /// Reads the table at `key`.
 pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, Problem> {
-    read(table, key, None)
+    serde_path_to_error::deserialize(entries(table)).map_err(|error| {
+        let mut place = key.clone();
+        let mut value: Option<&Value> = None;
+        for segment in error.path() {
+            let name = match segment {
+                Segment::Seq { index } => index.to_string(),
+                Segment::Map { key: name } | Segment::Enum { variant: name } => name.clone(),
+                Segment::Unknown => continue,
+            };
+            let below = match value {
+                None => table.get(&name),
+                Some(Value::Array(items)) => name.parse().ok().and_then(|index: usize| items.get(index)),
+                Some(value) => value.get(&name),
+            };
+            let Some(below) = below else { break };
+            (place, value) = (place.child(name), Some(below));
+        }
+        error.into_inner().at(place, value)
+    })
 }
 
-fn read<'de, T: Deserialize<'de>>(
-    table: &'de Table,
-    key: &KeyPath,
-    filling: Option<Filling<'de, '_>>,
-) -> Result<T, Problem> {
-    let place = Place::Root(key);
-    T::deserialize(Reader { node: Node::Table(table), place, filling }).map_err(|error| error.at(&place).into())
+/// The entries of a table, each to be read on its own.
+fn entries(table: &Table) -> MapDeserializer<'_, impl Iterator<Item = (&str, Node<'_>)>, Fault> {
+    MapDeserializer::new(table.iter().map(|(name, value)| (name.as_str(), Node(value))))
+}
+
+/// A value of a document. Unlike the reader of `toml`, it takes no list for a table.
+struct Node<'de>(&'de Value);
+
+impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+impl<'de> Deserializer<'de> for Node<'de> {
+    type Error = Fault;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.0 {
+            Value::Table(table) => visitor.visit_map(entries(table)),
+            Value::Array(items) => visitor.visit_seq(SeqDeserializer::new(items.iter().map(Node))),
+            Value::String(text) => visitor.visit_str(text),
+            Value::Integer(number) => visitor.visit_i64(*number),
+            Value::Float(number) => visitor.visit_f64(*number),
+            Value::Boolean(answer) => visitor.visit_bool(*answer),
+            Value::Datetime(_) => Err(de::Error::invalid_type(Unexpected::Other("date"), &visitor)),
+        }
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Fault> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+        match self.0 {
+            Value::Table(_) => self.deserialize_any(visitor),
+            _ => Err(Fault::Kind(A_TABLE.to_owned())),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        self.deserialize_map(visitor)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        known: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Fault> {
+        match self.0 {
+            Value::String(name) => visitor.visit_enum(name.as_str().into_deserializer()),
+            Value::Table(table) if table.len() == 1 => visitor.visit_enum(MapAccessDeserializer::new(entries(table))),
+            Value::Table(_) => Err(Fault::NotOneName(known)),
+            _ => Err(Fault::Kind("a name, with its settings below it".to_owned())),
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
+        tuple_struct identifier ignored_any
+    }
 }
 
 /// The problem of a table that lacks a key.
 pub fn missing(table: &KeyPath, name: &'static str) -> Problem {
-    Error::new(&Place::Root(table), Fault::MissingKey { name }).into()
+    Fault::MissingKey(name).at(table.clone(), None)
 }
 
-/// A value or the table of a document.
-#[derive(Clone, Copy)]
-enum Node<'de> {
-    Table(&'de Table),
-    Value(&'de Value),
+/// What is wrong, before it is known where.
+#[derive(Debug, thiserror::Error)]
+#[error("{self:?}")]
+enum Fault {
+    UnknownKey(String, &'static [&'static str]),
+    UnknownName(String, &'static [&'static str]),
+    MissingKey(&'static str),
+    NotOneName(&'static [&'static str]),
+    Kind(String),
+    Other(String),
 }
 
-struct Reader<'de, 'a> {
-    node: Node<'de>,
-    place: Place<'a>,
-    filling: Option<Filling<'de, 'a>>,
-}
-
-impl<'de, 'a> Reader<'de, 'a> {
-    /// The reader of a value at `place`, one step below the node with this filling.
-    fn below(
-        value: &'de Value,
-        place: Place<'a>,
-        filling: Option<Filling<'de, 'a>>,
-        is_it: impl Fn(&str) -> bool,
-    ) -> Self {
-        let (value, filling) = filling.map_or((value, None), |filling| filling.below(value, is_it));
-        Self { node: Node::Value(value), place, filling }
+impl de::Error for Fault {
+    fn custom<T: Display>(message: T) -> Self {
+        Self::Other(message.to_string())
     }
 
-    fn table(&self) -> Option<&'de Table> {
-        match self.node {
-            Node::Table(table) => Some(table),
-            Node::Value(value) => value.as_table(),
+    fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
+        Self::UnknownKey(name.to_owned(), known)
+    }
+
+    fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
+        Self::UnknownName(name.to_owned(), known)
+    }
+
+    fn missing_field(name: &'static str) -> Self {
+        Self::MissingKey(name)
+    }
+
+    fn invalid_type(_: Unexpected, expected: &dyn Expected) -> Self {
+        Self::Kind(expected.to_string())
+    }
+
+    fn invalid_value(_: Unexpected, expected: &dyn Expected) -> Self {
+        Self::Kind(expected.to_string())
+    }
+
+    fn invalid_length(_: usize, expected: &dyn Expected) -> Self {
+        Self::Kind(expected.to_string())
+    }
+}
+
+impl Fault {
+    /// The fault of the `found` value at a key; of the document when there is none.
+    fn at(self, key: KeyPath, found: Option<&Value>) -> Problem {
+        let called = |key: &KeyPath| match key.parts() {
+            [] => "a scenario".to_owned(),
+            _ => format!("`{key}`"),
+        };
+        let place = called(&key);
+        let text = found.and_then(Value::as_str);
+        match self {
+            Self::UnknownKey(name, known) => {
+                let found = format!("{} has no key `{name}`", called(&key.above()));
+                Problem::name(key, found, "no such key here", suggestion(&name, known))
+            }
+            Self::UnknownName(name, known) if text == Some(&name) => {
+                Problem::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, known))
+            }
+            Self::UnknownName(name, known) => {
+                let key = key.child(&name);
+                let found = format!("no {} is called `{name}`", kind_of(&key));
+                Problem::name(key, found, "no such name", suggestion(&name, known))
+            }
+            Self::MissingKey(name) => Problem::name(
+                key,
+                format!("{place} has no key `{name}`"),
+                format!("expected `{name}` here"),
+                match name {
+                    "ship" => "add the ship, for instance [ship.yukun]; `study list ships` names them".to_owned(),
+                    "manoeuvre" => "add the manoeuvre, for instance [manoeuvre.zig-zag]; `study list manoeuvres` names them".to_owned(),
+                    "identifier" => "add a method: [[identifier]] and below it `method.output-error = {}`; `study list identifiers` names them".to_owned(),
+                    "recording" => "add [recording] and below it `sampling-s` and `duration-s`".to_owned(),
+                    _ => format!("add a line `{name} = …`"),
+                },
+            ),
+            Self::NotOneName(known) => {
+                let names: Vec<&String> = found.and_then(Value::as_table).into_iter().flat_map(Table::keys).collect();
+                let (found, advice) = match names.len() {
+                    0 => (format!("{place} names nothing"), format!("use one of {}", listed(known))),
+                    several => {
+                        (format!("{place} names {several} things at once: {}", listed(&names)), "keep one of them".into())
+                    }
+                };
+                Problem::name(key, found, "expected exactly one name below it", advice)
+            }
+            Self::Kind(expected) => {
+                let expected = in_toml(&expected);
+                let advice = match (expected, text) {
+                    (SETTINGS, Some(name)) => format!("write `{}.{name} = {{}}`", key.last()),
+                    (A_TABLE, _) if key.parts() == ["ship"] => "write [ship.yukun] on a line of its own".to_owned(),
+                    (A_LIST, _) if found.is_some_and(Value::is_table) => format!("write [[{key}]] with two brackets"),
+                    _ => "change the value".to_owned(),
+                };
+                let found = found.map_or_else(|| "a table".to_owned(), described);
+                Problem::value(key, format!("{place} is {found}"), format!("expected {expected}"), advice)
+            }
+            Self::Other(message) => {
+                Problem::value(key, format!("{place}: {message}"), "not accepted", "change the value")
+            }
         }
     }
+}
 
-    fn value(&self) -> Option<&'de Value> {
-        match self.node {
-            Node::Table(_) => None,
-            Node::Value(value) => Some(value),
-        }
-    }
+const A_TABLE: &str = "a table: `[name]`, or `{ key = value }`";
+const A_LIST: &str = "a list: `[…]`, or tables under `[[name]]`";
+const SETTINGS: &str = "a name with its settings";
 
-    fn refuse(&self, expected: &'static str) -> Error {
-        Error::new(&self.place, Fault::Type { found: self.value().map_or("a table".into(), described), expected })
-    }
-
-    fn read_table<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        let Some(table) = self.table() else { return Err(self.refuse(A_TABLE)) };
-        let entries = Entries { rest: table.iter(), value: None, place: &self.place, filling: self.filling };
-        visitor.visit_map(entries).map_err(|error| error.at(&self.place))
-    }
-
-    fn whole_number(&self) -> Result<u64, Error> {
-        let number = self.value().and_then(Value::as_integer).and_then(|number| u64::try_from(number).ok());
-        number.ok_or_else(|| self.refuse("a whole number, 0 or above"))
+/// What serde expects, in the words of a TOML file.
+fn in_toml(expected: &str) -> &str {
+    match expected {
+        "f64" => "a number",
+        "u64" | "usize" => "a whole number, 0 or above",
+        "a boolean" => "true or false, without quotes",
+        "a string" => "a text in quotes",
+        "unit" => "the name alone, as a text in quotes",
+        "newtype variant" => SETTINGS,
+        "a sequence" => A_LIST,
+        "an array of length 2" => "a list of two numbers",
+        other => other,
     }
 }
 
@@ -113,218 +259,19 @@ fn described(value: &Value) -> String {
     }
 }
 
-impl<'de> Deserializer<'de> for Reader<'de, '_> {
-    type Error = Error;
-
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.node {
-            Node::Table(_) | Node::Value(Value::Table(_)) => self.read_table(visitor),
-            Node::Value(Value::Array(_)) => self.deserialize_seq(visitor),
-            Node::Value(Value::String(text)) => visitor.visit_str(text),
-            Node::Value(Value::Integer(number)) => visitor.visit_i64(*number),
-            Node::Value(Value::Float(number)) => visitor.visit_f64(*number),
-            Node::Value(Value::Boolean(answer)) => visitor.visit_bool(*answer),
-            Node::Value(Value::Datetime(_)) => Err(self.refuse("a number, a text, a list or a table")),
-        }
-    }
-
-    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.value() {
-            Some(Value::Float(number)) => visitor.visit_f64(*number),
-            Some(Value::Integer(number)) => visitor.visit_f64(*number as f64),
-            _ => Err(self.refuse("a number")),
-        }
-    }
-
-    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_u64(self.whole_number()?).map_err(|error: Error| error.at(&self.place))
-    }
-
-    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.value().and_then(Value::as_bool) {
-            Some(answer) => visitor.visit_bool(answer),
-            None => Err(self.refuse("true or false, without quotes")),
-        }
-    }
-
-    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        match self.value().and_then(Value::as_str) {
-            Some(text) => visitor.visit_str(text),
-            None => Err(self.refuse("a text in quotes")),
-        }
-    }
-
-    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        self.deserialize_string(visitor)
-    }
-
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_some(self)
-    }
-
-    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Error> {
-        visitor.visit_newtype_struct(self)
-    }
-
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        let Some(items) = self.value().and_then(Value::as_array) else {
-            return Err(self.refuse(A_LIST));
-        };
-        let entries = Items { rest: items.iter().enumerate(), place: &self.place, filling: self.filling };
-        visitor.visit_seq(entries).map_err(|error| error.at(&self.place))
-    }
-
-    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
-        self.deserialize_seq(visitor)
-    }
-
-    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
-        self.read_table(visitor)
-    }
-
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        _: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        self.read_table(visitor)
-    }
-
-    fn deserialize_enum<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        known: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Error> {
-        if let Some(name) = self.value().and_then(Value::as_str) {
-            return visitor.visit_enum(Choice { name, settings: None, place: self.place, filling: None });
-        }
-        let Some(table) = self.table() else { return Err(self.refuse("a name, with its settings below it")) };
-        let mut entries = table.iter();
-        match (entries.next(), entries.next()) {
-            (Some((name, settings)), None) => {
-                let place = Place::Name(&self.place, name);
-                visitor.visit_enum(Choice { name, settings: Some(settings), place, filling: self.filling })
-            }
-            _ => Err(Error::new(&self.place, Fault::NotOneName { found: table.keys().cloned().collect(), known })),
-        }
-    }
-
-    forward_to_deserialize_any! {
-        i8 i16 i32 i64 u8 u16 u32 f32 char bytes byte_buf unit unit_struct tuple_struct identifier ignored_any
-    }
-}
-
-/// The entries of a table.
-struct Entries<'de, 'a> {
-    rest: toml::map::Iter<'de, String, Value>,
-    value: Option<(&'de str, &'de Value)>,
-    place: &'a Place<'a>,
-    filling: Option<Filling<'de, 'a>>,
-}
-
-impl<'de> MapAccess<'de> for Entries<'de, '_> {
-    type Error = Error;
-
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Error> {
-        let Some((name, value)) = self.rest.next() else { return Ok(None) };
-        self.value = Some((name, value));
-        let name = seed.deserialize(StrDeserializer::new(name)).map_err(|error: Error| error.at(self.place))?;
-        Ok(Some(name))
-    }
-
-    fn next_value_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<T::Value, Error> {
-        let (name, value) = self.value.take().expect("serde asks for a value after its key");
-        let place = Place::Name(self.place, name);
-        let reader = Reader::below(value, place, self.filling, |gap| gap == name);
-        seed.deserialize(reader).map_err(|error| error.at(&place))
-    }
-}
-
-/// The entries of a list.
-struct Items<'de, 'a> {
-    rest: std::iter::Enumerate<std::slice::Iter<'de, Value>>,
-    place: &'a Place<'a>,
-    filling: Option<Filling<'de, 'a>>,
-}
-
-impl<'de> SeqAccess<'de> for Items<'de, '_> {
-    type Error = Error;
-
-    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Error> {
-        let Some((index, value)) = self.rest.next() else { return Ok(None) };
-        let place = Place::Index(self.place, index);
-        let reader = Reader::below(value, place, self.filling, |gap| gap.parse() == Ok(index));
-        seed.deserialize(reader).map(Some).map_err(|error| error.at(&place))
-    }
-}
-
-/// One of several names, with its settings where it is written as a key.
-struct Choice<'de, 'a> {
-    name: &'de str,
-    settings: Option<&'de Value>,
-    place: Place<'a>,
-    /// Of the node that names it.
-    filling: Option<Filling<'de, 'a>>,
-}
-
-impl<'de> EnumAccess<'de> for Choice<'de, '_> {
-    type Error = Error;
-    type Variant = Self;
-
-    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Error> {
-        match seed.deserialize(StrDeserializer::new(self.name)) {
-            Ok(variant) => Ok((variant, self)),
-            Err(Error { fault: Fault::UnknownName { name, known, .. }, .. }) => {
-                let mark = if self.settings.is_some() { Mark::Name } else { Mark::Value };
-                Err(Error::new(&self.place, Fault::UnknownName { name, known, mark }))
-            }
-            Err(error) => Err(error.at(&self.place)),
-        }
-    }
-}
-
-impl<'de, 'a> Choice<'de, 'a> {
-    fn reader(self) -> Result<Reader<'de, 'a>, Error> {
-        match self.settings {
-            Some(value) => Ok(Reader::below(value, self.place, self.filling, |gap| gap == self.name)),
-            None => Err(Error::new(&self.place, Fault::NoSettings { name: self.name.to_owned() })),
-        }
-    }
-}
-
-impl<'de> VariantAccess<'de> for Choice<'de, '_> {
-    type Error = Error;
-
-    fn unit_variant(self) -> Result<(), Error> {
-        match self.settings {
-            None => Ok(()),
-            Some(_) => Err(Error::new(
-                &self.place,
-                Fault::Type { found: "written as a key".into(), expected: "the name alone, as a text in quotes" },
-            )),
-        }
-    }
-
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {
-        let place = self.place;
-        seed.deserialize(self.reader()?).map_err(|error| error.at(&place))
-    }
-
-    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Error> {
-        self.reader()?.deserialize_seq(visitor)
-    }
-
-    fn struct_variant<V: Visitor<'de>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Error> {
-        self.reader()?.read_table(visitor)
+/// What the names at a key stand for.
+fn kind_of(key: &KeyPath) -> &'static str {
+    match key.parts() {
+        [manoeuvre, _] if manoeuvre == "manoeuvre" => "manoeuvre",
+        [effect, _, _] if effect == "effect" => "effect",
+        [_, _, method, _] if method == "method" => "method",
+        _ => "setting",
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sweep;
 
     #[derive(Debug, Deserialize)]
     #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -370,34 +317,6 @@ mod tests {
         assert_eq!((trial.sampling_s, trial.rows, trial.side), (1.0, Some(3), Side::Starboard));
         let Method::Srivc(settings) = &trial.methods[0];
         assert_eq!(settings.limit, 2.5);
-    }
-
-    /// Both ways to change a document: before it is read, and while it is read.
-    fn changed(text: &str, keys: &[&str], value: f64) -> [Result<Trial, Problem>; 2] {
-        let mut table: Table = text.parse().expect("well formed");
-        let keys: Vec<KeyPath> = keys.iter().map(|key| KeyPath::dotted(key)).collect();
-        let values = vec![Value::Float(value); keys.len()];
-        let while_read = filled(&table, &Gaps::new(&keys), &values);
-        for key in &keys {
-            sweep::set(&mut table, key, Value::Float(value)).expect("the key is there");
-        }
-        [document(&table), while_read]
-    }
-
-    #[test]
-    fn gaps_are_filled_in_tables_lists_and_choices() {
-        let text = "sampling-s = 1\nrows = 3\n[[methods]]\nsrivc.limit = 2.5\n[[methods]]\nsrivc.limit = 3.5";
-        for trial in changed(text, &["sampling-s", "methods.1.srivc.limit"], 7.0) {
-            let trial = trial.expect("right");
-            let limits: Vec<f64> = trial.methods.iter().map(|Method::Srivc(settings)| settings.limit).collect();
-            assert_eq!((trial.sampling_s, trial.rows, limits), (7.0, Some(3), vec![2.5, 7.0]));
-        }
-        for key in ["rows", "side", "methods", "methods.0", "methods.1.srivc"] {
-            let [before, while_read] =
-                changed(&format!("side = \"port\"\n{text}"), &[key], 2.5).map(Result::unwrap_err);
-            assert_eq!(before, while_read);
-            assert_eq!(before.found, format!("`{key}` is 2.5"));
-        }
     }
 
     #[test]

@@ -5,9 +5,10 @@ use toml::{Table, Value};
 
 use crate::keys::{Key, LeftOut, keys};
 use crate::method::Method;
-use crate::problem::{KeyPath, Problem};
-use crate::wire::{FirstOrderWire, ScenarioWire, SecondOrderWire};
-use crate::{effect, reader, resolve};
+use crate::problem::Problem;
+use crate::ship::ShipWire;
+use crate::wire::ScenarioWire;
+use crate::{effect, reader};
 
 /// Parts of a scenario in the order in which a person reads them; what is not among them comes behind.
 const ORDER: [&str; 16] = [
@@ -35,7 +36,8 @@ const ORDER: [&str; 16] = [
 /// Fails as the scenario would.
 pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
     let mut wire: ScenarioWire = reader::document(document)?;
-    let ship = effect::added(resolve::ship(&wire.ship)?, &wire.effect)?;
+    let own = ShipWire::read(&wire.ship)?;
+    let ship = effect::added(own.build()?, &wire.effect)?;
     wire.steering_gear = wire.steering_gear.complete(&wire.steering_gear.build(&ship)?);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());
@@ -54,15 +56,7 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
             assumed_rudder_rate_deg_s: None,
         });
     }
-    for (id, table) in &mut wire.ship {
-        let key = KeyPath::dotted("ship").child(id);
-        let complete = match id.as_str() {
-            "first-order" => Table::try_from(reader::table::<FirstOrderWire>(table, &key)?),
-            "second-order" => Table::try_from(reader::table::<SecondOrderWire>(table, &key)?),
-            _ => continue,
-        };
-        *table = complete.expect("numbers can be written");
-    }
+    wire.ship.values_mut().for_each(|table| *table = own.complete());
     let complete = Table::try_from(&wire).expect("what was read can be written");
     let mut lines = Lines { keys: keys(), text: String::new() };
     lines.table(&[], &complete, Some(document));

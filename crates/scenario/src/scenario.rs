@@ -19,6 +19,7 @@ use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::Part;
 use crate::predictions::Predictions;
 use crate::problem::{KeyPath, Problem, of_text};
+use crate::ship::ShipWire;
 use crate::stop::StopRule;
 use crate::sweep::{self, Axis};
 use crate::wire::{PublishedWire, ScenarioWire};
@@ -123,7 +124,8 @@ impl Scenario {
             name::prose(title).map_err(|unfit| fail(of_text(KeyPath::dotted("output.title"), title, unfit)))?;
         }
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
-        resolve::specification(&wire, &folder).map_err(&fail)?;
+        let ship = ShipWire::read(&wire.ship).map_err(&fail)?;
+        resolve::specification(&ship, &wire, &folder).map_err(&fail)?;
         let methods = methods(&wire.identifier, &folder).map_err(&fail)?;
         let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose().map_err(&fail)?;
         let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose().map_err(&fail)?;

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use simulate::numbers;
 use simulate::settings::{
     ApproachSettings, DisturbanceSettings, GearSettings, HelmsmanSettings, ManoeuvreSettings, RecordingSettings,
     SensorSettings, WavesSettings,
@@ -14,7 +15,7 @@ use simulate::settings::{
 use crate::draw::DrawWire;
 use crate::method::IdentifierWire;
 use crate::predictions::PredictWire;
-use crate::ship_schema;
+use crate::ship;
 use crate::stop::StopWire;
 use crate::sweep::AxisWire;
 use crate::words::AxisMark;
@@ -39,7 +40,7 @@ pub struct ScenarioWire {
     /// When a cell has had enough trials.
     pub stop: Option<StopWire>,
     /// One key: the id of a ship of the registry, `first-order` or `second-order`.
-    #[schemars(schema_with = "ship_schema::of::<FirstOrderWire, SecondOrderWire>")]
+    #[schemars(schema_with = "ship::schema")]
     pub ship: BTreeMap<String, toml::Table>,
     /// What a first-order ship lacks; on response models alone.
     #[serde(default)]
@@ -108,55 +109,6 @@ pub struct ValidationWire {
     pub manoeuvre: ManoeuvreSettings,
     /// That of the trial, from the start of the run, when left out.
     pub recording: Option<RecordingSettings>,
-}
-
-/// K and T in SI, or without dimension: K' = K L/U, T' = T U/L.
-#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct FirstOrderWire {
-    /// Gain K.
-    #[serde(rename = "K-per-s")]
-    pub K_per_s: Option<f64>,
-    /// Time constant T; below 0 for a ship that is course-unstable.
-    #[serde(rename = "T-s")]
-    pub T_s: Option<f64>,
-    /// K' = K L/U, with length and speed.
-    #[serde(rename = "K-prime")]
-    pub K_prime: Option<f64>,
-    /// T' = T U/L, with length and speed.
-    #[serde(rename = "T-prime")]
-    pub T_prime: Option<f64>,
-    /// Rudder bias δ_r.
-    #[serde(default)]
-    pub rudder_bias_deg: f64,
-    /// Length L between perpendiculars; with the speed.
-    pub length_m: Option<f64>,
-    /// Approach speed U; with the length.
-    pub speed_kn: Option<f64>,
-}
-
-#[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct SecondOrderWire {
-    /// Gain K.
-    #[serde(rename = "K-per-s")]
-    pub K_per_s: f64,
-    /// Larger time constant T1.
-    #[serde(rename = "T1-s")]
-    pub T1_s: f64,
-    /// Smaller time constant T2.
-    #[serde(rename = "T2-s")]
-    pub T2_s: f64,
-    /// Time constant T3 of the rudder rate.
-    #[serde(rename = "T3-s")]
-    pub T3_s: f64,
-    /// Rudder bias δ_r.
-    #[serde(default)]
-    pub rudder_bias_deg: f64,
-    /// Length L between perpendiculars; with the speed.
-    pub length_m: Option<f64>,
-    /// Approach speed U; with the length.
-    pub speed_kn: Option<f64>,
 }
 
 /// An effect added to a response ship: one key, the id of the effect.
@@ -318,4 +270,20 @@ pub struct OutputWire {
     pub marks: Vec<AxisMark>,
     /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
     pub detail: Vec<String>,
+}
+
+numbers! {
+    ScenarioWire: effect manoeuvre steering_gear helmsman approach recording sensor disturbance;
+    EffectWire = SecondOrder NonlinearDamping WindMoment SpeedLoss SteeringLag RudderSaturation RudderDeadband
+        PortStarboardAsymmetry MomentDrift TransientDisturbance WaveYaw;
+    SwayCouplingWire: T2_s T3_s;
+    DampingWire = Cubic Quadratic Square;
+    WindMomentWire: rudder_deg from_deg;
+    SpeedLossWire: loss_s_per_deg2 recovery_s gain_exponent;
+    LagWire = DeadTimeS FirstOrderS;
+    SaturationWire: c3_per_deg2;
+    DeadBandWire = BacklashDeg DeadBandDeg;
+    AsymmetryWire = GainShare MomentByDriftS;
+    DriftWire: rudder_deg_per_s;
+    TransientWire: rudder_deg centre_s duration_s;
 }

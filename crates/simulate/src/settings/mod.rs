@@ -5,6 +5,7 @@
 
 mod disturbance;
 mod manoeuvre;
+mod numbers;
 mod recording;
 mod refusal;
 mod sensor;
@@ -15,6 +16,7 @@ pub use disturbance::{
     DisturbanceSettings, GustSettings, GustingSettings, SquallSettings, WavesSettings, WindSettings,
 };
 pub use manoeuvre::{ManoeuvreSettings, PullOutSettings, ReplaySettings, TurningCircleSettings, ZigZagSettings};
+pub use numbers::{Numbers, is_name_of};
 pub use recording::{RecordingSettings, RudderSource};
 pub use refusal::SettingError;
 pub use sensor::{DropOutSettings, HeadingSpikesSettings, HeadingWanderSettings, SensorSettings};
