@@ -33,8 +33,8 @@ pub fn is_name_of(field: &str, name: &str) -> bool {
     name.bytes().eq(field.bytes().map(|letter| if letter == b'_' { b'-' } else { letter }))
 }
 
-/// Implements [`Numbers`]: `Type: field …;` for a table, whose keys are the names of its fields, and `Type = Variant …;`
-/// for a choice, whose one key names the variant there is.
+/// Implements [`Numbers`]: `Type: field …;` for a table, whose keys are the names of its fields, and
+/// `Type = Variant …;` for a choice, whose one key names the variant there is.
 #[macro_export]
 macro_rules! numbers {
     () => {};

@@ -1,5 +1,5 @@
-//! What commands leave for other programs: the types of their JSON files and of the tables beside them, from which pages
-//! and figures are made. The text of a file is also what `--format json` writes to standard output.
+//! What commands leave for other programs: the types of their JSON files and of the tables beside them, from which
+//! pages and figures are made. The text of a file is also what `--format json` writes to standard output.
 
 pub mod columns;
 pub mod curves;
