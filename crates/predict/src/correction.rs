@@ -18,7 +18,7 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::interval::{Interval, median};
+use crate::interval::Interval;
 use crate::known::{KnownShip, is_same_length};
 use crate::mixture::{Mixture, Source};
 use crate::passage::Passage;
@@ -162,7 +162,7 @@ pub fn correct(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) 
     for (ship, own, condition) in
         [(full, &made.full, "at full load"), (ballast, &made.trial, "in the condition of the trial")]
     {
-        if ship.is_unseen(made.rudder, median(own.iter().flatten().map(|sailed| sailed.largest_rate).collect())) {
+        if ship.is_unseen(made.rudder, own.iter().flatten().map(|sailed| sailed.largest_rate)) {
             warnings.push(format!("the model {condition} is extrapolated beyond its records"));
         }
     }
