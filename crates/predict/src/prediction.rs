@@ -176,8 +176,9 @@ impl ShipMixture {
         }
     }
 
-    /// Whether a rudder (rad) or a yaw rate (rad/s) is beyond what the records have seen.
-    pub(crate) fn is_unseen(&self, rudder: f64, rate: f64) -> bool {
+    /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond what the records have seen.
+    pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
+        let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
         let most =
             |value: fn(&ValidityRange) -> f64| self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max);
         rudder > MARGIN * most(|seen| seen.rudder_rad) || rate > MARGIN * most(|seen| seen.yaw_rate_rad_s)
