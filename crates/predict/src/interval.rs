@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Median with the intervals that hold half and nine tenths of the draws.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Interval {
+pub struct PredictionInterval {
     /// Half of the draws are below.
     pub median: f64,
     /// Quantiles of 25 and 75 %.
@@ -40,7 +40,7 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
     [0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(values, share))
 }
 
-impl Interval {
+impl PredictionInterval {
     /// The interval of some draws, which are put in order; `None` without one.
     pub fn of(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
@@ -66,11 +66,11 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_the_numbers() {
-        let interval = Interval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
+        let interval = PredictionInterval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
         assert_eq!((interval.median, interval.ci50), (2.0, [1.0, 3.0]));
         assert!((interval.ci90[0] - 0.2).abs() < 1e-12 && (interval.ci90[1] - 3.8).abs() < 1e-12);
         assert!(interval.holds90(0.3) && !interval.holds90(0.1));
-        assert_eq!(Interval::of(&mut []), None);
-        assert_eq!(Interval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
+        assert_eq!(PredictionInterval::of(&mut []), None);
+        assert_eq!(PredictionInterval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
     }
 }
