@@ -254,7 +254,10 @@ mod tests {
     #[test]
     fn a_search_says_why_it_ended() {
         let start = DVector::from_vec(vec![-1.2, 1.0]);
-        assert_eq!(minimise(&mut Valley { most: 5.0 }, start.clone(), &Rules { steps: 3, ..RULES }).end, End::StepLimit);
+        assert_eq!(
+            minimise(&mut Valley { most: 5.0 }, start.clone(), &Rules { steps: 3, ..RULES }).end,
+            End::StepLimit
+        );
         let eager = Rules { promise: 1e9, ..RULES };
         assert_eq!(minimise(&mut Valley { most: 5.0 }, start, &eager).end, End::Settled);
         let nowhere = DVector::from_vec(vec![f64::NAN, 1.0]);
