@@ -9,12 +9,16 @@
 //! | linear least squares with covariance and condition number | [`least_squares`] |
 //! | nonlinear least squares between bounds | [`levenberg_marquardt`] |
 //! | the lowest point of a function of one number | [`minimum`](fn@minimum::minimum) |
+//! | covariances of scores that are correlated in time | [`covariance`] |
+//! | medians and quantiles | [`statistics`] |
 
 pub mod column;
+pub mod covariance;
 pub mod kalman;
 pub mod lanes;
 pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod minimum;
 pub mod number;
+pub mod statistics;
 pub mod transform;

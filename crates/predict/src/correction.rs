@@ -18,7 +18,7 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::interval::{PredictionInterval, median};
+use crate::interval::PredictionInterval;
 use crate::known::{IdentifiedShip, is_same_length};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::SimulatedManoeuvre;
@@ -167,7 +167,7 @@ pub fn correct(
     for (ship, own, condition) in
         [(full, &made.full, "at full load"), (ballast, &made.trial, "in the condition of the trial")]
     {
-        if ship.is_unseen(made.rudder, median(own.iter().flatten().map(|sailed| sailed.largest_rate).collect())) {
+        if ship.is_unseen(made.rudder, own.iter().flatten().map(|sailed| sailed.largest_rate)) {
             warnings.push(format!("the model {condition} is extrapolated beyond its records"));
         }
     }

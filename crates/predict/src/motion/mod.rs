@@ -25,7 +25,6 @@
 mod circle;
 mod coefficients;
 mod course;
-mod covariance;
 mod current;
 mod error;
 mod fit;

@@ -3,8 +3,8 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-use super::covariance::newey_west;
 use super::error::MotionError;
+use estimation::covariance::newey_west;
 
 /// One column of residuals, zero where nothing was read.
 pub(crate) type ResidualColumn = Vec<f64>;
@@ -89,7 +89,7 @@ pub(crate) trait Squares {
             let places: Vec<usize> =
                 (0..slopes.len()).map(|i| self.global(group, i)).filter(|place| is_wanted(*place)).collect();
             let own = (0..slopes.len()).filter(|&i| is_wanted(self.global(group, i)));
-            let long_run = newey_west(&own.map(|i| score(&slopes[i])).collect::<Vec<_>>());
+            let long_run = newey_west(&[own.map(|i| score(&slopes[i])).collect::<Vec<_>>()]);
             for (i, &row) in places.iter().enumerate() {
                 for (j, &column) in places.iter().enumerate() {
                     middle[(row, column)] += long_run[(i, j)];
