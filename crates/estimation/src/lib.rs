@@ -6,9 +6,13 @@
 //! | the Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother and its derivatives | [`kalman`] |
 //! | numbers that carry their derivatives | [`number`] |
+//! | covariances of scores that are correlated in time | [`covariance`] |
+//! | medians and quantiles | [`statistics`] |
 
 pub mod column;
+pub mod covariance;
 pub mod kalman;
 pub mod lanes;
 pub mod number;
+pub mod statistics;
 pub mod transform;
