@@ -339,9 +339,9 @@ impl Size {
         for package in &packages {
             let mut names = BTreeSet::new();
             for path in sources(&root().join(package)) {
-                let name = path.to_string_lossy();
+                let name = path.strip_prefix(root()).expect("it lies below the root").to_string_lossy();
                 let is_test = package == "tests"
-                    || name.contains("/tests/") && !name.contains("/../tests/")
+                    || name.contains("/tests/")
                     || ["tests.rs", "testing.rs"].iter().any(|end| name.ends_with(end));
                 size.add(&read(&path), is_test, &mut names);
             }
