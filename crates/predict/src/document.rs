@@ -71,13 +71,13 @@ impl PredictDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up;
     use crate::mixture::ShipMixture;
+    use crate::testing;
     use crate::{form, imo};
 
     #[test]
     fn what_is_written_is_read_again() {
-        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
         let manoeuvres: Vec<Prediction> =
             form::manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
         let particulars = mixture.particulars();
