@@ -18,7 +18,7 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::interval::{PredictionInterval, median};
+use crate::interval::PredictionInterval;
 use crate::known::{IdentifiedShip, is_same_length};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::SimulatedManoeuvre;
@@ -164,9 +164,8 @@ pub fn correct(
     for (ship, own, condition) in
         [(full, &made.full, "full load"), (ballast, &made.trial, "the condition of the trial")]
     {
-        let rates: Vec<f64> = own.iter().flatten().map(|result| result.largest_rate).collect();
-        enough(format!("{} ({condition})", record.name()), rates.len(), draws)?;
-        if ship.is_unseen(made.rudder, median(rates)) {
+        enough(format!("{} ({condition})", record.name()), own.iter().flatten().count(), draws)?;
+        if ship.is_unseen(made.rudder, own.iter().flatten().map(|result| result.largest_rate)) {
             let at = if condition == "full load" { "at" } else { "in" };
             warnings.push(format!("the model {at} {condition} is extrapolated beyond its records"));
         }

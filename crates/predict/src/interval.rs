@@ -1,5 +1,6 @@
 //! Quantiles of drawn values, and how many digits of them are worth writing.
 
+use estimation::statistics::quantile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,23 +13,6 @@ pub struct PredictionInterval {
     pub ci50: [f64; 2],
     /// Quantiles of 5 and 95 %.
     pub ci90: [f64; 2],
-}
-
-/// Quantile of sorted values, linear between them (Hyndman and Fan 1996, type 7).
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let (low, part) = (place.floor() as usize, place.fract());
-    let high = (low + 1).min(sorted.len() - 1);
-    sorted[low] + part * (sorted[high] - sorted[low])
-}
-
-/// The middle of some values.
-///
-/// # Panics
-/// Without a value.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    quantile(&values, 0.5)
 }
 
 /// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are put in order.

@@ -1,5 +1,6 @@
 //! A manoeuvre predicted: every figure of merit with its intervals and where they come from, and bands of its curves.
 
+use estimation::statistics::median;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -8,7 +9,7 @@ use ship::Particulars;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
-use crate::interval::{PredictionInterval, band, median};
+use crate::interval::{PredictionInterval, band};
 use crate::kind::Kind;
 use crate::known::ValidityRange;
 use crate::mixture::{ShipMixture, UncertaintySource};
@@ -132,7 +133,7 @@ impl ShipMixture {
         let (values, series): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
         let made: Vec<(Vec<f64>, f64, Option<_>)> = series.into_iter().flatten().collect();
         enough(kind, made.len(), draws)?;
-        let extrapolated = self.is_unseen(kind.rudder, median(made.iter().map(|(_, rate, _)| *rate).collect()));
+        let extrapolated = self.is_unseen(kind.rudder, made.iter().map(|(_, rate, _)| *rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         let headings: Vec<&[f64]> = made.iter().map(|(heading, ..)| heading.as_slice()).collect();
@@ -156,11 +157,11 @@ impl ShipMixture {
         let values: Vec<Option<Figures>> = all.iter().map(|curve| Some(curve.figures(kind.rudder))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
-        let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
+        let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
         let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder));
         Prediction {
             kind: *kind,
-            figures: predicted(&values, self.is_unseen(kind.rudder, largest), sources, alone),
+            figures: predicted(&values, self.is_unseen(kind.rudder, rates), sources, alone),
             lost: 0,
             heading: Bands::default(),
             most_probable: None,
@@ -169,8 +170,9 @@ impl ShipMixture {
         }
     }
 
-    /// Whether a rudder (rad) or a yaw rate (rad/s) is beyond what the records have seen.
-    pub(crate) fn is_unseen(&self, rudder: f64, rate: f64) -> bool {
+    /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond what the records have seen.
+    pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
+        let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
         let most =
             |value: fn(&ValidityRange) -> f64| self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max);
         rudder > MARGIN * most(|seen| seen.rudder_rad) || rate > MARGIN * most(|seen| seen.yaw_rate_rad_s)

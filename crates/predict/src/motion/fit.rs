@@ -1,6 +1,6 @@
 //! The coefficients from records, by output error.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use trial::Trial;
 
 use super::circle::track;
@@ -56,18 +56,18 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     let mut problem = PlanarProblem::new(records, length, MotionOutput::ALL.map(|output| FIRST_SHARE * scale(output)));
     let mut at = problem.start();
     for round in 0..=REWEIGHTED {
-        at = problem.squares().minimise(at)?;
+        at = problem.squares().minimise(&at)?;
         if round < REWEIGHTED {
-            let records = problem.summary(at.as_slice());
+            let records = problem.summary(&at);
             problem.deviations = MotionOutput::ALL
                 .map(|output| pooled(&records, output).unwrap_or(0.0).max(LEAST_SHARE * scale(output)));
         }
     }
     let covariance = problem.squares().covariance(&at, &SYMBOLS, true)?;
-    let records = problem.summary(at.as_slice());
+    let records = problem.summary(&at);
     let approach_speed = median(records.iter().map(|record| record.approach_speed)).expect("there are records");
     Ok(Planar {
-        coefficients: coefficients(at.as_slice()),
+        coefficients: coefficients(&at),
         length,
         approach_speed,
         covariance: std::array::from_fn(|i| std::array::from_fn(|j| covariance[(i, j)])),
@@ -102,7 +102,7 @@ impl<'a> PlanarProblem<'a> {
         Self { places: records.iter().map(place).collect(), records, length, deviations }
     }
 
-    fn start(&self) -> DVector<f64> {
+    fn start(&self) -> Vec<f64> {
         let mut at = TYPICAL.to_array().to_vec();
         for record in &self.records {
             at.extend([record.start[0], record.start[1], record.approach.speed]);
@@ -111,7 +111,7 @@ impl<'a> PlanarProblem<'a> {
             at.extend(positions.flat_map(|(_, columns)| columns).map(first));
             at.extend([0.0; 2].iter().filter(|_| record.current));
         }
-        DVector::from_vec(at)
+        at
     }
 
     fn squares(&self) -> GroupedSquares<'_> {

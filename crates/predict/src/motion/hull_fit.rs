@@ -83,21 +83,21 @@ impl HullFit {
         let record = |(trial, speed)| WindowedRecord::of(trial, length, speed).expect("it has surge and sway");
         let records: Vec<WindowedRecord> = trials.iter().zip(speeds).map(record).collect();
         let mut deviations = FIRST;
-        let mut at = DVector::from_row_slice(&start.to_array());
+        let mut at = start.to_array().to_vec();
         for round in 0..=REWEIGHTED {
-            at = squares(&records, deviations).minimise(at)?;
+            at = squares(&records, deviations).minimise(&at)?;
             if round < REWEIGHTED {
-                deviations = believed(&records, &yaw_of(at.as_slice()));
+                deviations = believed(&records, &yaw_of(&at));
             }
         }
         squares(&records, deviations).inverse(&at, &YAW_SYMBOLS)?;
-        Ok(Self { planar, yaw: yaw_of(at.as_slice()), records })
+        Ok(Self { planar, yaw: yaw_of(&at), records })
     }
 
     /// Block diagonal: that of surge and sway, and A⁻¹ S A⁻¹ of yaw.
     fn sandwich(&self) -> Result<DMatrix<f64>, MotionError> {
         let squares = squares(&self.records, believed(&self.records, &self.yaw));
-        let of_yaw = squares.covariance(&DVector::from_row_slice(&self.yaw.to_array()), &YAW_SYMBOLS, false)?;
+        let of_yaw = squares.covariance(&self.yaw.to_array(), &YAW_SYMBOLS, false)?;
         let of_planar = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| self.planar.covariance[i][j]);
         let mut covariance = DMatrix::zeros(HULL_COEFFICIENTS, HULL_COEFFICIENTS);
         covariance.view_mut((0, 0), of_planar.shape()).copy_from(&of_planar);

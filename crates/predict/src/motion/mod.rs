@@ -24,7 +24,6 @@
 
 mod circle;
 mod coefficients;
-mod covariance;
 mod current;
 mod error;
 mod fit;

@@ -1,8 +1,8 @@
 //! One record as the fit sees it: what turned the ship, what is to be explained, and how fast the ship approached.
 
+use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
 use ship::Polyline;
-use trial::zigzag::median::upper_median;
 use trial::{Channel, Trial};
 
 use super::error::MotionError;

@@ -1,22 +1,27 @@
-//! Least squares over groups of rows by damped Gauss–Newton steps between bounds (Levenberg 1944; Marquardt 1963), and
-//! the covariance of what is found.
+//! Least squares over groups of rows, each of which depends on some of the unknowns, and the covariance of what is found.
 
+use estimation::covariance::newey_west;
+use estimation::levenberg_marquardt::{End, Minimum, Normal, Objective, Rules, minimise};
 use nalgebra::{DMatrix, DVector};
 
-use super::covariance::newey_west;
 use super::error::MotionError;
 
 /// Least eigenvalue of a normal matrix with a diagonal of ones.
 const OPEN: f64 = 1e-11;
 
-/// Iterations after which a search is given up.
-const MOST_ITERATIONS: usize = 100;
-
-/// Relative decrease of the sum of squares that is too little to go on for.
-const ENOUGH: f64 = 1e-7;
-
-/// Steps in a row of so little use that end a search.
-const IN_A_ROW: usize = 2;
+/// A search ends after two steps that lower the sum of squares by less than 10⁻⁷ of it.
+const RULES: Rules = Rules {
+    steps: 100,
+    damping: 1e-3,
+    shrink: 0.2,
+    trusted: 0.0,
+    grow: 4.0,
+    least: [1e-9, 0.0],
+    tries: 36,
+    promise: 0.0,
+    enough: [0.0, 1e-7],
+    in_a_row: 2,
+};
 
 /// Decrease that a search without a better step may still have promised; the equations have kinks.
 const STALLED: f64 = 1e-4;
@@ -45,63 +50,31 @@ fn part(matrix: &DMatrix<f64>, of: &[usize]) -> DMatrix<f64> {
 }
 
 impl GroupedSquares<'_> {
-    fn square(&self, at: &DVector<f64>) -> f64 {
-        (0..self.groups.len()).map(|group| (self.residuals)(group, at.as_slice()).norm_squared()).sum()
-    }
-
     /// Derivatives of the residuals of a group by its unknowns: central differences, one-sided at a bound.
-    fn derivatives(&self, group: usize, at: &DVector<f64>) -> Vec<DMatrix<f64>> {
+    fn derivatives(&self, group: usize, at: &[f64]) -> Vec<DMatrix<f64>> {
         let by = |&unknown: &usize| {
             let [least, most] = self.bounds[unknown];
             let step = STEP * at[unknown].abs().max(self.scales[unknown]);
             let ends = [-step, step].map(|step| (at[unknown] + step).clamp(least, most));
             let [below, above] = ends.map(|value| {
-                let mut moved = at.clone();
+                let mut moved = at.to_vec();
                 moved[unknown] = value;
-                (self.residuals)(group, moved.as_slice())
+                (self.residuals)(group, &moved)
             });
             (above - below) / (ends[1] - ends[0])
         };
         self.groups[group].iter().map(by).collect()
     }
 
-    /// Normal matrix JᵀJ, gradient Jᵀr and rᵀr.
-    fn normal(&self, at: &DVector<f64>) -> (DMatrix<f64>, DVector<f64>, f64) {
-        let (mut normal, mut gradient) = (DMatrix::zeros(at.len(), at.len()), DVector::zeros(at.len()));
-        let mut square = 0.0;
-        for (group, unknowns) in self.groups.iter().enumerate() {
-            let (residuals, slopes) = ((self.residuals)(group, at.as_slice()), self.derivatives(group, at));
-            square += residuals.norm_squared();
-            for (slope, &row) in slopes.iter().zip(unknowns) {
-                gradient[row] += slope.dot(&residuals);
-                for (other, &column) in slopes.iter().zip(unknowns) {
-                    normal[(row, column)] += slope.dot(other);
-                }
-            }
-        }
-        (normal, gradient, square)
-    }
-
-    /// Unknowns that are not held at a bound by a gradient that points beyond it.
-    fn not_held(&self, at: &DVector<f64>, gradient: &DVector<f64>) -> Vec<usize> {
-        let held = |&i: &usize| {
-            let [least, most] = self.bounds[i];
-            (at[i] <= least && gradient[i] > 0.0) || (at[i] >= most && gradient[i] < 0.0)
-        };
-        (0..at.len()).filter(|i| !held(i)).collect()
-    }
-
     /// The unknowns that are at no bound, and the inverse of their normal matrix.
     ///
     /// Fails with [`MotionError::Undetermined`] and the symbol of the coefficient that weighs most in what is open;
     /// `symbols` are those of the first unknowns.
-    pub fn inverse(
-        &self,
-        at: &DVector<f64>,
-        symbols: &[&'static str],
-    ) -> Result<(Vec<usize>, DMatrix<f64>), MotionError> {
-        let (normal, gradient, _) = self.normal(at);
-        let free = self.not_held(at, &gradient);
+    pub fn inverse(&self, at: &[f64], symbols: &[&'static str]) -> Result<(Vec<usize>, DMatrix<f64>), MotionError> {
+        let mut normal = Normal::zeros(at.len());
+        (&mut &*self).linearise(at, &mut normal);
+        let free: Vec<usize> = (0..at.len()).filter(|&i| !normal.is_held(i, at[i], self.bounds[i])).collect();
+        let normal = normal.matrix;
         let open = |place: usize| MotionError::Undetermined {
             symbol: symbols.get(free[place]).copied().unwrap_or("a record"),
         };
@@ -131,20 +104,20 @@ impl GroupedSquares<'_> {
     /// Fails as [`inverse`](Self::inverse) does.
     pub fn covariance(
         &self,
-        at: &DVector<f64>,
+        at: &[f64],
         symbols: &[&'static str],
         all_score: bool,
     ) -> Result<DMatrix<f64>, MotionError> {
         let (free, inverse) = self.inverse(at, symbols)?;
         let mut middle = DMatrix::zeros(at.len(), at.len());
         for (group, unknowns) in self.groups.iter().enumerate() {
-            let residuals = (self.residuals)(group, at.as_slice());
+            let residuals = (self.residuals)(group, at);
             let slopes = unknowns.iter().zip(self.derivatives(group, at));
             let (places, scores): (Vec<usize>, Vec<Vec<f64>>) = slopes
                 .filter(|(unknown, _)| all_score || free.contains(unknown))
                 .map(|(&unknown, slope)| (unknown, slope.component_mul(&residuals).column_sum().as_slice().to_vec()))
                 .unzip();
-            let long_run = newey_west(&scores);
+            let long_run = newey_west(&[scores]);
             for (i, &row) in places.iter().enumerate() {
                 for (j, &column) in places.iter().enumerate() {
                     middle[(row, column)] += long_run[(i, j)];
@@ -162,48 +135,42 @@ impl GroupedSquares<'_> {
     }
 
     /// The place of the least sum of squares near a point.
-    pub fn minimise(&self, from: DVector<f64>) -> Result<DVector<f64>, MotionError> {
-        let mut at = from;
-        let (mut damping, mut slow) = (1e-3, 0);
-        let failed = |iterations| Err(MotionError::NoConvergence { iterations });
-        for iteration in 0..MOST_ITERATIONS {
-            let (normal, gradient, square) = self.normal(&at);
-            if !square.is_finite() {
-                return failed(iteration);
-            }
-            let free = self.not_held(&at, &gradient);
-            let (own, slope) = (part(&normal, &free), DVector::from_fn(free.len(), |i, _| gradient[free[i]]));
-            loop {
-                let mut damped = own.clone();
-                for i in 0..free.len() {
-                    // An unknown that nothing depends on stays where it is.
-                    damped[(i, i)] += if own[(i, i)] > 0.0 { damping * own[(i, i)] } else { 1.0 };
-                }
-                let next = damped.cholesky().map(|factor| {
-                    let mut next = at.clone();
-                    for (&i, step) in free.iter().zip(factor.solve(&slope).iter()) {
-                        next[i] = (at[i] - step).clamp(self.bounds[i][0], self.bounds[i][1]);
-                    }
-                    next
-                });
-                let found = next.as_ref().map_or(f64::NAN, |next| self.square(next));
-                if let Some(next) = next.filter(|_| found <= square) {
-                    at = next;
-                    slow = if square - found <= ENOUGH * square { slow + 1 } else { 0 };
-                    if slow == IN_A_ROW {
-                        return Ok(at);
-                    }
-                    damping = (damping * 0.2).max(1e-9);
-                    break;
-                }
-                damping *= 4.0;
-                if damping > 1e12 {
-                    // No better point however short the step: at the bottom, or at a kink near it.
-                    let whole = (0..free.len()).filter(|&i| own[(i, i)] > 0.0).map(|i| slope[i].powi(2) / own[(i, i)]);
-                    return if whole.fold(0.0, f64::max) <= STALLED * square { Ok(at) } else { failed(iteration) };
+    pub fn minimise(&self, from: &[f64]) -> Result<Vec<f64>, MotionError> {
+        let Minimum { at, value, normal, steps, end } = minimise(&mut &*self, DVector::from_row_slice(from), &RULES);
+        // No better point however short the step: at the bottom, or at a kink near it.
+        let promised = |i: usize| normal.gradient[i].powi(2) / normal.matrix[(i, i)];
+        let moves = |i: &usize| normal.matrix[(*i, *i)] > 0.0 && !normal.is_held(*i, at[*i], self.bounds[*i]);
+        let is_kink = || (0..at.len()).filter(moves).map(promised).fold(0.0, f64::max) <= STALLED * value;
+        match end {
+            End::Settled => Ok(at.as_slice().to_vec()),
+            End::Stalled if is_kink() => Ok(at.as_slice().to_vec()),
+            _ => Err(MotionError::NoConvergence { iterations: steps }),
+        }
+    }
+}
+
+impl Objective for &GroupedSquares<'_> {
+    fn bounds(&self, unknown: usize) -> [f64; 2] {
+        self.bounds[unknown]
+    }
+
+    fn value(&mut self, at: &[f64]) -> f64 {
+        (0..self.groups.len()).map(|group| (self.residuals)(group, at).norm_squared()).sum()
+    }
+
+    fn linearise(&mut self, at: &[f64], normal: &mut Normal) -> f64 {
+        *normal = Normal::zeros(at.len());
+        let mut square = 0.0;
+        for (group, unknowns) in self.groups.iter().enumerate() {
+            let (residuals, slopes) = ((self.residuals)(group, at), self.derivatives(group, at));
+            square += residuals.norm_squared();
+            for (slope, &row) in slopes.iter().zip(unknowns) {
+                normal.gradient[row] -= slope.dot(&residuals);
+                for (other, &column) in slopes.iter().zip(unknowns) {
+                    normal.matrix[(row, column)] += slope.dot(other);
                 }
             }
         }
-        failed(MOST_ITERATIONS)
+        square
     }
 }
