@@ -68,7 +68,7 @@ pub struct Correction {
     /// The file as the user named it.
     pub file: String,
     /// Name of the record.
-    #[serde(skip)]
+    #[serde(default)]
     pub name: String,
     /// Models at full load, where these have names.
     pub full: Vec<String>,

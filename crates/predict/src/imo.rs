@@ -23,8 +23,8 @@ pub struct PredictedCriterion {
     pub unit: String,
     /// Predicted value.
     pub median: f64,
-    /// The interval of half of the draws; no part of the document.
-    #[serde(skip)]
+    /// The interval of half of the draws.
+    #[serde(default)]
     pub ci50: [f64; 2],
     /// The interval of nine tenths of the draws.
     pub ci90: [f64; 2],

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::motion::{self, Planar, PlanarShip};
+use serde::{Deserialize, Serialize};
 use ship::Regressor;
 use simulate::helm::Execute;
 use simulate::simulation::Truth;
@@ -25,7 +26,7 @@ const SHORTEST_STEP: f64 = 1e-3;
 const LONGEST_WAIT: f64 = 500.0;
 
 /// What a ship did; time in s from the first execute, angles in rad.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedManoeuvre {
     /// Time between rows, s.
     pub period: f64,
@@ -35,14 +36,15 @@ pub struct SimulatedManoeuvre {
     pub yaw_rate: Vec<f64>,
     /// Rudder.
     pub rudder: Vec<f64>,
-    /// Orders of the helm.
+    /// Orders of the helm; not written to a file.
+    #[serde(skip)]
     pub executes: Vec<Execute>,
     /// The way over ground; none where nothing is known of speed and drift.
     pub way: Option<PlanarMotion>,
 }
 
 /// Speed, drift and track of a manoeuvre.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlanarMotion {
     /// Length of the ship, m.
     pub length: f64,

@@ -4,7 +4,7 @@ use estimation::statistics::median;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use ship::Particulars;
 
 use crate::error::PredictError;
@@ -52,17 +52,24 @@ impl Predicted {
 }
 
 /// A curve over time with its bands; angles in rad.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bands {
     /// Time from the first execute, s.
     pub time: Vec<f64>,
     /// The most probable ship without chance, as far as it goes; NaN beyond.
+    #[serde(deserialize_with = "with_gaps")]
     pub most_probable: Vec<f64>,
     /// Quantiles of 5, 25, 50, 75 and 95 % of the draws.
     pub quantiles: Vec<[f64; 5]>,
 }
 
-/// A manoeuvre predicted; its curves are no part of the document.
+/// Numbers of a list in JSON, which has no word for NaN.
+fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
+    let numbers = Vec::<Option<f64>>::deserialize(list)?;
+    Ok(numbers.into_iter().map(|number| number.unwrap_or(f64::NAN)).collect())
+}
+
+/// A manoeuvre predicted; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.

@@ -39,7 +39,7 @@ pub struct Compared {
     pub inside90: bool,
 }
 
-/// A record with its prediction; its curves are no part of the document.
+/// A record with its prediction; its curves are beside the document ([`PredictCurves`](crate::document::PredictCurves)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RecordReplay {
     /// The file as the user named it.
@@ -53,7 +53,7 @@ pub struct RecordReplay {
     /// Figures that the record shows, by name.
     pub figures: IndexMap<String, Compared>,
     /// Name of the record.
-    #[serde(skip)]
+    #[serde(default)]
     pub name: String,
     /// Time from the first row, s, and rudder, rad.
     #[serde(skip)]

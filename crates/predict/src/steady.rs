@@ -1,6 +1,7 @@
 //! Steady turns: the yaw rate that belongs to every rudder, on stable and unstable branches, and the loop of a ship
 //! that is not stable on a straight course.
 
+use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 
 use crate::figures::Figures;
@@ -13,7 +14,7 @@ const POINTS: usize = 24;
 const DOUBLINGS: usize = 12;
 
 /// Rudder (rad) over yaw rate (rad/s) of steady turns, in the order of the yaw rate.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SteadyCurve {
     /// Yaw rates, rad/s.
     pub yaw_rate: Vec<f64>,
