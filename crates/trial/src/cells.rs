@@ -158,6 +158,16 @@ pub enum Cell {
     Text,
 }
 
+impl Cell {
+    /// The number, however it is written.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Self::Number(value) | Self::CommaNumber(value) => Some(value),
+            Self::Missing | Self::Text => None,
+        }
+    }
+}
+
 /// The value of digits with a point or without, correctly rounded; `None` for every other text and for so many digits
 /// that it takes more than one division of two exact numbers (Clinger 1990).
 pub(crate) fn plain_number(text: &[u8]) -> Option<f64> {

@@ -110,7 +110,7 @@ impl<'a> Choice<'a> {
     fn push(&mut self, channel: Channel, chosen: Candidate, values: impl Iterator<Item = f64>) {
         let at = &self.log.sensors[chosen.sensor].at;
         let room = || Vec::with_capacity(at.len());
-        let mut series = Series { channel, name: name(self.log, chosen.sensor), time: room(), values: room() };
+        let mut series = Series { channel, time: room(), values: room() };
         for (&time, value) in at.iter().zip(values) {
             let time = rounded(time);
             // Two readings at one instant would be a step without time.
