@@ -54,7 +54,8 @@ pub struct Sidecar {
     pub(crate) check: CheckKeys,
     pub(crate) columns: Vec<DescribedColumn>,
     pub(crate) noise: Noise,
-    pub(crate) conditions: Conditions,
+    /// Particulars and conditions that are declared for the form of MSC/Circ.1053.
+    pub conditions: Conditions,
 }
 
 impl Sidecar {
