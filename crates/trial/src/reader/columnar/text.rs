@@ -84,9 +84,7 @@ pub fn decimal(text: &mut String, value: i128, decimals: u32) {
 
 /// A day since 1970-01-01.
 pub fn day(text: &mut String, day: i64) {
-    // Damaged days may lie beyond all calendars; their years have too many digits either way.
-    let (year, month, of_month) = clock::date(day.clamp(-1_000_000_000, 1_000_000_000));
-    put(text, format_args!("{year:04}-{month:02}-{of_month:02}"));
+    put(text, format_args!("{}", clock::date(day)));
 }
 
 /// Nanoseconds since midnight, as a time of day.

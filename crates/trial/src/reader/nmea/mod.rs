@@ -109,7 +109,7 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, P
     if 2 * damaged > written {
         return Err(Problem::DamagedLog { lines: written, damaged, wrong: counts.wrong, broken: counts.broken });
     }
-    if log.sensors.is_empty() {
+    if log.instruments.is_empty() {
         return Err(if counts.unstamped > 0 {
             Problem::NoClock { sentences: counts.sentences, clocks: 0 }
         } else {
@@ -119,8 +119,7 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, P
     let timed = if log.is_stamped() { from_stamps(&mut log) } else { from_sentences(&mut log)? };
     let mut warnings = of_counts(&counts, lines);
     warnings.extend(timed.warnings);
-    let Choice { mut series, warnings: choices, .. } = Choice::of(&log);
-    drop(log);
+    let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);
     warnings.extend(choices);
     if series.is_empty() {
         return Err(Problem::NoReadings { sentences: counts.sentences });

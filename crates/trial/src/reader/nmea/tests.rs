@@ -1,5 +1,4 @@
 mod harm;
-mod speed;
 mod time;
 
 use std::f64::consts::PI;
