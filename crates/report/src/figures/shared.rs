@@ -1,5 +1,6 @@
 //! What figures share: axis titles, axes that cover a set of curves, records and lines of reference.
 
+use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
 
 use crate::axis::{self, Axis};
@@ -100,9 +101,7 @@ pub(super) fn distinct<'a>(origins: impl Iterator<Item = &'a Origin>) -> Vec<&'a
 
 /// The middle one of the finite values, the upper of two.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
+    upper_median(&mut values.filter(|v| v.is_finite()).collect::<Vec<f64>>())
 }
 
 /// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves

@@ -1,10 +1,10 @@
 //! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
 //! limits of IMO.
 
-use predict::imo::Criterion;
-use predict::interval::Interval;
+use predict::imo::PredictedCriterion;
+use predict::interval::PredictionInterval;
 use predict::kind::Pattern;
-use predict::known::Seen;
+use predict::known::ValidityRange;
 use predict::prediction::Bands;
 use predict::steady::SteadyCurve;
 use predict::{PredictDocument, Prediction};
@@ -81,7 +81,7 @@ pub fn draw(
         drawings.push((stem.clone(), caption, Box::new(draw)));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
-        let criteria: Vec<&Criterion> =
+        let criteria: Vec<&PredictedCriterion> =
             document.imo.iter().filter(|criterion| criterion.unit == unit.symbol()).collect();
         if !criteria.is_empty() {
             let caption = String::from("Criteria of IMO MSC.137(76): what is predicted and what is allowed.");
@@ -149,7 +149,7 @@ fn track(prediction: &Prediction, theme: &Theme) -> Figure {
 }
 
 /// The diagram of steady turns of some ships, the most probable one first, and the range in which it was seen.
-pub fn steady(curves: &[SteadyCurve], seen: Seen) -> SteadyCurves {
+pub fn steady(curves: &[SteadyCurve], seen: ValidityRange) -> SteadyCurves {
     let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
         let rows = 0..of.rudder.len();
         let (x, y): (Vec<f64>, Vec<f64>) = rows
@@ -174,8 +174,8 @@ pub fn steady(curves: &[SteadyCurve], seen: Seen) -> SteadyCurves {
     }
 }
 
-fn limits(criteria: &[&Criterion], unit: Unit) -> Overshoots {
-    let row = |criterion: &&Criterion| OvershootRow {
+fn limits(criteria: &[&PredictedCriterion], unit: Unit) -> Overshoots {
+    let row = |criterion: &&PredictedCriterion| OvershootRow {
         limit: Some(criterion.limit),
         extrapolated: criterion.extrapolated,
         ..row(criterion.criterion.clone(), &criterion.interval())
@@ -187,7 +187,7 @@ fn limits(criteria: &[&Criterion], unit: Unit) -> Overshoots {
     }
 }
 
-fn row(label: String, &Interval { median, ci50, ci90 }: &Interval) -> OvershootRow {
+fn row(label: String, &PredictionInterval { median, ci50, ci90 }: &PredictionInterval) -> OvershootRow {
     OvershootRow { label, median, ci50, ci90, measured: None, limit: None, extrapolated: false }
 }
 

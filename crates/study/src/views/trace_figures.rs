@@ -7,7 +7,7 @@ use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::curve;
 use campaign::folder::ResultFolder;
 use identify::replay::Replay;
-use predict::known::Seen;
+use predict::known::ValidityRange;
 use predict::steady::SteadyCurve;
 use rayon::prelude::*;
 use report::figures::{
@@ -74,7 +74,7 @@ fn drawing<'a>(
 pub fn draw(
     document: &TraceDocument,
     curves: &Curves,
-    turns: Option<&(Vec<SteadyCurve>, Seen)>,
+    turns: Option<&(Vec<SteadyCurve>, ValidityRange)>,
     theme: &Theme,
     folder: &ResultFolder,
 ) -> Result<Vec<Drawn>, Failure> {
@@ -99,7 +99,7 @@ pub fn draw(
 fn of_the_trace<'a>(
     document: &'a TraceDocument,
     curves: &'a Curves,
-    turns: Option<&'a (Vec<SteadyCurve>, Seen)>,
+    turns: Option<&'a (Vec<SteadyCurve>, ValidityRange)>,
 ) -> Vec<Drawing<'a>> {
     let mut drawings = Vec::new();
     if let Some(data) = held_out(document) {
