@@ -23,7 +23,7 @@ pub mod triples;
 
 pub use basis::{Basis, Projection};
 pub use curve::FourierFit;
-pub use fundamental::{Fundamental, StartPoint};
+pub use fundamental::Fundamental;
 pub use profile::MOST_HARMONICS;
 
 use crate::error::IdentifyError;
