@@ -231,7 +231,6 @@ fn diagnostics(fits: &[Fitted], instants: usize, drawn: &Drawn) -> Vec<(&'static
         ("triples_accepted", drawn.answers.len() as f64),
         ("triples_singular", drawn.singular as f64),
         ("triples_ill_conditioned", drawn.ill_conditioned as f64),
-        ("triples_too_close", 0.0),
         ("triples_negative_index", drawn.negative as f64),
         ("triples_K_interquartile_range_per_s", spread(|answer| answer.K)),
         ("triples_T_interquartile_range_s", spread(|answer| answer.T)),
