@@ -1,5 +1,7 @@
 //! The profile against the orthogonal decomposition.
 
+use std::f64::consts::TAU;
+
 use super::super::basis::Basis;
 use super::*;
 use approx::assert_relative_eq;
