@@ -1,7 +1,7 @@
 //! The heading of a log where it was read: what it is near a time, and how it changes between two. Gaps are bridged
 //! only as far as the caller says.
 
-use super::signals::Signals;
+use super::pattern::Signals;
 use estimation::statistics::median;
 
 /// Most rows that a middle value is taken of: more make it no better, and the search slower.

@@ -15,9 +15,6 @@ mod course;
 mod kind;
 mod manoeuvre;
 mod pattern;
-mod quality;
-mod signals;
-
 mod rest;
 mod spirals;
 mod straights;
@@ -31,9 +28,8 @@ use pattern::{Pattern, Prepared};
 use rest::{Hold, Rest};
 
 pub use kind::Kind;
-pub use manoeuvre::Manoeuvre;
-pub use quality::{Approach, Quality};
-pub use signals::Signals;
+pub use manoeuvre::{Approach, Manoeuvre, Quality};
+pub use pattern::Signals;
 
 /// The manoeuvres of a log in order of time; they do not overlap.
 ///

@@ -1,7 +1,7 @@
 //! The two small regressions behind the checks of signs and units. Both work on integrals of what was recorded, so that
 //! noise is smoothed and no derivative is taken.
 
-use crate::record::Trial;
+use crate::record::{Trial, integrate};
 
 /// Most rows that enter a regression; longer records are thinned after they were integrated.
 const ROWS: usize = 2000;
@@ -21,8 +21,8 @@ pub(super) struct Slope {
 /// and rudder bias need not be known. `None` when nothing is left to explain, or numbers overflow.
 pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
     let (time, psi, delta) = (trial.time(), trial.heading(), trial.rudder());
-    let (mut once, mut twice, mut heading) = (0.0, 0.0, 0.0);
-    let mut last: Option<usize> = None;
+    let (mut once, mut twice) = (0.0, 0.0);
+    let heading = integrate(time, psi);
     let mut rows = Thinned::of(psi.iter().filter(|psi| psi.is_finite()).count());
     for i in 0..time.len() {
         if i > 0 {
@@ -32,12 +32,8 @@ pub(super) fn rudder_on_heading(trial: &Trial) -> Option<Slope> {
             once += 0.5 * h * (delta[i - 1] + delta[i]);
         }
         if psi[i].is_finite() {
-            if let Some(last) = last {
-                heading += 0.5 * (time[i] - time[last]) * (psi[i] + psi[last]);
-            }
-            last = Some(i);
             let t = time[i] - time[0];
-            rows.push([1.0, t, t * t, heading, twice, psi[i]]);
+            rows.push([1.0, t, t * t, heading[i], twice, psi[i]]);
         }
     }
     partial_slope(rows.kept)
@@ -74,19 +70,10 @@ pub(super) fn yaw_rate_on_heading(trial: &Trial) -> Option<Slope> {
         return None;
     }
     let (time, psi, rate) = (trial.time(), trial.heading(), trial.yaw_rate()?);
-    let mut integral = 0.0;
-    let mut last: Option<usize> = None;
-    let both = psi.iter().zip(rate).filter(|(psi, rate)| psi.is_finite() && rate.is_finite());
-    let mut rows = Thinned::of(both.count());
-    for i in (0..time.len()).filter(|&i| rate[i].is_finite()) {
-        if let Some(last) = last {
-            integral += 0.5 * (time[i] - time[last]) * (rate[i] + rate[last]);
-        }
-        last = Some(i);
-        if psi[i].is_finite() {
-            rows.push([1.0, time[i] - time[0], integral, psi[i]]);
-        }
-    }
+    let integral = integrate(time, rate);
+    let both = || (0..time.len()).filter(|&i| psi[i].is_finite() && rate[i].is_finite());
+    let mut rows = Thinned::of(both().count());
+    both().for_each(|i| rows.push([1.0, time[i] - time[0], integral[i], psi[i]]));
     partial_slope(rows.kept)
 }
 

@@ -3,7 +3,7 @@
 
 use ship::angle::{from_deg, to_deg};
 
-use super::executes::{Movement, Rudder};
+use super::executes::{Movement, RudderMovements};
 use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Side, ZigZag, ZigZagError};
 use super::heading::Heading;
 use super::holds::{self, Hold};
@@ -40,7 +40,7 @@ impl ZigZag {
 fn read(trial: &Trial) -> Result<ZigZag, ZigZagError> {
     let time = trial.time();
     let holds = holds::holds(trial.rudder())?;
-    let rudder = Rudder::new(time, trial.rudder(), &holds, trial.noise().rudder);
+    let rudder = RudderMovements::new(time, trial.rudder(), &holds, trial.noise().rudder);
     let movements: Vec<Movement> = (1..holds.len()).map(|index| rudder.reversal(index)).collect();
     let rough_period =
         2.0 * (movements[movements.len() - 1].start.value - movements[0].start.value) / (movements.len() - 1) as f64;
