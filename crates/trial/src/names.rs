@@ -188,20 +188,21 @@ fn unit_after(text: &str) -> Option<Unit> {
     unit(text).or_else(|| unit(&text.replace(['_', ' '], "/")))
 }
 
+/// The unit of a channel that is written so; `None` where it cannot have it.
+fn fitting(channel: Channel, unit: Unit) -> Option<Unit> {
+    // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
+    let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
+    Some(if speed { Unit::MetrePerSecond } else { unit }).filter(|unit| channel.units().contains(unit))
+}
+
 /// The same with a unit; `None` where the quantity cannot have it.
 pub fn with_unit(meaning: ColumnMeaning, unit: Unit) -> Option<ColumnMeaning> {
     match meaning {
         ColumnMeaning::Time(_) => time_column(&format!("t_{}", unit.id())).map(|unit| ColumnMeaning::Time(Some(unit))),
         ColumnMeaning::Channel(channel, _) => {
-            // A rate of turn in "ms" is nothing; a speed in "ms" was written for m/s.
-            let speed = unit == Unit::Millisecond && channel.units().contains(&Unit::MetrePerSecond);
-            let unit = if speed { Unit::MetrePerSecond } else { unit };
-            channel.units().contains(&unit).then_some(ColumnMeaning::Channel(channel, Some(unit)))
+            fitting(channel, unit).map(|unit| ColumnMeaning::Channel(channel, Some(unit)))
         }
-        ColumnMeaning::OverGround(_) => match with_unit(ColumnMeaning::Channel(Channel::Speed, None), unit)? {
-            ColumnMeaning::Channel(_, unit) => Some(ColumnMeaning::OverGround(unit)),
-            _ => None,
-        },
+        ColumnMeaning::OverGround(_) => fitting(Channel::Speed, unit).map(|unit| ColumnMeaning::OverGround(Some(unit))),
         ColumnMeaning::Latitude | ColumnMeaning::Longitude | ColumnMeaning::Course => {
             (unit == Unit::Degree).then_some(meaning)
         }

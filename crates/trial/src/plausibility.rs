@@ -171,13 +171,13 @@ pub(crate) fn reversals(rudder: &[f64]) -> usize {
 }
 
 /// Whether the heading steps by 2π under its own unit: 6.28 "degrees" between one row and the next.
-fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
+pub(crate) fn wraps_at_two_pi_degrees(heading: &[f64]) -> bool {
     let mut last = f64::NAN;
     let (mut wraps, mut others) = (0, 0);
     for &psi in heading.iter().filter(|psi| psi.is_finite()) {
         let step_deg = to_deg(psi - last).abs();
-        wraps += usize::from((step_deg - std::f64::consts::TAU).abs() < 0.2);
-        others += usize::from((1.0..=std::f64::consts::TAU - 0.2).contains(&step_deg));
+        wraps += usize::from((step_deg - std::f64::consts::TAU).abs() < 0.3);
+        others += usize::from((1.0..std::f64::consts::TAU - 0.3).contains(&step_deg));
         last = psi;
     }
     wraps > 0 && others == 0

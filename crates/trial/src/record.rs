@@ -133,7 +133,7 @@ pub struct Trial {
     noise: Noise,
     particulars: Option<Particulars>,
     conditions: Conditions,
-    marks: Vec<RejectedReading>,
+    rejected: Vec<RejectedReading>,
 }
 
 /// The rudder over time, of as many values as times.
@@ -184,7 +184,7 @@ impl Trial {
             noise: Noise::default(),
             particulars: None,
             conditions: Conditions::default(),
-            marks: Vec::new(),
+            rejected: Vec::new(),
         })
     }
 
@@ -204,8 +204,8 @@ impl Trial {
     }
 
     /// The same record with the readings that were taken as missing or told as doubtful.
-    pub fn with_rejected(self, marks: Vec<RejectedReading>) -> Self {
-        Self { marks, ..self }
+    pub fn with_rejected(self, rejected: Vec<RejectedReading>) -> Self {
+        Self { rejected, ..self }
     }
 
     /// Name of the record: the stem of its file, or the cell of its scenario.
@@ -302,7 +302,7 @@ impl Trial {
 
     /// Readings that were taken as missing or told as doubtful before the record was made.
     pub fn rejected(&self) -> &[RejectedReading] {
-        &self.marks
+        &self.rejected
     }
 
     /// Length and approach speed of the ship, where declared.

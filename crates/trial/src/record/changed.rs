@@ -52,8 +52,12 @@ impl Trial {
         for (channel, values) in &mut scaled.channels {
             values.iter_mut().for_each(|value| *value *= factor(*channel));
         }
-        for mark in &mut scaled.marks {
-            *mark = RejectedReading { time: mark.time * second, value: mark.value * factor(mark.channel), ..*mark };
+        for reading in &mut scaled.rejected {
+            *reading = RejectedReading {
+                time: reading.time * second,
+                value: reading.value * factor(reading.channel),
+                ..*reading
+            };
         }
         scaled.noise.yaw_rate = self.noise.yaw_rate.map(|sd| sd * factor(Channel::YawRate));
         scaled.particulars = Some(particulars);

@@ -183,25 +183,14 @@ impl<'a> RudderMovements<'a> {
         let n = ramp.len() as f64;
         let mean_time = ramp.iter().map(|&row| self.time[row]).sum::<f64>() / n;
         let mean_angle = ramp.iter().map(|&row| self.angle[row]).sum::<f64>() / n;
-        let (mut tt, mut ta) = (0.0, 0.0);
-        for &row in ramp {
-            let t = self.time[row] - mean_time;
-            tt += t * t;
-            ta += t * (self.angle[row] - mean_angle);
-        }
+        let off = |&row: &usize| (self.time[row] - mean_time, self.angle[row] - mean_angle);
+        let (tt, ta) = ramp.iter().map(off).fold((0.0, 0.0), |(tt, ta), (t, angle)| (tt + t * t, ta + t * angle));
         let own_rate = ta / tt;
         if direction * own_rate <= 0.0 {
             return None;
         }
-        let scatter = if ramp.len() > 2 {
-            let squares: f64 = ramp
-                .iter()
-                .map(|&row| (self.angle[row] - mean_angle - own_rate * (self.time[row] - mean_time)).powi(2))
-                .sum();
-            (squares / (n - 2.0)).sqrt()
-        } else {
-            0.0
-        };
+        let squares: f64 = ramp.iter().map(off).map(|(t, angle)| (angle - own_rate * t).powi(2)).sum();
+        let scatter = if ramp.len() > 2 { (squares / (n - 2.0)).sqrt() } else { 0.0 };
         let noise = self.noise.max(scatter);
         let common =
             self.rate.map(|rate| direction * rate).filter(|rate| (rate - own_rate).abs() <= 3.0 * noise / tt.sqrt());

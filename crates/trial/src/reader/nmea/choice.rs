@@ -76,17 +76,17 @@ impl<'a> Choice<'a> {
 
     /// The instruments that give one of some quantities, each with the class of the quantity.
     fn offers(&self, slots: &[(Slot, usize)], wanted: impl Fn(&Instrument) -> bool) -> Vec<Offer<'a>> {
-        let of_slot = |&(slot, class): &(Slot, usize)| {
-            let wanted = &wanted;
-            self.instruments.iter().enumerate().filter(move |(_, own)| wanted(own)).filter_map(
-                move |(number, instrument)| {
-                    let place = instrument.place(slot)?;
-                    let readings = instrument.readings(place);
-                    (readings > 0).then_some(Offer { instrument, number, place, class, readings })
-                },
-            )
-        };
-        slots.iter().flat_map(of_slot).collect()
+        let mut offers = Vec::new();
+        for &(slot, class) in slots {
+            for (number, instrument) in self.instruments.iter().enumerate().filter(|(_, own)| wanted(own)) {
+                let Some(place) = instrument.place(slot) else { continue };
+                let readings = instrument.readings(place);
+                if readings > 0 {
+                    offers.push(Offer { instrument, number, place, class, readings });
+                }
+            }
+        }
+        offers
     }
 
     /// The best offer; what was chosen among several is said, and always where `always`.

@@ -58,11 +58,9 @@ pub(super) fn from_stamps(log: &mut Log) -> Timed {
     .map(|(number, fault)| format!("{} {fault} {} left out", counted(number, "sentence"), are(number)))
     .collect();
     if spread > 0 {
-        warnings.push(
-            "several sentences of one instrument have the same time stamp; they are spread evenly over the time to the \
-             next stamp"
-                .to_owned(),
-        );
+        let text = "several sentences of one instrument have the same time stamp; they are spread evenly over the time to \
+                    the next stamp";
+        warnings.push(text.to_owned());
     }
     Timed { clock: log.stamps.clock(), warnings }
 }
@@ -76,14 +74,9 @@ fn spread_stamps(at: &mut [f64]) -> bool {
     let times: Vec<f64> = begins.iter().map(|&row| at[row]).collect();
     let Some((lengths, usual)) = lengths(&times) else { return false };
     begins.push(at.len());
-    let group = |(place, pair): (usize, &[usize])| Group {
-        begin: pair[0],
-        end: pair[1],
-        time: times[place],
-        length: lengths[place],
-    };
-    let groups: Vec<Group> = begins.windows(2).enumerate().map(group).collect();
-    spread(at, &groups, usual)
+    let groups = begins.windows(2).zip(times.into_iter().zip(lengths));
+    let groups = groups.map(|(pair, (time, length))| Group { begin: pair[0], end: pair[1], time, length });
+    spread(at, &groups.collect::<Vec<_>>(), usual)
 }
 
 /// Times from each of some instants to the next, the last as long as the one before, and the usual one; `None` for
