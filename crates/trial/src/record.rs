@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use crate::channel::Channel;
 use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
-use corners::RudderPath;
+use corners::RecordedRudder;
 use estimation::statistics::upper_median;
 
 pub use corners::Corner;
@@ -126,7 +126,7 @@ pub enum TrialError {
 pub struct Trial {
     name: String,
     origin: Origin,
-    rudder: RudderPath,
+    rudder: RecordedRudder,
     channels: BTreeMap<Channel, Vec<f64>>,
     unknown: Vec<(String, Vec<f64>)>,
     heading_from_yaw_rate: bool,
@@ -164,7 +164,7 @@ impl Trial {
             }
         }
         let rudder = channels.remove(&Channel::Rudder).ok_or(TrialError::Missing("rudder angle"))?;
-        let rudder = RudderPath::new(signal(time, rudder)?);
+        let rudder = RecordedRudder::new(signal(time, rudder)?);
         let heading_from_yaw_rate = !channels.contains_key(&Channel::Heading);
         if heading_from_yaw_rate {
             let rate = channels.get(&Channel::YawRate).ok_or(TrialError::Missing("heading and no yaw rate"))?;

@@ -39,7 +39,7 @@ pub fn manoeuvres(log: &Signals) -> Vec<Manoeuvre> {
     if !log.is_sound() {
         return Vec::new();
     }
-    let course = Course::of(log);
+    let course = Course::of(log.time, log.heading);
     let rest = Rest::of(log.time, log.rudder);
     let record = Prepared { log, rest: &rest, course: &course };
     let mut found = spirals::spirals(&record);

@@ -2,7 +2,7 @@
 
 use ship::Particulars;
 
-use super::{RejectedReading, RudderPath, Trial, signal};
+use super::{RecordedRudder, RejectedReading, Trial, signal};
 use crate::channel::Channel;
 
 impl Trial {
@@ -48,7 +48,7 @@ impl Trial {
         let factor = |channel: Channel| own.factor_to(particulars, channel.dimension());
         let times = self.time().iter().map(|time| time * second).collect();
         let mut scaled = self.clone();
-        scaled.rudder = RudderPath::new(signal(times, self.rudder().to_vec()).ok()?);
+        scaled.rudder = RecordedRudder::new(signal(times, self.rudder().to_vec()).ok()?);
         for (channel, values) in &mut scaled.channels {
             values.iter_mut().for_each(|value| *value *= factor(*channel));
         }
