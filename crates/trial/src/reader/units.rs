@@ -8,7 +8,7 @@ use super::limits::spoken;
 use super::source::Log;
 use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
-use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
+use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals, wraps_at_two_pi_degrees};
 use crate::words::shortened;
 use estimation::statistics::upper_median;
 
@@ -82,9 +82,17 @@ pub(super) fn settle(
         match unit {
             Some(unit) => {
                 scale(channels, open.channel, unit);
-                decided.push(in_words(open, unit));
+                decided.push(format!(
+                    "`{}` is the {} in {}",
+                    shortened(&open.name),
+                    spoken(open.channel),
+                    unit.spoken()
+                ));
             }
-            None if is_needed => return Err(refusal(open, line)),
+            None if is_needed => {
+                let UnitlessColumn { channel, name: column, largest } = open.clone();
+                return Err(Problem::OpenUnit { line, column, quantity: spoken(channel), largest, channel });
+            }
             None if open.channel.units().len() > 1 => left_out.push(open),
             None => {}
         }
@@ -112,15 +120,6 @@ pub(super) fn settle(
     Ok(told)
 }
 
-fn in_words(open: &UnitlessColumn, unit: Unit) -> String {
-    format!("`{}` is the {} in {}", shortened(&open.name), spoken(open.channel), unit.spoken())
-}
-
-fn refusal(open: &UnitlessColumn, line: usize) -> Problem {
-    let UnitlessColumn { channel, name, largest } = open.clone();
-    Problem::OpenUnit { line, column: name, quantity: spoken(channel), largest, channel }
-}
-
 /// Values were read as if in the unit files are written in.
 fn scale(channels: &mut Channels, channel: Channel, unit: Unit) {
     let factor = unit.to_si() / channel.written_unit().to_si();
@@ -144,14 +143,7 @@ fn heading(channels: &mut Channels, open: &UnitlessColumn) -> Option<Unit> {
     let degree = Unit::Degree.to_si();
     let rudder = channels.get(&Channel::Rudder).or_else(|| channels.get(&Channel::RudderOrder)).cloned();
     let values = channels.get_mut(&Channel::Heading)?;
-    let seen = values.iter().filter(|psi| psi.is_finite()).map(|psi| psi / degree);
-    let steps = seen.clone().zip(seen.skip(1)).map(|(one, next)| (next - one).abs());
-    let (mut wraps, mut others) = (0, 0);
-    for step in steps {
-        wraps += usize::from((step - std::f64::consts::TAU).abs() < 0.3);
-        others += usize::from((1.0..5.9).contains(&step));
-    }
-    if open.largest <= std::f64::consts::TAU + 0.01 && wraps > 0 && others == 0 {
+    if open.largest <= std::f64::consts::TAU + 0.01 && wraps_at_two_pi_degrees(values) {
         let mut last = f64::NAN;
         for value in values.iter_mut().filter(|psi| psi.is_finite()) {
             if last.is_finite() {

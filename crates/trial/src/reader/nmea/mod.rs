@@ -116,15 +116,15 @@ fn finish(mut log: Log, lines: usize, sha256: String) -> Result<ReadSentences, P
             Problem::NoReadings { sentences: counts.sentences }
         });
     }
-    let timed = if log.is_stamped() { from_stamps(&mut log) } else { from_sentences(&mut log)? };
+    let (clock, timing) = if log.stamped { from_stamps(&mut log) } else { from_sentences(&mut log)? };
     let mut warnings = of_counts(&counts, lines);
-    warnings.extend(timed.warnings);
+    warnings.extend(timing);
     let Choice { mut series, warnings: choices, .. } = Choice::of(&log.instruments);
     warnings.extend(choices);
     if series.is_empty() {
         return Err(Problem::NoReadings { sentences: counts.sentences });
     }
-    let clock = begin_at_zero(&mut series, timed.clock);
+    let clock = begin_at_zero(&mut series, clock);
     Ok(ReadSentences { series, clock, warnings, lines, sha256 })
 }
 
