@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use simulate::StreamKey;
-use simulate::settings::Numbers as _;
+use simulate::numbers::Numbers as _;
 use toml::{Table, Value};
 
 use crate::draw::Draw;

@@ -10,7 +10,8 @@ use ship::effects::{
 };
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, Shown};
-use simulate::settings::WavesSettings;
+use trial::degrees::written_deg;
+use simulate::disturbance::WaveSpectrum;
 
 use crate::limits;
 use crate::problem::{KeyPath, Problem};
@@ -174,11 +175,11 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
                 setting("duration-s", duration_s, 1.0),
             ],
         ),
-        EffectWire::WaveYaw(WavesSettings { sd_deg, frequency_rad_s, damping }) => (
+        EffectWire::WaveYaw(WaveSpectrum { sd, frequency, damping }) => (
             Arc::new(WaveYaw),
             vec![
-                setting("sd-deg", sd_deg, DEGREE),
-                setting("frequency-rad-s", frequency_rad_s, 1.0),
+                Setting { value: sd, key: "sd-deg", written: written_deg(sd), unit: DEGREE },
+                setting("frequency-rad-s", frequency, 1.0),
                 setting("damping", damping, 1.0),
             ],
         ),

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use simulate::settings::SettingError;
+use simulate::SpecificationError;
 
 use crate::name::{Unfit, shown};
 
@@ -95,11 +95,17 @@ impl Problem {
     }
 }
 
-impl From<SettingError> for Problem {
-    fn from(error: SettingError) -> Self {
-        let SettingError { key, of_value, found, expected, advice } = error;
-        let mark = if of_value { Mark::Value } else { Mark::Name };
-        Self { key: KeyPath::dotted(&key), mark, found, expected, advice }
+impl From<SpecificationError> for Problem {
+    fn from(error: SpecificationError) -> Self {
+        let [found, expected, advice] = error.words();
+        let mark = if error.is_of_name() { Mark::Name } else { Mark::Value };
+        let key = match error.key {
+            "vessel.dead_time" => "effect",
+            // No scenario sets these; only a manoeuvre can make them matter.
+            "longest_wait" | "weather_grid" | "solver.step" => "manoeuvre",
+            key => key,
+        };
+        Self { key: KeyPath::dotted(key), mark, found, expected, advice }
     }
 }
 

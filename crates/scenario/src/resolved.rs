@@ -1,11 +1,11 @@
 //! A scenario with nothing left out: what was written, and every default that was taken, each marked as one.
 
-use simulate::settings::{RecordingSettings, RudderSource};
 use toml::{Table, Value};
 
 use crate::keys::{Key, LeftOut, keys};
 use crate::method::Method;
 use crate::problem::Problem;
+use crate::resolve::of_validation;
 use crate::ship::ShipWire;
 use crate::wire::ScenarioWire;
 use crate::{effect, reader};
@@ -38,23 +38,16 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
     let mut wire: ScenarioWire = reader::document(document)?;
     let own = ShipWire::read(&wire.ship)?;
     let ship = effect::added(own.build()?, &wire.effect)?;
-    wire.steering_gear = wire.steering_gear.complete(&wire.steering_gear.build(&ship)?);
+    wire.steering_gear = wire.steering_gear.of(&ship);
+    wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());
     }
     for also in &mut wire.also {
-        also.recording.get_or_insert_with(|| wire.recording.clone());
+        also.recording.get_or_insert(wire.recording);
     }
     if let Some(validation) = &mut wire.validation {
-        let RecordingSettings { sampling_s, duration_s, .. } = wire.recording;
-        validation.recording.get_or_insert(RecordingSettings {
-            sampling_s,
-            duration_s,
-            after_execute: None,
-            offset_s: None,
-            rudder: RudderSource::Feedback,
-            assumed_rudder_rate_deg_s: None,
-        });
+        validation.recording.get_or_insert(of_validation(&wire.recording));
     }
     wire.ship.values_mut().for_each(|table| *table = own.complete());
     let complete = Table::try_from(&wire).expect("what was read can be written");
@@ -146,7 +139,7 @@ fn written(name: &str) -> String {
 mod tests {
     use std::path::Path;
 
-    use simulate::settings::Assumption;
+    use simulate::Assumption;
 
     use crate::Scenario;
 

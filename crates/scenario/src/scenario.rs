@@ -7,7 +7,7 @@ use std::sync::Arc;
 use identify::{Identifier, Outside};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
-use simulate::settings::Assumption;
+use simulate::Assumption;
 use toml::Table;
 use trial::file::{self, FileError, Kind};
 

@@ -11,7 +11,7 @@ use ::ship::{Particulars, Ship, Shown};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use simulate::numbers;
-use simulate::settings::Numbers;
+use simulate::numbers::Numbers;
 use toml::{Table, Value};
 
 use crate::problem::{KeyPath, Problem, suggestion};
@@ -79,8 +79,10 @@ pub struct SecondOrderWire {
 }
 
 numbers! {
-    FirstOrderWire: K_per_s T_s K_prime T_prime rudder_bias_deg length_m speed_kn;
-    SecondOrderWire: K_per_s T1_s T2_s T3_s rudder_bias_deg length_m speed_kn;
+    FirstOrderWire as written: "K-per-s" K_per_s, "T-s" T_s, "K-prime" K_prime, "T-prime" T_prime,
+        "rudder-bias-deg" rudder_bias_deg, "length-m" length_m, "speed-kn" speed_kn;
+    SecondOrderWire as written: "K-per-s" K_per_s, "T1-s" T1_s, "T2-s" T2_s, "T3-s" T3_s,
+        "rudder-bias-deg" rudder_bias_deg, "length-m" length_m, "speed-kn" speed_kn;
 }
 
 impl Numbers for ShipWire {

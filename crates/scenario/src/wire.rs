@@ -1,15 +1,14 @@
 //! A scenario file as it is written: what serde reads, with degrees, knots and units in the names. Nothing here is
 //! believed yet; [`crate::resolve`] turns it into specifications the engine accepts. How a trial is made is declared in
-//! [`simulate::settings`].
+//! [`simulate`] itself.
 #![expect(non_snake_case, reason = "K, T, T1, T2 and T3 are the symbols of the field")]
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use simulate::numbers;
-use simulate::settings::{
-    ApproachSettings, DisturbanceSettings, GearSettings, HelmsmanSettings, ManoeuvreSettings, RecordingSettings,
-    SensorSettings, WavesSettings,
+use simulate::disturbance::WaveSpectrum;
+use simulate::{
+    BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers,
 };
 
 use crate::draw::DrawWire;
@@ -46,27 +45,27 @@ pub struct ScenarioWire {
     #[serde(default)]
     pub effect: Vec<EffectWire>,
     /// What the ship does.
-    pub manoeuvre: ManoeuvreSettings,
+    pub manoeuvre: Manoeuvre,
     /// Further records of the same ship.
     #[serde(default)]
     pub also: Vec<AlsoWire>,
     /// How the rudder follows its order.
     #[serde(default)]
-    pub steering_gear: GearSettings,
+    pub steering_gear: SteeringGear,
     /// Who gives the orders.
     #[serde(default)]
-    pub helmsman: HelmsmanSettings,
+    pub helmsman: Helmsman,
     /// How the ship comes to the first execute.
     #[serde(default)]
-    pub approach: ApproachSettings,
+    pub approach: BeforeExecute,
     /// What the logger writes down, and when.
-    pub recording: RecordingSettings,
+    pub recording: Recording,
     /// What the instruments add.
     #[serde(default)]
-    pub sensor: SensorSettings,
+    pub sensor: Sensors,
     /// Wind, waves and other moments.
     #[serde(default)]
-    pub disturbance: DisturbanceSettings,
+    pub disturbance: Disturbances,
     /// A second manoeuvre, on which answers are replayed.
     pub validation: Option<ValidationWire>,
     /// What every answer has to predict.
@@ -96,9 +95,9 @@ fn one() -> u64 {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct AlsoWire {
     /// What the ship does.
-    pub manoeuvre: ManoeuvreSettings,
+    pub manoeuvre: Manoeuvre,
     /// That of the trial when left out.
-    pub recording: Option<RecordingSettings>,
+    pub recording: Option<Recording>,
 }
 
 /// A second manoeuvre, which no method sees.
@@ -106,9 +105,9 @@ pub struct AlsoWire {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ValidationWire {
     /// What the ship does.
-    pub manoeuvre: ManoeuvreSettings,
+    pub manoeuvre: Manoeuvre,
     /// That of the trial, from the start of the run, when left out.
-    pub recording: Option<RecordingSettings>,
+    pub recording: Option<Recording>,
 }
 
 /// An effect added to a response ship: one key, the id of the effect.
@@ -136,7 +135,7 @@ pub enum EffectWire {
     /// A moment for a part of the record.
     TransientDisturbance(TransientWire),
     /// Narrow-band yaw from waves.
-    WaveYaw(WavesSettings),
+    WaveYaw(WaveSpectrum),
 }
 
 #[derive(Debug, Clone, Copy, Deserialize, Serialize, schemars::JsonSchema)]
@@ -273,17 +272,19 @@ pub struct OutputWire {
 }
 
 numbers! {
-    ScenarioWire: effect manoeuvre steering_gear helmsman approach recording sensor disturbance;
+    ScenarioWire: "effect" effect, "manoeuvre" manoeuvre, "steering-gear" steering_gear, "helmsman" helmsman,
+        "approach" approach, "recording" recording, "sensor" sensor, "disturbance" disturbance;
     EffectWire = SecondOrder NonlinearDamping WindMoment SpeedLoss SteeringLag RudderSaturation RudderDeadband
         PortStarboardAsymmetry MomentDrift TransientDisturbance WaveYaw;
-    SwayCouplingWire: T2_s T3_s;
+    SwayCouplingWire as written: "T2-s" T2_s, "T3-s" T3_s;
     DampingWire = Cubic Quadratic Square;
-    WindMomentWire: rudder_deg from_deg;
-    SpeedLossWire: loss_s_per_deg2 recovery_s gain_exponent;
+    WindMomentWire as written: "rudder-deg" rudder_deg, "from-deg" from_deg;
+    SpeedLossWire as written: "loss-s-per-deg2" loss_s_per_deg2, "recovery-s" recovery_s,
+        "gain-exponent" gain_exponent;
     LagWire = DeadTimeS FirstOrderS;
-    SaturationWire: c3_per_deg2;
+    SaturationWire as written: "c3-per-deg2" c3_per_deg2;
     DeadBandWire = BacklashDeg DeadBandDeg;
     AsymmetryWire = GainShare MomentByDriftS;
-    DriftWire: rudder_deg_per_s;
-    TransientWire: rudder_deg centre_s duration_s;
+    DriftWire as written: "rudder-deg-per-s" rudder_deg_per_s;
+    TransientWire as written: "rudder-deg" rudder_deg, "centre-s" centre_s, "duration-s" duration_s;
 }

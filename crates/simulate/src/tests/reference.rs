@@ -13,7 +13,7 @@ use approx::assert_abs_diff_eq;
 use ship::angle::to_deg;
 
 use super::{KEY, zig_zag};
-use crate::helm::{Helmsman, Watches};
+use crate::Helmsman;
 use crate::vessel::Solver;
 use crate::{Simulated, Simulation};
 
@@ -55,13 +55,13 @@ fn median(mut values: Vec<f64>) -> f64 {
 const TOLERANCE: f64 = 0.02 + 0.005;
 
 /// Holds every row against the table; `lateness` is allowed once more for every execute, s.
-fn check_table(solver: Solver, watches: Watches, lateness: f64) {
+fn check_table(solver: Solver, reads_display_every: Option<f64>, lateness: f64) {
     for (delta_deg, psi_deg, rate, executes, overshoots, period, rates, largest) in TABLE {
         let mut simulation = zig_zag(delta_deg, psi_deg, rate, 434.0);
         simulation.solver = solver;
-        simulation.helmsman = Helmsman { watches, ..Helmsman::default() };
+        simulation.helmsman = Helmsman { reads_display_every, ..Helmsman::default() };
         let jumps = rate.is_infinite();
-        if jumps && watches == STEPPED {
+        if jumps && reads_display_every == STEPPED {
             simulation.gear.dead_time = 0.5 * STEP;
         }
         let lateness = if jumps { 2.0 * lateness } else { lateness };
@@ -87,7 +87,7 @@ fn check_table(solver: Solver, watches: Watches, lateness: f64) {
 }
 
 /// The independent code's own way of reversing the rudder.
-const STEPPED: Watches = Watches::Display { period: STEP };
+const STEPPED: Option<f64> = Some(STEP);
 
 /// Step of the independent code, s.
 const STEP: f64 = 0.01;
@@ -100,8 +100,8 @@ fn reversals_on_the_steps_of_the_independent_code_meet_its_table() {
 
 #[test]
 fn exact_reversals_meet_the_table_but_for_its_steps() {
-    check_table(Solver::Automatic, Watches::TrueHeading, STEP);
-    check_table(Solver::RungeKutta(0.1), Watches::TrueHeading, STEP);
+    check_table(Solver::Automatic, None, STEP);
+    check_table(Solver::RungeKutta(0.1), None, STEP);
 }
 
 /// t_peak = T ln(1 + r_e/A), overshoot = T r_e − A T ln(1 + r_e/A) with A = K δ = 1 deg/s.
