@@ -98,7 +98,7 @@ impl<'a> Bench<'a> {
         let (simulation, key) = records.next().expect("a trial has a record");
         let first = match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
             None => simulation.run(&key),
-            Some(prepared) => match prepared.get_or_init(|| Prepared::new(simulation.clone())) {
+            Some(prepared) => match prepared.get_or_init(|| PreparedSimulation::new(simulation.clone())) {
                 Ok(prepared) => prepared.run(&key),
                 Err(error) => Err(error.clone()),
             },

@@ -10,7 +10,7 @@
 //! | what is known of a ship, as files hold it | [`known`] |
 //! | speed, drift and hulls fitted to records, tracks, turning circles | [`motion`] |
 //! | ships drawn from it | [`mixture`] |
-//! | the manoeuvres | [`kind`] |
+//! | the manoeuvres, and what ends them | [`standard`] |
 //! | figures of merit | [`figures`] |
 //! | a manoeuvre predicted | [`prediction`] |
 //! | a recorded rudder replayed, held against the record | [`replay`] |
@@ -32,7 +32,6 @@ mod form_record;
 mod form_remarks;
 pub mod imo;
 pub mod interval;
-pub mod kind;
 pub mod known;
 #[cfg(test)]
 mod made_up;
@@ -41,6 +40,7 @@ pub mod motion;
 pub mod passage;
 pub mod prediction;
 pub mod replay;
+pub mod standard;
 pub mod steady;
 mod steered;
 pub mod turn;
@@ -48,7 +48,6 @@ pub mod turn;
 pub use document::PredictDocument;
 pub use error::PredictError;
 pub use interval::PredictionInterval;
-pub use kind::Kind;
 pub use known::IdentifiedShip;
 pub use mixture::{ShipMixture, UncertaintySource};
 pub use prediction::Prediction;

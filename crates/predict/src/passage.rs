@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use crate::motion::{Planar, PlanarShip, Turn, TurningCircleFigures};
 use ship::Regressor;
-use simulate::helm::Execute;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
-use simulate::{Disturbances, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{Disturbances, HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
 
 use crate::mixture::DrawnShip;
 
@@ -36,7 +35,7 @@ pub struct SimulatedManoeuvre {
     /// Rudder.
     pub rudder: Vec<f64>,
     /// Orders of the helm.
-    pub executes: Vec<Execute>,
+    pub executes: Vec<HelmOrder>,
     /// The way over ground; none where nothing is known of speed and drift.
     pub way: Option<Way>,
 }
@@ -125,7 +124,7 @@ impl SimulatedManoeuvre {
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
         simulation.gear = match manoeuvre {
-            Manoeuvre::Replay(_) => SteeringGear::default(),
+            Manoeuvre::Replay { .. } => SteeringGear::default(),
             _ => ship.gear,
         };
         simulation.approach.yaw_rate = ship.yaw_rate;
@@ -152,7 +151,7 @@ impl SimulatedManoeuvre {
         timescale: f64,
         planar: Option<&Planar>,
     ) -> Result<Self, SimulateError> {
-        simulation.recording = Recording { period: period(timescale), ..Recording::default() };
+        simulation.recording = Recording::every(period(timescale));
         simulation.longest_wait = LONGEST_WAIT * timescale;
         let truth = Arc::unwrap_or_clone(simulation.run(key)?.truth);
         let way = planar.map(|planar| way(planar, &truth));

@@ -6,11 +6,12 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
+use simulate::Manoeuvre;
+use trial::manoeuvre::InWords;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figure};
 use crate::interval::{PredictionInterval, band};
-use crate::kind::Kind;
 use crate::known::ValidityRange;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::{self, SimulatedManoeuvre};
@@ -66,7 +67,8 @@ pub struct Bands {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
-    pub kind: Kind,
+    #[serde(with = "InWords")]
+    pub kind: Manoeuvre,
     /// Its figures by name, with the unit.
     pub figures: IndexMap<String, Predicted>,
     /// Draws that did not come to the end.
@@ -121,8 +123,8 @@ impl ShipMixture {
     /// Predicts a manoeuvre from so many draws; `shares` asks for the share of every source of doubt.
     ///
     /// Fails where less than half of the drawn ships come to the end of it.
-    pub fn predict(&self, kind: &Kind, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
-        let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else { return Ok(self.spiral(kind, draws, shares)) };
+    pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
+        let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else { return Ok(self.spiral(kind, draws, shares)) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
@@ -137,12 +139,12 @@ impl ShipMixture {
         enough(kind, made.len(), draws)?;
         let values: Vec<Option<&[Figure]>> =
             all.iter().map(|draw| draw.as_ref().map(|draw| draw.figures.as_slice())).collect();
-        let extrapolated = self.is_unseen(kind.rudder, made.iter().map(|draw| draw.largest_rate));
+        let extrapolated = self.is_unseen(kind.rudder(), made.iter().map(|draw| draw.largest_rate));
         let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(sail(number, &[source])?.0));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         Ok(Prediction {
-            kind: *kind,
+            kind: kind.clone(),
             figures: predicted(&values, extrapolated, sources, alone),
             heading: bands(&made, most_probable.as_ref(), passage::period(self.timescale())),
             lost: draws - made.len(),
@@ -153,21 +155,21 @@ impl ShipMixture {
     }
 
     /// Steady turns; chance has no part in them.
-    fn spiral(&self, kind: &Kind, draws: usize, shares: bool) -> Prediction {
+    fn spiral(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Prediction {
         let curve = |number, sources: &[UncertaintySource]| {
-            SteadyCurve::of(&self.draw(number, sources), kind.rudder, self.timescale())
+            SteadyCurve::of(&self.draw(number, sources), kind.rudder(), self.timescale())
         };
         let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &UncertaintySource::ALL));
-        let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(kind.rudder)).collect();
+        let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(kind.rudder())).collect();
         let values: Vec<Option<&[Figure]>> = own.iter().map(|figures| Some(figures.as_slice())).collect();
-        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder)));
+        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder())));
         let sources: &[UncertaintySource] =
             if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
         Prediction {
-            kind: *kind,
-            figures: predicted(&values, self.is_unseen(kind.rudder, rates), sources, alone),
+            kind: kind.clone(),
+            figures: predicted(&values, self.is_unseen(kind.rudder(), rates), sources, alone),
             lost: 0,
             heading: Bands::default(),
             most_probable: None,
@@ -247,7 +249,7 @@ mod tests {
         ShipMixture::new(vec![(known, 1.0)]).expect("made up")
     }
 
-    fn kind(text: &str) -> Kind {
+    fn kind(text: &str) -> Manoeuvre {
         text.parse().expect("known")
     }
 

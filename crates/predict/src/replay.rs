@@ -134,7 +134,7 @@ impl ShipMixture {
         current: Option<Current>,
     ) -> Result<Option<RecordReplay>, PredictError> {
         let start = trial.time()[0];
-        let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
+        let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
         let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
@@ -202,7 +202,7 @@ impl ShipMixture {
         };
         let drawn: Vec<Vec<Figure>> =
             steered.draws(self, draws).into_iter().flatten().map(|sailed| sailed.figures).collect();
-        enough(steered.kind, drawn.len(), draws)?;
+        enough(&steered.kind, drawn.len(), draws)?;
         Ok(compared(&drawn, |name| Some(self.shown(trial, measured, name)?.value)))
     }
 
@@ -219,7 +219,7 @@ impl ShipMixture {
     /// `None` where the record has too few headings at its beginning.
     pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
         let lost = |_| PredictError::Lost { kind: trial.name().to_owned(), made: 0, draws: 1 };
-        let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
+        let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(lost)?;
         Ok(beginning(trial, &at_rest, self.timescale()))
     }
@@ -265,7 +265,6 @@ fn turns(trial: &Trial, made: &[(SimulatedManoeuvre, Vec<f64>)], timescale: f64,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kind::Kind;
     use crate::made_up;
     use ship::angle::from_deg;
     use simulate::{Simulation, StreamKey, Vessel};
@@ -276,7 +275,7 @@ mod tests {
         let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
         simulation.gear = ship.gear;
         simulation.disturbances = ship.disturbances;
-        simulation.sensors.heading.noise = from_deg(0.1);
+        simulation.sensors.heading_noise = from_deg(0.1);
         simulation.recording.period = 1.0;
         let key = StreamKey { seed: 5, cell: 0, replicate: number };
         simulation.run(&key).expect("a trial").trial
@@ -286,8 +285,8 @@ mod tests {
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
         let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
-        let kind: Kind = "zig-zag:20/20".parse().expect("known");
-        let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
+        let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
+        let manoeuvre = crate::standard::steered(&kind, mixture.timescale()).expect("steered");
         let (mut inside, mut all, mut band) = (0, 0, 0.0);
         let records = 40;
         for number in 0..records {
@@ -316,8 +315,8 @@ mod tests {
     #[test]
     fn a_circle_has_the_figures_of_a_turn() {
         let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
-        let kind: Kind = "turning-circle:-15".parse().expect("known");
-        let trial = record(&mixture, kind.manoeuvre(mixture.timescale()).expect("steered"), 3);
+        let kind: Manoeuvre = "turning-circle:-15".parse().expect("known");
+        let trial = record(&mixture, crate::standard::steered(&kind, mixture.timescale()).expect("steered"), 3);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
         let names: Vec<&String> = replayed.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);

@@ -5,7 +5,7 @@ use rand::rngs::ChaCha8Rng;
 
 use crate::sensor::{Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal};
-use crate::wander::{CompassError, CompassReader, WanderPath};
+use crate::wander::{WanderPoint, CompassReader, WanderPath};
 use crate::wave_path::SeaWaves;
 
 /// A reading this far (rad) short of the heading asked for has reached it: a multiple of the quantum may lie a rounding
@@ -25,8 +25,8 @@ pub(crate) struct DisplayReading {
 
 impl DisplayReading {
     /// What it tells of the coloured error.
-    pub fn known(&self) -> CompassError {
-        CompassError { time: self.time, error: self.wander }
+    pub fn known(&self) -> WanderPoint {
+        WanderPoint { time: self.time, error: self.wander }
     }
 }
 

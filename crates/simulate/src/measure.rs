@@ -16,7 +16,7 @@ use crate::run::RunResult;
 use crate::sample::Sample;
 use crate::sensor::{DropOut, Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal, uniform};
-use crate::wander::{CompassError, CompassReader, WanderPath};
+use crate::wander::{WanderPoint, CompassReader, WanderPath};
 use crate::wave_path::SeaWaves;
 
 /// Two instants closer together than this, s, are one.
@@ -169,7 +169,7 @@ fn compass_and_rate(
     }
     heading.iter_mut().for_each(|psi| *psi += sensors.heading_bias);
     if let Some(process) = sensors.heading_wander {
-        let known: Vec<CompassError> = scene.readings.iter().map(DisplayReading::known).collect();
+        let known: Vec<WanderPoint> = scene.readings.iter().map(DisplayReading::known).collect();
         let errors = WanderPath::new(process, CompassReader::Record, key).through(&scene.instants, &known);
         heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
     }

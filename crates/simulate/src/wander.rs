@@ -8,7 +8,7 @@ use crate::stream::{Purpose, StreamKey, normal};
 
 /// The error at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CompassError {
+pub(crate) struct WanderPoint {
     /// Time, s.
     pub time: f64,
     /// Error, rad.
@@ -29,7 +29,7 @@ pub(crate) enum CompassReader {
 pub(crate) struct WanderPath {
     process: GaussMarkov,
     rng: ChaCha8Rng,
-    last: Option<CompassError>,
+    last: Option<WanderPoint>,
 }
 
 impl WanderPath {
@@ -44,7 +44,7 @@ impl WanderPath {
     }
 
     /// The errors at `times` (s), rad, of the path that goes through what is `known`.
-    pub fn through(&mut self, times: &[f64], known: &[CompassError]) -> Vec<f64> {
+    pub fn through(&mut self, times: &[f64], known: &[WanderPoint]) -> Vec<f64> {
         let mut ahead = known.iter().copied().peekable();
         let mut at = |&t: &f64| {
             while let Some(passed) = ahead.next_if(|known| known.time <= t) {
@@ -60,14 +60,14 @@ impl WanderPath {
     /// With a = exp(−(t − t₀)/τ) and b = exp(−(t₁ − t)/τ), each 0 where there is no neighbour, w is normal about
     /// (a(1 − b²) w₀ + b(1 − a²) w₁)/(1 − a²b²) with variance σ²(1 − a²)(1 − b²)/(1 − a²b²): w is Markov, so nothing
     /// but its neighbours matters.
-    fn before(&mut self, t: f64, next: Option<CompassError>) -> f64 {
+    fn before(&mut self, t: f64, next: Option<WanderPoint>) -> f64 {
         let GaussMarkov { sd, correlation_time } = self.process;
         // Decay over a time, and one less its square without the loss of digits over a short one.
         let over = |time: f64| ((-time / correlation_time).exp(), -(-2.0 * time / correlation_time).exp_m1());
         let since = self.last.map_or(f64::INFINITY, |last| t - last.time);
         let until = next.map_or(f64::INFINITY, |next| next.time - t);
         let ((a, lost), (b, to_come), (_, both)) = (over(since), over(until), over(since + until));
-        let of = |known: Option<CompassError>| known.map_or(0.0, |known| known.error);
+        let of = |known: Option<WanderPoint>| known.map_or(0.0, |known| known.error);
         // Drawn in any case, so that an instant on a reading shifts no later draw.
         let draw = normal(&mut self.rng);
         let error = if both > 0.0 {
@@ -76,7 +76,7 @@ impl WanderPath {
         } else {
             of(self.last)
         };
-        self.last = Some(CompassError { time: t, error });
+        self.last = Some(WanderPoint { time: t, error });
         error
     }
 }
@@ -121,7 +121,7 @@ mod tests {
         let times: Vec<f64> = rows.iter().chain(&readings).copied().collect();
         assert_covariance(&times, 20_000, |replicate| {
             let mut display = path(CompassReader::Display, replicate);
-            let known = readings.map(|time| CompassError { time, error: display.at(time) });
+            let known = readings.map(|time| WanderPoint { time, error: display.at(time) });
             let errors = path(CompassReader::Record, replicate).through(&rows, &known);
             assert_relative_eq!(errors[2], known[1].error, max_relative = 1e-12);
             errors.into_iter().chain(known.map(|known| known.error)).collect()

@@ -6,11 +6,12 @@
 //! Sources: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials; MSC.137(76) for the initial turning test; IAMSAR Manual,
 //! volume III, for the Williamson turn.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 
-use schemars::JsonSchema;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use ship::Polyline;
 use ship::angle::{DEGREE, from_deg, to_deg};
@@ -339,7 +340,7 @@ impl fmt::Display for Manoeuvre {
 }
 
 /// An angle in degrees without the rounding of its conversion.
-fn whole_deg(angle: f64) -> f64 {
+pub fn whole_deg(angle: f64) -> f64 {
     (to_deg(angle) * 1e6).round() / 1e6
 }
 
@@ -400,6 +401,20 @@ impl InWords {
     /// Reads the words.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
         String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl JsonSchema for InWords {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        String::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        String::json_schema(generator)
     }
 }
 

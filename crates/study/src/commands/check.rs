@@ -9,7 +9,7 @@ use campaign::outside;
 use scenario::Scenario;
 use scenario::failure::{Blame, Failure};
 use serde_json::{Value, json};
-use simulate::settings::Assumption;
+use simulate::Assumption;
 
 /// Resolves every file and prints one line for each that is right, with a note where its rudder moves instantly; with
 /// `resolved` the whole scenario below it. All that are wrong are in the message.

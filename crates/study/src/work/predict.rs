@@ -5,18 +5,17 @@ use std::path::Path;
 use predict::correction::{self, Correction};
 use predict::document::ModelWeight;
 use predict::form::{self, FormRecord};
-use predict::kind::Kind;
 use predict::known::is_same_length;
 use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
-use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo};
+use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
 use scenario::failure::Failure;
 use scenario::name;
 use serde_json::Value;
 use ship::Particulars;
 use ship::angle::KNOT;
-use trial::{Conditions, Trial, file};
+use trial::{Conditions, Manoeuvre, Trial, file};
 
 use crate::options::{PredictRequest, ReadingOptions};
 use crate::progress;
@@ -126,7 +125,7 @@ pub struct Asked<'a> {
     /// What is taken out of the tracks of their turns; `None` for what each shows itself.
     pub current: Option<Current>,
     /// Manoeuvres to predict.
-    pub manoeuvres: Vec<Kind>,
+    pub manoeuvres: Vec<Manoeuvre>,
     /// Ships that are drawn.
     pub draws: usize,
     /// Whether the models were read without their weather.
@@ -140,9 +139,9 @@ pub struct Asked<'a> {
 }
 
 /// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
-pub fn manoeuvres(request: &PredictRequest) -> Vec<Kind> {
+pub fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
-        ([], true) => Kind::of_imo(),
+        ([], true) => standard::of_imo(),
         (asked, _) => asked.to_vec(),
     };
     for kind in form::manoeuvres() {
