@@ -165,11 +165,7 @@ fn every_manoeuvre_leaves_a_record() {
         ("zig-zag by duration", zig_zag.lasting(200.0), Some(200.0)),
         ("turning circle by duration", turn.lasting(300.0), Some(300.0)),
         ("turning circle by heading", to_heading, None),
-        (
-            "pull-out",
-            Manoeuvre::PullOut { rudder, side: Side::Starboard, hold: 100.0, duration: 80.0 },
-            Some(180.0),
-        ),
+        ("pull-out", Manoeuvre::PullOut { rudder, side: Side::Starboard, hold: 100.0, duration: 80.0 }, Some(180.0)),
         ("replay", Manoeuvre::replay(signal), Some(90.0)),
     ];
     for (what, manoeuvre, length) in manoeuvres {
@@ -215,7 +211,11 @@ fn every_instrument_leaves_its_mark_on_the_record() {
             |s| s.heading_spikes = Some(Spikes { probability: 0.1, size: from_deg(5.0) }),
             |t, c| (10..50).contains(&t.heading().iter().zip(c.heading()).filter(|(psi, own)| psi != own).count()),
         ),
-        ("rare headings", |s| s.heading_every_rows = Some(5), |t, c| t.rudder() == c.rudder() && lost(t) == t.len() / 5 * 4),
+        (
+            "rare headings",
+            |s| s.heading_every_rows = Some(5),
+            |t, c| t.rudder() == c.rudder() && lost(t) == t.len() / 5 * 4,
+        ),
         ("rudder noise", |s| s.rudder_noise = from_deg(0.5), |t, c| (0.4..0.6).contains(&rms(t.rudder(), c.rudder()))),
         ("rudder quantum", |s| s.rudder_quantum = from_deg(1.0), |t, _| multiples(t.rudder(), 1.0)),
         (

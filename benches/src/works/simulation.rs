@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_distr::StandardNormal;
 use ship::ships;
-use simulate::{Prepared, Purpose, Simulation, Solver, StreamKey, Vessel};
+use simulate::{PreparedSimulation, Purpose, Simulation, Solver, StreamKey, Vessel};
 
 use crate::norrbin;
 use crate::records::{KEY, ROWS, damped_zig_zag, first_order_zig_zag};

@@ -74,7 +74,8 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
 /// ship has it.
 fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
-    let is_right = [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|error| error.unwrap_or(0.0) == 0.0);
+    let is_right =
+        [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|error| error.unwrap_or(0.0) == 0.0);
     let read = recording.rudder == RudderSource::Feedback;
     // Moments are given as the rudder angle that has the same one.
     let b = truth.K_over_T;

@@ -13,7 +13,7 @@ use identify::{Estimate, StopReason};
 use predict::IdentifiedShip;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
-use simulate::{Prepared, SimulateError, Simulated, StreamKey};
+use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
 use crate::answer::pooled_rmse_deg;
@@ -72,7 +72,7 @@ pub struct Bench<'a> {
     first_cell: usize,
     yardsticks: Vec<OnceLock<Yardstick>>,
     /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
-    prepared: Vec<OnceLock<Result<Prepared, SimulateError>>>,
+    prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
 /// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a

@@ -25,8 +25,11 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
     let of_hull = simulation.vessel.particulars().map(|particulars| particulars.length / particulars.speed);
     let timescale = closed.or(of_hull).unwrap_or(ROWS * simulation.recording.period);
     let one = |kind: &Manoeuvre| {
-        let calm =
-            Simulation { manoeuvre: standard::steered(kind, timescale)?, sensors: Sensors::default(), ..simulation.clone() };
+        let calm = Simulation {
+            manoeuvre: standard::steered(kind, timescale)?,
+            sensors: Sensors::default(),
+            ..simulation.clone()
+        };
         let passage = SimulatedManoeuvre::of(calm, &other(key), timescale, None).ok()?;
         Some(figures::of(kind, &passage, None))
     };

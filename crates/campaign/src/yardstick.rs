@@ -64,11 +64,7 @@ pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Op
         let calm = Simulation {
             disturbances: Disturbances::default(),
             sensors: Sensors::default(),
-            recording: Recording {
-                rudder: RudderSource::Feedback,
-                assumed_rudder_rate: None,
-                ..simulation.recording
-            },
+            recording: Recording { rudder: RudderSource::Feedback, assumed_rudder_rate: None, ..simulation.recording },
             ..simulation.clone()
         };
         Some(calm.run(&key).ok()?.trial)

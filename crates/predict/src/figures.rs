@@ -145,7 +145,8 @@ mod tests {
             yaw_rate: 0.0,
             key: StreamKey::default(),
         };
-        SimulatedManoeuvre::sail(&ship, &crate::standard::steered(kind, 12.8).expect("steered"), 12.8).expect("a manoeuvre")
+        SimulatedManoeuvre::sail(&ship, &crate::standard::steered(kind, 12.8).expect("steered"), 12.8)
+            .expect("a manoeuvre")
     }
 
     fn value(figures: &[Figure], name: &str) -> f64 {

@@ -122,9 +122,8 @@ impl Limit {
     /// Whether a manoeuvre answers it, to either side: circles with any rudder, and a turn with 10° as well as a 10/10.
     fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
         let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
-        let is_pair = |deg| {
-            matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg))
-        };
+        let is_pair =
+            |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
             CIRCLE => matches!(kind, Manoeuvre::TurningCircle { .. }),
             TWENTY => is_pair(20.0),
@@ -168,8 +167,10 @@ mod tests {
     #[test]
     fn probabilities_are_shares_of_the_draws() {
         let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
-        let predictions: Vec<Prediction> =
-            crate::standard::of_imo().iter().map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre")).collect();
+        let predictions: Vec<Prediction> = crate::standard::of_imo()
+            .iter()
+            .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
+            .collect();
         let found = criteria(&predictions, mixture.particulars().expect("made up"));
         let names: Vec<&str> = found.iter().map(|criterion| criterion.criterion.as_str()).collect();
         assert_eq!(

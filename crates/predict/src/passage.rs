@@ -6,7 +6,9 @@ use crate::motion::{Planar, PlanarShip, Turn, TurningCircleFigures};
 use ship::Regressor;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
-use simulate::{Disturbances, HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
+use simulate::{
+    Disturbances, HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel,
+};
 
 use crate::mixture::DrawnShip;
 

@@ -124,7 +124,9 @@ impl ShipMixture {
     ///
     /// Fails where less than half of the drawn ships come to the end of it.
     pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
-        let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else { return Ok(self.spiral(kind, draws, shares)) };
+        let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else {
+            return Ok(self.spiral(kind, draws, shares));
+        };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
@@ -162,7 +164,8 @@ impl ShipMixture {
         let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &UncertaintySource::ALL));
         let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(kind.rudder())).collect();
         let values: Vec<Option<&[Figure]>> = own.iter().map(|figures| Some(figures.as_slice())).collect();
-        let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder())));
+        let alone =
+            |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder())));
         let sources: &[UncertaintySource] =
             if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);

@@ -10,8 +10,8 @@ use ship::effects::{
 };
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, Shown};
-use trial::degrees::written_deg;
 use simulate::disturbance::WaveSpectrum;
+use trial::degrees::written_deg;
 
 use crate::limits;
 use crate::problem::{KeyPath, Problem};

@@ -7,9 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use simulate::disturbance::WaveSpectrum;
-use simulate::{
-    BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers,
-};
+use simulate::{BeforeExecute, Disturbances, Helmsman, Manoeuvre, Recording, Sensors, SteeringGear, numbers};
 
 use crate::draw::DrawWire;
 use crate::method::IdentifierWire;

@@ -155,10 +155,7 @@ mod tests {
             "manoeuvre.zig-zag.executes",
             "a hundred days of zig-zags"
         );
-        assert_eq!(
-            refused(&|s| s.recording.after_execute = Some(90_000)),
-            "recording.after-execute"
-        );
+        assert_eq!(refused(&|s| s.recording.after_execute = Some(90_000)), "recording.after-execute");
         assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration-s");
         assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead-in-s");
         let fast = |s: &mut Simulation| {

@@ -5,7 +5,7 @@ use rand::rngs::ChaCha8Rng;
 
 use crate::sensor::{Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal};
-use crate::wander::{WanderPoint, CompassReader, WanderPath};
+use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
 /// A reading this far (rad) short of the heading asked for has reached it: a multiple of the quantum may lie a rounding

@@ -112,9 +112,7 @@ impl SpecificationError {
 
     fn advice(&self) -> String {
         let advice = match (self.key, self.expected) {
-            ("vessel.dead_time", _) => {
-                "give dead times of 0 s or more: a rudder does not act before it moves"
-            }
+            ("vessel.dead_time", _) => "give dead times of 0 s or more: a rudder does not act before it moves",
             ("recording.duration-s", Expected::Duration) => {
                 "add `duration-s = …` (seconds), or let `executes` end the zig-zag"
             }

@@ -79,7 +79,9 @@ impl Segment {
         match self.motion {
             RudderMotion::Hold => self.angle,
             RudderMotion::Ramp { rate } => self.angle + rate * (t - self.start),
-            RudderMotion::Exponential { target, lag } => target + (self.angle - target) * (-(t - self.start) / lag).exp(),
+            RudderMotion::Exponential { target, lag } => {
+                target + (self.angle - target) * (-(t - self.start) / lag).exp()
+            }
         }
     }
 }
@@ -145,7 +147,12 @@ impl SteeringGear {
             if self.lag > 0.0 && left > self.dead_band {
                 let end =
                     if self.dead_band > 0.0 { t + self.lag * (left / self.dead_band).ln() } else { f64::INFINITY };
-                path.push(Segment { start: t, end, angle, motion: RudderMotion::Exponential { target, lag: self.lag } });
+                path.push(Segment {
+                    start: t,
+                    end,
+                    angle,
+                    motion: RudderMotion::Exponential { target, lag: self.lag },
+                });
                 (t, angle) = (end, target - side * self.dead_band);
             }
         }

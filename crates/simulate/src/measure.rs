@@ -16,7 +16,7 @@ use crate::run::RunResult;
 use crate::sample::Sample;
 use crate::sensor::{DropOut, Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal, uniform};
-use crate::wander::{WanderPoint, CompassReader, WanderPath};
+use crate::wander::{CompassReader, WanderPath, WanderPoint};
 use crate::wave_path::SeaWaves;
 
 /// Two instants closer together than this, s, are one.
@@ -185,8 +185,8 @@ fn compass_and_rate(
     }
     spoil(&mut heading, sensors, key);
     if let Some(yaw_rate) = &mut yaw_rate {
-        let [noise, bias, scale_error] =
-            [sensors.yaw_rate_noise, sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].map(Option::unwrap_or_default);
+        let [noise, bias, scale_error] = [sensors.yaw_rate_noise, sensors.yaw_rate_bias, sensors.yaw_rate_scale_error]
+            .map(Option::unwrap_or_default);
         yaw_rate.iter_mut().for_each(|r| *r = (1.0 + scale_error) * *r + bias);
         disturb(yaw_rate, noise, key.rng(Purpose::YawRate));
     }
@@ -268,8 +268,7 @@ mod tests {
 
     #[test]
     fn bursts_have_their_mean_length_and_frequency() {
-        let drop_out =
-            DropOut { burst_probability: Some(0.01), burst_mean_rows: Some(8.0), ..DropOut::default() };
+        let drop_out = DropOut { burst_probability: Some(0.01), burst_mean_rows: Some(8.0), ..DropOut::default() };
         let rows = 200_000;
         let lost = lost_rows(&drop_out, rows, &StreamKey::default()).expect("bursts are asked for");
         let begun = lost.windows(2).filter(|pair| !pair[0] && pair[1]).count();

@@ -90,11 +90,14 @@ impl Recording {
                 error::count("recording.after-execute", number, MOST_EXECUTES)?;
                 error::time("recording.offset-s", offset.unwrap_or(0.0))?;
             }
-            (None, Some(_)) => error::refused("recording.offset-s", Expected::Other([
-                "`recording.offset-s` counts from an execute, and `after-execute` is missing",
-                "expected `after-execute` as well",
-                "add `after-execute = 1` for the first execute, or leave `offset-s` out",
-            ]))?,
+            (None, Some(_)) => error::refused(
+                "recording.offset-s",
+                Expected::Other([
+                    "`recording.offset-s` counts from an execute, and `after-execute` is missing",
+                    "expected `after-execute` as well",
+                    "add `after-execute = 1` for the first execute, or leave `offset-s` out",
+                ]),
+            )?,
             (None, None) => {}
         }
         match (self.rudder, self.assumed_rudder_rate) {
@@ -102,18 +105,22 @@ impl Recording {
             (RudderSource::Orders, Some(rate)) => {
                 error::positive_or_infinite("recording.assumed-rudder-rate-deg-s", rate)
             }
-            (RudderSource::Orders, None) => error::refused("recording.rudder", Expected::Other([
-                "`recording.rudder` is \"orders\", and nothing says how fast the rudder is taken to move",
-                "expected `assumed-rudder-rate-deg-s` as well",
-                "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
-            ])),
-            (RudderSource::Feedback, Some(_)) => {
-                error::refused("recording.assumed-rudder-rate-deg-s", Expected::Other([
+            (RudderSource::Orders, None) => error::refused(
+                "recording.rudder",
+                Expected::Other([
+                    "`recording.rudder` is \"orders\", and nothing says how fast the rudder is taken to move",
+                    "expected `assumed-rudder-rate-deg-s` as well",
+                    "add `assumed-rudder-rate-deg-s = 2.5`, or inf for a rudder that jumps",
+                ]),
+            ),
+            (RudderSource::Feedback, Some(_)) => error::refused(
+                "recording.assumed-rudder-rate-deg-s",
+                Expected::Other([
                     "`recording` has an assumed rate for a rudder that is recorded",
                     "a rate is assumed for `rudder = \"orders\"` only",
                     "add `rudder = \"orders\"`, or leave the rate out",
-                ]))
-            }
+                ]),
+            ),
         }
     }
 }
@@ -166,7 +173,8 @@ impl Sampler {
         // One more than there may be, so that a record without end is noticed.
         let left = rows.unwrap_or(MOST_ROWS + 1);
         let samples = Vec::with_capacity(rows.unwrap_or(0).min(RESERVED));
-        let mut sampler = Self { start, period: recording.period, left, deviation, next: start, samples, jitter: Vec::new() };
+        let mut sampler =
+            Self { start, period: recording.period, left, deviation, next: start, samples, jitter: Vec::new() };
         sampler.aim();
         sampler
     }

@@ -152,7 +152,9 @@ impl<'a, P: Propagator> Run<'a, P> {
         }
         let (time, watch) = match self.helm.trigger() {
             Trigger::Time(time) => (time, None),
-            Trigger::Deviation { side, angle } => (self.deadline(), Some(AwaitedHeading { base: self.base, side, angle })),
+            Trigger::Deviation { side, angle } => {
+                (self.deadline(), Some(AwaitedHeading { base: self.base, side, angle }))
+            }
             Trigger::Never => (f64::INFINITY, None),
         };
         let limits = Limits { before: time.min(self.helm.end()), watch, base: self.base };

@@ -176,11 +176,14 @@ impl DropOut {
                 error::between("sensor.drop-out.burst-mean-rows", mean_rows, 1.0, 1e9)
             }
             (None, None) => Ok(()),
-            _ => error::refused("sensor.drop-out", Expected::Other([
-                "`sensor.drop-out` has only one of `burst-probability` and `burst-mean-rows`",
-                "the two belong together",
-                "give both, or leave both out",
-            ])),
+            _ => error::refused(
+                "sensor.drop-out",
+                Expected::Other([
+                    "`sensor.drop-out` has only one of `burst-probability` and `burst-mean-rows`",
+                    "the two belong together",
+                    "give both, or leave both out",
+                ]),
+            ),
         }
     }
 }

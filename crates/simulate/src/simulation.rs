@@ -18,8 +18,8 @@ use crate::gear::{RudderPath, SteeringGear};
 use crate::helm::{Helm, HelmOrder, Helmsman};
 use crate::limits::{MOST_EXECUTES, MOST_ROWS};
 use crate::measure::{self, Scene, View};
-use crate::propagate::{ClosedForm, ShipInWeather, Integrated, Propagator};
 use crate::numbers;
+use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
 use crate::recording::{Recording, RudderSource, Sampler};
 use crate::run::{Progress, Run, RunResult};
 use crate::sample::Sample;
@@ -238,14 +238,21 @@ impl Simulation {
         let most = self.manoeuvre.most_executes();
         if let Some(number) = self.recording.after_execute.filter(|number| *number > most) {
             let value = number as f64;
-            return Err(SpecificationError { key: "recording.after-execute", value, expected: Expected::Execute(most) });
+            return Err(SpecificationError {
+                key: "recording.after-execute",
+                value,
+                expected: Expected::Execute(most),
+            });
         }
         if is_replay && self.recording.rudder == RudderSource::Orders {
-            return error::refused("recording.rudder", Expected::Value([
-                "`recording.rudder` is \"orders\", and a replayed rudder follows none",
-                "expected \"feedback\"",
-                "leave the key out",
-            ]));
+            return error::refused(
+                "recording.rudder",
+                Expected::Value([
+                    "`recording.rudder` is \"orders\", and a replayed rudder follows none",
+                    "expected \"feedback\"",
+                    "leave the key out",
+                ]),
+            );
         }
         Ok(())
     }
@@ -418,29 +425,38 @@ fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
     }
     match manoeuvre {
         Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
-            return error::refused("manoeuvre.zig-zag.duration-s", Expected::Other([
-                "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
-                "expected one end of the manoeuvre",
-                "leave out `executes` or `duration-s`",
-            ]));
+            return error::refused(
+                "manoeuvre.zig-zag.duration-s",
+                Expected::Other([
+                    "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
+                    "expected one end of the manoeuvre",
+                    "leave out `executes` or `duration-s`",
+                ]),
+            );
         }
         Manoeuvre::ZigZag { heading, executes, .. } => {
             error::positive("manoeuvre.zig-zag.heading-deg", *heading)?;
             error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MOST_EXECUTES)?;
         }
         Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
-            return error::refused("manoeuvre.turning-circle.heading-change-deg", Expected::Other([
-                "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
-                "expected one end of the manoeuvre",
-                "leave out `duration-s` or `heading-change-deg`",
-            ]));
+            return error::refused(
+                "manoeuvre.turning-circle.heading-change-deg",
+                Expected::Other([
+                    "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
+                    "expected one end of the manoeuvre",
+                    "leave out `duration-s` or `heading-change-deg`",
+                ]),
+            );
         }
         Manoeuvre::TurningCircle { duration: None, heading_change: None, .. } => {
-            return error::refused("manoeuvre.turning-circle", Expected::Other([
-                "nothing ends the turning circle",
-                "expected `duration-s` or `heading-change-deg` here",
-                "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
-            ]));
+            return error::refused(
+                "manoeuvre.turning-circle",
+                Expected::Other([
+                    "nothing ends the turning circle",
+                    "expected `duration-s` or `heading-change-deg` here",
+                    "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
+                ]),
+            );
         }
         Manoeuvre::TurningCircle { heading_change: Some(angle), .. } => {
             error::positive("manoeuvre.turning-circle.heading-change-deg", *angle)?;

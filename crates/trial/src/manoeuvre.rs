@@ -224,7 +224,9 @@ impl Manoeuvre {
     /// record ends are without end.
     pub fn steps(&self) -> impl Iterator<Item = OrderStep> {
         let mut ended = false;
-        (0..).map(|orders| self.step(orders)).take_while(move |step| !std::mem::replace(&mut ended, step.order.is_none()))
+        (0..)
+            .map(|orders| self.step(orders))
+            .take_while(move |step| !std::mem::replace(&mut ended, step.order.is_none()))
     }
 
     /// Time from the first execute to the end, s; infinite where headings or the record decide.

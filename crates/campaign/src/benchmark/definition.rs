@@ -9,13 +9,15 @@ use crate::task::Task as Replicate;
 use scenario::failure::Failure;
 use scenario::{HULL, Scenario, hex, name};
 use sha2::{Digest, Sha256};
-use trial::{Manoeuvre, Sidecar};
 use trial::file::{self, Kind};
+use trial::{Manoeuvre, Sidecar};
 
 use crate::benchmark::cases::MEASURED;
 use crate::benchmark::embedded;
 use crate::benchmark::task::Task;
-use crate::benchmark::wire::{DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words};
+use crate::benchmark::wire::{
+    DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words,
+};
 
 /// A benchmark that has been checked.
 pub struct Definition {

@@ -3,7 +3,7 @@
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
-use crate::gear::{RudderPath, Segment, RudderMotion};
+use crate::gear::{RudderMotion, RudderPath, Segment};
 use crate::propagate::propagator::{Limits, Propagator, acting, has_diverged};
 use crate::recording::Sampler;
 use crate::sample::Sample;

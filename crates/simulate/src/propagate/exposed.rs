@@ -3,7 +3,7 @@
 use ship::{Dynamics, Input, Measured, Motion};
 
 use crate::disturbance::{Wind, gusting_speed};
-use crate::weather::{WeatherCell, Weather};
+use crate::weather::{Weather, WeatherCell};
 
 /// A ship with the weather of one run acting on it and the lag of its gyrocompass as the last state.
 #[derive(Debug)]

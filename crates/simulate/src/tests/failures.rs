@@ -38,10 +38,7 @@ fn a_specification_that_makes_no_sense_is_refused_by_name() {
     );
     assert_eq!(refused(|s| s.solver = Solver::RungeKutta(1e-300)).0, "solver.step");
     assert_eq!(refused(|s| s.sensors.heading_lag = 1e-300).0, "sensor.heading-lag-s");
-    assert_eq!(
-        refused(|s| s.helmsman.reads_display_every = Some(1e-300)).0,
-        "helmsman.reads-display-every-s"
-    );
+    assert_eq!(refused(|s| s.helmsman.reads_display_every = Some(1e-300)).0, "helmsman.reads-display-every-s");
     assert_eq!(refused(|s| s.approach.heading = f64::INFINITY), ("approach.heading-deg", Expected::Finite));
     assert_eq!(refused(|s| s.sensors.heading_noise = -1.0), ("sensor.heading-noise-deg", Expected::NotNegative));
     assert_eq!(

@@ -93,8 +93,7 @@ fn variety() -> Vec<Simulation> {
     list.push(anchored);
     let mut turn = list[0].clone();
     let rudder = from_deg(35.0);
-    turn.manoeuvre =
-        Manoeuvre::TurningCircle { rudder, side: Side::Port, duration: None, heading_change: Some(9.0) };
+    turn.manoeuvre = Manoeuvre::TurningCircle { rudder, side: Side::Port, duration: None, heading_change: Some(9.0) };
     turn.recording.duration = None;
     list.push(turn.clone());
     turn.manoeuvre = Manoeuvre::PullOut { rudder, side: Side::Starboard, hold: 80.5, duration: 60.0 };
@@ -276,8 +275,7 @@ fn noisy() -> Simulation {
         speed: Some(12.0),
         gusting: Some(Gusting { sd: 0.2, correlation_time: 8.0 }),
     });
-    simulation.disturbances.waves =
-        Some(WaveSpectrum { sd: from_deg(0.3), frequency: 0.7, damping: 0.1 });
+    simulation.disturbances.waves = Some(WaveSpectrum { sd: from_deg(0.3), frequency: 0.7, damping: 0.1 });
     simulation.sensors = Sensors { heading_quantum: from_deg(0.1), ..spoilt() };
     simulation.sensors.yaw_rate_noise = Some(1e-3);
     simulation.sensors.rudder_noise = from_deg(0.2);

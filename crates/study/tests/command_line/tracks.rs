@@ -43,7 +43,8 @@ fn zig_zag() -> String {
 
 fn circle(current: [f64; 2], turn_deg: f64) -> String {
     let heading_change = Some(from_deg(turn_deg));
-    let turn = Manoeuvre::TurningCircle { rudder: from_deg(20.0), side: Side::Starboard, duration: None, heading_change };
+    let turn =
+        Manoeuvre::TurningCircle { rudder: from_deg(20.0), side: Side::Starboard, duration: None, heading_change };
     record(turn, if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
 }
 
