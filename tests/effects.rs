@@ -7,7 +7,7 @@ use kempf_tests::records::zig_zag;
 use ship::angle::{from_deg, to_deg};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Particulars, Response, ResponseModel};
-use simulate::{Manoeuvre, Side, Simulated, StreamKey, Vessel};
+use simulate::{Side, Simulated, StreamKey, Vessel};
 
 /// The identifiers that were published: files of users name them. A new effect needs no line here.
 const IDS: [&str; 12] = [

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::first_order::State;
-use simulate::{Manoeuvre, Side, Simulated, StreamKey};
+use simulate::{Manoeuvre, Simulated, StreamKey};
 
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::{Begin, Case};

@@ -12,7 +12,7 @@ use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::Mmg;
 use simulate::vessel::Solver;
-use simulate::{Manoeuvre, Side, Simulated, Simulation, StreamKey, Vessel};
+use simulate::{Side, Simulated, Simulation, StreamKey, Vessel};
 
 use super::first_order::peak;
 use super::hulls::registered;
