@@ -25,7 +25,7 @@ use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
 use crate::yardstick::{Yardstick, nearest_first_order};
-use scenario::{Cell, Procedure, Scenario, Specification, Specimen};
+use scenario::{DesignCell, Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
 pub struct Outcome {
@@ -92,7 +92,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn simulate(&self, cell: usize, specimen: &Specimen, key: &StreamKey) -> Result<Vec<Simulated>, SimulateError> {
+    fn simulate(&self, cell: usize, specimen: &TrialSpecification, key: &StreamKey) -> Result<Vec<Simulated>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
         let mut records = specimen.specification.records(key);
         let (simulation, key) = records.next().expect("a trial has a record");
@@ -204,7 +204,7 @@ fn empty(task: Task, drawn: Option<Arc<[f64]>>) -> Row {
 }
 
 /// A trial that could not be made: a row for every method all the same.
-fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
+fn nothing(cell: &DesignCell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
     let blank = Row { failure: Some(reason.into()), ..empty(task, drawn) };
     let rows = (0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect();
     Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }

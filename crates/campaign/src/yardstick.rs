@@ -10,7 +10,7 @@ use trial::Trial;
 
 use crate::bound;
 use crate::rows::Bound;
-use scenario::{Specification, Specimen};
+use scenario::{Specification, TrialSpecification};
 
 /// What the trials of a cell are held against.
 pub struct Yardstick {
@@ -29,7 +29,7 @@ pub struct Yardstick {
 
 impl Yardstick {
     /// Of a trial with this chance; `traces` when a trace is among the methods.
-    pub fn of(specimen: &Specimen, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
+    pub fn of(specimen: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
         let near = if truth.is_none() || traces { nearest_first_order(&specimen.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));

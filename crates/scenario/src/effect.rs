@@ -14,7 +14,7 @@ use simulate::disturbance::WaveSpectrum;
 use trial::degrees::written_deg;
 
 use crate::limits;
-use crate::problem::{KeyPath, Problem};
+use crate::problem::{KeyPath, ScenarioProblem};
 use crate::wire::*;
 
 /// The keys a scenario has for an effect in one of its forms; `None` for a form that needs a measured record.
@@ -44,14 +44,14 @@ pub fn keys(effect: &dyn Effect) -> Option<&'static str> {
 ///
 /// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and
 /// for a parameter outside its range.
-pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
+pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, ScenarioProblem> {
     if wire.is_empty() {
         return Ok(ship);
     }
     limits::entries("effect", wire.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
     let Model::Response(response) = &ship.model else {
-        return Err(Problem::name(
+        return Err(ScenarioProblem::name(
             list,
             format!("an effect is added to `{}`, a hull with its own equations", ship.id),
             "effects belong to response models",
@@ -65,7 +65,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
         let (effect, settings) = of(wire, inverse_time);
         let key = list.child(index).child(effect.id());
         if effect.id() == "second_order" && effects.iter().any(|other| other.id() == effect.id()) {
-            return Err(Problem::name(
+            return Err(ScenarioProblem::name(
                 key,
                 format!("the ship `{}` is of second order already", ship.id),
                 "expected at most one such effect",
@@ -79,7 +79,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
                     [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
                 ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-                return Err(Problem::value(
+                return Err(ScenarioProblem::value(
                     key.clone(),
                     format!("`{key}` is {}", Shown(setting.written)),
                     format!("expected a number from {} to {}", ends[0], ends[1]),
@@ -95,7 +95,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
 }
 
 /// One parameter and the key it comes from.
-struct Setting {
+struct EffectNumber {
     /// Value, SI and rad.
     value: f64,
     /// Key below the effect.
@@ -106,12 +106,12 @@ struct Setting {
     unit: f64,
 }
 
-fn setting(key: &'static str, written: f64, unit: f64) -> Setting {
-    Setting { value: written * unit, key, written, unit }
+fn setting(key: &'static str, written: f64, unit: f64) -> EffectNumber {
+    EffectNumber { value: written * unit, key, written, unit }
 }
 
 /// The effect and its parameters; nonlinear damping is written for T r' + r and stored for r', divided by T.
-fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
+fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<EffectNumber>) {
     let per_degree = 1.0 / DEGREE;
     match *wire {
         EffectWire::SecondOrder(SwayCouplingWire { T2_s, T3_s }) => {
@@ -130,7 +130,7 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
         EffectWire::WindMoment(WindMomentWire { rudder_deg, from_deg: from }) => {
             let twice = 2.0 * from_deg(from);
             let component = |share: f64| match from.is_finite() {
-                true => Setting { value: from_deg(rudder_deg) * share, ..setting("rudder-deg", rudder_deg, DEGREE) },
+                true => EffectNumber { value: from_deg(rudder_deg) * share, ..setting("rudder-deg", rudder_deg, DEGREE) },
                 false => setting("from-deg", from, DEGREE),
             };
             (Arc::new(WindMoment::Steady), vec![component(twice.sin()), component(-twice.cos())])
@@ -178,7 +178,7 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
         EffectWire::WaveYaw(WaveSpectrum { sd, frequency, damping }) => (
             Arc::new(WaveYaw),
             vec![
-                Setting { value: sd, key: "sd-deg", written: written_deg(sd), unit: DEGREE },
+                EffectNumber { value: sd, key: "sd-deg", written: written_deg(sd), unit: DEGREE },
                 setting("frequency-rad-s", frequency, 1.0),
                 setting("damping", damping, 1.0),
             ],

@@ -18,7 +18,7 @@ use crate::part::Part;
 pub fn design_of(document: &Table) -> Table {
     document
         .iter()
-        .filter(|(key, _)| Part::of(key) != Part::Prose)
+        .filter(|(key, _)| ScenarioPart::of(key) != ScenarioPart::Prose)
         .map(|(key, value)| (key.clone(), value.clone()))
         .collect()
 }

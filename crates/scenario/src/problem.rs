@@ -51,7 +51,7 @@ impl fmt::Display for KeyPath {
 
 /// What is underlined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum AtFault {
     /// The name of the key.
     Name,
     /// Its value.
@@ -60,11 +60,11 @@ pub enum Mark {
 
 /// Something wrong with a scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problem {
+pub struct ScenarioProblem {
     /// The key at fault.
     pub key: KeyPath,
     /// Whether its name or its value is at fault.
-    pub mark: Mark,
+    pub mark: AtFault,
     /// The key and the value found, in one sentence.
     pub found: String,
     /// What was expected, to stand below the place.
@@ -73,7 +73,7 @@ pub struct Problem {
     pub advice: String,
 }
 
-impl Problem {
+impl ScenarioProblem {
     /// A value at fault.
     pub fn value(
         key: KeyPath,
@@ -81,7 +81,7 @@ impl Problem {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { key, mark: Mark::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
+        Self { key, mark: AtFault::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
     }
 
     /// A key at fault.
@@ -91,14 +91,14 @@ impl Problem {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { mark: Mark::Name, ..Self::value(key, found, expected, advice) }
+        Self { mark: AtFault::Name, ..Self::value(key, found, expected, advice) }
     }
 }
 
-impl From<SpecificationError> for Problem {
+impl From<SpecificationError> for ScenarioProblem {
     fn from(error: SpecificationError) -> Self {
         let [found, expected, advice] = error.words();
-        let mark = if error.is_of_name() { Mark::Name } else { Mark::Value };
+        let mark = if error.is_of_name() { AtFault::Name } else { AtFault::Value };
         let key = match error.key {
             "vessel.dead_time" => "effect",
             // No scenario sets these; only a manoeuvre can make them matter.
@@ -110,9 +110,9 @@ impl From<SpecificationError> for Problem {
 }
 
 /// The problem of a text that cannot be used.
-pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> Problem {
+pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> ScenarioProblem {
     let found = format!("`{key}` is {}", shown(text));
-    Problem::value(key, found, unfit.to_string(), "change the text")
+    ScenarioProblem::value(key, found, unfit.to_string(), "change the text")
 }
 
 /// The names in backquotes, joined by commas.

@@ -7,13 +7,13 @@ use ::ship::ships::Model;
 use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::effect;
-use crate::problem::{KeyPath, Problem};
+use crate::problem::{KeyPath, ScenarioProblem};
 use crate::ship::ShipWire;
 use crate::specification::{HULL, Specification};
 use crate::wire::{AlsoWire, ScenarioWire, ValidationWire};
 
 /// Resolves everything about a trial of `ship`.
-pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, Problem> {
+pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, ScenarioProblem> {
     let ship = effect::added(ship.build()?, &wire.effect)?;
     let simulation = Simulation {
         gear: wire.steering_gear.of(&ship),
@@ -65,7 +65,7 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
 }
 
 /// A further record: the same ship, gear, helmsman, weather and instruments in another manoeuvre.
-fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
+fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, ScenarioProblem> {
     let what = format!("in the further record {}", index + 1);
     inside(KeyPath::dotted("also").child(index), &what, || {
         let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;
@@ -75,7 +75,7 @@ fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path
 
 /// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so
 /// that the error of a replay is that of the response.
-fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
+fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, ScenarioProblem> {
     inside(KeyPath::dotted("validation"), "in the validation manoeuvre", || {
         Ok(Simulation {
             recording: wire.recording.unwrap_or_else(|| of_validation(&trial.recording)),
@@ -97,13 +97,13 @@ pub fn of_validation(trial: &Recording) -> Recording {
 fn inside(
     place: KeyPath,
     what: &str,
-    simulation: impl FnOnce() -> Result<Simulation, Problem>,
-) -> Result<Simulation, Problem> {
+    simulation: impl FnOnce() -> Result<Simulation, ScenarioProblem>,
+) -> Result<Simulation, ScenarioProblem> {
     let checked = simulation().and_then(|simulation| {
         simulation.validate()?;
         Ok(simulation)
     });
-    checked.map_err(|problem| Problem {
+    checked.map_err(|problem| ScenarioProblem {
         key: problem.key.parts().iter().fold(place, |key, part| key.child(part)),
         found: format!("{what}, {}", problem.found),
         ..problem
@@ -111,14 +111,14 @@ fn inside(
 }
 
 /// The manoeuvre; a record to replay is in `folder` or near it.
-fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, Problem> {
+fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, ScenarioProblem> {
     let Manoeuvre::Replay { file, .. } = manoeuvre else { return Ok(manoeuvre.clone()) };
     let path = folder.join(file);
     let refuse = |found: String| {
         let key = KeyPath::dotted("manoeuvre.replay.file");
         let advice =
             "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
-        Problem::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
+        ScenarioProblem::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
     };
     // It is read for every cell, and what has gone through a pipe is gone.
     if path.exists() && !path.is_file() {

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use crate::keys::{Key, LeftOut, keys};
+use crate::keys::{ScenarioKey, LeftOut, keys};
 use crate::method::Method;
 use crate::problem::Problem;
 use crate::resolve::of_validation;
@@ -34,7 +34,7 @@ const ORDER: [&str; 16] = [
 /// change.
 ///
 /// Fails as the scenario would.
-pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
+pub fn text(document: &Table, methods: &[Method]) -> Result<String, ScenarioProblem> {
     let mut wire: ScenarioWire = reader::document(document)?;
     let own = ShipWire::read(&wire.ship)?;
     let ship = effect::added(own.build()?, &wire.effect)?;
@@ -51,18 +51,18 @@ pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
     }
     wire.ship.values_mut().for_each(|table| *table = own.complete());
     let complete = Table::try_from(&wire).expect("what was read can be written");
-    let mut lines = Lines { keys: keys(), text: String::new() };
+    let mut lines = ResolvedText { keys: keys(), text: String::new() };
     lines.table(&[], &complete, Some(document));
     Ok(lines.text.trim_start().to_owned())
 }
 
-struct Lines {
+struct ResolvedText {
     /// Settings of a trial, for those that have no value when they are left out.
-    keys: Vec<Key>,
+    keys: Vec<ScenarioKey>,
     text: String,
 }
 
-impl Lines {
+impl ResolvedText {
     /// What stands below a path, beside what was `given` there.
     fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
         let mut entries: Vec<(&String, &Value)> = table.iter().collect();
@@ -107,7 +107,7 @@ impl Lines {
             .filter(|(first, _)| ["validation", "also"].contains(first))
             .map_or(path, |(_, rest)| rest)
             .join(".");
-        for Key { key, unit, default, meaning } in &self.keys {
+        for ScenarioKey { key, unit, default, meaning } in &self.keys {
             let name = key.strip_prefix(&path).and_then(|rest| rest.strip_prefix('.'));
             let Some(name) = name.filter(|name| !name.contains('.') && !table.contains_key(*name)) else { continue };
             if *default == LeftOut::Nothing && unit != "table" {

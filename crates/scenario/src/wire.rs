@@ -15,7 +15,7 @@ use crate::predictions::PredictWire;
 use crate::ship;
 use crate::stop::StopWire;
 use crate::sweep::AxisWire;
-use crate::words::AxisMark;
+use crate::words::{Presentation, Published};
 
 /// A whole scenario file.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -78,10 +78,10 @@ pub struct ScenarioWire {
     pub sweep: Vec<AxisWire>,
     /// Values of other authors, shown beside the results.
     #[serde(default)]
-    pub published: PublishedWire,
+    pub published: Published,
     /// Which figures are made.
     #[serde(default)]
-    pub output: OutputWire,
+    pub output: Presentation,
 }
 
 fn one() -> u64 {
@@ -236,37 +236,6 @@ pub enum DeadBandWire {
     BacklashDeg(f64),
     /// Width of a dead band.
     DeadBandDeg(f64),
-}
-
-/// Values of other authors, shown beside the results and never used.
-#[derive(Debug, Clone, Copy, Default, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
-pub struct PublishedWire {
-    /// K as published.
-    #[serde(rename = "K-per-s")]
-    pub K_per_s: Option<f64>,
-    /// T as published.
-    #[serde(rename = "T-s")]
-    pub T_s: Option<f64>,
-}
-
-#[derive(Debug, Clone, Default, Deserialize, Serialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
-pub struct OutputWire {
-    /// Figures of the first replicate of every cell: trial, fit, derivatives, replays, intervals.
-    pub showcase: bool,
-    /// Stem of the figure that stands for the study on an overview.
-    pub figure: Option<String>,
-    /// Title of that figure: what it shows, in a sentence.
-    pub title: Option<String>,
-    /// Labels of the methods that figure is about; the others are grey.
-    pub methods: Vec<String>,
-    /// Stems of the figures that are made beside it; all there are when left out.
-    pub figures: Option<Vec<String>>,
-    /// Values of an axis with a name of their own.
-    pub marks: Vec<AxisMark>,
-    /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
-    pub detail: Vec<String>,
 }
 
 numbers! {

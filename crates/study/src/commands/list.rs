@@ -17,7 +17,7 @@ use trial::sidecar::{self, Key};
 
 use scenario::effect_keys;
 use scenario::failure::Failure;
-use scenario::keys::{Key as ScenarioKey, keys as keys_of_scenario};
+use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 
 /// Prints the list.
 pub fn run(what: Listed, common: &Common) -> Result<(), Failure> {
