@@ -92,7 +92,12 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn simulate(&self, cell: usize, specimen: &TrialSpecification, key: &StreamKey) -> Result<Vec<Simulated>, SimulateError> {
+    fn simulate(
+        &self,
+        cell: usize,
+        specimen: &TrialSpecification,
+        key: &StreamKey,
+    ) -> Result<Vec<Simulated>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
         let mut records = specimen.specification.records(key);
         let (simulation, key) = records.next().expect("a trial has a record");

@@ -7,9 +7,9 @@ use simulate::StreamKey;
 use simulate::numbers::Numbers as _;
 use toml::{Table, Value};
 
-use crate::draw::Draw;
+use crate::draw::DrawnKey;
 use crate::method::{Method, Procedure, methods};
-use crate::part::Part;
+use crate::part::ScenarioPart;
 use crate::problem::{KeyPath, ScenarioProblem};
 use crate::ship::ShipWire;
 use crate::specification::Specification;
@@ -119,7 +119,11 @@ impl DrawnSettings {
     /// all; `None` where nothing is drawn.
     ///
     /// Fails with the draw at fault and what is wrong with the trial.
-    fn new(draws: &[DrawnKey], document: &Table, folder: &Path) -> Result<Option<(Self, Specification)>, (usize, ScenarioProblem)> {
+    fn new(
+        draws: &[DrawnKey],
+        document: &Table,
+        folder: &Path,
+    ) -> Result<Option<(Self, Specification)>, (usize, ScenarioProblem)> {
         if draws.is_empty() {
             return Ok(None);
         }
@@ -154,7 +158,12 @@ impl DrawnSettings {
             let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
             if !is_set {
                 let found = format!("`{}` holds no number that can be drawn", draw.key);
-                return Err(ScenarioProblem::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
+                return Err(ScenarioProblem::name(
+                    draw.key.clone(),
+                    found,
+                    "expected the key of a number",
+                    "change the key",
+                ));
             }
         }
         resolve::specification(&ship, &wire, &self.folder)
@@ -218,8 +227,8 @@ pub(crate) fn swept(
         .map(|(index, draw)| draw.resolve(index))
         .collect::<Result<_, _>>()
         .map_err(|problem| if points.is_empty() { problem } else { blame(problem) })?;
-    let drawn =
-        DrawnSettings::new(&draws, &changed, folder).map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
+    let drawn = DrawnSettings::new(&draws, &changed, folder)
+        .map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
     let (drawn, specification) = match drawn {
         Some((drawn, specification)) => (Some(drawn), specification),
         None => (None, specification),

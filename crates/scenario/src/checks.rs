@@ -2,14 +2,14 @@
 
 use std::collections::HashSet;
 
-use crate::cell::Cell;
+use crate::cell::DesignCell;
 use crate::draw::DrawWire;
 use crate::limits;
 use crate::method::Method;
 use crate::name::{self, LONGEST_NAME};
 use crate::problem::{KeyPath, ScenarioProblem, of_text, suggestion};
-use crate::sweep::Axis;
-use crate::words::AxisMark;
+use crate::sweep::SweepAxis;
+use crate::words::MarkedValue;
 
 /// Largest number of trials; more is a slip of the pen.
 const MOST_TRIALS: u64 = 1_000_000_000;
@@ -113,7 +113,12 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), ScenarioPr
         }
         if !mark.at.is_finite() {
             let advice = "give the place of the mark on the axis";
-            return Err(ScenarioProblem::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
+            return Err(ScenarioProblem::value(
+                key.child("at"),
+                format!("found {}", mark.at),
+                "expected a number",
+                advice,
+            ));
         }
         name::label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
     }

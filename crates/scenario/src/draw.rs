@@ -10,8 +10,8 @@ use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
 use crate::limits;
-use crate::part::Part;
-use crate::problem::{KeyPath, AtFault, ScenarioProblem};
+use crate::part::ScenarioPart;
+use crate::problem::{AtFault, KeyPath, ScenarioProblem};
 
 /// A draw as it is written.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -97,8 +97,9 @@ impl DrawWire {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
         limits::depth(&key, &place.child("key"))?;
-        let is_of_trial =
-            |first: &String| ScenarioPart::of(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str());
+        let is_of_trial = |first: &String| {
+            ScenarioPart::of(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str())
+        };
         if !key.parts().first().is_some_and(is_of_trial) {
             return Err(ScenarioProblem::value(
                 place.child("key"),
@@ -155,7 +156,11 @@ impl DrawWire {
             (None, None, None, Some(RangeWire { from, to })) => {
                 let from = number("log-uniform", "from", from, 0.0)?;
                 let to = number("log-uniform", "to", to, from)?;
-                Ok((DrawnDistribution { of_logarithm: true, law: uniform(from.ln(), to.ln()) }, [from, to], "log-uniform"))
+                Ok((
+                    DrawnDistribution { of_logarithm: true, law: uniform(from.ln(), to.ln()) },
+                    [from, to],
+                    "log-uniform",
+                ))
             }
             _ => Err(ScenarioProblem::name(
                 place.clone(),

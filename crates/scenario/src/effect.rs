@@ -130,7 +130,9 @@ fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<EffectNumbe
         EffectWire::WindMoment(WindMomentWire { rudder_deg, from_deg: from }) => {
             let twice = 2.0 * from_deg(from);
             let component = |share: f64| match from.is_finite() {
-                true => EffectNumber { value: from_deg(rudder_deg) * share, ..setting("rudder-deg", rudder_deg, DEGREE) },
+                true => {
+                    EffectNumber { value: from_deg(rudder_deg) * share, ..setting("rudder-deg", rudder_deg, DEGREE) }
+                }
                 false => setting("from-deg", from, DEGREE),
             };
             (Arc::new(WindMoment::Steady), vec![component(twice.sin()), component(-twice.cos())])

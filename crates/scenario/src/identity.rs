@@ -12,7 +12,7 @@ use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
 
-use crate::part::Part;
+use crate::part::ScenarioPart;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
 pub fn design_of(document: &Table) -> Table {

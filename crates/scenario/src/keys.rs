@@ -70,7 +70,13 @@ impl<'a> SchemaWalk<'a> {
     }
 
     /// A key, and those below it.
-    fn key(&self, key: &str, (written, variant): (&'a Value, &'a Value), is_required: bool, keys: &mut Vec<ScenarioKey>) {
+    fn key(
+        &self,
+        key: &str,
+        (written, variant): (&'a Value, &'a Value),
+        is_required: bool,
+        keys: &mut Vec<ScenarioKey>,
+    ) {
         let mut value = self.resolved(written);
         let kind = |value: &'a Value| value["type"].as_str().or(value["type"][0].as_str());
         let list = kind(value).filter(|kind| *kind == "array").map(|_| self.resolved(&value["items"]));

@@ -8,7 +8,7 @@ pub enum ScenarioPart {
     /// The study as a whole: the same in every cell.
     Study,
     /// What is done in a cell with its trials.
-    DesignCell,
+    Cell,
     /// How a trial is made.
     Trial,
 }

@@ -49,7 +49,12 @@ impl PredictWire {
         if self.manoeuvres.is_empty() {
             let found = "`predict.manoeuvres` is empty";
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
-            return Err(ScenarioProblem::value(key.child("manoeuvres"), found, expected, "name one, or leave [predict] out"));
+            return Err(ScenarioProblem::value(
+                key.child("manoeuvres"),
+                found,
+                expected,
+                "name one, or leave [predict] out",
+            ));
         }
         let mut kinds: Vec<Manoeuvre> = Vec::with_capacity(self.manoeuvres.len());
         for text in &self.manoeuvres {

@@ -65,7 +65,12 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
 }
 
 /// A further record: the same ship, gear, helmsman, weather and instruments in another manoeuvre.
-fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, ScenarioProblem> {
+fn also_steered(
+    wire: &AlsoWire,
+    index: usize,
+    trial: &Simulation,
+    folder: &Path,
+) -> Result<Simulation, ScenarioProblem> {
     let what = format!("in the further record {}", index + 1);
     inside(KeyPath::dotted("also").child(index), &what, || {
         let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;

@@ -2,9 +2,9 @@
 
 use toml::{Table, Value};
 
-use crate::keys::{ScenarioKey, LeftOut, keys};
+use crate::keys::{LeftOut, ScenarioKey, keys};
 use crate::method::Method;
-use crate::problem::Problem;
+use crate::problem::ScenarioProblem;
 use crate::resolve::of_validation;
 use crate::ship::ShipWire;
 use crate::wire::ScenarioWire;

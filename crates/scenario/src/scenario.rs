@@ -16,7 +16,7 @@ use crate::cell::{self, DesignCell};
 use crate::failure::Failure;
 use crate::identity::{self, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
-use crate::part::Part;
+use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
 use crate::problem::{KeyPath, ScenarioProblem, of_text};
 use crate::ship::ShipWire;

@@ -209,7 +209,12 @@ impl FirstOrderWire {
 }
 
 /// Numbers that make no ship, at the key of the one at fault; of all other faults that is the rudder bias.
-fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f64, error: &ShipError) -> ScenarioProblem {
+fn not_a_ship(
+    key: &KeyPath,
+    numbers: &[(&str, &str, Option<f64>)],
+    bias_deg: f64,
+    error: &ShipError,
+) -> ScenarioProblem {
     let (symbol, expected) = match *error {
         ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
         ShipError::Range { symbol, parameter, value } => {
@@ -225,7 +230,11 @@ fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f6
     ScenarioProblem::value(key, found, expected, "change the number")
 }
 
-fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> Result<Option<Particulars>, ScenarioProblem> {
+fn particulars(
+    key: &KeyPath,
+    length_m: Option<f64>,
+    speed_kn: Option<f64>,
+) -> Result<Option<Particulars>, ScenarioProblem> {
     let half = |given: &str, missing: &str| {
         let found = format!("`{key}` has `{given}` without `{missing}`");
         ScenarioProblem::name(

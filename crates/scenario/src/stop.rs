@@ -96,7 +96,12 @@ impl StopWire {
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
             let found = format!("`stop.standard-error` is {}", Shown(self.standard_error));
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
-            return Err(ScenarioProblem::value(key.child("standard-error"), found, "expected a finite number above 0", advice));
+            return Err(ScenarioProblem::value(
+                key.child("standard-error"),
+                found,
+                "expected a finite number above 0",
+                advice,
+            ));
         }
         if self.every < FEWEST {
             return Err(ScenarioProblem::value(

@@ -11,8 +11,8 @@ use toml::{Table, Value};
 
 use crate::limits;
 use crate::name;
-use crate::part::Part;
-use crate::problem::{KeyPath, AtFault, ScenarioProblem, of_text};
+use crate::part::ScenarioPart;
+use crate::problem::{AtFault, KeyPath, ScenarioProblem, of_text};
 
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;
@@ -189,7 +189,7 @@ impl AxisWire {
             }
             _ => {
                 return Err(ScenarioProblem::name(
-                    place,
+                    place.clone(),
                     "this sweep does not say what it changes and how",
                     "expected `key` with one of `values`, `linear` and `log`, or `points` alone",
                     "for instance `key = \"sensor.heading-noise-deg\"` and `values = [0.01, 0.1, 1.0]`",
@@ -211,7 +211,10 @@ impl AxisWire {
         }
         name::label(name).map_err(|unfit| {
             let key = if self.name.is_some() { "name" } else { "key" };
-            ScenarioProblem { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), name, unfit) }
+            ScenarioProblem {
+                advice: "give the sweep a short `name`".to_owned(),
+                ..of_text(place.child(key), name, unfit)
+            }
         })?;
         let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         labels.sort_unstable();
@@ -231,7 +234,12 @@ impl PointWire {
     fn resolve(&self, place: &KeyPath) -> SweepPoint {
         let set = self.set.iter().map(|(key, value)| {
             let place = place.child("set").child(key);
-            SweepSetting { key: KeyPath::dotted(key), value: value.clone(), key_place: place.clone(), value_place: place }
+            SweepSetting {
+                key: KeyPath::dotted(key),
+                value: value.clone(),
+                key_place: place.clone(),
+                value_place: place,
+            }
         });
         SweepPoint { label: self.label.clone(), value: self.value, set: set.collect() }
     }
@@ -360,7 +368,8 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, ScenarioProb
 ///
 /// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
 pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), ScenarioProblem> {
-    let fault = |problem: String, expected: String| ScenarioProblem::name(key.clone(), problem, expected, "change the key");
+    let fault =
+        |problem: String, expected: String| ScenarioProblem::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
     let mut parts = key.parts().iter().peekable();
     while let Some(part) = parts.next() {

@@ -21,7 +21,10 @@ fn design(methods: &[&str], cells: usize) -> Design {
         predicts: false,
         draws: Vec::new(),
         cells: (0..cells).map(cell).collect(),
-        words: Words { output: Presentation { detail: vec!["0".into()], ..Presentation::default() }, ..Words::default() },
+        words: Words {
+            output: Presentation { detail: vec!["0".into()], ..Presentation::default() },
+            ..Words::default()
+        },
     }
 }
 
