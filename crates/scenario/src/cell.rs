@@ -10,7 +10,7 @@ use toml::{Table, Value};
 use crate::draw::DrawnKey;
 use crate::method::{Method, Procedure, methods};
 use crate::part::ScenarioPart;
-use crate::problem::{KeyPath, ScenarioProblem};
+use crate::problem::{KeyPath, KeyFault};
 use crate::ship::ShipWire;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
@@ -123,11 +123,11 @@ impl DrawnSettings {
         draws: &[DrawnKey],
         document: &Table,
         folder: &Path,
-    ) -> Result<Option<(Self, Specification)>, (usize, ScenarioProblem)> {
+    ) -> Result<Option<(Self, Specification)>, (usize, KeyFault)> {
         if draws.is_empty() {
             return Ok(None);
         }
-        let blamed = |index: usize, problem: ScenarioProblem| {
+        let blamed = |index: usize, problem: KeyFault| {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&problem.key));
             (of_key.unwrap_or(index), problem)
         };
@@ -151,14 +151,14 @@ impl DrawnSettings {
     }
 
     /// The specification with these values; what they do not touch is as it is in the middle.
-    fn specification(&self, values: &[f64]) -> Result<Specification, ScenarioProblem> {
+    fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let (mut wire, mut ship) = (self.wire.clone(), self.ship.clone());
         for (draw, &value) in self.draws.iter().zip(values) {
             let key = draw.key.parts();
             let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
             if !is_set {
                 let found = format!("`{}` holds no number that can be drawn", draw.key);
-                return Err(ScenarioProblem::name(
+                return Err(KeyFault::name(
                     draw.key.clone(),
                     found,
                     "expected the key of a number",
@@ -190,13 +190,13 @@ pub(crate) fn swept(
     points: &[&sweep::SweepPoint],
     base: &[Method],
     folder: &Path,
-) -> Result<DesignCell, ScenarioProblem> {
+) -> Result<DesignCell, KeyFault> {
     let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     let settings = || points.iter().flat_map(|point| &point.set);
     let cell = (labels.len() > 1).then(|| labels.join(", "));
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
     // several.
-    let blame = |problem: ScenarioProblem| {
+    let blame = |problem: KeyFault| {
         let of_key = settings().rfind(|setting| setting.key.is_related(&problem.key));
         match of_key.or_else(|| settings().next_back()) {
             Some(setting) => setting.blamed(problem, cell.as_deref()),
@@ -212,7 +212,7 @@ pub(crate) fn swept(
     let specification = specification.map_err(blame)?;
     let methods = methods(&wire.identifier, folder).map_err(blame)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
-        return Err(blame(ScenarioProblem::value(
+        return Err(blame(KeyFault::value(
             KeyPath::dotted("identifier"),
             "the methods are not the same in every cell",
             "expected settings of methods",

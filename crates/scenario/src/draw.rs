@@ -11,7 +11,7 @@ use statrs::distribution::ContinuousCDF as _;
 
 use crate::limits;
 use crate::part::ScenarioPart;
-use crate::problem::{AtFault, KeyPath, ScenarioProblem};
+use crate::problem::{AtFault, KeyPath, KeyFault};
 
 /// A draw as it is written.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -93,7 +93,7 @@ impl DrawWire {
     }
 
     /// Checks a draw; `index` is its place in the list.
-    pub fn resolve(&self, index: usize) -> Result<DrawnKey, ScenarioProblem> {
+    pub fn resolve(&self, index: usize) -> Result<DrawnKey, KeyFault> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
         limits::depth(&key, &place.child("key"))?;
@@ -101,7 +101,7 @@ impl DrawWire {
             ScenarioPart::of(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str())
         };
         if !key.parts().first().is_some_and(is_of_trial) {
-            return Err(ScenarioProblem::value(
+            return Err(KeyFault::value(
                 place.child("key"),
                 format!("the draw changes `{key}`"),
                 "expected a key that says how a trial is made",
@@ -112,7 +112,7 @@ impl DrawWire {
         let [low, high] = self.between.unwrap_or(support);
         let draw = DrawnKey { key, place: place.child(name), index: index as u32, shape, between: [low, high] };
         if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
-            return Err(ScenarioProblem::value(
+            return Err(KeyFault::value(
                 place.child("between"),
                 format!("the draw of `{}` is held between {} and {}", draw.key, Shown(low), Shown(high)),
                 format!("expected a range that holds at least {} % of the draws", 100.0 * LEAST_PROBABILITY),
@@ -123,7 +123,7 @@ impl DrawWire {
     }
 
     /// The distribution, where it lives, and its name.
-    fn shape(&self, place: &KeyPath) -> Result<(DrawnDistribution, [f64; 2], &'static str), ScenarioProblem> {
+    fn shape(&self, place: &KeyPath) -> Result<(DrawnDistribution, [f64; 2], &'static str), KeyFault> {
         let number = |name: &str, number: &str, value: f64, least: f64| {
             let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
             if value.is_finite() && value > least && is_within_reach {
@@ -134,7 +134,7 @@ impl DrawWire {
                 f64::NEG_INFINITY => "expected a finite number".to_owned(),
                 _ => format!("expected a finite number above {}", Shown(least)),
             };
-            Err(ScenarioProblem::value(place.child(name).child(number), found, expected, "change the number"))
+            Err(KeyFault::value(place.child(name).child(number), found, expected, "change the number"))
         };
         let everything = [f64::NEG_INFINITY, f64::INFINITY];
         match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
@@ -162,7 +162,7 @@ impl DrawWire {
                     "log-uniform",
                 ))
             }
-            _ => Err(ScenarioProblem::name(
+            _ => Err(KeyFault::name(
                 place.clone(),
                 format!("the draw of `{}` does not say from which distribution", self.key),
                 "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
@@ -208,14 +208,14 @@ impl DrawnKey {
 
     /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution;
     /// `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: ScenarioProblem, cell: Option<&str>) -> ScenarioProblem {
+    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {
             AtFault::Name => (self.key_place(), AtFault::Value, "changes a key that cannot be drawn"),
             AtFault::Value => (self.place.clone(), AtFault::Name, "reaches a value that makes no trial"),
         };
         let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
-        ScenarioProblem { key, mark, found, ..problem }
+        KeyFault { key, mark, found, ..problem }
     }
 
     fn key_place(&self) -> KeyPath {
@@ -267,7 +267,7 @@ impl DrawnDistribution {
 mod tests {
     use super::*;
 
-    fn draw(text: &str) -> Result<DrawnKey, ScenarioProblem> {
+    fn draw(text: &str) -> Result<DrawnKey, KeyFault> {
         toml::from_str::<DrawWire>(&format!("key = \"ship.first-order.T-s\"\n{text}")).expect("well formed").resolve(0)
     }
 

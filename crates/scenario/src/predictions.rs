@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use trial::Manoeuvre;
 use trial::manoeuvre::NoManoeuvre;
 
-use crate::problem::{KeyPath, ScenarioProblem};
+use crate::problem::{KeyPath, KeyFault};
 
 /// Manoeuvres that are predicted from every answer and held against the same ship making them.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -35,11 +35,11 @@ pub struct Predictions {
 
 impl PredictWire {
     /// Checks every value; fails with the first one that makes no sense.
-    pub(crate) fn resolve(&self) -> Result<Predictions, ScenarioProblem> {
+    pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         let key = KeyPath::dotted("predict");
         if !DRAWS.contains(&self.draws) {
             let found = format!("`predict.draws` is {}", self.draws);
-            return Err(ScenarioProblem::value(
+            return Err(KeyFault::value(
                 key.child("draws"),
                 found,
                 "expected 50 to 10000",
@@ -49,7 +49,7 @@ impl PredictWire {
         if self.manoeuvres.is_empty() {
             let found = "`predict.manoeuvres` is empty";
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
-            return Err(ScenarioProblem::value(
+            return Err(KeyFault::value(
                 key.child("manoeuvres"),
                 found,
                 expected,
@@ -60,7 +60,7 @@ impl PredictWire {
         for text in &self.manoeuvres {
             let refused = |expected: &str| {
                 let found = format!("`predict.manoeuvres` holds {text:?}");
-                ScenarioProblem::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
+                KeyFault::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
             };
             let kind: Manoeuvre = text.parse().map_err(|error: NoManoeuvre| refused(&error.to_string()))?;
             if matches!(kind, Manoeuvre::Spiral { .. }) {

@@ -60,7 +60,7 @@ pub enum AtFault {
 
 /// Something wrong with a scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ScenarioProblem {
+pub struct KeyFault {
     /// The key at fault.
     pub key: KeyPath,
     /// Whether its name or its value is at fault.
@@ -73,7 +73,7 @@ pub struct ScenarioProblem {
     pub advice: String,
 }
 
-impl ScenarioProblem {
+impl KeyFault {
     /// A value at fault.
     pub fn value(
         key: KeyPath,
@@ -95,7 +95,7 @@ impl ScenarioProblem {
     }
 }
 
-impl From<SpecificationError> for ScenarioProblem {
+impl From<SpecificationError> for KeyFault {
     fn from(error: SpecificationError) -> Self {
         let [found, expected, advice] = error.words();
         let mark = if error.is_of_name() { AtFault::Name } else { AtFault::Value };
@@ -110,9 +110,9 @@ impl From<SpecificationError> for ScenarioProblem {
 }
 
 /// The problem of a text that cannot be used.
-pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> ScenarioProblem {
+pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> KeyFault {
     let found = format!("`{key}` is {}", shown(text));
-    ScenarioProblem::value(key, found, unfit.to_string(), "change the text")
+    KeyFault::value(key, found, unfit.to_string(), "change the text")
 }
 
 /// The names in backquotes, joined by commas.

@@ -11,17 +11,17 @@ use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
 use crate::name::shown;
-use crate::problem::{KeyPath, ScenarioProblem, listed, suggestion};
+use crate::problem::{KeyPath, KeyFault, listed, suggestion};
 
 /// Reads a whole document.
 ///
 /// Fails with the key, what was found and what was expected.
-pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, ScenarioProblem> {
+pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
     table(document, &KeyPath::default())
 }
 
 /// Reads the table at `key`.
-pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, ScenarioProblem> {
+pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, KeyFault> {
     serde_path_to_error::deserialize(entries(table)).map_err(|error| {
         let mut place = key.clone();
         let mut value: Option<&Value> = None;
@@ -119,8 +119,22 @@ impl<'de> Deserializer<'de> for Node<'de> {
 }
 
 /// The problem of a table that lacks a key.
-pub fn missing(table: &KeyPath, name: &'static str) -> ScenarioProblem {
+pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
     ReadFault::MissingKey(name).at(table.clone(), None)
+}
+
+/// The fault of a table that should hold one name and holds these.
+pub fn not_one_name<'a>(
+    table: KeyPath,
+    names: impl Iterator<Item = &'a String>,
+    known: &[&str],
+) -> KeyFault {
+    let names: Vec<&String> = names.collect();
+    let (found, advice) = match names.len() {
+        0 => (format!("`{table}` names nothing"), format!("use one of {}", listed(known))),
+        several => (format!("`{table}` names {several} things at once: {}", listed(&names)), "keep one of them".into()),
+    };
+    KeyFault::name(table, found, "expected exactly one name below it", advice)
 }
 
 /// What is wrong, before it is known where.
@@ -167,7 +181,7 @@ impl de::Error for ReadFault {
 
 impl ReadFault {
     /// The fault of the `found` value at a key; of the document when there is none.
-    fn at(self, key: KeyPath, found: Option<&Value>) -> ScenarioProblem {
+    fn at(self, key: KeyPath, found: Option<&Value>) -> KeyFault {
         let called = |key: &KeyPath| match key.parts() {
             [] => "a scenario".to_owned(),
             _ => format!("`{key}`"),
@@ -177,17 +191,17 @@ impl ReadFault {
         match self {
             Self::UnknownKey(name, known) => {
                 let found = format!("{} has no key `{name}`", called(&key.above()));
-                ScenarioProblem::name(key, found, "no such key here", suggestion(&name, known))
+                KeyFault::name(key, found, "no such key here", suggestion(&name, known))
             }
             Self::UnknownName(name, known) if text == Some(&name) => {
-                ScenarioProblem::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, known))
+                KeyFault::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, known))
             }
             Self::UnknownName(name, known) => {
                 let key = key.child(&name);
                 let found = format!("no {} is called `{name}`", kind_of(&key));
-                ScenarioProblem::name(key, found, "no such name", suggestion(&name, known))
+                KeyFault::name(key, found, "no such name", suggestion(&name, known))
             }
-            Self::MissingKey(name) => ScenarioProblem::name(
+            Self::MissingKey(name) => KeyFault::name(
                 key,
                 format!("{place} has no key `{name}`"),
                 format!("expected `{name}` here"),
@@ -200,14 +214,7 @@ impl ReadFault {
                 },
             ),
             Self::NotOneName(known) => {
-                let names: Vec<&String> = found.and_then(Value::as_table).into_iter().flat_map(Table::keys).collect();
-                let (found, advice) = match names.len() {
-                    0 => (format!("{place} names nothing"), format!("use one of {}", listed(known))),
-                    several => {
-                        (format!("{place} names {several} things at once: {}", listed(&names)), "keep one of them".into())
-                    }
-                };
-                ScenarioProblem::name(key, found, "expected exactly one name below it", advice)
+                not_one_name(key, found.and_then(Value::as_table).into_iter().flat_map(Table::keys), known)
             }
             Self::Kind(expected) => {
                 let expected = in_toml(&expected);
@@ -218,10 +225,10 @@ impl ReadFault {
                     _ => "change the value".to_owned(),
                 };
                 let found = found.map_or_else(|| "a table".to_owned(), described);
-                ScenarioProblem::value(key, format!("{place} is {found}"), format!("expected {expected}"), advice)
+                KeyFault::value(key, format!("{place} is {found}"), format!("expected {expected}"), advice)
             }
             Self::Other(message) => {
-                ScenarioProblem::value(key, format!("{place}: {message}"), "not accepted", "change the value")
+                KeyFault::value(key, format!("{place}: {message}"), "not accepted", "change the value")
             }
         }
     }
@@ -306,7 +313,7 @@ mod tests {
         limit: f64,
     }
 
-    fn read(text: &str) -> Result<Trial, ScenarioProblem> {
+    fn read(text: &str) -> Result<Trial, KeyFault> {
         document(&text.parse::<Table>().expect("well formed"))
     }
 

@@ -7,13 +7,13 @@ use ::ship::ships::Model;
 use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::effect;
-use crate::problem::{KeyPath, ScenarioProblem};
+use crate::problem::{KeyPath, KeyFault};
 use crate::ship::ShipWire;
 use crate::specification::{HULL, Specification};
 use crate::wire::{AlsoWire, ScenarioWire, ValidationWire};
 
 /// Resolves everything about a trial of `ship`.
-pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, ScenarioProblem> {
+pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::added(ship.build()?, &wire.effect)?;
     let simulation = Simulation {
         gear: wire.steering_gear.of(&ship),
@@ -70,7 +70,7 @@ fn also_steered(
     index: usize,
     trial: &Simulation,
     folder: &Path,
-) -> Result<Simulation, ScenarioProblem> {
+) -> Result<Simulation, KeyFault> {
     let what = format!("in the further record {}", index + 1);
     inside(KeyPath::dotted("also").child(index), &what, || {
         let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;
@@ -80,7 +80,7 @@ fn also_steered(
 
 /// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so
 /// that the error of a replay is that of the response.
-fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, ScenarioProblem> {
+fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, KeyFault> {
     inside(KeyPath::dotted("validation"), "in the validation manoeuvre", || {
         Ok(Simulation {
             recording: wire.recording.unwrap_or_else(|| of_validation(&trial.recording)),
@@ -102,13 +102,13 @@ pub fn of_validation(trial: &Recording) -> Recording {
 fn inside(
     place: KeyPath,
     what: &str,
-    simulation: impl FnOnce() -> Result<Simulation, ScenarioProblem>,
-) -> Result<Simulation, ScenarioProblem> {
+    simulation: impl FnOnce() -> Result<Simulation, KeyFault>,
+) -> Result<Simulation, KeyFault> {
     let checked = simulation().and_then(|simulation| {
         simulation.validate()?;
         Ok(simulation)
     });
-    checked.map_err(|problem| ScenarioProblem {
+    checked.map_err(|problem| KeyFault {
         key: problem.key.parts().iter().fold(place, |key, part| key.child(part)),
         found: format!("{what}, {}", problem.found),
         ..problem
@@ -116,14 +116,14 @@ fn inside(
 }
 
 /// The manoeuvre; a record to replay is in `folder` or near it.
-fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, ScenarioProblem> {
+fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, KeyFault> {
     let Manoeuvre::Replay { file, .. } = manoeuvre else { return Ok(manoeuvre.clone()) };
     let path = folder.join(file);
     let refuse = |found: String| {
         let key = KeyPath::dotted("manoeuvre.replay.file");
         let advice =
             "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
-        ScenarioProblem::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
+        KeyFault::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
     };
     // It is read for every cell, and what has gone through a pipe is gone.
     if path.exists() && !path.is_file() {

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use crate::keys::{LeftOut, ScenarioKey, keys};
 use crate::method::Method;
-use crate::problem::ScenarioProblem;
+use crate::problem::KeyFault;
 use crate::resolve::of_validation;
 use crate::ship::ShipWire;
 use crate::wire::ScenarioWire;
@@ -34,8 +34,9 @@ const ORDER: [&str; 16] = [
 /// change.
 ///
 /// Fails as the scenario would.
-pub fn text(document: &Table, methods: &[Method]) -> Result<String, ScenarioProblem> {
+pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     let mut wire: ScenarioWire = reader::document(document)?;
+    effect::complete(&mut wire.effect);
     let own = ShipWire::read(&wire.ship)?;
     let ship = effect::added(own.build()?, &wire.effect)?;
     wire.steering_gear = wire.steering_gear.of(&ship);

@@ -18,7 +18,7 @@ use crate::identity::{self, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
-use crate::problem::{KeyPath, ScenarioProblem, of_text};
+use crate::problem::{KeyPath, KeyFault, of_text};
 use crate::ship::ShipWire;
 use crate::stop::StopRule;
 use crate::sweep::{self, SweepAxis};
@@ -73,7 +73,7 @@ impl Scenario {
         let text = read_text(path)?;
         if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
             name::file(&manifest.name).map_err(|unfit| {
-                let ScenarioProblem { key, mark, found, expected, advice } =
+                let KeyFault { key, mark, found, expected, advice } =
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
                 Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
             })?;
@@ -100,9 +100,9 @@ impl Scenario {
     }
 
     /// Resolves a document; its identity and text are for the caller to set.
-    fn of_document(document: &Table, name: &str, folder: &Path) -> Result<Self, ScenarioProblem> {
+    fn of_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         if document.is_empty() {
-            return Err(ScenarioProblem::name(
+            return Err(KeyFault::name(
                 KeyPath::default(),
                 "there is nothing in this scenario",
                 "expected keys",

@@ -12,7 +12,7 @@ use toml::{Table, Value};
 use crate::limits;
 use crate::name;
 use crate::part::ScenarioPart;
-use crate::problem::{AtFault, KeyPath, ScenarioProblem, of_text};
+use crate::problem::{AtFault, KeyPath, KeyFault, of_text};
 
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;
@@ -96,7 +96,7 @@ pub struct SweepSetting {
 
 impl SweepSetting {
     /// Whether its key is one that a sweep may change.
-    fn check(&self) -> Result<(), ScenarioProblem> {
+    fn check(&self) -> Result<(), KeyFault> {
         limits::depth(&self.key, &self.key_place)?;
         let first = self.key.parts().first().map_or("", String::as_str);
         if first.is_empty() || matches!(ScenarioPart::of(first), ScenarioPart::Prose | ScenarioPart::Study) {
@@ -104,9 +104,9 @@ impl SweepSetting {
                 "" => "the sweep names no key".to_owned(),
                 _ => format!("the sweep changes `{}`, which is the same for the whole study", self.key),
             };
-            return Err(ScenarioProblem {
+            return Err(KeyFault {
                 mark: if self.key_place == self.value_place { AtFault::Name } else { AtFault::Value },
-                ..ScenarioProblem::value(
+                ..KeyFault::value(
                     self.key_place.clone(),
                     found,
                     "expected a key of the trial or of a method",
@@ -118,7 +118,7 @@ impl SweepSetting {
     }
 
     /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: ScenarioProblem, cell: Option<&str>) -> ScenarioProblem {
+    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let name = problem.mark == AtFault::Name;
         let place = if name { &self.key_place } else { &self.value_place };
         // Where the point itself names the key, its name is underlined and not its value.
@@ -129,17 +129,17 @@ impl SweepSetting {
         if !problem.found.starts_with(&format!("`{}` is", self.key)) {
             found = format!("{found}: {}", problem.found);
         }
-        ScenarioProblem { key: place.clone(), mark, found, ..problem }
+        KeyFault { key: place.clone(), mark, found, ..problem }
     }
 }
 
 impl AxisWire {
     /// Checks an axis; `index` is its place in the `sweep` array.
-    pub fn resolve(&self, index: usize) -> Result<SweepAxis, ScenarioProblem> {
+    pub fn resolve(&self, index: usize) -> Result<SweepAxis, KeyFault> {
         let place = KeyPath::dotted("sweep").child(index);
         let mut points = self.points(&place)?;
         if points.is_empty() {
-            return Err(ScenarioProblem::name(
+            return Err(KeyFault::name(
                 place,
                 "this sweep has no points",
                 "expected at least one",
@@ -153,7 +153,7 @@ impl AxisWire {
         if let (Some(index), true) = (odd, self.points.is_some()) {
             let key = place.child("points").child(index).child("value");
             let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
-            return Err(ScenarioProblem::value(
+            return Err(KeyFault::value(
                 key,
                 found,
                 "expected a finite number",
@@ -167,7 +167,7 @@ impl AxisWire {
     }
 
     /// The points, as they are written or spread over a range.
-    fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, ScenarioProblem> {
+    fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
         let single =
             |key: &str, value: Value, value_place: KeyPath| SweepPoint::of(key, value, place.child("key"), value_place);
         Ok(match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
@@ -188,7 +188,7 @@ impl AxisWire {
                 points.iter().enumerate().map(|(i, point)| point.resolve(&place.child("points").child(i))).collect()
             }
             _ => {
-                return Err(ScenarioProblem::name(
+                return Err(KeyFault::name(
                     place.clone(),
                     "this sweep does not say what it changes and how",
                     "expected `key` with one of `values`, `linear` and `log`, or `points` alone",
@@ -199,19 +199,19 @@ impl AxisWire {
     }
 
     /// Whether the axis and its points have names that can be printed, each point one of its own.
-    fn check_names(&self, place: &KeyPath, name: &str, points: &[SweepPoint]) -> Result<(), ScenarioProblem> {
+    fn check_names(&self, place: &KeyPath, name: &str, points: &[SweepPoint]) -> Result<(), KeyFault> {
         for (i, point) in points.iter().enumerate() {
             name::label(&point.label).map_err(|unfit| {
                 let (key, advice) = match &self.points {
                     Some(_) => (place.child("points").child(i).child("label"), "change the label"),
                     None => (place.child("values").child(i), "give the value a shorter name: a `label` under `points`"),
                 };
-                ScenarioProblem { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
+                KeyFault { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
             })?;
         }
         name::label(name).map_err(|unfit| {
             let key = if self.name.is_some() { "name" } else { "key" };
-            ScenarioProblem {
+            KeyFault {
                 advice: "give the sweep a short `name`".to_owned(),
                 ..of_text(place.child(key), name, unfit)
             }
@@ -219,7 +219,7 @@ impl AxisWire {
         let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         labels.sort_unstable();
         if let Some(twice) = labels.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(ScenarioProblem::name(
+            return Err(KeyFault::name(
                 place.clone(),
                 format!("two points of this sweep are called `{}`", twice[0]),
                 "expected points with names of their own",
@@ -246,7 +246,7 @@ impl PointWire {
 }
 
 impl RangeWire {
-    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, ScenarioProblem> {
+    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, KeyFault> {
         if !(self.from.is_finite() && self.to.is_finite()) {
             return Err(self.problem(place, "expected finite ends"));
         }
@@ -258,7 +258,7 @@ impl RangeWire {
         Ok((0..points).map(move |k| if k + 1 == points { to } else { from + k as f64 * step }))
     }
 
-    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, ScenarioProblem> {
+    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, KeyFault> {
         if !(self.from > 0.0 && self.to > 0.0) {
             return Err(self.problem(place, "expected both ends of a logarithmic range to be above 0"));
         }
@@ -273,9 +273,9 @@ impl RangeWire {
         Ok(self.linear(place)?.enumerate().map(move |(k, _)| exact(k)))
     }
 
-    fn problem(&self, place: &KeyPath, expected: &str) -> ScenarioProblem {
+    fn problem(&self, place: &KeyPath, expected: &str) -> KeyFault {
         let found = format!("a range of {} points from {} to {}", self.points, Shown(self.from), Shown(self.to));
-        ScenarioProblem::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
+        KeyFault::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
     }
 }
 
@@ -329,12 +329,12 @@ fn trim(number: f64) -> String {
 /// Every combination of points, the first axis slowest; one empty combination when there is no axis.
 ///
 /// Fails when there are too many, and when two axes change the same key.
-pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, ScenarioProblem> {
+pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
     limits::entries("sweep", axes.len(), limits::MOST_SWEEPS)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
     if count > MOST_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
-        return Err(ScenarioProblem::name(
+        return Err(KeyFault::name(
             KeyPath::dotted("sweep"),
             format!("the sweeps make {} = {count} cells", sizes.join(" × ")),
             format!("expected at most {MOST_CELLS} cells"),
@@ -345,7 +345,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, ScenarioProb
     for (index, axis) in axes.iter().enumerate() {
         let keys = || axis.points.iter().flat_map(|point| &point.set).map(|setting| &setting.key);
         if let Some(again) = keys().find(|key| before.contains(key)) {
-            return Err(ScenarioProblem::name(
+            return Err(KeyFault::name(
                 KeyPath::dotted("sweep").child(index),
                 format!("two sweeps change `{again}`"),
                 "expected every sweep to change keys of its own",
@@ -367,9 +367,9 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, ScenarioProb
 /// Sets a key in a document, making tables on the way; numbers in the path count the entries of lists from 0.
 ///
 /// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
-pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), ScenarioProblem> {
+pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
     let fault =
-        |problem: String, expected: String| ScenarioProblem::name(key.clone(), problem, expected, "change the key");
+        |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
     let mut parts = key.parts().iter().peekable();
     while let Some(part) = parts.next() {
@@ -403,7 +403,7 @@ pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), Scen
 mod tests {
     use super::*;
 
-    fn axis(text: &str) -> Result<SweepAxis, ScenarioProblem> {
+    fn axis(text: &str) -> Result<SweepAxis, KeyFault> {
         toml::from_str::<AxisWire>(text).expect("well formed").resolve(0)
     }
 
@@ -430,7 +430,7 @@ mod tests {
             key_place: KeyPath::default(),
             value_place: KeyPath::default(),
         }
-        .blamed(ScenarioProblem::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
+        .blamed(KeyFault::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
         assert_eq!(refused.found, "the sweep sets `a` to 1e308: `b` is wrong");
     }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::name;
-use crate::problem::{KeyPath, ScenarioProblem, of_text};
+use crate::problem::{KeyPath, KeyFault, of_text};
 
 /// The words of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -75,7 +75,7 @@ impl Words {
     }
 
     /// Whether all of them can be printed, and what is to be a name of a file can be one.
-    pub(crate) fn check(&self) -> Result<(), ScenarioProblem> {
+    pub(crate) fn check(&self) -> Result<(), KeyFault> {
         let Self { question, analysis, finding, output } = self;
         let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
         for (key, text) in prose.chain(output.title.iter().map(|title| ("output.title", title))) {
@@ -93,13 +93,13 @@ impl Words {
 
 impl Published {
     /// Whether both are numbers.
-    pub(crate) fn check(&self) -> Result<(), ScenarioProblem> {
+    pub(crate) fn check(&self) -> Result<(), KeyFault> {
         for (name, value) in [("K-per-s", self.K_per_s), ("T-s", self.T_s)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
                 let key = KeyPath::dotted("published").child(name);
                 let found = format!("`{key}` is {value}");
                 let advice = "give the number, or leave the key out";
-                return Err(ScenarioProblem::value(key, found, "expected a finite number", advice));
+                return Err(KeyFault::value(key, found, "expected a finite number", advice));
             }
         }
         Ok(())

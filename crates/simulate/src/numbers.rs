@@ -1,5 +1,7 @@
 //! The numbers of settings by their keys, so that a study can set one that it draws without reading its settings again.
 
+use std::collections::BTreeMap;
+
 use ship::angle::DEGREE;
 
 /// Settings that hold numbers.
@@ -30,6 +32,13 @@ impl<T: Numbers> Numbers for Vec<T> {
     }
 }
 
+impl<T: Numbers> Numbers for BTreeMap<String, T> {
+    fn set(&mut self, key: &[String], value: f64) -> bool {
+        let Some((name, below)) = key.split_first() else { return false };
+        self.get_mut(name).is_some_and(|item| item.set(below, value))
+    }
+}
+
 impl Numbers for trial::Manoeuvre {
     fn set(&mut self, key: &[String], value: f64) -> bool {
         let [_, name] = key else { return false };
@@ -42,8 +51,8 @@ pub fn unit(key: &str) -> f64 {
     if key.split(['-', '.']).any(|word| word == "deg") { DEGREE } else { 1.0 }
 }
 
-/// Implements [`Numbers`]: `Type: "key" field, …;` for a table, and `Type = Variant …;` for a choice, whose one key
-/// names the variant there is. A number in SI is set in the unit of its key; `Type as written: …` keeps the unit.
+/// Implements [`Numbers`]: `Type: "key" field, …;`. A number in SI is set in the unit of its key; `Type as written: …`
+/// keeps the unit.
 #[macro_export]
 macro_rules! numbers {
     () => {};
@@ -66,16 +75,5 @@ macro_rules! numbers {
                 }
             }
         }
-    };
-    ($type:ty = $($variant:ident)*; $($rest:tt)*) => {
-        impl $crate::numbers::Numbers for $type {
-            fn set(&mut self, key: &[String], value: f64) -> bool {
-                let Some((_, below)) = key.split_first() else { return false };
-                match self {
-                    $(Self::$variant(settings) => $crate::numbers::Numbers::set(settings, below, value),)*
-                }
-            }
-        }
-        $crate::numbers!($($rest)*);
     };
 }

@@ -77,8 +77,8 @@ fn effects() -> Table {
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let keys = effect_keys(effect.as_ref()).unwrap_or(MISSING);
-        table.push([effect.id(), effect.form(), keys, effect.equation(), &parameters.join(", ")]);
+        let keys = effect_keys(effect.as_ref()).unwrap_or_else(|| MISSING.to_owned());
+        table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
     }
     table
 }
