@@ -28,13 +28,10 @@ pub mod document;
 pub mod error;
 pub mod figures;
 pub mod form;
-mod form_record;
-mod form_remarks;
 pub mod imo;
 pub mod interval;
 pub mod known;
-#[cfg(test)]
-mod made_up;
+mod line;
 pub mod mixture;
 pub mod motion;
 pub mod passage;
@@ -43,6 +40,8 @@ pub mod replay;
 pub mod standard;
 pub mod steady;
 mod steered;
+#[cfg(test)]
+mod testing;
 pub mod turn;
 
 pub use document::PredictDocument;

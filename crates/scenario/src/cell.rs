@@ -10,7 +10,7 @@ use toml::{Table, Value};
 use crate::draw::DrawnKey;
 use crate::method::{Method, Procedure, methods};
 use crate::part::ScenarioPart;
-use crate::problem::{KeyPath, KeyFault};
+use crate::problem::{KeyFault, KeyPath};
 use crate::ship::ShipWire;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
@@ -158,12 +158,7 @@ impl DrawnSettings {
             let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
             if !is_set {
                 let found = format!("`{}` holds no number that can be drawn", draw.key);
-                return Err(KeyFault::name(
-                    draw.key.clone(),
-                    found,
-                    "expected the key of a number",
-                    "change the key",
-                ));
+                return Err(KeyFault::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
             }
         }
         resolve::specification(&ship, &wire, &self.folder)

@@ -7,7 +7,7 @@ use crate::draw::DrawWire;
 use crate::limits;
 use crate::method::Method;
 use crate::name::{self, LONGEST_NAME};
-use crate::problem::{KeyPath, KeyFault, of_text, suggestion};
+use crate::problem::{KeyFault, KeyPath, of_text, suggestion};
 use crate::sweep::SweepAxis;
 use crate::words::MarkedValue;
 
@@ -113,12 +113,7 @@ pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> 
         }
         if !mark.at.is_finite() {
             let advice = "give the place of the mark on the axis";
-            return Err(KeyFault::value(
-                key.child("at"),
-                format!("found {}", mark.at),
-                "expected a number",
-                advice,
-            ));
+            return Err(KeyFault::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
         }
         name::label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
     }

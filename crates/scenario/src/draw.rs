@@ -11,7 +11,7 @@ use statrs::distribution::ContinuousCDF as _;
 
 use crate::limits;
 use crate::part::ScenarioPart;
-use crate::problem::{AtFault, KeyPath, KeyFault};
+use crate::problem::{AtFault, KeyFault, KeyPath};
 
 /// A draw as it is written.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]

@@ -55,17 +55,18 @@ static FORMS: [EffectForm; 16] = [
     form(
         || Arc::new(SecondOrder),
         "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'.",
-        &[
-            key("T2-s", 1.0, "Smaller time constant T2."),
-            key("T3-s", 1.0, "Time constant T3 of the rudder rate."),
-        ],
+        &[key("T2-s", 1.0, "Smaller time constant T2."), key("T3-s", 1.0, "Time constant T3 of the rudder rate.")],
     ),
     form(
         || Arc::new(NonlinearDamping::Cubic),
         DAMPING,
         &[key("n3-s2-per-deg2", PER_DEGREE * PER_DEGREE, "+ n3 r³ on the left (Norrbin, Bech).")],
     ),
-    form(|| Arc::new(NonlinearDamping::Quadratic), DAMPING, &[key("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.")]),
+    form(
+        || Arc::new(NonlinearDamping::Quadratic),
+        DAMPING,
+        &[key("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.")],
+    ),
     form(|| Arc::new(NonlinearDamping::Square), DAMPING, &[key("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.")]),
     form(
         || Arc::new(WindMoment::Steady),
@@ -79,11 +80,7 @@ static FORMS: [EffectForm; 16] = [
         || Arc::new(SpeedLoss::Modelled),
         "Speed that falls in the turn: K ~ U, T ~ 1/U.",
         &[
-            key(
-                "loss-s-per-deg2",
-                PER_DEGREE * PER_DEGREE,
-                "Rate of loss for a squared yaw rate of 1 deg²/s².",
-            ),
+            key("loss-s-per-deg2", PER_DEGREE * PER_DEGREE, "Rate of loss for a squared yaw rate of 1 deg²/s²."),
             key("recovery-s", 1.0, "Time in which the speed comes back."),
             EffectKey {
                 default: Some(2.0),
@@ -92,7 +89,11 @@ static FORMS: [EffectForm; 16] = [
         ],
     ),
     form(|| Arc::new(SteeringLag::DeadTime), LAG, &[key("dead-time-s", 1.0, "Dead time.")]),
-    form(|| Arc::new(SteeringLag::FirstOrder), LAG, &[key("first-order-s", 1.0, "Time constant of a first-order lag.")]),
+    form(
+        || Arc::new(SteeringLag::FirstOrder),
+        LAG,
+        &[key("first-order-s", 1.0, "Time constant of a first-order lag.")],
+    ),
     form(
         || Arc::new(RudderSaturation),
         "Stall: the rudder acts as δ − c3 δ³.",

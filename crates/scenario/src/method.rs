@@ -12,7 +12,7 @@ use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
 use crate::answers::Answers;
-use crate::problem::{KeyPath, KeyFault, of_text};
+use crate::problem::{KeyFault, KeyPath, of_text};
 use crate::{limits, name};
 
 /// A method as a scenario names it.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use trial::Manoeuvre;
 use trial::manoeuvre::NoManoeuvre;
 
-use crate::problem::{KeyPath, KeyFault};
+use crate::problem::{KeyFault, KeyPath};
 
 /// Manoeuvres that are predicted from every answer and held against the same ship making them.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -49,12 +49,7 @@ impl PredictWire {
         if self.manoeuvres.is_empty() {
             let found = "`predict.manoeuvres` is empty";
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
-            return Err(KeyFault::value(
-                key.child("manoeuvres"),
-                found,
-                expected,
-                "name one, or leave [predict] out",
-            ));
+            return Err(KeyFault::value(key.child("manoeuvres"), found, expected, "name one, or leave [predict] out"));
         }
         let mut kinds: Vec<Manoeuvre> = Vec::with_capacity(self.manoeuvres.len());
         for text in &self.manoeuvres {

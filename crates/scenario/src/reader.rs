@@ -11,7 +11,7 @@ use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
 use crate::name::shown;
-use crate::problem::{KeyPath, KeyFault, listed, suggestion};
+use crate::problem::{KeyFault, KeyPath, listed, suggestion};
 
 /// Reads a whole document.
 ///
@@ -124,11 +124,7 @@ pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
 }
 
 /// The fault of a table that should hold one name and holds these.
-pub fn not_one_name<'a>(
-    table: KeyPath,
-    names: impl Iterator<Item = &'a String>,
-    known: &[&str],
-) -> KeyFault {
+pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, known: &[&str]) -> KeyFault {
     let names: Vec<&String> = names.collect();
     let (found, advice) = match names.len() {
         0 => (format!("`{table}` names nothing"), format!("use one of {}", listed(known))),

@@ -7,7 +7,7 @@ use ::ship::ships::Model;
 use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::effect;
-use crate::problem::{KeyPath, KeyFault};
+use crate::problem::{KeyFault, KeyPath};
 use crate::ship::ShipWire;
 use crate::specification::{HULL, Specification};
 use crate::wire::{AlsoWire, ScenarioWire, ValidationWire};
@@ -65,12 +65,7 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
 }
 
 /// A further record: the same ship, gear, helmsman, weather and instruments in another manoeuvre.
-fn also_steered(
-    wire: &AlsoWire,
-    index: usize,
-    trial: &Simulation,
-    folder: &Path,
-) -> Result<Simulation, KeyFault> {
+fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, KeyFault> {
     let what = format!("in the further record {}", index + 1);
     inside(KeyPath::dotted("also").child(index), &what, || {
         let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;

@@ -18,7 +18,7 @@ use crate::identity::{self, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
 use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
-use crate::problem::{KeyPath, KeyFault, of_text};
+use crate::problem::{KeyFault, KeyPath, of_text};
 use crate::ship::ShipWire;
 use crate::stop::StopRule;
 use crate::sweep::{self, SweepAxis};

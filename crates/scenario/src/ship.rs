@@ -14,7 +14,7 @@ use simulate::numbers;
 use simulate::numbers::Numbers;
 use toml::{Table, Value};
 
-use crate::problem::{KeyPath, KeyFault, suggestion};
+use crate::problem::{KeyFault, KeyPath, suggestion};
 use crate::{reader, sweep};
 
 /// A ship that a scenario names or describes.
@@ -209,12 +209,7 @@ impl FirstOrderWire {
 }
 
 /// Numbers that make no ship, at the key of the one at fault; of all other faults that is the rudder bias.
-fn not_a_ship(
-    key: &KeyPath,
-    numbers: &[(&str, &str, Option<f64>)],
-    bias_deg: f64,
-    error: &ShipError,
-) -> KeyFault {
+fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f64, error: &ShipError) -> KeyFault {
     let (symbol, expected) = match *error {
         ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
         ShipError::Range { symbol, parameter, value } => {
@@ -230,11 +225,7 @@ fn not_a_ship(
     KeyFault::value(key, found, expected, "change the number")
 }
 
-fn particulars(
-    key: &KeyPath,
-    length_m: Option<f64>,
-    speed_kn: Option<f64>,
-) -> Result<Option<Particulars>, KeyFault> {
+fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> Result<Option<Particulars>, KeyFault> {
     let half = |given: &str, missing: &str| {
         let found = format!("`{key}` has `{given}` without `{missing}`");
         KeyFault::name(

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use ship::Shown;
 
 use crate::method::Method;
-use crate::problem::{KeyPath, KeyFault, suggestion};
+use crate::problem::{KeyFault, KeyPath, suggestion};
 
 /// When a cell has had enough trials; `replicates` is then the most.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]

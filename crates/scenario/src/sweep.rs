@@ -12,7 +12,7 @@ use toml::{Table, Value};
 use crate::limits;
 use crate::name;
 use crate::part::ScenarioPart;
-use crate::problem::{AtFault, KeyPath, KeyFault, of_text};
+use crate::problem::{AtFault, KeyFault, KeyPath, of_text};
 
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;
@@ -211,10 +211,7 @@ impl AxisWire {
         }
         name::label(name).map_err(|unfit| {
             let key = if self.name.is_some() { "name" } else { "key" };
-            KeyFault {
-                advice: "give the sweep a short `name`".to_owned(),
-                ..of_text(place.child(key), name, unfit)
-            }
+            KeyFault { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), name, unfit) }
         })?;
         let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         labels.sort_unstable();
@@ -368,8 +365,7 @@ pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
 ///
 /// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
 pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
-    let fault =
-        |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
+    let fault = |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
     let mut parts = key.parts().iter().peekable();
     while let Some(part) = parts.next() {

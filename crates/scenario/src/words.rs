@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
 use crate::name;
-use crate::problem::{KeyPath, KeyFault, of_text};
+use crate::problem::{KeyFault, KeyPath, of_text};
 
 /// The words of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
