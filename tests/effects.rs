@@ -7,7 +7,7 @@ use kempf_tests::records::zig_zag;
 use ship::angle::{from_deg, to_deg};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Particulars, Response, ResponseModel};
-use simulate::{Manoeuvre, Side, Simulated, StreamKey, Vessel};
+use simulate::{Side, Simulated, StreamKey, Vessel};
 
 /// The identifiers that were published: files of users name them. A new effect needs no line here.
 const IDS: [&str; 12] = [
@@ -40,9 +40,7 @@ fn with_effect(effect: &Arc<dyn Effect>, sign: f64, value: fn(&Parameter) -> f64
 fn steer(response: Response, sign: f64) -> Simulated {
     let vessel = Vessel::response(response).with_particulars(Particulars { length: 105.0, speed: 8.6 });
     let mut simulation = zig_zag(vessel, 10.0, 10.0, from_deg(2.5), 300.0);
-    if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
-        zig_zag.first = if sign < 0.0 { Side::Port } else { Side::Starboard };
-    }
+    simulation.manoeuvre = simulation.manoeuvre.to(if sign < 0.0 { Side::Port } else { Side::Starboard });
     simulation
         .run(&StreamKey { seed: 7, cell: 0, replicate: 0 })
         .expect("a zig-zag with a typical effect comes to its end")

@@ -8,9 +8,8 @@ use ship::ships::{self, Model, kvlcc2, mariner, seiun_like};
 use ship::vessel::abkowitz::Abkowitz;
 use ship::vessel::mmg::{BySign, Mmg, Parameters, Wake};
 use ship::{FirstOrder, Particulars, Polyline, Ship};
-use simulate::disturbance::{GaussMarkov, Squall, Wind};
-use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, ZigZagEnd};
-use simulate::sensor::{Bursts, Loses, Spikes, YawRateSensor};
+use simulate::disturbance::{GaussMarkov, Squall, WaveSpectrum, Wind};
+use simulate::sensor::Spikes;
 use simulate::{Disturbances, Manoeuvre, Sensors, Side, Simulation, SteeringGear, StreamKey, Truth, Vessel};
 use trial::{Channel, Trial, ZigZag};
 
@@ -26,9 +25,7 @@ const EXECUTES: usize = 5;
 /// time.
 fn own_zig_zag(vessel: Vessel, rate: f64, unit: f64, angle_deg: f64, first: Side) -> Simulation {
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, rate, 1.0);
-    if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
-        (zig_zag.end, zig_zag.first) = (ZigZagEnd::Executes(EXECUTES), first);
-    }
+    simulation.manoeuvre = simulation.manoeuvre.to(first).until_execute(EXECUTES);
     simulation.recording.duration = None;
     simulation.recording.period = 0.05 * unit;
     simulation
@@ -159,19 +156,17 @@ fn training_ship(manoeuvre: Manoeuvre) -> Simulation {
 fn every_manoeuvre_leaves_a_record() {
     let rudder = from_deg(15.0);
     let signal = Polyline::new(vec![0.0, 20.0, 30.0, 90.0], vec![0.0, 0.2, -0.2, 0.1]).expect("increasing times");
-    let zig_zag = |end| Manoeuvre::zig_zag(rudder, from_deg(10.0), end);
-    let turn = |end| Manoeuvre::TurningCircle(TurningCircle { rudder, side: Side::Port, end });
+    let zig_zag = Manoeuvre::zig_zag(rudder, from_deg(10.0));
+    let turn = Manoeuvre::turning_circle(rudder).to(Side::Port);
+    let to_heading =
+        Manoeuvre::TurningCircle { rudder, side: Side::Port, duration: None, heading_change: Some(from_deg(540.0)) };
     let manoeuvres = [
-        ("zig-zag by executes", zig_zag(ZigZagEnd::Executes(4)), None),
-        ("zig-zag by duration", zig_zag(ZigZagEnd::Duration(200.0)), Some(200.0)),
-        ("turning circle by duration", turn(TurnEnd::Duration(300.0)), Some(300.0)),
-        ("turning circle by heading", turn(TurnEnd::HeadingChange(from_deg(540.0))), None),
-        (
-            "pull-out",
-            Manoeuvre::PullOut(PullOut { rudder, side: Side::Starboard, hold: 100.0, duration: 80.0 }),
-            Some(180.0),
-        ),
-        ("replay", Manoeuvre::Replay(signal), Some(90.0)),
+        ("zig-zag by executes", zig_zag.clone().until_execute(4), None),
+        ("zig-zag by duration", zig_zag.lasting(200.0), Some(200.0)),
+        ("turning circle by duration", turn.lasting(300.0), Some(300.0)),
+        ("turning circle by heading", to_heading, None),
+        ("pull-out", Manoeuvre::PullOut { rudder, side: Side::Starboard, hold: 100.0, duration: 80.0 }, Some(180.0)),
+        ("replay", Manoeuvre::replay(signal), Some(90.0)),
     ];
     for (what, manoeuvre, length) in manoeuvres {
         let (trial, truth) = run(&training_ship(manoeuvre), what);
@@ -200,45 +195,53 @@ fn every_instrument_leaves_its_mark_on_the_record() {
     let instruments: [Instrument; 15] = [
         (
             "heading noise",
-            |s| s.heading.noise = from_deg(0.5),
+            |s| s.heading_noise = from_deg(0.5),
             |t, c| (0.4..0.6).contains(&rms(t.heading(), c.heading())),
         ),
-        ("heading quantum", |s| s.heading.quantum = from_deg(0.5), |t, _| multiples(t.heading(), 0.5)),
-        ("heading lag", |s| s.heading.lag = 1.0, |t, c| (0.1..2.0).contains(&rms(t.heading(), c.heading()))),
-        ("heading bias", |s| s.heading.bias = from_deg(3.0), |t, c| (rms(t.heading(), c.heading()) - 3.0).abs() < 1e-9),
+        ("heading quantum", |s| s.heading_quantum = from_deg(0.5), |t, _| multiples(t.heading(), 0.5)),
+        ("heading lag", |s| s.heading_lag = 1.0, |t, c| (0.1..2.0).contains(&rms(t.heading(), c.heading()))),
+        ("heading bias", |s| s.heading_bias = from_deg(3.0), |t, c| (rms(t.heading(), c.heading()) - 3.0).abs() < 1e-9),
         (
             "heading wander",
-            |s| s.heading.wander = Some(GaussMarkov { sd: from_deg(1.0), correlation_time: 10.0 }),
+            |s| s.heading_wander = Some(GaussMarkov { sd: from_deg(1.0), correlation_time: 10.0 }),
             |t, c| (0.5..1.5).contains(&rms(t.heading(), c.heading())),
         ),
         (
             "heading spikes",
-            |s| s.heading.spikes = Some(Spikes { probability: 0.1, size: from_deg(5.0) }),
+            |s| s.heading_spikes = Some(Spikes { probability: 0.1, size: from_deg(5.0) }),
             |t, c| (10..50).contains(&t.heading().iter().zip(c.heading()).filter(|(psi, own)| psi != own).count()),
         ),
-        ("rare headings", |s| s.heading.every_rows = 5, |t, c| t.rudder() == c.rudder() && lost(t) == t.len() / 5 * 4),
-        ("rudder noise", |s| s.rudder.noise = from_deg(0.5), |t, c| (0.4..0.6).contains(&rms(t.rudder(), c.rudder()))),
-        ("rudder quantum", |s| s.rudder.quantum = from_deg(1.0), |t, _| multiples(t.rudder(), 1.0)),
+        (
+            "rare headings",
+            |s| s.heading_every_rows = Some(5),
+            |t, c| t.rudder() == c.rudder() && lost(t) == t.len() / 5 * 4,
+        ),
+        ("rudder noise", |s| s.rudder_noise = from_deg(0.5), |t, c| (0.4..0.6).contains(&rms(t.rudder(), c.rudder()))),
+        ("rudder quantum", |s| s.rudder_quantum = from_deg(1.0), |t, _| multiples(t.rudder(), 1.0)),
         (
             "yaw-rate indicator",
-            |s| s.yaw_rate = Some(YawRateSensor::default()),
+            |s| s.yaw_rate_noise = Some(0.0),
             |t, c| t.yaw_rate().is_some() && c.yaw_rate().is_none(),
         ),
-        ("jitter", |s| s.clock.jitter = 0.1, |t, c| t.time() == c.time() && t.heading() != c.heading()),
+        ("jitter", |s| s.jitter = 0.1, |t, c| t.time() == c.time() && t.heading() != c.heading()),
         (
             "late heading",
-            |s| s.clock.heading_delay = 1.0,
+            |s| s.heading_delay = 1.0,
             |t, c| (1..t.len()).all(|row| (t.heading()[row] - c.heading()[row - 1]).abs() < 1e-9),
         ),
         ("drop-outs", |s| s.drop_out.probability = 0.1, |t, _| (10..50).contains(&lost(t))),
-        ("bursts", |s| s.drop_out.bursts = Some(Bursts { probability: 0.05, mean_rows: 5.0 }), |t, _| lost(t) > 10),
+        (
+            "bursts",
+            |s| (s.drop_out.burst_probability, s.drop_out.burst_mean_rows) = (Some(0.05), Some(5.0)),
+            |t, _| lost(t) > 10,
+        ),
         (
             "lost rows",
-            |s| (s.drop_out.probability, s.drop_out.loses) = (0.1, Loses::Row),
+            |s| (s.drop_out.probability, s.drop_out.whole_row) = (0.1, true),
             |t, c| t.len() < c.len() && lost(t) == 0,
         ),
     ];
-    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Duration(270.0));
+    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).lasting(270.0);
     let (clean, _) = run(&training_ship(manoeuvre.clone()), "perfect instruments");
     for (what, set, marked) in instruments {
         let mut simulation = training_ship(manoeuvre.clone());
@@ -260,9 +263,9 @@ fn every_disturbance_moves_the_ship() {
         ("drift", |d| d.drift = 1e-4),
         ("squall", |d| d.squall = Some(Squall { start: 50.0, duration: 60.0, edge: 10.0, moment: 0.03 })),
         ("random walk", |d| d.random_walk = 1e-3),
-        ("waves", |d| d.waves = Some(ship::narrow_band::NarrowBand { sd: 0.007, frequency: 0.6, damping: 0.1 })),
+        ("waves", |d| d.waves = Some(WaveSpectrum { sd: 0.007, frequency: 0.6, damping: 0.1 })),
     ];
-    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Duration(270.0));
+    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).lasting(270.0);
     let (calm, _) = run(&training_ship(manoeuvre.clone()), "calm");
     for (what, set) in disturbances {
         let mut simulation = training_ship(manoeuvre.clone());

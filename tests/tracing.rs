@@ -33,7 +33,7 @@ fn ship(effects: Vec<Missing>) -> Response {
 
 fn steered(vessel: Vessel, angle_deg: f64) -> Simulation {
     let mut simulation = zig_zag(vessel, angle_deg, angle_deg, from_deg(2.5), 300.0);
-    simulation.sensors.heading.noise = from_deg(0.05);
+    simulation.sensors.heading_noise = from_deg(0.05);
     simulation
 }
 
@@ -169,7 +169,7 @@ fn with_channel(effect: Arc<dyn Effect>, values: Vec<f64>, channels: &[Signal]) 
         let quiet = run(
             &{
                 let mut quiet = steered(Vessel::response(ship(Vec::new())), 10.0);
-                quiet.sensors.heading.noise = 0.0;
+                quiet.sensors.heading_noise = 0.0;
                 quiet
             },
             3,
@@ -253,9 +253,9 @@ fn nothing_is_named_where_nothing_is_missing() {
         change(&mut simulation);
         cases.push((name, simulation));
     };
-    add("heading in whole degrees", &|s| s.sensors.heading.quantum = from_deg(1.0));
-    add("rudder in whole degrees", &|s| s.sensors.rudder.quantum = from_deg(1.0));
-    add("late stamps", &|s| s.sensors.clock.jitter = 0.3);
+    add("heading in whole degrees", &|s| s.sensors.heading_quantum = from_deg(1.0));
+    add("rudder in whole degrees", &|s| s.sensors.rudder_quantum = from_deg(1.0));
+    add("late stamps", &|s| s.sensors.jitter = 0.3);
     add("random walk", &|s| s.disturbances.random_walk = from_deg(0.05));
     add("gusts", &|s| {
         s.disturbances.gusts = Some(GaussMarkov { sd: from_deg(0.5), correlation_time: 20.0 });

@@ -3,7 +3,7 @@
 //!
 //! T r' + r + n₃ r³ = K (δ + δ_r) from rest, by Runge–Kutta of order four with one fixed step for all. It is less than
 //! a simulation: the helmsman looks at the compass once a step, so that an execute falls on the first step at or beyond
-//! its heading (as with [`Watches::Display`](simulate::helm::Watches) of that period), the rudder moves in a straight
+//! its heading (as a helmsman who reads the display so often), the rudder moves in a straight
 //! line within a step, and there is neither weather nor instrument.
 //!
 //! Source of the ship: Norrbin (1963).
@@ -198,9 +198,7 @@ mod tests {
     use ship::angle::from_deg;
     use ship::effects::NonlinearDamping;
     use ship::{Response, ResponseModel};
-    use simulate::helm::{Helmsman, Watches};
-    use simulate::manoeuvre::{Manoeuvre, ZigZagEnd};
-    use simulate::{Recording, Simulation, Solver, SteeringGear, StreamKey, Vessel};
+    use simulate::{Helmsman, Manoeuvre, Recording, Simulation, Solver, SteeringGear, StreamKey, Vessel};
     use std::sync::Arc;
 
     const BATCH: Batch = Batch {
@@ -235,10 +233,10 @@ mod tests {
                 ship.rudder_bias,
                 ship.cubic,
             ]);
-            let manoeuvre = Manoeuvre::zig_zag(BATCH.rudder, BATCH.heading, ZigZagEnd::Record);
+            let manoeuvre = Manoeuvre::zig_zag(BATCH.rudder, BATCH.heading);
             let simulation = Simulation {
                 gear: SteeringGear::with_rate(BATCH.rate),
-                helmsman: Helmsman { watches: Watches::Display { period: BATCH.step }, ..Helmsman::default() },
+                helmsman: Helmsman { reads_display_every: Some(BATCH.step), ..Helmsman::default() },
                 recording: Recording { duration: Some(300.0), ..Recording::default() },
                 solver: Solver::RungeKutta(BATCH.step),
                 ..Simulation::new(Vessel::response(response), manoeuvre)

@@ -5,8 +5,6 @@ use std::sync::Arc;
 use ship::angle::from_deg;
 use ship::effects::{Effect, NonlinearDamping};
 use ship::{FirstOrder, Response, ResponseModel};
-use simulate::manoeuvre::ZigZagEnd;
-use simulate::sensor::YawRateSensor;
 use simulate::{Manoeuvre, Recording, Sensors, Simulation, SteeringGear, StreamKey, Vessel};
 use trial::Trial;
 
@@ -29,15 +27,15 @@ pub const KEY: StreamKey = StreamKey { seed: 1957, cell: 0, replicate: 0 };
 /// noise 0.02 deg/s; `rows` rows half a second apart.
 pub fn first_order_zig_zag(rows: usize) -> Simulation {
     let mut sensors = Sensors::default();
-    sensors.heading.noise = from_deg(0.1);
-    sensors.yaw_rate = Some(YawRateSensor { noise: from_deg(0.02), ..YawRateSensor::default() });
+    sensors.heading_noise = from_deg(0.1);
+    sensors.yaw_rate_noise = Some(from_deg(0.02));
     Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period: PERIOD, duration: Some(PERIOD * (rows - 1) as f64), ..Recording::default() },
         sensors,
         ..Simulation::new(
             Vessel::first_order(FirstOrder::from_indices(K, T, 0.0)),
-            Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Record),
+            Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)),
         )
     }
 }

@@ -3,8 +3,6 @@
 
 use ship::FirstOrder;
 use ship::angle::from_deg;
-use simulate::manoeuvre::{ZigZag, ZigZagEnd};
-use simulate::recording::Start;
 use simulate::{Manoeuvre, Side, Simulated, Simulation, SteeringGear, StreamKey, Vessel};
 use trial::{Channel, Columns, Trial};
 
@@ -67,14 +65,12 @@ impl Case {
             from_deg(self.rate_deg_s),
             self.duration_s,
         );
-        if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
-            zig_zag.first = self.first;
-        }
+        simulation.manoeuvre = simulation.manoeuvre.to(self.first);
         if self.begin == Begin::Mid {
-            simulation.recording.start = Start::Execute { number: 2, offset: 1.2 };
+            (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.2));
         }
         simulation.recording.period = self.period_s;
-        simulation.sensors.heading.noise = from_deg(self.noise_deg);
+        simulation.sensors.heading_noise = from_deg(self.noise_deg);
         simulation
     }
 
@@ -96,7 +92,7 @@ impl Case {
 /// A zig-zag (angles in deg, `rate` in rad/s), starboard first, recorded once a second for `duration` s.
 pub fn zig_zag(vessel: Vessel, rudder_deg: f64, heading_deg: f64, rate: f64, duration: f64) -> Simulation {
     let (rudder, heading) = (from_deg(rudder_deg), from_deg(heading_deg));
-    let manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first: Side::Starboard, end: ZigZagEnd::Record });
+    let manoeuvre = Manoeuvre::zig_zag(rudder, heading);
     let mut simulation = Simulation::new(vessel, manoeuvre);
     simulation.gear = SteeringGear::with_rate(rate);
     simulation.recording.duration = Some(duration);

@@ -1,9 +1,10 @@
 //! Predicting a manoeuvre from a thousand drawn ships.
 
 use predict::known::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
-use predict::{IdentifiedShip, Kind, ShipMixture};
+use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
 use ship::effects::{Effect, NonlinearDamping};
+use simulate::Manoeuvre;
 
 use crate::records::{K, T};
 use crate::work::{Group, Reach, Work};
@@ -58,9 +59,10 @@ pub fn prediction() -> Group {
         "A 20/20 zig-zag predicted from 1000 drawn ships, on one core: figures of merit with their intervals, and the bands \
          of the heading.",
     );
-    let kind: Kind = "zig-zag:20/20".parse().expect("a manoeuvre");
+    let kind: Manoeuvre = "zig-zag:20/20".parse().expect("a manoeuvre");
     let mut add = |name: &str, known: IdentifiedShip| {
         let mixture = ShipMixture::new(vec![(known, 1.0)]).expect("a ship");
+        let kind = kind.clone();
         let work = Work::new(name, move || mixture.predict(&kind, DRAWS, false).is_ok()).slow();
         group.alone(work, Some(Reach::Time(0.05)));
     };

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use identify::external::{Answer, Errors};
-use scenario::answers::{Answers, Place};
+use scenario::answers::{Answers, TrialNumber};
 use scenario::failure::Failure;
 use scenario::name::{shown, slug};
 use scenario::{Scenario, hex};
@@ -104,7 +104,7 @@ pub fn read(path: &Path, scenario: &Scenario, observer: &dyn Observer) -> Result
         observer.warn(&format!("{}: not read: {}", path.display(), columns.ignored.join(", ")));
     }
     let records = Records::of(scenario);
-    let mut lines: HashMap<Place, u64> = HashMap::new();
+    let mut lines: HashMap<TrialNumber, u64> = HashMap::new();
     let mut answers = HashMap::new();
     let mut faults = Vec::new();
     for row in table.records() {
@@ -153,7 +153,7 @@ impl<'a> Records<'a> {
     }
 
     /// The trial of a record, by the name of its file.
-    fn find(&self, record: &str) -> Option<Place> {
+    fn find(&self, record: &str) -> Option<TrialNumber> {
         let file = record.rsplit(['/', '\\']).next().unwrap_or(record);
         let name = file.strip_suffix(".csv").unwrap_or(file);
         let place = match self.scenario.replicates {
@@ -163,7 +163,7 @@ impl<'a> Records<'a> {
                 (*self.cells.get(cell)?, number.parse().ok()?)
             }
         };
-        let is_that = |(cell, replicate): &Place| {
+        let is_that = |(cell, replicate): &TrialNumber| {
             *replicate < self.scenario.replicates
                 && record_name(self.scenario, Task { cell: *cell as usize, replicate: *replicate }) == name
         };
@@ -211,7 +211,7 @@ impl Columns {
         Ok(Some(number).filter(|number| number.is_finite()))
     }
 
-    fn place(&self, row: &StringRecord, records: &Records) -> Result<Place, String> {
+    fn place(&self, row: &StringRecord, records: &Records) -> Result<TrialNumber, String> {
         if let Some(record) = self.text(row, "record") {
             return records.find(record).ok_or_else(|| format!("{} is no record of this scenario", shown(record)));
         }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3};
 use ship::FirstOrder;
 use ship::first_order::State;
 use simulate::disturbance::GaussMarkov;
-use simulate::recording::RudderColumn;
+use simulate::recording::RudderSource;
 use simulate::{Simulated, Simulation};
 use trial::noise_model::{Moment, NoiseModel};
 
@@ -50,7 +50,7 @@ pub fn of<'a>(
 /// The bound of (1/T, K/T, K δ_r/T) from one record, its initial state unknown as well.
 fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder) -> Option<Matrix3<f64>> {
     let white = simulation.sensors.declared_noise().heading;
-    let wander = simulation.sensors.heading.wander.filter(|wander| wander.sd > 0.0);
+    let wander = simulation.sensors.heading_wander.filter(|wander| wander.sd > 0.0);
     let compass = match (white, wander) {
         (white, None) => NoiseModel::compass(white?),
         (_, Some(GaussMarkov { sd, correlation_time })) => {
@@ -74,8 +74,9 @@ fn of_record(simulation: &Simulation, simulated: &Simulated, truth: &FirstOrder)
 /// ship has it.
 fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Option<NoiseModel> {
     let Simulation { sensors, disturbances, recording, .. } = simulation;
-    let gyro = sensors.yaw_rate.filter(|gyro| gyro.noise > 0.0 && gyro.bias == 0.0 && gyro.scale_error == 0.0);
-    let read = recording.rudder == RudderColumn::Feedback;
+    let is_right =
+        [sensors.yaw_rate_bias, sensors.yaw_rate_scale_error].iter().all(|error| error.unwrap_or(0.0) == 0.0);
+    let read = recording.rudder == RudderSource::Feedback;
     // Moments are given as the rudder angle that has the same one.
     let b = truth.K_over_T;
     let (moment, moment_level, moment_correlation) = match (disturbances.random_walk, disturbances.gusts) {
@@ -85,11 +86,11 @@ fn noise(simulation: &Simulation, truth: &FirstOrder, compass: NoiseModel) -> Op
         (_, Some(_)) => return None,
     };
     Some(NoiseModel {
-        yaw_rate_sd: gyro.map(|gyro| gyro.noise),
+        yaw_rate_sd: sensors.yaw_rate_noise.filter(|noise| is_right && *noise > 0.0),
         moment,
         moment_level,
         moment_correlation,
-        rudder_sd: if read { sensors.rudder.noise } else { 0.0 },
+        rudder_sd: if read { sensors.rudder_noise } else { 0.0 },
         ..compass
     })
 }

@@ -8,7 +8,7 @@ use std::thread::Scope;
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
-use scenario::{Cell, Scenario};
+use scenario::{DesignCell, Scenario};
 
 use crate::design::{CellFacts, Design};
 use crate::disk;
@@ -118,7 +118,7 @@ fn discard(folder: &ResultFolder, observer: &dyn Observer) -> Result<(), Failure
 
 /// The design without what takes trials to know.
 fn design(scenario: &Scenario) -> Design {
-    let bare = |cell: &Cell| CellFacts {
+    let bare = |cell: &DesignCell| CellFacts {
         labels: cell.labels.clone(),
         values: cell.values.clone(),
         trials: 0..0,
@@ -316,7 +316,7 @@ fn finish(scenario: &Scenario, plan: &Plan, unfinished: Unfinished, folder: &Res
         if own(cell) { CellFacts { trials: known.trials, ..engine::facts(scenario, cell) } } else { known }
     };
     let cells = (0..scenario.cells.len()).into_par_iter().map(facts).collect();
-    let shown = if scenario.showcase { scenario.cells.len() } else { 0 };
+    let shown = if scenario.words.output.showcase { scenario.cells.len() } else { 0 };
     let showcases: Vec<_> = (0..shown)
         .into_par_iter()
         .filter(|&cell| own(cell))

@@ -93,6 +93,6 @@ impl Design {
             return vec![0];
         }
         let place = |title: &String| self.cells.iter().position(|cell| cell.labels.join(", ") == *title);
-        self.words.detail.iter().filter_map(place).collect()
+        self.words.output.detail.iter().filter_map(place).collect()
     }
 }

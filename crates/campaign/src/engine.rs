@@ -13,7 +13,7 @@ use identify::{Estimate, StopReason};
 use predict::IdentifiedShip;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
-use simulate::{Prepared, SimulateError, Simulated, StreamKey};
+use simulate::{PreparedSimulation, SimulateError, Simulated, StreamKey};
 use trial::{Quantity, Trial};
 
 use crate::answer::pooled_rmse_deg;
@@ -25,7 +25,7 @@ use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
 use crate::yardstick::{Yardstick, nearest_first_order};
-use scenario::{Cell, Procedure, Scenario, Specification, Specimen};
+use scenario::{DesignCell, Procedure, Scenario, Specification, TrialSpecification};
 
 /// Rows of one trial, and what they took.
 pub struct Outcome {
@@ -72,7 +72,7 @@ pub struct Bench<'a> {
     first_cell: usize,
     yardsticks: Vec<OnceLock<Yardstick>>,
     /// The simulations of cells whose trials differ in nothing but chance; empty where that would not pay.
-    prepared: Vec<OnceLock<Result<Prepared, SimulateError>>>,
+    prepared: Vec<OnceLock<Result<PreparedSimulation, SimulateError>>>,
 }
 
 /// Most cells of a bench whose simulations are kept: with more, each has few trials, and a record of 1000 rows takes a
@@ -92,13 +92,18 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn simulate(&self, cell: usize, specimen: &Specimen, key: &StreamKey) -> Result<Vec<Simulated>, SimulateError> {
+    fn simulate(
+        &self,
+        cell: usize,
+        specimen: &TrialSpecification,
+        key: &StreamKey,
+    ) -> Result<Vec<Simulated>, SimulateError> {
         let is_fixed = self.scenario.cells[cell].is_fixed();
         let mut records = specimen.specification.records(key);
         let (simulation, key) = records.next().expect("a trial has a record");
         let first = match self.prepared.get(cell - self.first_cell).filter(|_| is_fixed) {
             None => simulation.run(&key),
-            Some(prepared) => match prepared.get_or_init(|| Prepared::new(simulation.clone())) {
+            Some(prepared) => match prepared.get_or_init(|| PreparedSimulation::new(simulation.clone())) {
                 Ok(prepared) => prepared.run(&key),
                 Err(error) => Err(error.clone()),
             },
@@ -204,7 +209,7 @@ fn empty(task: Task, drawn: Option<Arc<[f64]>>) -> Row {
 }
 
 /// A trial that could not be made: a row for every method all the same.
-fn nothing(cell: &Cell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
+fn nothing(cell: &DesignCell, task: Task, drawn: Option<Arc<[f64]>>, simulation: Duration, reason: &str) -> Outcome {
     let blank = Row { failure: Some(reason.into()), ..empty(task, drawn) };
     let rows = (0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect();
     Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods: Vec::new() } }

@@ -311,17 +311,16 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use identify::output_error;
-    use predict::{Kind, ShipMixture};
+    use predict::ShipMixture;
     use ship::FirstOrder;
-    use simulate::manoeuvre::ZigZagEnd;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
 
     fn record(walk_deg: f64) -> Trial {
         let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
-        let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Executes(6));
+        let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(6);
         let mut simulation = Simulation::new(ship, zig_zag);
         simulation.gear = SteeringGear::with_rate(from_deg(2.32));
-        simulation.sensors.heading.noise = from_deg(0.1);
+        simulation.sensors.heading_noise = from_deg(0.1);
         simulation.disturbances.random_walk = from_deg(walk_deg);
         simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 }).expect("a trial").trial
     }
@@ -335,7 +334,7 @@ mod tests {
         let gear = known.gear.expect("a zig-zag");
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
-        let kind: Kind = "zig-zag:20/20".parse().expect("known");
+        let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
         let prediction =
             ShipMixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
         let first = &prediction.figures["first_overshoot_deg"];

@@ -15,7 +15,7 @@ use crate::answer::{MethodEntry, entry};
 use crate::curves::{curve, origin, replay_curves, zigzag_figure};
 use crate::engine;
 use crate::task::Task;
-use scenario::{Cell, Method, MethodName, Procedure, Published, Scenario};
+use scenario::{DesignCell, Method, MethodName, Procedure, Published, Scenario};
 
 /// The first trial of one cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -106,7 +106,7 @@ fn intervals(
             })
             .collect(),
         truth: truth.map(|truth| Reference { k_per_s: truth.K(), t_s: truth.T() }),
-        published: published.k_per_s.zip(published.t_s).map(|(k_per_s, t_s)| Reference { k_per_s, t_s }),
+        published: published.K_per_s.zip(published.T_s).map(|(k_per_s, t_s)| Reference { k_per_s, t_s }),
     }
 }
 
@@ -131,7 +131,7 @@ struct FourierFit {
 struct FourierFits(Vec<FourierFit>);
 
 impl FourierFits {
-    fn of(cell: &Cell, names: &[MethodName], trial: &Trial) -> Self {
+    fn of(cell: &DesignCell, names: &[MethodName], trial: &Trial) -> Self {
         let mut seen = Vec::new();
         let fit = |method: &Method| {
             // One curve for each kind of method: variants differ in what they do with it.

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use scenario::keys::Key;
+use scenario::keys::ScenarioKey;
 use simulate::limits::MOST_STEPS;
 
 use crate::engine::{Bench, key};
@@ -78,7 +78,7 @@ fn every_declared_number_is_among_them() {
     let documents: Vec<toml::Table> = texts.map(|text| text.parse().expect("it is TOML")).collect();
     const OF_A_TRIAL: [&str; 7] =
         ["manoeuvre", "steering-gear", "helmsman", "approach", "recording", "sensor", "disturbance"];
-    for Key { key, unit, .. } in scenario::keys::keys() {
+    for ScenarioKey { key, unit, .. } in scenario::keys::keys() {
         let is_of_a_trial = key.split('.').next().is_some_and(|part| OF_A_TRIAL.contains(&part));
         if !is_of_a_trial || unit == "table" || unit == "text" || unit.contains(" or ") {
             continue;

@@ -4,13 +4,13 @@ use identify::replay::replay;
 use identify::{Identifier, output_error};
 use nalgebra::Matrix2;
 use ship::FirstOrder;
-use simulate::recording::RudderColumn;
+use simulate::recording::RudderSource;
 use simulate::{Disturbances, Recording, Sensors, Simulated, Simulation, StreamKey};
 use trial::Trial;
 
 use crate::bound;
 use crate::rows::Bound;
-use scenario::{Specification, Specimen};
+use scenario::{Specification, TrialSpecification};
 
 /// What the trials of a cell are held against.
 pub struct Yardstick {
@@ -29,7 +29,7 @@ pub struct Yardstick {
 
 impl Yardstick {
     /// Of a trial with this chance; `traces` when a trace is among the methods.
-    pub fn of(specimen: &Specimen, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
+    pub fn of(specimen: &TrialSpecification, simulated: &[Simulated], key: &StreamKey, traces: bool) -> Self {
         let Specification { simulation, validation, truth, base, .. } = &*specimen.specification;
         let near = if truth.is_none() || traces { nearest_first_order(&specimen.specification, key) } else { None };
         let nearest = truth.or_else(|| near.as_ref().map(|near| near.response));
@@ -39,10 +39,11 @@ impl Yardstick {
         let bound = nearest.and_then(|nearest| bound::of(simulations(), simulated, &nearest));
         let validation = validation.as_ref().and_then(|simulation| simulation.run(key).ok());
         // Of a likelihood with white heading noise: what has a colour is another one.
-        let compass = simulation.sensors.heading;
-        let white = sd.filter(|_| compass.wander.is_none());
-        let ratio =
-            |(near, sd): (Nearest, f64)| near.mean_square / (sd * sd) * near.rows.div_ceil(compass.every_rows) as f64;
+        let Sensors { heading_wander, heading_every_rows, .. } = simulation.sensors;
+        let white = sd.filter(|_| heading_wander.is_none());
+        let ratio = |(near, sd): (Nearest, f64)| {
+            near.mean_square / (sd * sd) * near.rows.div_ceil(heading_every_rows.unwrap_or(1)) as f64
+        };
         let expected = near.filter(|_| traces).zip(white).map(ratio);
         Self { nearest, own, bound, validation: validation.map(|simulated| simulated.trial), expected }
     }
@@ -63,7 +64,7 @@ pub fn nearest_first_order(specification: &Specification, key: &StreamKey) -> Op
         let calm = Simulation {
             disturbances: Disturbances::default(),
             sensors: Sensors::default(),
-            recording: Recording { rudder: RudderColumn::Feedback, ..simulation.recording },
+            recording: Recording { rudder: RudderSource::Feedback, assumed_rudder_rate: None, ..simulation.recording },
             ..simulation.clone()
         };
         Some(calm.run(&key).ok()?.trial)

@@ -20,10 +20,10 @@
 //! use kempf::prelude::*;
 //!
 //! let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
-//! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Executes(5));
+//! let zig_zag = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0)).until_execute(5);
 //! let mut simulation = Simulation::new(ship, zig_zag);
 //! simulation.gear = SteeringGear::with_rate(from_deg(2.5));
-//! simulation.sensors.heading.noise = from_deg(0.1);
+//! simulation.sensors.heading_noise = from_deg(0.1);
 //! let record = simulation.run(&StreamKey { seed: 1, cell: 0, replicate: 0 })?.trial;
 //!
 //! let method = output_error::Settings::default().build()?;
@@ -51,7 +51,6 @@ pub mod prelude {
     pub use scenario::Scenario;
     pub use ship::angle::{from_deg, to_deg};
     pub use ship::{FirstOrder, Particulars};
-    pub use simulate::manoeuvre::ZigZagEnd;
     pub use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
     pub use trial::{Channel, Trial, ZigZag, read, write_csv};
 }

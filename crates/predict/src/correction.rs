@@ -193,7 +193,7 @@ fn zig_zag(
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|result| result.figures.keys());
     let shown = names.filter_map(|name| Some((*name, ballast.shown(record, zigzag, name)?))).collect();
-    Some(ManoeuvreOfBoth { rudder: steered.kind.rudder, full, trial, shown })
+    Some(ManoeuvreOfBoth { rudder: steered.kind.rudder(), full, trial, shown })
 }
 
 /// A turn; `None` for a record that is none.
@@ -210,7 +210,7 @@ fn turned(
     let shown: Vec<_> = measured.filter_map(|(name, value)| Some((name, Quantity::bare(value?)))).collect();
     let Some(rudder) = turn.held_on(record.rudder_signal()).filter(|_| !shown.is_empty()) else { return Ok(None) };
     let Some([_, rate]) = ballast.beginning(record)? else { return Ok(None) };
-    let manoeuvre = Manoeuvre::Replay(thinned(&rudder));
+    let manoeuvre = Manoeuvre::replay(thinned(&rudder));
     let sail = |mixture: &ShipMixture, number| {
         let mut ship = mixture.draw(number, &UncertaintySource::ALL);
         // Both ships begin as that of the record did.
@@ -276,7 +276,6 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kind::Kind;
     use crate::testing;
     use ship::angle::from_deg;
     use simulate::{Simulation, Vessel};
@@ -300,12 +299,12 @@ mod tests {
     /// A record of a drawn ship; with number 0 of the most probable one in a calm.
     fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64) -> Trial {
         let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
-        let kind: Kind = kind.parse().expect("known");
-        let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
+        let kind: Manoeuvre = kind.parse().expect("known");
+        let manoeuvre = crate::standard::steered(&kind, mixture.timescale()).expect("steered");
         let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
         simulation.gear = ship.gear;
         simulation.disturbances = ship.disturbances;
-        simulation.sensors.heading.noise = noise;
+        simulation.sensors.heading_noise = noise;
         simulation.recording.period = 0.5;
         simulation.run(&StreamKey { seed: 5, cell: 0, replicate: number }).expect("a trial").trial
     }
@@ -314,13 +313,13 @@ mod tests {
     #[test]
     fn the_truth_at_full_load_is_in_the_interval() {
         let [full, ballast] = ships().map(mixture);
-        let kind: Kind = "zig-zag:20/20".parse().expect("known");
+        let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
         let names = ["first_overshoot_deg", "second_overshoot_deg", "third_execute_s"];
         let (mut held, mut all) = (0, 0);
         for number in 0..30_u64 {
             let trial = record(&ballast, "zig-zag:20/20", 1000 + number, from_deg(0.1));
             let found = correct(&full, &ballast, &trial, 150).expect("both sail");
-            let manoeuvre = kind.manoeuvre(full.timescale()).expect("steered");
+            let manoeuvre = crate::standard::steered(&kind, full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
             let mut ship = full.draw(2000 + number, &UncertaintySource::ALL);
             (ship.yaw_rate, ship.gear) = (0.0, ballast.draw(1000 + number, &UncertaintySource::ALL).gear);

@@ -54,15 +54,6 @@ pub enum PredictError {
     /// Speed and drift of the ship make no sense.
     #[error("speed and drift: {0}")]
     Motion(#[from] crate::motion::MotionError),
-    /// A manoeuvre that is not known.
-    #[error(
-        "`{found}` is no manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
-         pull-out:RUDDER, spiral:RUDDER or williamson, angles in degrees, negative for port"
-    )]
-    Manoeuvre {
-        /// What was given.
-        found: String,
-    },
     /// Hardly any drawn ship comes to the end of a manoeuvre.
     #[error("{kind}: only {made} of {draws} drawn ships come to the end of it; the model does not hold there")]
     Lost {

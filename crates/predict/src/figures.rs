@@ -5,10 +5,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use indexmap::IndexMap;
 use ship::Particulars;
 use ship::angle::to_deg;
+use simulate::Manoeuvre;
+use trial::manoeuvre::INITIAL_TURN;
 
-use crate::kind::{EXECUTES, INITIAL_TURN, Kind, Pattern};
 use crate::motion::turning_circle;
 use crate::passage::{PlanarMotion, SimulatedManoeuvre};
+use crate::standard::EXECUTES;
 
 /// Figures of merit by name.
 pub type Figures = IndexMap<&'static str, Option<f64>>;
@@ -22,35 +24,35 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
 ///
 /// The way of the initial turning is V times its time where nothing is known of the speed.
-pub fn of(kind: &Kind, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
-    let side = kind.side.sign();
+pub fn of(kind: &Manoeuvre, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Figures {
+    let side = kind.side().sign();
     let last = passage.heading.last().copied();
-    match kind.pattern {
-        Pattern::ZigZag { heading } => {
+    match *kind {
+        Manoeuvre::ZigZag { heading, .. } => {
             let mut figures = initial_turning(passage, passage.reached(heading, side), particulars);
             zig_zag(passage, &mut figures);
             figures
         }
-        Pattern::InitialTurning => {
+        Manoeuvre::InitialTurning { .. } => {
             let end = passage.time(passage.heading.len().saturating_sub(1));
             initial_turning(passage, passage.reached(INITIAL_TURN - 1e-9, side).or(Some(end)), particulars)
         }
-        Pattern::TurningCircle => {
+        Manoeuvre::TurningCircle { .. } => {
             let mut figures = turn(passage, side);
             figures.extend(circle(passage, 0.0));
             figures
         }
-        Pattern::PullOut => Figures::from([
+        Manoeuvre::PullOut { .. } => Figures::from([
             ("rate_before_deg_s", mean_rate(passage, passage.heading.len() / 2, side)),
             ("residual_rate_deg_s", mean_rate(passage, passage.heading.len(), side)),
         ]),
         // She comes back from the other side: the opposite course is 180° to it.
-        Pattern::Williamson => Figures::from([
+        Manoeuvre::Williamson { .. } => Figures::from([
             ("second_execute_s", passage.executes.get(1).map(|execute| execute.time)),
             ("third_execute_s", passage.executes.get(2).map(|execute| execute.time)),
             ("course_error_deg", last.map(|heading| to_deg(-side * heading - PI))),
         ]),
-        Pattern::Spiral => Figures::default(),
+        Manoeuvre::Spiral { .. } | Manoeuvre::Replay { .. } => Figures::default(),
     }
 }
 
@@ -133,7 +135,7 @@ mod tests {
 
     use crate::mixture::DrawnShip;
 
-    fn yukun(kind: &Kind) -> SimulatedManoeuvre {
+    fn yukun(kind: &Manoeuvre) -> SimulatedManoeuvre {
         let ship = DrawnShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
             planar: None,
@@ -143,7 +145,8 @@ mod tests {
             yaw_rate: 0.0,
             key: StreamKey::default(),
         };
-        SimulatedManoeuvre::sail(&ship, &kind.manoeuvre(12.8).expect("steered"), 12.8).expect("a manoeuvre")
+        SimulatedManoeuvre::sail(&ship, &crate::standard::steered(kind, 12.8).expect("steered"), 12.8)
+            .expect("a manoeuvre")
     }
 
     fn value(figures: &Figures, name: &str) -> f64 {
@@ -154,11 +157,11 @@ mod tests {
     /// a step of 0.01 s that lets executes be late.
     #[test]
     fn overshoots_are_those_of_the_reference() {
-        let kind: Kind = "zig-zag:10/10".parse().expect("known");
+        let kind: Manoeuvre = "zig-zag:10/10".parse().expect("known");
         let ten = of(&kind, &yukun(&kind), None);
         assert!((value(&ten, "first_overshoot_deg") - 6.35).abs() < 0.025, "{ten:?}");
         assert!((value(&ten, "second_overshoot_deg") - 8.07).abs() < 0.025, "{ten:?}");
-        let kind: Kind = "zig-zag:20/20".parse().expect("known");
+        let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
         let twenty = of(&kind, &yukun(&kind), None);
         assert!((value(&twenty, "first_overshoot_deg") - 18.8).abs() < 0.06, "{twenty:?}");
     }
@@ -166,12 +169,12 @@ mod tests {
     /// A steady turn of K δ, and a rate that dies out.
     #[test]
     fn turns_settle_where_the_ship_does() {
-        let kind: Kind = "turning-circle:-10".parse().expect("known");
+        let kind: Manoeuvre = "turning-circle:-10".parse().expect("known");
         let turn = of(&kind, &yukun(&kind), None);
         assert!((value(&turn, "steady_rate_deg_s") - 1.0).abs() < 1e-3, "{turn:?}");
         // r = K δ (1 − e^(−t/T)) from a ramp of four seconds: T + 2 s late.
         assert!((value(&turn, "time_to_180_s") - (180.0 + 16.3 + 2.0)).abs() < 0.1, "{turn:?}");
-        let kind: Kind = "pull-out:10".parse().expect("known");
+        let kind: Manoeuvre = "pull-out:10".parse().expect("known");
         let pull_out = of(&kind, &yukun(&kind), None);
         assert!((value(&pull_out, "rate_before_deg_s") - 1.0).abs() < 1e-3, "{pull_out:?}");
         assert!(value(&pull_out, "residual_rate_deg_s").abs() < 1e-3, "{pull_out:?}");
@@ -181,14 +184,14 @@ mod tests {
     #[test]
     fn sides_are_mirrored() {
         for [one, other] in [["zig-zag:10/10", "zig-zag:-10/10"], ["williamson:35", "williamson:-35"]] {
-            let [one, other]: [Kind; 2] = [one, other].map(|text| text.parse().expect("known"));
+            let [one, other]: [Manoeuvre; 2] = [one, other].map(|text| text.parse().expect("known"));
             let (a, b) = (of(&one, &yukun(&one), None), of(&other, &yukun(&other), None));
             for ((name, a), (_, b)) in a.iter().zip(&b) {
                 let (a, b) = (a.expect(name), b.expect(name));
                 assert!((a - b).abs() < 1e-9, "{name} {a} {b}");
             }
         }
-        let kind: Kind = "initial-turning:10".parse().expect("known");
+        let kind: Manoeuvre = "initial-turning:10".parse().expect("known");
         let turning = of(&kind, &yukun(&kind), Some(Particulars { length: 75.0, speed: 6.0 }));
         let time = value(&turning, "initial_turning_time_s");
         assert!(time > 20.0 && time < 30.0, "{time}");

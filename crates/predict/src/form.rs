@@ -15,14 +15,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use ship::Particulars;
+use simulate::{Manoeuvre, Side};
 use trial::imo::Unit;
 use trial::{Conditions, Loading};
 
 use crate::imo::{LIMITS, Limit};
 use crate::interval::PredictionInterval;
-use crate::kind::Kind;
 use crate::prediction::Prediction;
 use crate::replay::file_of;
+use crate::standard;
 use record::TestedManoeuvre;
 
 /// Longest track reach of the stopping trial, ship lengths. Source: MSC.137(76), 5.3.4.
@@ -81,8 +82,8 @@ pub struct Form {
 /// The manoeuvres of the form, to both sides.
 ///
 /// The initial turning is that of the 10/10 zig-zag. Source: MSC/Circ.1053 (2002), appendix 6.
-pub fn manoeuvres() -> Vec<Kind> {
-    Kind::of_imo().into_iter().flat_map(|kind| [kind.to_port(), kind]).collect()
+pub fn manoeuvres() -> Vec<Manoeuvre> {
+    standard::of_imo().into_iter().flat_map(|kind| [kind.clone().to(Side::Port), kind]).collect()
 }
 
 /// What a file declares, with the length of the ship, m.
@@ -233,8 +234,8 @@ fn predicted(
     models: &str,
 ) -> FormEntry {
     let untold = |why: &str| FormEntry { source: why.into(), ..FormEntry::default() };
-    let kind: Kind = limit.manoeuvre.parse().expect("the name of a manoeuvre");
-    let kind = if side == "port" { kind.to_port() } else { kind };
+    let kind: Manoeuvre = limit.manoeuvre.parse().expect("the name of a manoeuvre");
+    let kind = if side == "port" { kind.to(Side::Port) } else { kind };
     let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
         return untold("hardly a drawn ship comes to the end of the manoeuvre");
     };
@@ -315,12 +316,12 @@ mod tests {
 
     fn record(mixture: &ShipMixture, kind: &str, conditions: Conditions) -> Trial {
         let ship = mixture.draw(5, &[]);
-        let kind: Kind = kind.parse().expect("known");
-        let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
+        let kind: Manoeuvre = kind.parse().expect("known");
+        let manoeuvre = standard::steered(&kind, mixture.timescale()).expect("steered");
         let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
         simulation.gear = ship.gear;
         simulation.recording.period = 0.5;
-        simulation.sensors.heading.noise = from_deg(0.05);
+        simulation.sensors.heading_noise = from_deg(0.05);
         let trial = simulation.run(&StreamKey::default()).expect("a trial").trial;
         let particulars = mixture.particulars().expect("made up");
         trial.with_particulars(particulars).with_conditions(conditions)
@@ -355,7 +356,7 @@ mod tests {
 
     #[test]
     fn manoeuvres_go_to_both_sides() {
-        let names: Vec<String> = manoeuvres().iter().map(Kind::to_string).collect();
+        let names: Vec<String> = manoeuvres().iter().map(Manoeuvre::to_string).collect();
         let wanted = ["zig-zag -10/10", "zig-zag 10/10", "zig-zag -20/20", "zig-zag 20/20"];
         assert_eq!(names[..4], wanted);
         assert_eq!(names[4..], ["turning-circle -35", "turning-circle 35"]);

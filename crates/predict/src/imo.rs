@@ -4,10 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
 use ship::angle::to_deg;
+use simulate::Manoeuvre;
 use trial::imo::{self, Unit};
 
 use crate::interval::PredictionInterval;
-use crate::kind::{Kind, Pattern};
 use crate::prediction::Prediction;
 
 /// One criterion.
@@ -120,14 +120,14 @@ pub(crate) const LIMITS: [Limit; 6] = [
 
 impl Limit {
     /// Whether a manoeuvre answers it, to either side: circles with any rudder, and a turn with 10° as well as a 10/10.
-    fn is_answered_by(&self, kind: &Kind) -> bool {
+    fn is_answered_by(&self, kind: &Manoeuvre) -> bool {
         let is = |angle: f64, deg: f64| (to_deg(angle) - deg).abs() < 1e-6;
         let is_pair =
-            |deg| matches!(kind.pattern, Pattern::ZigZag { heading } if is(heading, deg) && is(kind.rudder, deg));
+            |deg| matches!(*kind, Manoeuvre::ZigZag { rudder, heading, .. } if is(heading, deg) && is(rudder, deg));
         match self.manoeuvre {
-            CIRCLE => kind.pattern == Pattern::TurningCircle,
+            CIRCLE => matches!(kind, Manoeuvre::TurningCircle { .. }),
             TWENTY => is_pair(20.0),
-            _ => is_pair(10.0) || (kind.pattern == Pattern::InitialTurning && is(kind.rudder, 10.0)),
+            _ => is_pair(10.0) || matches!(*kind, Manoeuvre::InitialTurning { rudder, .. } if is(rudder, 10.0)),
         }
     }
 }
@@ -167,8 +167,10 @@ mod tests {
     #[test]
     fn probabilities_are_shares_of_the_draws() {
         let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
-        let predictions: Vec<Prediction> =
-            Kind::of_imo().iter().map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre")).collect();
+        let predictions: Vec<Prediction> = crate::standard::of_imo()
+            .iter()
+            .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
+            .collect();
         let found = criteria(&predictions, mixture.particulars().expect("made up"));
         let names: Vec<&str> = found.iter().map(|criterion| criterion.criterion.as_str()).collect();
         assert_eq!(

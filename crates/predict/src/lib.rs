@@ -10,7 +10,7 @@
 //! | what is known of a ship, as files hold it | [`known`] |
 //! | speed, drift and hulls fitted to records, tracks, turning circles | [`motion`] |
 //! | ships drawn from it | [`mixture`] |
-//! | the manoeuvres | [`kind`] |
+//! | the manoeuvres, and what ends them | [`standard`] |
 //! | figures of merit | [`figures`] |
 //! | a manoeuvre predicted | [`prediction`] |
 //! | a recorded rudder replayed, held against the record | [`replay`] |
@@ -30,7 +30,6 @@ pub mod figures;
 pub mod form;
 pub mod imo;
 pub mod interval;
-pub mod kind;
 pub mod known;
 mod line;
 pub mod mixture;
@@ -38,6 +37,7 @@ pub mod motion;
 pub mod passage;
 pub mod prediction;
 pub mod replay;
+pub mod standard;
 pub mod steady;
 mod steered;
 #[cfg(test)]
@@ -47,7 +47,6 @@ pub mod turn;
 pub use document::PredictDocument;
 pub use error::PredictError;
 pub use interval::PredictionInterval;
-pub use kind::Kind;
 pub use known::IdentifiedShip;
 pub use mixture::{ShipMixture, UncertaintySource};
 pub use prediction::Prediction;

@@ -5,10 +5,9 @@ use std::sync::Arc;
 use crate::motion::{self, Planar, PlanarShip};
 use serde::{Deserialize, Serialize};
 use ship::Regressor;
-use simulate::helm::Execute;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
-use simulate::{Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
+use simulate::{HelmOrder, Manoeuvre, Recording, SimulateError, Simulation, StreamKey, Vessel};
 
 use crate::mixture::DrawnShip;
 
@@ -38,7 +37,7 @@ pub struct SimulatedManoeuvre {
     pub rudder: Vec<f64>,
     /// Orders of the helm; not written to a file.
     #[serde(skip)]
-    pub executes: Vec<Execute>,
+    pub executes: Vec<HelmOrder>,
     /// The way over ground; none where nothing is known of speed and drift.
     pub way: Option<PlanarMotion>,
 }
@@ -101,7 +100,7 @@ impl SimulatedManoeuvre {
     /// Fails where the ship does not reach a heading that the helm waits for, or turns for ever.
     pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
-        if !matches!(manoeuvre, Manoeuvre::Replay(_)) {
+        if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
             simulation.gear = ship.gear;
         }
         simulation.approach.yaw_rate = ship.yaw_rate;
@@ -130,7 +129,7 @@ impl SimulatedManoeuvre {
         timescale: f64,
         planar: Option<&Planar>,
     ) -> Result<Self, SimulateError> {
-        simulation.recording = Recording { period: period(timescale), ..Recording::default() };
+        simulation.recording = Recording::every(period(timescale));
         simulation.longest_wait = LONGEST_WAIT * timescale;
         let truth = Arc::unwrap_or_clone(simulation.run(key)?.truth);
         let Truth { time, heading, yaw_rate, rudder, executes, .. } = truth;

@@ -6,11 +6,12 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 use ship::Particulars;
+use simulate::Manoeuvre;
+use trial::manoeuvre::InWords;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figures};
 use crate::interval::{PredictionInterval, band};
-use crate::kind::Kind;
 use crate::known::ValidityRange;
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::{self, SimulatedManoeuvre};
@@ -73,7 +74,8 @@ fn with_gaps<'de, D: Deserializer<'de>>(list: D) -> Result<Vec<f64>, D::Error> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Prediction {
     /// The manoeuvre.
-    pub kind: Kind,
+    #[serde(with = "InWords")]
+    pub kind: Manoeuvre,
     /// Its figures by name, with the unit.
     pub figures: IndexMap<String, Predicted>,
     /// Draws that did not come to the end.
@@ -122,8 +124,10 @@ impl ShipMixture {
     /// Predicts a manoeuvre from so many draws; `shares` asks for the share of every source of doubt.
     ///
     /// Fails where less than half of the drawn ships come to the end of it.
-    pub fn predict(&self, kind: &Kind, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
-        let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else { return Ok(self.spiral(kind, draws, shares)) };
+    pub fn predict(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
+        let Some(manoeuvre) = crate::standard::steered(kind, self.timescale()) else {
+            return Ok(self.spiral(kind, draws, shares));
+        };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
@@ -140,12 +144,12 @@ impl ShipMixture {
         let (values, series): (Vec<Option<Figures>>, Vec<_>) = all.into_iter().map(Option::unzip).unzip();
         let made: Vec<(Vec<f64>, f64, Option<_>)> = series.into_iter().flatten().collect();
         enough(kind, made.len(), draws)?;
-        let extrapolated = self.is_unseen(kind.rudder, made.iter().map(|(_, rate, _)| *rate));
+        let extrapolated = self.is_unseen(kind.rudder(), made.iter().map(|(_, rate, _)| *rate));
         let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         let headings: Vec<&[f64]> = made.iter().map(|(heading, ..)| heading.as_slice()).collect();
         Ok(Prediction {
-            kind: *kind,
+            kind: kind.clone(),
             figures: predicted(&values, extrapolated, sources, |number, sources| Some(sail(number, sources)?.0)),
             heading: bands(&headings, most_probable.as_ref(), passage::period(self.timescale())),
             lost: draws - made.len(),
@@ -156,19 +160,19 @@ impl ShipMixture {
     }
 
     /// Steady turns; chance has no part in them.
-    fn spiral(&self, kind: &Kind, draws: usize, shares: bool) -> Prediction {
+    fn spiral(&self, kind: &Manoeuvre, draws: usize, shares: bool) -> Prediction {
         let curve = |number, sources: &[UncertaintySource]| {
-            SteadyCurve::of(&self.draw(number, sources), kind.rudder, self.timescale())
+            SteadyCurve::of(&self.draw(number, sources), kind.rudder(), self.timescale())
         };
         let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &UncertaintySource::ALL));
-        let values: Vec<Option<Figures>> = all.iter().map(|curve| Some(curve.figures(kind.rudder))).collect();
+        let values: Vec<Option<Figures>> = all.iter().map(|curve| Some(curve.figures(kind.rudder()))).collect();
         let sources: &[_] = if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
         let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
-        let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder));
+        let alone = |number, sources: &[UncertaintySource]| Some(curve(number, sources).figures(kind.rudder()));
         Prediction {
-            kind: *kind,
-            figures: predicted(&values, self.is_unseen(kind.rudder, rates), sources, alone),
+            kind: kind.clone(),
+            figures: predicted(&values, self.is_unseen(kind.rudder(), rates), sources, alone),
             lost: 0,
             heading: Bands::default(),
             most_probable: None,
@@ -249,7 +253,7 @@ mod tests {
         ShipMixture::new(vec![(known, 1.0)]).expect("made up")
     }
 
-    fn kind(text: &str) -> Kind {
+    fn kind(text: &str) -> Manoeuvre {
         text.parse().expect("known")
     }
 

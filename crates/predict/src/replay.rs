@@ -111,7 +111,7 @@ impl ShipMixture {
         current: Option<Current>,
     ) -> Result<Option<RecordReplay>, PredictError> {
         let start = trial.time()[0];
-        let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
+        let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
         let sail = |number: u64, sources: &[UncertaintySource]| {
             let mut ship = self.draw(number, sources);
@@ -174,7 +174,7 @@ impl ShipMixture {
         };
         let drawn = steered.draws(self, draws).into_iter().flatten();
         let drawn: Vec<Figures> = drawn.map(|result| result.figures).collect();
-        enough(steered.kind, drawn.len(), draws)?;
+        enough(&steered.kind, drawn.len(), draws)?;
         Ok(compared(&drawn, |name| Some(self.shown(trial, measured, name)?.value)))
     }
 
@@ -191,7 +191,7 @@ impl ShipMixture {
     /// straight line through what the readings of the beginning are away from her, when she begins on heading 0 without
     /// a yaw rate. `None` where the record has too few headings at its beginning.
     pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
-        let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
+        let manoeuvre = Manoeuvre::replay(thinned(trial.rudder_signal()));
         let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale());
         let at_rest = at_rest.map_err(|_| lost(trial.name(), 0, 1))?;
         let read = |row: usize| {
@@ -238,7 +238,6 @@ fn turns(trial: &Trial, made: &[SimulatedManoeuvre], timescale: f64, current: Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kind::Kind;
     use crate::testing;
     use ship::angle::from_deg;
     use simulate::{Simulation, StreamKey, Vessel};
@@ -249,7 +248,7 @@ mod tests {
         let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
         simulation.gear = ship.gear;
         simulation.disturbances = ship.disturbances;
-        simulation.sensors.heading.noise = from_deg(0.1);
+        simulation.sensors.heading_noise = from_deg(0.1);
         simulation.recording.period = 1.0;
         let key = StreamKey { seed: 5, cell: 0, replicate: number };
         simulation.run(&key).expect("a trial").trial
@@ -259,8 +258,8 @@ mod tests {
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
         let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
-        let kind: Kind = "zig-zag:20/20".parse().expect("known");
-        let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
+        let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
+        let manoeuvre = crate::standard::steered(&kind, mixture.timescale()).expect("steered");
         let (mut inside, mut all, mut band) = (0, 0, 0.0);
         let records = 40;
         for number in 0..records {
@@ -289,8 +288,8 @@ mod tests {
     #[test]
     fn a_circle_has_the_figures_of_a_turn() {
         let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
-        let kind: Kind = "turning-circle:-15".parse().expect("known");
-        let trial = record(&mixture, kind.manoeuvre(mixture.timescale()).expect("steered"), 3);
+        let kind: Manoeuvre = "turning-circle:-15".parse().expect("known");
+        let trial = record(&mixture, crate::standard::steered(&kind, mixture.timescale()).expect("steered"), 3);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
         let names: Vec<&String> = replayed.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);

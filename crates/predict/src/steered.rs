@@ -3,14 +3,14 @@
 
 use ship::Particulars;
 use ship::angle::to_deg;
-use simulate::Side;
+use simulate::Manoeuvre;
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::figures::{self, EXECUTE_TIMES, Figures, OVERSHOOTS};
-use crate::kind::{Kind, Pattern};
 use crate::mixture::{ShipMixture, UncertaintySource};
 use crate::passage::SimulatedManoeuvre;
 use crate::prediction::drawn;
+use crate::standard;
 
 /// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
 const NOMINAL: f64 = 0.05;
@@ -25,7 +25,7 @@ pub(crate) struct DrawResult {
 
 /// A measured zig-zag as a helm steers it.
 pub(crate) struct SteeredZigZag {
-    pub kind: Kind,
+    pub kind: Manoeuvre,
     /// Yaw rate at the first execute, rad/s.
     yaw_rate: f64,
     /// Rate of the rudder where the record shows it, rad/s.
@@ -51,24 +51,23 @@ impl SteeredZigZag {
                 .map(|(read, nominal)| if (read - nominal).abs() < NOMINAL * nominal { nominal } else { read }),
             None => [rudder, heading],
         };
-        let side = if side.sign() > 0.0 { Side::Starboard } else { Side::Port };
         // An approach is nearly straight, and a slope that is read off a few headings is not known well.
         let yaw_rate = executes[0].yaw_rate.map_or(0.0, |rate| {
             let doubt = rate.sd.unwrap_or(0.0);
             let known = approach.powi(2) + doubt.powi(2);
             if known > 0.0 { rate.value * approach.powi(2) / known } else { 0.0 }
         });
-        let kind = Kind { pattern: Pattern::ZigZag { heading }, rudder, side };
+        let kind = Manoeuvre::zig_zag(rudder, heading).to(side);
         Some(Self { kind, yaw_rate, rudder_rate: measured.rudder_rate })
     }
 
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
     pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
-        let manoeuvre = self.kind.manoeuvre(mixture.timescale()).expect("a zig-zag is steered");
+        let manoeuvre = standard::steered(&self.kind, mixture.timescale()).expect("a zig-zag is steered");
         drawn(draws, |number| {
             let mut ship = mixture.draw(number, &UncertaintySource::ALL);
             ship.yaw_rate = self.yaw_rate;
-            ship.gear.rate = self.rudder_rate.unwrap_or(ship.gear.rate);
+            ship.gear.rate = self.rudder_rate.or(ship.gear.rate);
             let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let figures = figures::of(&self.kind, &passage, mixture.particulars());
             Some(DrawResult { figures, largest_rate: passage.largest_rate() })

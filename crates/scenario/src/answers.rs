@@ -6,19 +6,19 @@ use identify::external::Answer;
 use identify::{Estimate, IdentifyError};
 
 /// A trial: its cell, and its number there.
-pub type Place = (u64, u64);
+pub type TrialNumber = (u64, u64);
 
 /// Answers by trial. A trial without one has failed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answers {
-    answers: HashMap<Place, Result<Answer, String>>,
+    answers: HashMap<TrialNumber, Result<Answer, String>>,
     sha256: String,
 }
 
 impl Answers {
     /// Answers, or reasons why there is none, and the SHA-256 of what they were read from, which tells them from
     /// others.
-    pub fn new(answers: HashMap<Place, Result<Answer, String>>, sha256: String) -> Self {
+    pub fn new(answers: HashMap<TrialNumber, Result<Answer, String>>, sha256: String) -> Self {
         Self { answers, sha256 }
     }
 
@@ -28,7 +28,7 @@ impl Answers {
     }
 
     /// The answer to a trial.
-    pub fn to(&self, place: Place) -> Result<Estimate, IdentifyError> {
+    pub fn to(&self, place: TrialNumber) -> Result<Estimate, IdentifyError> {
         match self.answers.get(&place) {
             Some(Ok(answer)) => answer.estimate(),
             Some(Err(words)) => Err(IdentifyError::outside(words)),

@@ -4,20 +4,20 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use simulate::StreamKey;
-use simulate::settings::Numbers as _;
+use simulate::numbers::Numbers as _;
 use toml::{Table, Value};
 
-use crate::draw::Draw;
+use crate::draw::DrawnKey;
 use crate::method::{Method, Procedure, methods};
-use crate::part::Part;
-use crate::problem::{KeyPath, Problem};
+use crate::part::ScenarioPart;
+use crate::problem::{KeyFault, KeyPath};
 use crate::ship::ShipWire;
 use crate::specification::Specification;
 use crate::wire::ScenarioWire;
 use crate::{limits, reader, resolve, sweep};
 
 /// One cell of the design: everything but chance is fixed.
-pub struct Cell {
+pub struct DesignCell {
     /// Labels of its points, one an axis.
     pub labels: Vec<String>,
     /// Values of its points, where an axis is a number.
@@ -27,12 +27,12 @@ pub struct Cell {
     /// How a trial is made; drawn values are in the middle of their distributions.
     specification: Specification,
     /// How a trial with drawn values is made.
-    drawn: Option<Drawn>,
+    drawn: Option<DrawnSettings>,
 }
 
 /// What a trial with drawn values is made from.
-struct Drawn {
-    draws: Vec<Draw>,
+struct DrawnSettings {
+    draws: Vec<DrawnKey>,
     /// The settings of the cell, with every drawn value in the middle.
     wire: ScenarioWire,
     ship: ShipWire,
@@ -40,7 +40,7 @@ struct Drawn {
 }
 
 /// How one trial is made.
-pub struct Specimen<'a> {
+pub struct TrialSpecification<'a> {
     /// The specification, whole.
     pub specification: Cow<'a, Specification>,
     /// Drawn values in the units of their keys, in the order of [`Scenario::draws`](crate::Scenario::draws).
@@ -52,7 +52,7 @@ pub struct Specimen<'a> {
 #[error("{0}")]
 pub struct Refusal(String);
 
-impl Cell {
+impl DesignCell {
     /// The same cell; its trials carry the name of the scenario.
     pub(crate) fn named(mut self, scenario: &str) -> Self {
         self.specification.name(scenario);
@@ -103,32 +103,36 @@ impl Cell {
     /// How the trial of `key` is made.
     ///
     /// Fails when drawn values make no trial, which only a distribution without ends can do.
-    pub fn specimen(&self, key: &StreamKey) -> Result<Specimen<'_>, Refusal> {
+    pub fn specimen(&self, key: &StreamKey) -> Result<TrialSpecification<'_>, Refusal> {
         let Some(drawn) = &self.drawn else {
-            return Ok(Specimen { specification: Cow::Borrowed(&self.specification), drawn: Vec::new() });
+            return Ok(TrialSpecification { specification: Cow::Borrowed(&self.specification), drawn: Vec::new() });
         };
         let values: Vec<f64> = drawn.draws.iter().map(|draw| draw.value(key)).collect();
         let mut specification = drawn.specification(&values).map_err(|problem| Refusal(problem.found))?;
         specification.name(&self.specification.simulation.scenario);
-        Ok(Specimen { specification: Cow::Owned(specification), drawn: values })
+        Ok(TrialSpecification { specification: Cow::Owned(specification), drawn: values })
     }
 }
 
-impl Drawn {
+impl DrawnSettings {
     /// Draws for a cell, each tried in the middle and at the ends of its range, and the specification in the middle of
     /// all; `None` where nothing is drawn.
     ///
     /// Fails with the draw at fault and what is wrong with the trial.
-    fn new(draws: &[Draw], document: &Table, folder: &Path) -> Result<Option<(Self, Specification)>, (usize, Problem)> {
+    fn new(
+        draws: &[DrawnKey],
+        document: &Table,
+        folder: &Path,
+    ) -> Result<Option<(Self, Specification)>, (usize, KeyFault)> {
         if draws.is_empty() {
             return Ok(None);
         }
-        let blamed = |index: usize, problem: Problem| {
+        let blamed = |index: usize, problem: KeyFault| {
             let of_key = draws.iter().position(|draw| draw.key.is_related(&problem.key));
             (of_key.unwrap_or(index), problem)
         };
-        let middle: Vec<f64> = draws.iter().map(Draw::middle).collect();
-        let mut document = only(document, &[Part::Trial]);
+        let middle: Vec<f64> = draws.iter().map(DrawnKey::middle).collect();
+        let mut document = only(document, &[ScenarioPart::Trial]);
         for (draw, &value) in draws.iter().zip(&middle) {
             sweep::set(&mut document, &draw.key, Value::Float(value)).map_err(|problem| blamed(0, problem))?;
         }
@@ -147,14 +151,14 @@ impl Drawn {
     }
 
     /// The specification with these values; what they do not touch is as it is in the middle.
-    fn specification(&self, values: &[f64]) -> Result<Specification, Problem> {
+    fn specification(&self, values: &[f64]) -> Result<Specification, KeyFault> {
         let (mut wire, mut ship) = (self.wire.clone(), self.ship.clone());
         for (draw, &value) in self.draws.iter().zip(values) {
             let key = draw.key.parts();
             let is_set = if key[0] == "ship" { ship.set(&key[1..], value) } else { wire.set(key, value) };
             if !is_set {
                 let found = format!("`{}` holds no number that can be drawn", draw.key);
-                return Err(Problem::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
+                return Err(KeyFault::name(draw.key.clone(), found, "expected the key of a number", "change the key"));
             }
         }
         resolve::specification(&ship, &wire, &self.folder)
@@ -162,14 +166,14 @@ impl Drawn {
 }
 
 /// Some parts of a document, and empty ones where a document needs more.
-pub(crate) fn only(document: &Table, parts: &[Part]) -> Table {
+pub(crate) fn only(document: &Table, parts: &[ScenarioPart]) -> Table {
     let empty = [
         ("question", Value::String(String::new())),
         ("seed", Value::Integer(0)),
         ("identifier", Value::Array(Vec::new())),
     ];
     let mut some: Table = empty.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-    let kept = document.iter().filter(|(key, _)| parts.contains(&Part::of(key)));
+    let kept = document.iter().filter(|(key, _)| parts.contains(&ScenarioPart::of(key)));
     some.extend(kept.map(|(key, value)| (key.clone(), value.clone())));
     some
 }
@@ -178,16 +182,16 @@ pub(crate) fn only(document: &Table, parts: &[Part]) -> Table {
 /// like any scenario.
 pub(crate) fn swept(
     document: &Table,
-    points: &[&sweep::Point],
+    points: &[&sweep::SweepPoint],
     base: &[Method],
     folder: &Path,
-) -> Result<Cell, Problem> {
+) -> Result<DesignCell, KeyFault> {
     let labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     let settings = || points.iter().flat_map(|point| &point.set);
     let cell = (labels.len() > 1).then(|| labels.join(", "));
     // The point that sets the key at fault, or one above or below it; else the last point, which may only be one of
     // several.
-    let blame = |problem: Problem| {
+    let blame = |problem: KeyFault| {
         let of_key = settings().rfind(|setting| setting.key.is_related(&problem.key));
         match of_key.or_else(|| settings().next_back()) {
             Some(setting) => setting.blamed(problem, cell.as_deref()),
@@ -203,7 +207,7 @@ pub(crate) fn swept(
     let specification = specification.map_err(blame)?;
     let methods = methods(&wire.identifier, folder).map_err(blame)?;
     if methods.iter().map(|method| &method.label).ne(base.iter().map(|method| &method.label)) {
-        return Err(blame(Problem::value(
+        return Err(blame(KeyFault::value(
             KeyPath::dotted("identifier"),
             "the methods are not the same in every cell",
             "expected settings of methods",
@@ -211,19 +215,19 @@ pub(crate) fn swept(
         )));
     }
     limits::entries("draw", wire.draw.len(), limits::MOST_DRAWS).map_err(blame)?;
-    let draws: Vec<Draw> = wire
+    let draws: Vec<DrawnKey> = wire
         .draw
         .iter()
         .enumerate()
         .map(|(index, draw)| draw.resolve(index))
         .collect::<Result<_, _>>()
         .map_err(|problem| if points.is_empty() { problem } else { blame(problem) })?;
-    let drawn =
-        Drawn::new(&draws, &changed, folder).map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
+    let drawn = DrawnSettings::new(&draws, &changed, folder)
+        .map_err(|(draw, problem)| draws[draw].blamed(problem, cell.as_deref()))?;
     let (drawn, specification) = match drawn {
         Some((drawn, specification)) => (Some(drawn), specification),
         None => (None, specification),
     };
     let values = points.iter().map(|point| point.value).collect();
-    Ok(Cell { labels, values, methods, specification, drawn })
+    Ok(DesignCell { labels, values, methods, specification, drawn })
 }

@@ -2,22 +2,22 @@
 
 use std::collections::HashSet;
 
-use crate::cell::Cell;
+use crate::cell::DesignCell;
 use crate::draw::DrawWire;
 use crate::limits;
 use crate::method::Method;
 use crate::name::{self, LONGEST_NAME};
-use crate::problem::{KeyPath, Problem, of_text, suggestion};
-use crate::sweep::Axis;
-use crate::words::AxisMark;
+use crate::problem::{KeyFault, KeyPath, of_text, suggestion};
+use crate::sweep::SweepAxis;
+use crate::words::MarkedValue;
 
 /// Largest number of trials; more is a slip of the pen.
 const MOST_TRIALS: u64 = 1_000_000_000;
 
-pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), Problem> {
+pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), KeyFault> {
     let key = KeyPath::dotted("replicates");
     if replicates == 0 {
-        return Err(Problem::value(
+        return Err(KeyFault::value(
             key,
             "`replicates` is 0, so nothing would be run",
             "expected at least 1",
@@ -25,7 +25,7 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), Problem
         ));
     }
     if cells * methods > limits::MOST_METHODS_OF_CELLS {
-        return Err(Problem::name(
+        return Err(KeyFault::name(
             KeyPath::dotted("sweep"),
             format!("the sweeps make {cells} cells, each with {methods} methods"),
             format!("expected at most {} methods of cells in all", limits::MOST_METHODS_OF_CELLS),
@@ -33,7 +33,7 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), Problem
         ));
     }
     if replicates.saturating_mul(cells as u64) > MOST_TRIALS {
-        return Err(Problem::value(
+        return Err(KeyFault::value(
             key,
             format!("`replicates` is {replicates}, for a design of size {cells}"),
             format!("expected at most {MOST_TRIALS} trials in all"),
@@ -44,13 +44,13 @@ pub fn size(replicates: u64, cells: usize, methods: usize) -> Result<(), Problem
 }
 
 /// Files are named after cells, so their labels are not too long together.
-pub fn titles(axes: &[Axis]) -> Result<(), Problem> {
-    let longest = |axis: &Axis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
+pub fn titles(axes: &[SweepAxis]) -> Result<(), KeyFault> {
+    let longest = |axis: &SweepAxis| axis.points.iter().map(|point| point.label.chars().count()).max().unwrap_or(0);
     let found = axes.iter().map(|axis| longest(axis) + ", ".len()).sum::<usize>();
     if found <= LONGEST_NAME {
         return Ok(());
     }
-    Err(Problem::name(
+    Err(KeyFault::name(
         KeyPath::dotted("sweep"),
         format!("the labels of a cell have up to {found} characters together"),
         format!("expected at most {LONGEST_NAME}"),
@@ -59,7 +59,7 @@ pub fn titles(axes: &[Axis]) -> Result<(), Problem> {
 }
 
 /// Draws and sweeps change different keys, and no key twice.
-pub fn draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
+pub fn draws(draws: &[DrawWire], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     limits::entries("draw", draws.len(), limits::MOST_DRAWS)?;
     for (index, draw) in draws.iter().enumerate() {
         let own = KeyPath::dotted(draw.key());
@@ -68,7 +68,7 @@ pub fn draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
         let by_sweep =
             axes.iter().flat_map(|axis| &axis.points).flat_map(|point| &point.set).any(|set| set.key.is_related(&own));
         if by_draw || by_sweep {
-            return Err(Problem::value(
+            return Err(KeyFault::value(
                 place,
                 format!("`{own}` is drawn, and {} changes it too", if by_draw { "another draw" } else { "a sweep" }),
                 "expected a key that nothing else changes",
@@ -80,8 +80,8 @@ pub fn draws(draws: &[DrawWire], axes: &[Axis]) -> Result<(), Problem> {
 }
 
 /// Every title is that of a cell.
-pub fn detail(titles: &[String], cells: &[Cell]) -> Result<(), Problem> {
-    let known: Vec<String> = cells.iter().map(Cell::title).filter(|title| !title.is_empty()).collect();
+pub fn detail(titles: &[String], cells: &[DesignCell]) -> Result<(), KeyFault> {
+    let known: Vec<String> = cells.iter().map(DesignCell::title).filter(|title| !title.is_empty()).collect();
     let places: HashSet<&str> = known.iter().map(String::as_str).collect();
     let Some((index, title)) = titles.iter().enumerate().find(|(_, title)| !places.contains(title.as_str())) else {
         return Ok(());
@@ -90,7 +90,7 @@ pub fn detail(titles: &[String], cells: &[Cell]) -> Result<(), Problem> {
         [] => "leave the key out: a study without a sweep shows its only cell".to_owned(),
         shown => suggestion(title, shown),
     };
-    Err(Problem::value(
+    Err(KeyFault::value(
         KeyPath::dotted("output.detail").child(index),
         format!("no cell is called {title:?}"),
         "expected labels of points, joined by commas",
@@ -99,12 +99,12 @@ pub fn detail(titles: &[String], cells: &[Cell]) -> Result<(), Problem> {
 }
 
 /// Every mark is on an axis, at a number, and has a name.
-pub fn marks(marks: &[AxisMark], axes: &[Axis]) -> Result<(), Problem> {
+pub fn marks(marks: &[MarkedValue], axes: &[SweepAxis]) -> Result<(), KeyFault> {
     let known: Vec<String> = axes.iter().map(|axis| axis.name.clone()).collect();
     for (index, mark) in marks.iter().enumerate() {
         let key = KeyPath::dotted("output.marks").child(index);
         if !known.contains(&mark.axis) {
-            return Err(Problem::value(
+            return Err(KeyFault::value(
                 key.child("axis"),
                 format!("no axis is called {:?}", mark.axis),
                 "expected the name of a sweep",
@@ -113,7 +113,7 @@ pub fn marks(marks: &[AxisMark], axes: &[Axis]) -> Result<(), Problem> {
         }
         if !mark.at.is_finite() {
             let advice = "give the place of the mark on the axis";
-            return Err(Problem::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
+            return Err(KeyFault::value(key.child("at"), format!("found {}", mark.at), "expected a number", advice));
         }
         name::label(&mark.label).map_err(|unfit| of_text(key.child("label"), &mark.label, unfit))?;
     }
@@ -121,11 +121,11 @@ pub fn marks(marks: &[AxisMark], axes: &[Axis]) -> Result<(), Problem> {
 }
 
 /// Every label is that of a method.
-pub fn about(labels: &[String], methods: &[Method]) -> Result<(), Problem> {
+pub fn about(labels: &[String], methods: &[Method]) -> Result<(), KeyFault> {
     let known: Vec<String> = methods.iter().map(|method| method.label.clone()).collect();
     let unknown = labels.iter().enumerate().find(|(_, label)| !known.contains(label));
     unknown.map_or(Ok(()), |(index, label)| {
-        Err(Problem::value(
+        Err(KeyFault::value(
             KeyPath::dotted("output.methods").child(index),
             format!("no method is called {label:?}"),
             "expected the id or the label of an [[identifier]]",

@@ -10,8 +10,8 @@ use simulate::{Purpose, StreamKey};
 use statrs::distribution::ContinuousCDF as _;
 
 use crate::limits;
-use crate::part::Part;
-use crate::problem::{KeyPath, Mark, Problem};
+use crate::part::ScenarioPart;
+use crate::problem::{AtFault, KeyFault, KeyPath};
 
 /// A draw as it is written.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -60,25 +60,25 @@ struct RangeWire {
 
 /// A key that is drawn, and how.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Draw {
+pub struct DrawnKey {
     /// The key.
     pub key: KeyPath,
     /// Where the file says how.
     place: KeyPath,
     index: u32,
-    shape: Shape,
+    shape: DrawnDistribution,
     between: [f64; 2],
 }
 
 /// A distribution of the value, or of its natural logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Shape {
+struct DrawnDistribution {
     of_logarithm: bool,
-    law: Law,
+    law: Distribution,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Law {
+enum Distribution {
     Normal(Normal<f64>),
     Uniform { uniform: Uniform<f64>, ends: [f64; 2] },
 }
@@ -93,14 +93,15 @@ impl DrawWire {
     }
 
     /// Checks a draw; `index` is its place in the list.
-    pub fn resolve(&self, index: usize) -> Result<Draw, Problem> {
+    pub fn resolve(&self, index: usize) -> Result<DrawnKey, KeyFault> {
         let place = KeyPath::dotted("draw").child(index);
         let key = KeyPath::dotted(&self.key);
         limits::depth(&key, &place.child("key"))?;
-        let is_of_trial =
-            |first: &String| Part::of(first) == Part::Trial && !["validation", "also"].contains(&first.as_str());
+        let is_of_trial = |first: &String| {
+            ScenarioPart::of(first) == ScenarioPart::Trial && !["validation", "also"].contains(&first.as_str())
+        };
         if !key.parts().first().is_some_and(is_of_trial) {
-            return Err(Problem::value(
+            return Err(KeyFault::value(
                 place.child("key"),
                 format!("the draw changes `{key}`"),
                 "expected a key that says how a trial is made",
@@ -109,9 +110,9 @@ impl DrawWire {
         }
         let (shape, support, name) = self.shape(&place)?;
         let [low, high] = self.between.unwrap_or(support);
-        let draw = Draw { key, place: place.child(name), index: index as u32, shape, between: [low, high] };
+        let draw = DrawnKey { key, place: place.child(name), index: index as u32, shape, between: [low, high] };
         if !(low < high && draw.probability() >= LEAST_PROBABILITY) {
-            return Err(Problem::value(
+            return Err(KeyFault::value(
                 place.child("between"),
                 format!("the draw of `{}` is held between {} and {}", draw.key, Shown(low), Shown(high)),
                 format!("expected a range that holds at least {} % of the draws", 100.0 * LEAST_PROBABILITY),
@@ -122,7 +123,7 @@ impl DrawWire {
     }
 
     /// The distribution, where it lives, and its name.
-    fn shape(&self, place: &KeyPath) -> Result<(Shape, [f64; 2], &'static str), Problem> {
+    fn shape(&self, place: &KeyPath) -> Result<(DrawnDistribution, [f64; 2], &'static str), KeyFault> {
         let number = |name: &str, number: &str, value: f64, least: f64| {
             let is_within_reach = least == f64::NEG_INFINITY || (value - least).is_finite();
             if value.is_finite() && value > least && is_within_reach {
@@ -133,31 +134,35 @@ impl DrawWire {
                 f64::NEG_INFINITY => "expected a finite number".to_owned(),
                 _ => format!("expected a finite number above {}", Shown(least)),
             };
-            Err(Problem::value(place.child(name).child(number), found, expected, "change the number"))
+            Err(KeyFault::value(place.child(name).child(number), found, expected, "change the number"))
         };
         let everything = [f64::NEG_INFINITY, f64::INFINITY];
         match (self.normal, self.log_normal, self.uniform, self.log_uniform) {
             (Some(NormalWire { mean, sd }), None, None, None) => {
                 let mean = number("normal", "mean", mean, f64::NEG_INFINITY)?;
                 let law = normal(mean, number("normal", "sd", sd, 0.0)?);
-                Ok((Shape { of_logarithm: false, law }, everything, "normal"))
+                Ok((DrawnDistribution { of_logarithm: false, law }, everything, "normal"))
             }
             (None, Some(LogNormalWire { median, sigma }), None, None) => {
                 let median = number("log-normal", "median", median, 0.0)?;
                 let law = normal(median.ln(), number("log-normal", "sigma", sigma, 0.0)?);
-                Ok((Shape { of_logarithm: true, law }, [0.0, f64::INFINITY], "log-normal"))
+                Ok((DrawnDistribution { of_logarithm: true, law }, [0.0, f64::INFINITY], "log-normal"))
             }
             (None, None, Some(RangeWire { from, to }), None) => {
                 let from = number("uniform", "from", from, f64::NEG_INFINITY)?;
                 let to = number("uniform", "to", to, from)?;
-                Ok((Shape { of_logarithm: false, law: uniform(from, to) }, [from, to], "uniform"))
+                Ok((DrawnDistribution { of_logarithm: false, law: uniform(from, to) }, [from, to], "uniform"))
             }
             (None, None, None, Some(RangeWire { from, to })) => {
                 let from = number("log-uniform", "from", from, 0.0)?;
                 let to = number("log-uniform", "to", to, from)?;
-                Ok((Shape { of_logarithm: true, law: uniform(from.ln(), to.ln()) }, [from, to], "log-uniform"))
+                Ok((
+                    DrawnDistribution { of_logarithm: true, law: uniform(from.ln(), to.ln()) },
+                    [from, to],
+                    "log-uniform",
+                ))
             }
-            _ => Err(Problem::name(
+            _ => Err(KeyFault::name(
                 place.clone(),
                 format!("the draw of `{}` does not say from which distribution", self.key),
                 "expected one of `normal`, `log-normal`, `uniform`, `log-uniform`",
@@ -168,16 +173,16 @@ impl DrawWire {
 }
 
 /// A normal law; both numbers have been checked.
-fn normal(mean: f64, sd: f64) -> Law {
-    Law::Normal(Normal::new(mean, sd).expect("a finite standard deviation"))
+fn normal(mean: f64, sd: f64) -> Distribution {
+    Distribution::Normal(Normal::new(mean, sd).expect("a finite standard deviation"))
 }
 
 /// A uniform law; both ends have been checked.
-fn uniform(from: f64, to: f64) -> Law {
-    Law::Uniform { uniform: Uniform::new_inclusive(from, to).expect("finite ends in order"), ends: [from, to] }
+fn uniform(from: f64, to: f64) -> Distribution {
+    Distribution::Uniform { uniform: Uniform::new_inclusive(from, to).expect("finite ends in order"), ends: [from, to] }
 }
 
-impl Draw {
+impl DrawnKey {
     /// The value of one trial, in the unit of its key.
     pub fn value(&self, key: &StreamKey) -> f64 {
         let mut rng = StreamKey { cell: 0, ..*key }.indexed(Purpose::Specification, self.index);
@@ -203,14 +208,14 @@ impl Draw {
 
     /// The problem of a drawn trial, moved to the draw: to its key where that is at fault, else to its distribution;
     /// `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
+    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let (key, mark, what) = match problem.mark {
-            Mark::Name => (self.key_place(), Mark::Value, "changes a key that cannot be drawn"),
-            Mark::Value => (self.place.clone(), Mark::Name, "reaches a value that makes no trial"),
+            AtFault::Name => (self.key_place(), AtFault::Value, "changes a key that cannot be drawn"),
+            AtFault::Value => (self.place.clone(), AtFault::Name, "reaches a value that makes no trial"),
         };
         let found = format!("the draw of `{}` {what}{cell}: {}", self.key, problem.found);
-        Problem { key, mark, found, ..problem }
+        KeyFault { key, mark, found, ..problem }
     }
 
     fn key_place(&self) -> KeyPath {
@@ -224,11 +229,11 @@ impl Draw {
     }
 }
 
-impl Shape {
+impl DrawnDistribution {
     fn one(&self, rng: &mut ChaCha8Rng) -> f64 {
         let drawn = match &self.law {
-            Law::Normal(normal) => normal.sample(rng),
-            Law::Uniform { uniform, .. } => uniform.sample(rng),
+            Distribution::Normal(normal) => normal.sample(rng),
+            Distribution::Uniform { uniform, .. } => uniform.sample(rng),
         };
         if self.of_logarithm { drawn.exp() } else { drawn }
     }
@@ -240,8 +245,8 @@ impl Shape {
 
     fn middle(&self) -> f64 {
         let middle = match &self.law {
-            Law::Normal(normal) => normal.mean(),
-            Law::Uniform { ends, .. } => 0.5 * (ends[0] + ends[1]),
+            Distribution::Normal(normal) => normal.mean(),
+            Distribution::Uniform { ends, .. } => 0.5 * (ends[0] + ends[1]),
         };
         if self.of_logarithm { middle.exp() } else { middle }
     }
@@ -249,11 +254,11 @@ impl Shape {
     fn probability_below(&self, value: f64) -> f64 {
         let x = self.of_value(value);
         match &self.law {
-            Law::Normal(normal) => match statrs::distribution::Normal::new(normal.mean(), normal.std_dev()) {
+            Distribution::Normal(normal) => match statrs::distribution::Normal::new(normal.mean(), normal.std_dev()) {
                 Ok(law) => law.cdf(x),
                 Err(_) => f64::NAN,
             },
-            Law::Uniform { ends: [from, to], .. } => ((x - from) / (to - from)).clamp(0.0, 1.0),
+            Distribution::Uniform { ends: [from, to], .. } => ((x - from) / (to - from)).clamp(0.0, 1.0),
         }
     }
 }
@@ -262,11 +267,11 @@ impl Shape {
 mod tests {
     use super::*;
 
-    fn draw(text: &str) -> Result<Draw, Problem> {
+    fn draw(text: &str) -> Result<DrawnKey, KeyFault> {
         toml::from_str::<DrawWire>(&format!("key = \"ship.first-order.T-s\"\n{text}")).expect("well formed").resolve(0)
     }
 
-    fn values(draw: &Draw) -> Vec<f64> {
+    fn values(draw: &DrawnKey) -> Vec<f64> {
         (0..20_000).map(|replicate| draw.value(&StreamKey { seed: 4, cell: 9, replicate })).collect()
     }
 

@@ -1,8 +1,11 @@
-//! Effects of a scenario: from degrees and seconds to the parameters of [`ship::effects`], each checked against the
-//! range its effect declares.
+//! Effects of a scenario: their keys with units, declared once in [`FORMS`], and from them the parameters of
+//! [`ship::effects`], each checked against the range its effect declares.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use schemars::{Schema, SchemaGenerator, json_schema};
+use serde_json::{Map, json};
 use ship::angle::{DEGREE, from_deg};
 use ship::effects::{
     Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation, SecondOrder,
@@ -10,47 +13,221 @@ use ship::effects::{
 };
 use ship::ships::Model;
 use ship::{ResponseModel, Ship, Shown};
-use simulate::settings::WavesSettings;
 
-use crate::limits;
-use crate::problem::{KeyPath, Problem};
-use crate::wire::*;
+use crate::problem::{KeyFault, KeyPath, suggestion};
+use crate::{limits, reader};
+
+/// An effect as it is written: its id, and below it its numbers by their keys.
+pub type EffectEntry = BTreeMap<String, BTreeMap<String, f64>>;
+
+/// A number of an effect in a scenario.
+struct EffectKey {
+    name: &'static str,
+    /// Size of its unit in SI.
+    unit: f64,
+    meaning: &'static str,
+    default: Option<f64>,
+}
+
+/// An effect in one of the forms in which a scenario adds it.
+struct EffectForm {
+    effect: fn() -> Arc<dyn Effect>,
+    meaning: &'static str,
+    keys: &'static [EffectKey],
+}
+
+const fn form(effect: fn() -> Arc<dyn Effect>, meaning: &'static str, keys: &'static [EffectKey]) -> EffectForm {
+    EffectForm { effect, meaning, keys }
+}
+
+const fn key(name: &'static str, unit: f64, meaning: &'static str) -> EffectKey {
+    EffectKey { name, unit, meaning, default: None }
+}
+
+const PER_DEGREE: f64 = 1.0 / DEGREE;
+const DAMPING: &str = "Damping that grows with the yaw rate; one of these.";
+const LAG: &str = "A rudder that acts later than the one recorded; one of these.";
+const PLAY: &str = "Play between the recorded rudder and the one that acts; one of these.";
+const ASYMMETRY: &str = "A ship that turns more readily to one side; one of these.";
+
+/// Every effect that a scenario can add, in the order of lists; of several forms of one effect one is given.
+static FORMS: [EffectForm; 16] = [
+    form(
+        || Arc::new(SecondOrder),
+        "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'.",
+        &[key("T2-s", 1.0, "Smaller time constant T2."), key("T3-s", 1.0, "Time constant T3 of the rudder rate.")],
+    ),
+    form(
+        || Arc::new(NonlinearDamping::Cubic),
+        DAMPING,
+        &[key("n3-s2-per-deg2", PER_DEGREE * PER_DEGREE, "+ n3 r³ on the left (Norrbin, Bech).")],
+    ),
+    form(
+        || Arc::new(NonlinearDamping::Quadratic),
+        DAMPING,
+        &[key("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.")],
+    ),
+    form(|| Arc::new(NonlinearDamping::Square), DAMPING, &[key("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.")]),
+    form(
+        || Arc::new(WindMoment::Steady),
+        "A yaw moment of steady wind, by the heading.",
+        &[
+            key("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
+            key("from-deg", DEGREE, "Direction the wind comes from, clockwise from north."),
+        ],
+    ),
+    form(
+        || Arc::new(SpeedLoss::Modelled),
+        "Speed that falls in the turn: K ~ U, T ~ 1/U.",
+        &[
+            key("loss-s-per-deg2", PER_DEGREE * PER_DEGREE, "Rate of loss for a squared yaw rate of 1 deg²/s²."),
+            key("recovery-s", 1.0, "Time in which the speed comes back."),
+            EffectKey {
+                default: Some(2.0),
+                ..key("gain-exponent", 1.0, "Power of the speed in the gain of the rudder.")
+            },
+        ],
+    ),
+    form(|| Arc::new(SteeringLag::DeadTime), LAG, &[key("dead-time-s", 1.0, "Dead time.")]),
+    form(
+        || Arc::new(SteeringLag::FirstOrder),
+        LAG,
+        &[key("first-order-s", 1.0, "Time constant of a first-order lag.")],
+    ),
+    form(
+        || Arc::new(RudderSaturation),
+        "Stall: the rudder acts as δ − c3 δ³.",
+        &[key("c3-per-deg2", PER_DEGREE * PER_DEGREE, "Coefficient c3.")],
+    ),
+    form(|| Arc::new(RudderDeadband::Backlash), PLAY, &[key("backlash-deg", DEGREE, "Width of a backlash.")]),
+    form(|| Arc::new(RudderDeadband::DeadBand), PLAY, &[key("dead-band-deg", DEGREE, "Width of a dead band.")]),
+    form(
+        || Arc::new(PortStarboardAsymmetry::Gain),
+        ASYMMETRY,
+        &[key("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
+    ),
+    form(
+        || Arc::new(PortStarboardAsymmetry::Drift),
+        ASYMMETRY,
+        &[key(
+            "moment-by-drift-s",
+            1.0,
+            "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.",
+        )],
+    ),
+    form(
+        || Arc::new(MomentDrift { reference_time: 0.0 }),
+        "A slow trend of the yaw moment.",
+        &[key("rudder-deg-per-s", DEGREE, "Change of the moment, as rudder angle.")],
+    ),
+    form(
+        || Arc::new(TransientDisturbance::Passing),
+        "A moment for a part of the record.",
+        &[
+            key("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
+            key("centre-s", 1.0, "Time of its middle."),
+            key("duration-s", 1.0, "How long it lasts."),
+        ],
+    ),
+    form(
+        || Arc::new(WaveYaw),
+        "Narrow-band yaw from waves.",
+        &[
+            key("sd-deg", DEGREE, "Standard deviation of the heading they add."),
+            key("frequency-rad-s", 1.0, "Frequency of encounter."),
+            key("damping", 1.0, "Relative damping: the smaller, the narrower the band."),
+        ],
+    ),
+];
+
+impl EffectForm {
+    fn names(&self) -> Vec<&'static str> {
+        self.keys.iter().map(|key| key.name).collect()
+    }
+
+    fn takes(&self, name: &str) -> bool {
+        self.keys.iter().any(|key| key.name == name)
+    }
+}
+
+/// The ids of effects in the order of [`FORMS`], each with its forms.
+fn by_id() -> Vec<(&'static str, Vec<&'static EffectForm>)> {
+    let mut list: Vec<(&str, Vec<&EffectForm>)> = Vec::new();
+    for form in &FORMS {
+        let id = (form.effect)().id();
+        match list.last_mut().filter(|(last, _)| *last == id) {
+            Some((_, forms)) => forms.push(form),
+            None => list.push((id, vec![form])),
+        }
+    }
+    list
+}
 
 /// The keys a scenario has for an effect in one of its forms; `None` for a form that needs a measured record.
-pub fn keys(effect: &dyn Effect) -> Option<&'static str> {
-    Some(match (effect.id(), effect.parameters().first()?.symbol) {
-        ("second_order", _) => "T2-s, T3-s",
-        ("nonlinear_damping", "n₃/T") => "n3-s2-per-deg2",
-        ("nonlinear_damping", "n₂/T") => "n2-s-per-deg",
-        ("nonlinear_damping", _) => "n11-s-per-deg",
-        ("wind_moment", "w_c") => "rudder-deg, from-deg",
-        ("speed_loss", "c_u") => "loss-s-per-deg2, recovery-s, gain-exponent",
-        ("steering_lag", "τ") => "dead-time-s",
-        ("steering_lag", _) => "first-order-s",
-        ("rudder_saturation", _) => "c3-per-deg2",
-        ("rudder_deadband", _) if effect.form() == RudderDeadband::Backlash.form() => "backlash-deg",
-        ("rudder_deadband", _) => "dead-band-deg",
-        ("port_starboard_asymmetry", "a") => "gain-share",
-        ("port_starboard_asymmetry", _) => "moment-by-drift-s",
-        ("moment_drift", _) => "rudder-deg-per-s",
-        ("transient_disturbance", _) if effect.parameters().len() == 3 => "rudder-deg, centre-s, duration-s",
-        ("wave_yaw", _) => "sd-deg, frequency-rad-s, damping",
-        _ => return None,
-    })
+pub fn keys(effect: &dyn Effect) -> Option<String> {
+    let form = FORMS.iter().find(|form| {
+        let own = (form.effect)();
+        (own.id(), own.form()) == (effect.id(), effect.form())
+    });
+    form.map(|form| form.names().join(", "))
+}
+
+/// The effects with nothing left out.
+pub fn complete(entries: &mut [EffectEntry]) {
+    for (id, forms) in by_id() {
+        for numbers in entries.iter_mut().filter_map(|entry| entry.get_mut(id)) {
+            for (key, default) in forms[0].keys.iter().filter_map(|key| Some((key, key.default?))) {
+                numbers.entry(key.name.to_owned()).or_insert(default);
+            }
+        }
+    }
+}
+
+/// The form that an entry asks for, with the key of it and its numbers.
+fn asked<'a>(
+    entry: &'a EffectEntry,
+    place: &KeyPath,
+) -> Result<(&'static EffectForm, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
+    let all = by_id();
+    let ids: Vec<&str> = all.iter().map(|(id, _)| *id).collect();
+    let mut names = entry.iter();
+    let (Some((id, numbers)), None) = (names.next(), names.next()) else {
+        return Err(reader::not_one_name(place.clone(), entry.keys(), &ids));
+    };
+    let key = place.child(id);
+    let Some((_, forms)) = all.iter().find(|(known, _)| known == id) else {
+        return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &ids)));
+    };
+    let known: Vec<&str> = forms.iter().flat_map(|form| form.names()).collect();
+    if let Some(name) = numbers.keys().find(|name| !known.contains(&name.as_str())) {
+        let found = format!("`{key}` has no key `{name}`");
+        return Err(KeyFault::name(key.child(name), found, "no such key here", suggestion(name, &known)));
+    }
+    let form = match forms.as_slice() {
+        [form] => form,
+        forms => match numbers.keys().collect::<Vec<_>>().as_slice() {
+            [name] => forms.iter().find(|form| form.takes(name)).expect("it is known"),
+            _ => return Err(reader::not_one_name(key, numbers.keys(), &known)),
+        },
+    };
+    let missing = form.keys.iter().find(|key| key.default.is_none() && !numbers.contains_key(key.name));
+    missing.map_or(Ok((*form, key.clone(), numbers)), |missing| Err(reader::missing(&key, missing.name)))
 }
 
 /// The ship with effects added to its response.
 ///
 /// Fails for a hull, whose equations hold such effects already, for a second-order effect on a ship that has one, and
 /// for a parameter outside its range.
-pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
-    if wire.is_empty() {
+pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
+    if entries.is_empty() {
         return Ok(ship);
     }
-    limits::entries("effect", wire.len(), limits::MOST_EFFECTS)?;
+    limits::entries("effect", entries.len(), limits::MOST_EFFECTS)?;
     let list = KeyPath::dotted("effect");
+    let asked = entries.iter().enumerate().map(|(index, entry)| asked(entry, &list.child(index)));
+    let asked = asked.collect::<Result<Vec<_>, _>>()?;
     let Model::Response(response) = &ship.model else {
-        return Err(Problem::name(
+        return Err(KeyFault::name(
             list,
             format!("an effect is added to `{}`, a hull with its own equations", ship.id),
             "effects belong to response models",
@@ -60,17 +237,17 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
     let inverse_time = response.parameters()[0];
     let mut effects = response.model().effects().to_vec();
     let mut parameters = response.parameters().to_vec();
-    for (index, wire) in wire.iter().enumerate() {
-        let (effect, settings) = of(wire, inverse_time);
-        let key = list.child(index).child(effect.id());
+    for (form, key, numbers) in asked {
+        let effect = (form.effect)();
         if effect.id() == "second_order" && effects.iter().any(|other| other.id() == effect.id()) {
-            return Err(Problem::name(
+            return Err(KeyFault::name(
                 key,
                 format!("the ship `{}` is of second order already", ship.id),
                 "expected at most one such effect",
                 "leave it out, or use a first-order ship",
             ));
         }
+        let settings = settings(form, effect.as_ref(), numbers, inverse_time);
         for (description, setting) in effect.parameters().iter().zip(&settings) {
             if !description.holds(setting.value) {
                 let key = key.child(setting.key);
@@ -78,7 +255,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
                     [description.lowest, description.highest].map(|end| Shown::rounded(end / setting.unit, 4));
                 // Divided by the T of a course-unstable ship, the lower end becomes the upper.
                 ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-                return Err(Problem::value(
+                return Err(KeyFault::value(
                     key.clone(),
                     format!("`{key}` is {}", Shown(setting.written)),
                     format!("expected a number from {} to {}", ends[0], ends[1]),
@@ -94,7 +271,7 @@ pub fn added(ship: Ship, wire: &[EffectWire]) -> Result<Ship, Problem> {
 }
 
 /// One parameter and the key it comes from.
-struct Setting {
+struct EffectNumber {
     /// Value, SI and rad.
     value: f64,
     /// Key below the effect.
@@ -105,82 +282,68 @@ struct Setting {
     unit: f64,
 }
 
-fn setting(key: &'static str, written: f64, unit: f64) -> Setting {
-    Setting { value: written * unit, key, written, unit }
+/// The parameters of an effect; nonlinear damping is written for T r' + r and stored for r', divided by T.
+fn settings(
+    form: &EffectForm,
+    effect: &dyn Effect,
+    numbers: &BTreeMap<String, f64>,
+    inverse_time: f64,
+) -> Vec<EffectNumber> {
+    let one = |key: &EffectKey| {
+        let written = numbers.get(key.name).copied().or(key.default).unwrap_or(f64::NAN);
+        let unit = if effect.id() == "nonlinear_damping" { key.unit * inverse_time } else { key.unit };
+        EffectNumber { value: written * unit, key: key.name, written, unit }
+    };
+    let mut settings: Vec<EffectNumber> = form.keys.iter().map(one).collect();
+    if let ("wind_moment", [moment, from]) = (effect.id(), settings.as_mut_slice()) {
+        // w sin 2(ψ_w − ψ) by its components along sin and cos of 2ψ.
+        let (largest, twice) = (moment.value, 2.0 * from_deg(from.written));
+        let number = |share: f64| match from.written.is_finite() {
+            true => EffectNumber { value: largest * share, ..*moment },
+            false => EffectNumber { ..*from },
+        };
+        return vec![number(twice.sin()), number(-twice.cos())];
+    }
+    settings
 }
 
-/// The effect and its parameters; nonlinear damping is written for T r' + r and stored for r', divided by T.
-fn of(wire: &EffectWire, inverse_time: f64) -> (Arc<dyn Effect>, Vec<Setting>) {
-    let per_degree = 1.0 / DEGREE;
-    match *wire {
-        EffectWire::SecondOrder(SwayCouplingWire { T2_s, T3_s }) => {
-            (Arc::new(SecondOrder), vec![setting("T2-s", T2_s, 1.0), setting("T3-s", T3_s, 1.0)])
+/// The effects: a list, each with one key, its id.
+pub fn schema(_: &mut SchemaGenerator) -> Schema {
+    let table = |form: &EffectForm, description: Option<&str>| {
+        let number = |key: &EffectKey| {
+            let mut number = json!({ "type": "number", "format": "double", "description": key.meaning });
+            if let Some(default) = key.default {
+                number["default"] = default.into();
+            }
+            (key.name.to_owned(), number)
+        };
+        let required = form.keys.iter().filter(|key| key.default.is_none()).map(|key| key.name);
+        let mut table = json!({
+            "type": "object",
+            "properties": form.keys.iter().map(number).collect::<Map<_, _>>(),
+            "required": required.collect::<Vec<_>>(),
+            "additionalProperties": false,
+        });
+        if let Some(description) = description {
+            table["description"] = description.into();
         }
-        EffectWire::NonlinearDamping(DampingWire::Cubic(n3)) => (
-            Arc::new(NonlinearDamping::Cubic),
-            vec![setting("n3-s2-per-deg2", n3, per_degree * per_degree * inverse_time)],
-        ),
-        EffectWire::NonlinearDamping(DampingWire::Quadratic(n2)) => {
-            (Arc::new(NonlinearDamping::Quadratic), vec![setting("n2-s-per-deg", n2, per_degree * inverse_time)])
-        }
-        EffectWire::NonlinearDamping(DampingWire::Square(n11)) => {
-            (Arc::new(NonlinearDamping::Square), vec![setting("n11-s-per-deg", n11, per_degree * inverse_time)])
-        }
-        EffectWire::WindMoment(WindMomentWire { rudder_deg, from_deg: from }) => {
-            let twice = 2.0 * from_deg(from);
-            let component = |share: f64| match from.is_finite() {
-                true => Setting { value: from_deg(rudder_deg) * share, ..setting("rudder-deg", rudder_deg, DEGREE) },
-                false => setting("from-deg", from, DEGREE),
-            };
-            (Arc::new(WindMoment::Steady), vec![component(twice.sin()), component(-twice.cos())])
-        }
-        EffectWire::SpeedLoss(SpeedLossWire { loss_s_per_deg2, recovery_s, gain_exponent }) => (
-            Arc::new(SpeedLoss::Modelled),
-            vec![
-                setting("loss-s-per-deg2", loss_s_per_deg2, per_degree * per_degree),
-                setting("recovery-s", recovery_s, 1.0),
-                setting("gain-exponent", gain_exponent, 1.0),
-            ],
-        ),
-        EffectWire::SteeringLag(LagWire::DeadTimeS(time)) => {
-            (Arc::new(SteeringLag::DeadTime), vec![setting("dead-time-s", time, 1.0)])
-        }
-        EffectWire::SteeringLag(LagWire::FirstOrderS(time)) => {
-            (Arc::new(SteeringLag::FirstOrder), vec![setting("first-order-s", time, 1.0)])
-        }
-        EffectWire::RudderSaturation(SaturationWire { c3_per_deg2 }) => {
-            (Arc::new(RudderSaturation), vec![setting("c3-per-deg2", c3_per_deg2, per_degree * per_degree)])
-        }
-        EffectWire::RudderDeadband(DeadBandWire::BacklashDeg(width)) => {
-            (Arc::new(RudderDeadband::Backlash), vec![setting("backlash-deg", width, DEGREE)])
-        }
-        EffectWire::RudderDeadband(DeadBandWire::DeadBandDeg(width)) => {
-            (Arc::new(RudderDeadband::DeadBand), vec![setting("dead-band-deg", width, DEGREE)])
-        }
-        EffectWire::PortStarboardAsymmetry(AsymmetryWire::GainShare(share)) => {
-            (Arc::new(PortStarboardAsymmetry::Gain), vec![setting("gain-share", share, 1.0)])
-        }
-        EffectWire::PortStarboardAsymmetry(AsymmetryWire::MomentByDriftS(time)) => {
-            (Arc::new(PortStarboardAsymmetry::Drift), vec![setting("moment-by-drift-s", time, 1.0)])
-        }
-        EffectWire::MomentDrift(DriftWire { rudder_deg_per_s }) => {
-            (Arc::new(MomentDrift { reference_time: 0.0 }), vec![setting("rudder-deg-per-s", rudder_deg_per_s, DEGREE)])
-        }
-        EffectWire::TransientDisturbance(TransientWire { rudder_deg, centre_s, duration_s }) => (
-            Arc::new(TransientDisturbance::Passing),
-            vec![
-                setting("rudder-deg", rudder_deg, DEGREE),
-                setting("centre-s", centre_s, 1.0),
-                setting("duration-s", duration_s, 1.0),
-            ],
-        ),
-        EffectWire::WaveYaw(WavesSettings { sd_deg, frequency_rad_s, damping }) => (
-            Arc::new(WaveYaw),
-            vec![
-                setting("sd-deg", sd_deg, DEGREE),
-                setting("frequency-rad-s", frequency_rad_s, 1.0),
-                setting("damping", damping, 1.0),
-            ],
-        ),
-    }
+        table
+    };
+    let effects = by_id().into_iter().map(|(id, forms)| {
+        let below = match forms.as_slice() {
+            [form] => table(form, None),
+            forms => {
+                let choice = forms.iter().map(|form| table(form, Some(form.keys[0].meaning)));
+                json!({ "oneOf": choice.collect::<Vec<_>>() })
+            }
+        };
+        json!({
+            "type": "object",
+            "description": forms[0].meaning,
+            "properties": { id: below },
+            "required": [id],
+            "additionalProperties": false,
+        })
+    });
+    json_schema!({ "type": "array", "items": { "oneOf": effects.collect::<Vec<_>>() } })
 }

@@ -12,13 +12,13 @@ use trial::reader::RECORD;
 
 use crate::failure::{Failure, OnPath};
 
-use crate::part::Part;
+use crate::part::ScenarioPart;
 
 /// The document without prose and presentation; comments and layout are gone by themselves.
 pub fn design_of(document: &Table) -> Table {
     document
         .iter()
-        .filter(|(key, _)| Part::of(key) != Part::Prose)
+        .filter(|(key, _)| ScenarioPart::of(key) != ScenarioPart::Prose)
         .map(|(key, value)| (key.clone(), value.clone()))
         .collect()
 }

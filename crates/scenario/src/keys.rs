@@ -6,7 +6,7 @@ use crate::schema::schema;
 
 /// A key of a scenario, for a person who looks for it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Key {
+pub struct ScenarioKey {
     /// With dots, from the root of a scenario; `[]` marks an entry of a list.
     pub key: String,
     /// Unit of the number, or what stands there instead of one.
@@ -39,23 +39,23 @@ impl std::fmt::Display for LeftOut {
 }
 
 /// Every key of a scenario, in the order of its types.
-pub fn keys() -> Vec<Key> {
+pub fn keys() -> Vec<ScenarioKey> {
     let schema = schema().to_value();
     let mut keys = Vec::new();
-    Walk { definitions: &schema["definitions"] }.below("", &schema, &mut keys);
+    SchemaWalk { definitions: &schema["definitions"] }.below("", &schema, &mut keys);
     keys
 }
 
 /// Tables whose keys are those of `manoeuvre` and `recording`.
 const AS_BEFORE: [&str; 4] = ["also[].manoeuvre", "also[].recording", "validation.manoeuvre", "validation.recording"];
 
-struct Walk<'a> {
+struct SchemaWalk<'a> {
     definitions: &'a Value,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> SchemaWalk<'a> {
     /// The keys of a table.
-    fn below(&self, path: &str, table: &'a Value, keys: &mut Vec<Key>) {
+    fn below(&self, path: &str, table: &'a Value, keys: &mut Vec<ScenarioKey>) {
         let is_required =
             |name: &str| table["required"].as_array().is_some_and(|names| names.iter().any(|known| known == name));
         for (name, value) in fields(table) {
@@ -70,7 +70,13 @@ impl<'a> Walk<'a> {
     }
 
     /// A key, and those below it.
-    fn key(&self, key: &str, (written, variant): (&'a Value, &'a Value), is_required: bool, keys: &mut Vec<Key>) {
+    fn key(
+        &self,
+        key: &str,
+        (written, variant): (&'a Value, &'a Value),
+        is_required: bool,
+        keys: &mut Vec<ScenarioKey>,
+    ) {
         let mut value = self.resolved(written);
         let kind = |value: &'a Value| value["type"].as_str().or(value["type"][0].as_str());
         let list = kind(value).filter(|kind| *kind == "array").map(|_| self.resolved(&value["items"]));
@@ -94,7 +100,7 @@ impl<'a> Walk<'a> {
             Value::Number(number) => LeftOut::Value(number.as_f64().map_or_else(String::new, |own| own.to_string())),
             value => LeftOut::Value(value.as_str().map_or_else(|| value.to_string(), str::to_owned)),
         };
-        keys.push(Key { key: key.to_owned(), unit, default, meaning: in_one_line(meaning) });
+        keys.push(ScenarioKey { key: key.to_owned(), unit, default, meaning: in_one_line(meaning) });
         // A further manoeuvre has the keys of the first.
         if !AS_BEFORE.contains(&key) {
             let mark = if is_list_of_tables { "[]." } else { "." };
@@ -177,7 +183,7 @@ mod tests {
         let keys = keys();
         let silent: Vec<&str> = keys.iter().filter(|key| key.meaning.is_empty()).map(|key| key.key.as_str()).collect();
         assert!(silent.is_empty(), "{}", silent.join("\n"));
-        let linked: Vec<&Key> =
+        let linked: Vec<&ScenarioKey> =
             keys.iter().filter(|key| key.meaning.contains("](") || key.meaning.contains("[`")).collect();
         assert!(linked.is_empty(), "{linked:?}");
     }

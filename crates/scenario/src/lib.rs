@@ -41,12 +41,12 @@ mod wire;
 pub mod words;
 
 pub use answers::Answers;
-pub use cell::{Cell, Refusal, Specimen};
+pub use cell::{DesignCell, Refusal, TrialSpecification};
 pub use effect::keys as effect_keys;
 pub use identity::hex;
 pub use method::{Method, MethodName, Procedure, TRACE, identify};
 pub use predictions::Predictions;
-pub use scenario::{Published, Scenario};
+pub use scenario::Scenario;
 pub use specification::{HULL, Specification};
 pub use stop::{Index, StopFigure, StopRule};
-pub use words::{AxisMark, Words};
+pub use words::{MarkedValue, Presentation, Published, Words};

@@ -2,7 +2,7 @@
 //! writes a few of each; more is a slip or comes from a program, and is several studies. What one trial may cost is
 //! estimated in [`simulate::cost`].
 
-use crate::problem::{KeyPath, Problem};
+use crate::problem::{KeyFault, KeyPath};
 
 /// Most entries of `[[sweep]]`: with two points each they make more cells than a study may have.
 pub const MOST_SWEEPS: usize = 16;
@@ -23,11 +23,11 @@ pub const MOST_METHODS_OF_CELLS: usize = 1_000_000;
 const MOST_NAMES: usize = 16;
 
 /// Refuses a list of too many entries.
-pub fn entries(list: &str, count: usize, most: usize) -> Result<(), Problem> {
+pub fn entries(list: &str, count: usize, most: usize) -> Result<(), KeyFault> {
     if count <= most {
         return Ok(());
     }
-    Err(Problem::name(
+    Err(KeyFault::name(
         KeyPath::dotted(list),
         format!("`{list}` has {count} entries"),
         format!("expected at most {most}"),
@@ -36,12 +36,12 @@ pub fn entries(list: &str, count: usize, most: usize) -> Result<(), Problem> {
 }
 
 /// Refuses a key that leads deeper than any document, at the `place` where it is written.
-pub fn depth(key: &KeyPath, place: &KeyPath) -> Result<(), Problem> {
+pub fn depth(key: &KeyPath, place: &KeyPath) -> Result<(), KeyFault> {
     let names = key.parts().len();
     if names <= MOST_NAMES {
         return Ok(());
     }
-    Err(Problem::value(
+    Err(KeyFault::value(
         place.clone(),
         format!("the key has {names} names joined by dots"),
         format!("expected at most {MOST_NAMES}"),

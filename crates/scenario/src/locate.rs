@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::problem::{KeyPath, Mark};
+use crate::problem::{AtFault, KeyPath};
 
 /// Byte range of the name or value at a path, or of the name of the nearest key above it that exists; the first line
 /// that says anything when there is none.
 ///
 /// A table or list is shown by its name, since its own range may be pages long.
-pub fn span(text: &str, path: &KeyPath, mark: Mark) -> Range<usize> {
+pub fn span(text: &str, path: &KeyPath, mark: AtFault) -> Range<usize> {
     let nowhere = first_line(text);
     let Ok(document) = DeTable::parse(text) else { return nowhere };
     let mut place = nowhere;
@@ -33,7 +33,7 @@ pub fn span(text: &str, path: &KeyPath, mark: Mark) -> Range<usize> {
             DeValue::Array(inner) => (None, Some(inner)),
             _ => (None, None),
         };
-        let by_name = table.is_some() || array.is_some() || (depth == last && mark == Mark::Name);
+        let by_name = table.is_some() || array.is_some() || (depth == last && mark == AtFault::Name);
         place = if by_name { key_span } else { value.span() };
     }
     place
@@ -59,24 +59,24 @@ mod tests {
     const TEXT: &str = "# note\nseed = 1\n[sensor]\nheading-noise-deg = -0.1\n[[identifier]]\nsrivc = {}\n[[identifier]]\nlabel = \"x\"\n\
          [[sweep]]\npoints = [{ set = { \"a.b\" = 3 } }]\n";
 
-    fn at(path: &str, mark: Mark) -> &str {
+    fn at(path: &str, mark: AtFault) -> &str {
         &TEXT[span(TEXT, &KeyPath::dotted(path), mark)]
     }
 
     #[test]
     fn finds_names_and_values_in_tables_and_lists() {
-        assert_eq!(at("sensor.heading-noise-deg", Mark::Value), "-0.1");
-        assert_eq!(at("sensor.heading-noise-deg", Mark::Name), "heading-noise-deg");
-        assert_eq!(at("identifier.1.label", Mark::Value), "\"x\"");
+        assert_eq!(at("sensor.heading-noise-deg", AtFault::Value), "-0.1");
+        assert_eq!(at("sensor.heading-noise-deg", AtFault::Name), "heading-noise-deg");
+        assert_eq!(at("identifier.1.label", AtFault::Value), "\"x\"");
         let swept = KeyPath::dotted("sweep.0.points.0.set").child("a.b");
-        assert_eq!(&TEXT[span(TEXT, &swept, Mark::Value)], "3");
-        assert_eq!(&TEXT[span(TEXT, &swept, Mark::Name)], "\"a.b\"");
+        assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Value)], "3");
+        assert_eq!(&TEXT[span(TEXT, &swept, AtFault::Name)], "\"a.b\"");
     }
 
     #[test]
     fn falls_back_to_the_nearest_key_above() {
-        assert_eq!(at("sensor.no-such-key", Mark::Value), "sensor");
-        assert_eq!(at("nothing.here", Mark::Value), "seed = 1");
-        assert_eq!(span("", &KeyPath::default(), Mark::Name), 0..0);
+        assert_eq!(at("sensor.no-such-key", AtFault::Value), "sensor");
+        assert_eq!(at("nothing.here", AtFault::Value), "seed = 1");
+        assert_eq!(span("", &KeyPath::default(), AtFault::Name), 0..0);
     }
 }

@@ -12,7 +12,7 @@ use simulate::{Purpose, StreamKey};
 use trial::Trial;
 
 use crate::answers::Answers;
-use crate::problem::{KeyPath, Problem, of_text};
+use crate::problem::{KeyFault, KeyPath, of_text};
 use crate::{limits, name};
 
 /// A method as a scenario names it.
@@ -123,7 +123,7 @@ impl Default for TraceWire {
 }
 
 /// The methods, all with names of their own; files that they name are beside the scenario, in `folder`.
-pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Method>, Problem> {
+pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Method>, KeyFault> {
     limits::entries("identifier", wire.len(), limits::MOST_METHODS)?;
     let list = KeyPath::dotted("identifier");
     let mut methods: Vec<Method> = Vec::with_capacity(wire.len());
@@ -134,7 +134,7 @@ pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Meth
         let label = entry.label.clone().unwrap_or_else(|| id.to_owned());
         name::label(&label).map_err(|unfit| of_text(key.child("label"), &label, unfit))?;
         if methods.iter().any(|method| method.label == label) {
-            return Err(Problem::name(
+            return Err(KeyFault::name(
                 key.child("label"),
                 format!("two methods are called `{label}`"),
                 "expected every method to have a name of its own",
@@ -144,7 +144,7 @@ pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Meth
         methods.push(Method { label, id, procedure });
     }
     if methods.is_empty() {
-        return Err(Problem::name(
+        return Err(KeyFault::name(
             list,
             "`identifier` names no method",
             "expected at least one method",
@@ -155,7 +155,7 @@ pub(crate) fn methods(wire: &[IdentifierWire], folder: &Path) -> Result<Vec<Meth
 }
 
 /// What one entry asks for.
-fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Procedure, Problem> {
+fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Procedure, KeyFault> {
     match (&entry.method, &entry.trace) {
         (Some(settings), None) => {
             let table = key.child("method").child(registry_id(settings));
@@ -163,7 +163,7 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Pro
             Ok(Procedure::Identify { settings: Some(settings.clone()), identifier: identifier.into() })
         }
         (None, Some(wire)) => tracing(wire).map(Procedure::Trace).map_err(|error| refused(&key.child("trace"), &error)),
-        (method, _) => Err(Problem::name(
+        (method, _) => Err(KeyFault::name(
             key.clone(),
             format!("`{key}` names {}", if method.is_some() { "a method and a trace" } else { "no method" }),
             "expected one of the two",
@@ -173,10 +173,10 @@ fn procedure(entry: &IdentifierWire, key: &KeyPath, folder: &Path) -> Result<Pro
 }
 
 /// A setting that its owner refuses, at the table in which it stands.
-fn refused(table: &KeyPath, error: &SettingsError) -> Problem {
+fn refused(table: &KeyPath, error: &SettingsError) -> KeyFault {
     let key = error.key.split('.').fold(table.clone(), |key, part| key.child(part));
     let found = format!("`{key}` is {}", error.found);
-    Problem::value(key, found, format!("expected {}", error.expected), "change the value, or leave the key out")
+    KeyFault::value(key, found, format!("expected {}", error.expected), "change the value, or leave the key out")
 }
 
 /// Settings of a trace; a benchmark needs no errors of restarted replays and no proposals.

@@ -2,7 +2,7 @@
 
 /// What a part of a scenario decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ScenarioPart {
     /// What a person reads, and no row.
     Prose,
     /// The study as a whole: the same in every cell.
@@ -13,7 +13,7 @@ pub enum Part {
     Trial,
 }
 
-impl Part {
+impl ScenarioPart {
     /// The part below a key; whether there is such a key is seen when it is read.
     pub fn of(key: &str) -> Self {
         match key {

@@ -1,10 +1,10 @@
 //! What every answer of a scenario has to predict: `[predict]`.
 
-use predict::Kind;
-use predict::kind::Pattern;
 use serde::{Deserialize, Serialize};
+use trial::Manoeuvre;
+use trial::manoeuvre::NoManoeuvre;
 
-use crate::problem::{KeyPath, Problem};
+use crate::problem::{KeyFault, KeyPath};
 
 /// Manoeuvres that are predicted from every answer and held against the same ship making them.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -28,18 +28,18 @@ const DRAWS: std::ops::RangeInclusive<u64> = 50..=10_000;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Predictions {
     /// The manoeuvres.
-    pub kinds: Vec<Kind>,
+    pub kinds: Vec<Manoeuvre>,
     /// Ships drawn for every prediction.
     pub draws: usize,
 }
 
 impl PredictWire {
     /// Checks every value; fails with the first one that makes no sense.
-    pub(crate) fn resolve(&self) -> Result<Predictions, Problem> {
+    pub(crate) fn resolve(&self) -> Result<Predictions, KeyFault> {
         let key = KeyPath::dotted("predict");
         if !DRAWS.contains(&self.draws) {
             let found = format!("`predict.draws` is {}", self.draws);
-            return Err(Problem::value(
+            return Err(KeyFault::value(
                 key.child("draws"),
                 found,
                 "expected 50 to 10000",
@@ -49,16 +49,16 @@ impl PredictWire {
         if self.manoeuvres.is_empty() {
             let found = "`predict.manoeuvres` is empty";
             let expected = "expected at least one, such as \"zig-zag:20/20\"";
-            return Err(Problem::value(key.child("manoeuvres"), found, expected, "name one, or leave [predict] out"));
+            return Err(KeyFault::value(key.child("manoeuvres"), found, expected, "name one, or leave [predict] out"));
         }
-        let mut kinds: Vec<Kind> = Vec::with_capacity(self.manoeuvres.len());
+        let mut kinds: Vec<Manoeuvre> = Vec::with_capacity(self.manoeuvres.len());
         for text in &self.manoeuvres {
             let refused = |expected: &str| {
                 let found = format!("`predict.manoeuvres` holds {text:?}");
-                Problem::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
+                KeyFault::value(key.child("manoeuvres"), found, expected, "mend or leave out this entry")
             };
-            let kind: Kind = text.parse().map_err(|error: predict::PredictError| refused(&error.to_string()))?;
-            if kind.pattern == Pattern::Spiral {
+            let kind: Manoeuvre = text.parse().map_err(|error: NoManoeuvre| refused(&error.to_string()))?;
+            if matches!(kind, Manoeuvre::Spiral { .. }) {
                 return Err(refused("expected a manoeuvre that is steered; a spiral is a curve"));
             }
             if kinds.contains(&kind) {

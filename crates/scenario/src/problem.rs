@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use simulate::settings::SettingError;
+use simulate::SpecificationError;
 
 use crate::name::{Unfit, shown};
 
@@ -51,7 +51,7 @@ impl fmt::Display for KeyPath {
 
 /// What is underlined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum AtFault {
     /// The name of the key.
     Name,
     /// Its value.
@@ -60,11 +60,11 @@ pub enum Mark {
 
 /// Something wrong with a scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problem {
+pub struct KeyFault {
     /// The key at fault.
     pub key: KeyPath,
     /// Whether its name or its value is at fault.
-    pub mark: Mark,
+    pub mark: AtFault,
     /// The key and the value found, in one sentence.
     pub found: String,
     /// What was expected, to stand below the place.
@@ -73,7 +73,7 @@ pub struct Problem {
     pub advice: String,
 }
 
-impl Problem {
+impl KeyFault {
     /// A value at fault.
     pub fn value(
         key: KeyPath,
@@ -81,7 +81,7 @@ impl Problem {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { key, mark: Mark::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
+        Self { key, mark: AtFault::Value, found: found.into(), expected: expected.into(), advice: advice.into() }
     }
 
     /// A key at fault.
@@ -91,22 +91,28 @@ impl Problem {
         expected: impl Into<String>,
         advice: impl Into<String>,
     ) -> Self {
-        Self { mark: Mark::Name, ..Self::value(key, found, expected, advice) }
+        Self { mark: AtFault::Name, ..Self::value(key, found, expected, advice) }
     }
 }
 
-impl From<SettingError> for Problem {
-    fn from(error: SettingError) -> Self {
-        let SettingError { key, of_value, found, expected, advice } = error;
-        let mark = if of_value { Mark::Value } else { Mark::Name };
-        Self { key: KeyPath::dotted(&key), mark, found, expected, advice }
+impl From<SpecificationError> for KeyFault {
+    fn from(error: SpecificationError) -> Self {
+        let [found, expected, advice] = error.words();
+        let mark = if error.is_of_name() { AtFault::Name } else { AtFault::Value };
+        let key = match error.key {
+            "vessel.dead_time" => "effect",
+            // No scenario sets these; only a manoeuvre can make them matter.
+            "longest_wait" | "weather_grid" | "solver.step" => "manoeuvre",
+            key => key,
+        };
+        Self { key: KeyPath::dotted(key), mark, found, expected, advice }
     }
 }
 
 /// The problem of a text that cannot be used.
-pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> Problem {
+pub fn of_text(key: KeyPath, text: &str, unfit: Unfit) -> KeyFault {
     let found = format!("`{key}` is {}", shown(text));
-    Problem::value(key, found, unfit.to_string(), "change the text")
+    KeyFault::value(key, found, unfit.to_string(), "change the text")
 }
 
 /// The names in backquotes, joined by commas.

@@ -11,17 +11,17 @@ use serde_path_to_error::Segment;
 use toml::{Table, Value};
 
 use crate::name::shown;
-use crate::problem::{KeyPath, Problem, listed, suggestion};
+use crate::problem::{KeyFault, KeyPath, listed, suggestion};
 
 /// Reads a whole document.
 ///
 /// Fails with the key, what was found and what was expected.
-pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, Problem> {
+pub fn document<'de, T: Deserialize<'de>>(document: &'de Table) -> Result<T, KeyFault> {
     table(document, &KeyPath::default())
 }
 
 /// Reads the table at `key`.
-pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, Problem> {
+pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Result<T, KeyFault> {
     serde_path_to_error::deserialize(entries(table)).map_err(|error| {
         let mut place = key.clone();
         let mut value: Option<&Value> = None;
@@ -44,14 +44,14 @@ pub fn table<'de, T: Deserialize<'de>>(table: &'de Table, key: &KeyPath) -> Resu
 }
 
 /// The entries of a table, each to be read on its own.
-fn entries(table: &Table) -> MapDeserializer<'_, impl Iterator<Item = (&str, Node<'_>)>, Fault> {
+fn entries(table: &Table) -> MapDeserializer<'_, impl Iterator<Item = (&str, Node<'_>)>, ReadFault> {
     MapDeserializer::new(table.iter().map(|(name, value)| (name.as_str(), Node(value))))
 }
 
 /// A value of a document. Unlike the reader of `toml`, it takes no list for a table.
 struct Node<'de>(&'de Value);
 
-impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
+impl<'de> IntoDeserializer<'de, ReadFault> for Node<'de> {
     type Deserializer = Self;
 
     fn into_deserializer(self) -> Self {
@@ -60,9 +60,9 @@ impl<'de> IntoDeserializer<'de, Fault> for Node<'de> {
 }
 
 impl<'de> Deserializer<'de> for Node<'de> {
-    type Error = Fault;
+    type Error = ReadFault;
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadFault> {
         match self.0 {
             Value::Table(table) => visitor.visit_map(entries(table)),
             Value::Array(items) => visitor.visit_seq(SeqDeserializer::new(items.iter().map(Node))),
@@ -74,18 +74,18 @@ impl<'de> Deserializer<'de> for Node<'de> {
         }
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadFault> {
         visitor.visit_some(self)
     }
 
-    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Fault> {
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, ReadFault> {
         visitor.visit_newtype_struct(self)
     }
 
-    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Fault> {
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadFault> {
         match self.0 {
             Value::Table(_) => self.deserialize_any(visitor),
-            _ => Err(Fault::Kind(A_TABLE.to_owned())),
+            _ => Err(ReadFault::Kind(A_TABLE.to_owned())),
         }
     }
 
@@ -94,7 +94,7 @@ impl<'de> Deserializer<'de> for Node<'de> {
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Fault> {
+    ) -> Result<V::Value, ReadFault> {
         self.deserialize_map(visitor)
     }
 
@@ -103,12 +103,12 @@ impl<'de> Deserializer<'de> for Node<'de> {
         _: &'static str,
         known: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Fault> {
+    ) -> Result<V::Value, ReadFault> {
         match self.0 {
             Value::String(name) => visitor.visit_enum(name.as_str().into_deserializer()),
             Value::Table(table) if table.len() == 1 => visitor.visit_enum(MapAccessDeserializer::new(entries(table))),
-            Value::Table(_) => Err(Fault::NotOneName(known)),
-            _ => Err(Fault::Kind("a name, with its settings below it".to_owned())),
+            Value::Table(_) => Err(ReadFault::NotOneName(known)),
+            _ => Err(ReadFault::Kind("a name, with its settings below it".to_owned())),
         }
     }
 
@@ -119,14 +119,24 @@ impl<'de> Deserializer<'de> for Node<'de> {
 }
 
 /// The problem of a table that lacks a key.
-pub fn missing(table: &KeyPath, name: &'static str) -> Problem {
-    Fault::MissingKey(name).at(table.clone(), None)
+pub fn missing(table: &KeyPath, name: &'static str) -> KeyFault {
+    ReadFault::MissingKey(name).at(table.clone(), None)
+}
+
+/// The fault of a table that should hold one name and holds these.
+pub fn not_one_name<'a>(table: KeyPath, names: impl Iterator<Item = &'a String>, known: &[&str]) -> KeyFault {
+    let names: Vec<&String> = names.collect();
+    let (found, advice) = match names.len() {
+        0 => (format!("`{table}` names nothing"), format!("use one of {}", listed(known))),
+        several => (format!("`{table}` names {several} things at once: {}", listed(&names)), "keep one of them".into()),
+    };
+    KeyFault::name(table, found, "expected exactly one name below it", advice)
 }
 
 /// What is wrong, before it is known where.
 #[derive(Debug, thiserror::Error)]
 #[error("{self:?}")]
-enum Fault {
+enum ReadFault {
     UnknownKey(String, &'static [&'static str]),
     UnknownName(String, &'static [&'static str]),
     MissingKey(&'static str),
@@ -135,7 +145,7 @@ enum Fault {
     Other(String),
 }
 
-impl de::Error for Fault {
+impl de::Error for ReadFault {
     fn custom<T: Display>(message: T) -> Self {
         Self::Other(message.to_string())
     }
@@ -165,9 +175,9 @@ impl de::Error for Fault {
     }
 }
 
-impl Fault {
+impl ReadFault {
     /// The fault of the `found` value at a key; of the document when there is none.
-    fn at(self, key: KeyPath, found: Option<&Value>) -> Problem {
+    fn at(self, key: KeyPath, found: Option<&Value>) -> KeyFault {
         let called = |key: &KeyPath| match key.parts() {
             [] => "a scenario".to_owned(),
             _ => format!("`{key}`"),
@@ -177,17 +187,17 @@ impl Fault {
         match self {
             Self::UnknownKey(name, known) => {
                 let found = format!("{} has no key `{name}`", called(&key.above()));
-                Problem::name(key, found, "no such key here", suggestion(&name, known))
+                KeyFault::name(key, found, "no such key here", suggestion(&name, known))
             }
             Self::UnknownName(name, known) if text == Some(&name) => {
-                Problem::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, known))
+                KeyFault::value(key, format!("{place} is the text \"{name}\""), "no such name", suggestion(&name, known))
             }
             Self::UnknownName(name, known) => {
                 let key = key.child(&name);
                 let found = format!("no {} is called `{name}`", kind_of(&key));
-                Problem::name(key, found, "no such name", suggestion(&name, known))
+                KeyFault::name(key, found, "no such name", suggestion(&name, known))
             }
-            Self::MissingKey(name) => Problem::name(
+            Self::MissingKey(name) => KeyFault::name(
                 key,
                 format!("{place} has no key `{name}`"),
                 format!("expected `{name}` here"),
@@ -200,14 +210,7 @@ impl Fault {
                 },
             ),
             Self::NotOneName(known) => {
-                let names: Vec<&String> = found.and_then(Value::as_table).into_iter().flat_map(Table::keys).collect();
-                let (found, advice) = match names.len() {
-                    0 => (format!("{place} names nothing"), format!("use one of {}", listed(known))),
-                    several => {
-                        (format!("{place} names {several} things at once: {}", listed(&names)), "keep one of them".into())
-                    }
-                };
-                Problem::name(key, found, "expected exactly one name below it", advice)
+                not_one_name(key, found.and_then(Value::as_table).into_iter().flat_map(Table::keys), known)
             }
             Self::Kind(expected) => {
                 let expected = in_toml(&expected);
@@ -218,10 +221,10 @@ impl Fault {
                     _ => "change the value".to_owned(),
                 };
                 let found = found.map_or_else(|| "a table".to_owned(), described);
-                Problem::value(key, format!("{place} is {found}"), format!("expected {expected}"), advice)
+                KeyFault::value(key, format!("{place} is {found}"), format!("expected {expected}"), advice)
             }
             Self::Other(message) => {
-                Problem::value(key, format!("{place}: {message}"), "not accepted", "change the value")
+                KeyFault::value(key, format!("{place}: {message}"), "not accepted", "change the value")
             }
         }
     }
@@ -306,7 +309,7 @@ mod tests {
         limit: f64,
     }
 
-    fn read(text: &str) -> Result<Trial, Problem> {
+    fn read(text: &str) -> Result<Trial, KeyFault> {
         document(&text.parse::<Table>().expect("well formed"))
     }
 

@@ -4,28 +4,27 @@ use std::path::Path;
 
 use ::ship::Ship;
 use ::ship::ships::Model;
-use simulate::recording::{RudderColumn, Start};
-use simulate::settings::{self, Assumption, ManoeuvreSettings};
-use simulate::{Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
+use simulate::{Assumption, Disturbances, Manoeuvre, Recording, Sensors, Simulation, Vessel};
 
 use crate::effect;
-use crate::problem::{KeyPath, Problem};
+use crate::problem::{KeyFault, KeyPath};
 use crate::ship::ShipWire;
 use crate::specification::{HULL, Specification};
 use crate::wire::{AlsoWire, ScenarioWire, ValidationWire};
 
 /// Resolves everything about a trial of `ship`.
-pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, Problem> {
+pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Result<Specification, KeyFault> {
     let ship = effect::added(ship.build()?, &wire.effect)?;
-    let simulation = settings::checked(Simulation {
-        gear: wire.steering_gear.build(&ship)?,
-        helmsman: wire.helmsman.build()?,
-        approach: wire.approach.build()?,
-        recording: wire.recording.build()?,
-        sensors: wire.sensor.build()?,
-        disturbances: wire.disturbance.build()?,
+    let simulation = Simulation {
+        gear: wire.steering_gear.of(&ship),
+        helmsman: wire.helmsman,
+        approach: wire.approach,
+        recording: wire.recording,
+        sensors: wire.sensor,
+        disturbances: wire.disturbance,
         ..Simulation::new(Vessel::ship(&ship), manoeuvre(&wire.manoeuvre, folder)?)
-    })?;
+    };
+    simulation.validate()?;
     let also = wire.also.iter().enumerate();
     let also =
         also.map(|(index, further)| also_steered(further, index, &simulation, folder)).collect::<Result<_, _>>()?;
@@ -34,7 +33,7 @@ pub fn specification(ship: &ShipWire, wire: &ScenarioWire, folder: &Path) -> Res
         Model::Response(response) => Some(response.first_order()),
         Model::Hull(_) => None,
     };
-    let assumed = Assumption::ALL.map(|assumption| assumption.holds(&wire.steering_gear, &simulation));
+    let assumed = Assumption::ALL.map(|assumption| assumption.holds(&simulation));
     Ok(Specification {
         also,
         validation,
@@ -55,10 +54,10 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
     let sea = &wire.disturbance;
     let disturbances = [
         (sea.wind.is_some(), "wind_moment"),
-        (sea.drift_deg_per_s != 0.0, "moment_drift"),
+        (sea.drift != 0.0, "moment_drift"),
         (sea.squall.is_some(), "transient_disturbance"),
         (sea.waves.is_some(), "wave_yaw"),
-        (wire.sensor.heading_delay_s != 0.0 || wire.sensor.heading_lag_s != 0.0, "steering_lag"),
+        (wire.sensor.heading_delay != 0.0 || wire.sensor.heading_lag != 0.0, "steering_lag"),
     ];
     missing.extend(disturbances.into_iter().filter(|(acts, _)| *acts).map(|(_, id)| id.to_owned()));
     missing.dedup();
@@ -66,65 +65,66 @@ fn missing(ship: &Ship, wire: &ScenarioWire) -> Vec<String> {
 }
 
 /// A further record: the same ship, gear, helmsman, weather and instruments in another manoeuvre.
-fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
-    let recording = match &wire.recording {
-        Some(own) => own.build(),
-        None => Ok(trial.recording),
-    };
-    let resolved = recording.map_err(Problem::from).and_then(|recording| {
+fn also_steered(wire: &AlsoWire, index: usize, trial: &Simulation, folder: &Path) -> Result<Simulation, KeyFault> {
+    let what = format!("in the further record {}", index + 1);
+    inside(KeyPath::dotted("also").child(index), &what, || {
         let manoeuvre = manoeuvre(&wire.manoeuvre, folder)?;
-        Ok(settings::checked(Simulation { recording, manoeuvre, ..trial.clone() })?)
-    });
-    resolved.map_err(|problem| {
-        let what = format!("in the further record {}", index + 1);
-        inside(problem, KeyPath::dotted("also").child(index), &what)
+        Ok(Simulation { recording: wire.recording.unwrap_or(trial.recording), manoeuvre, ..trial.clone() })
     })
-}
-
-/// What both share has been checked with the first manoeuvre, so what is wrong now is of the other one.
-fn inside(problem: Problem, place: KeyPath, what: &str) -> Problem {
-    Problem {
-        key: problem.key.parts().iter().fold(place, |key, part| key.child(part)),
-        found: format!("{what}, {}", problem.found),
-        ..problem
-    }
 }
 
 /// The second manoeuvre: the same ship, gear and helmsman in a calm, perfectly recorded from the start of the run, so
 /// that the error of a replay is that of the response.
-fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, Problem> {
-    let resolved = || {
-        let recording = match &wire.recording {
-            Some(own) => own.build()?,
-            None => Recording { start: Start::Run, rudder: RudderColumn::Feedback, ..trial.recording },
-        };
-        let simulation = Simulation {
-            recording,
+fn validation(wire: &ValidationWire, trial: &Simulation, folder: &Path) -> Result<Simulation, KeyFault> {
+    inside(KeyPath::dotted("validation"), "in the validation manoeuvre", || {
+        Ok(Simulation {
+            recording: wire.recording.unwrap_or_else(|| of_validation(&trial.recording)),
             disturbances: Disturbances::default(),
             sensors: Sensors::default(),
             manoeuvre: manoeuvre(&wire.manoeuvre, folder)?,
             ..trial.clone()
-        };
-        Ok(settings::checked(simulation)?)
-    };
-    resolved().map_err(|problem| inside(problem, KeyPath::dotted("validation"), "in the validation manoeuvre"))
+        })
+    })
+}
+
+/// The recording of a validation that has none of its own.
+pub fn of_validation(trial: &Recording) -> Recording {
+    Recording { duration: trial.duration, ..Recording::every(trial.period) }
+}
+
+/// Another manoeuvre of the ship. What both share has been checked with the first one, so what is wrong now is of this
+/// one.
+fn inside(
+    place: KeyPath,
+    what: &str,
+    simulation: impl FnOnce() -> Result<Simulation, KeyFault>,
+) -> Result<Simulation, KeyFault> {
+    let checked = simulation().and_then(|simulation| {
+        simulation.validate()?;
+        Ok(simulation)
+    });
+    checked.map_err(|problem| KeyFault {
+        key: problem.key.parts().iter().fold(place, |key, part| key.child(part)),
+        found: format!("{what}, {}", problem.found),
+        ..problem
+    })
 }
 
 /// The manoeuvre; a record to replay is in `folder` or near it.
-fn manoeuvre(settings: &ManoeuvreSettings, folder: &Path) -> Result<Manoeuvre, Problem> {
-    settings.build(|file| {
-        let path = folder.join(file);
-        let refuse = |found: String| {
-            let key = KeyPath::dotted("manoeuvre.replay.file");
-            let advice = "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
-            Problem::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
-        };
-        // It is read for every cell, and what has gone through a pipe is gone.
-        if path.exists() && !path.is_file() {
-            return Err(refuse(format!("{}: this is a folder, a pipe or a device and no file", path.display())));
-        }
-        // Who runs a scenario need not have named the files in it: what they hold is not shown.
-        let reading = trial::reader::read(&path).map_err(|error| refuse(error.without_content()))?;
-        Ok(reading.trial.rudder_signal().clone())
-    })
+fn manoeuvre(manoeuvre: &Manoeuvre, folder: &Path) -> Result<Manoeuvre, KeyFault> {
+    let Manoeuvre::Replay { file, .. } = manoeuvre else { return Ok(manoeuvre.clone()) };
+    let path = folder.join(file);
+    let refuse = |found: String| {
+        let key = KeyPath::dotted("manoeuvre.replay.file");
+        let advice =
+            "give a record that `study fit` can read, relative to this file; `study fit` says what is wrong with it";
+        KeyFault::value(key, format!("the record to replay: {found}"), "expected a record with a rudder", advice)
+    };
+    // It is read for every cell, and what has gone through a pipe is gone.
+    if path.exists() && !path.is_file() {
+        return Err(refuse(format!("{}: this is a folder, a pipe or a device and no file", path.display())));
+    }
+    // Who runs a scenario need not have named the files in it: what they hold is not shown.
+    let reading = trial::reader::read(&path).map_err(|error| refuse(error.without_content()))?;
+    Ok(Manoeuvre::Replay { file: file.clone(), rudder: Some(reading.trial.rudder_signal().clone()) })
 }

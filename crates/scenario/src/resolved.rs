@@ -1,11 +1,11 @@
 //! A scenario with nothing left out: what was written, and every default that was taken, each marked as one.
 
-use simulate::settings::{RecordingSettings, RudderSource};
 use toml::{Table, Value};
 
-use crate::keys::{Key, LeftOut, keys};
+use crate::keys::{LeftOut, ScenarioKey, keys};
 use crate::method::Method;
-use crate::problem::Problem;
+use crate::problem::KeyFault;
+use crate::resolve::of_validation;
 use crate::ship::ShipWire;
 use crate::wire::ScenarioWire;
 use crate::{effect, reader};
@@ -34,42 +34,36 @@ const ORDER: [&str; 16] = [
 /// change.
 ///
 /// Fails as the scenario would.
-pub fn text(document: &Table, methods: &[Method]) -> Result<String, Problem> {
+pub fn text(document: &Table, methods: &[Method]) -> Result<String, KeyFault> {
     let mut wire: ScenarioWire = reader::document(document)?;
+    effect::complete(&mut wire.effect);
     let own = ShipWire::read(&wire.ship)?;
     let ship = effect::added(own.build()?, &wire.effect)?;
-    wire.steering_gear = wire.steering_gear.complete(&wire.steering_gear.build(&ship)?);
+    wire.steering_gear = wire.steering_gear.of(&ship);
+    wire.steering_gear.rate.get_or_insert(f64::INFINITY);
     for (entry, method) in wire.identifier.iter_mut().zip(methods) {
         entry.label.get_or_insert_with(|| method.label.clone());
     }
     for also in &mut wire.also {
-        also.recording.get_or_insert_with(|| wire.recording.clone());
+        also.recording.get_or_insert(wire.recording);
     }
     if let Some(validation) = &mut wire.validation {
-        let RecordingSettings { sampling_s, duration_s, .. } = wire.recording;
-        validation.recording.get_or_insert(RecordingSettings {
-            sampling_s,
-            duration_s,
-            after_execute: None,
-            offset_s: None,
-            rudder: RudderSource::Feedback,
-            assumed_rudder_rate_deg_s: None,
-        });
+        validation.recording.get_or_insert(of_validation(&wire.recording));
     }
     wire.ship.values_mut().for_each(|table| *table = own.complete());
     let complete = Table::try_from(&wire).expect("what was read can be written");
-    let mut lines = Lines { keys: keys(), text: String::new() };
+    let mut lines = ResolvedText { keys: keys(), text: String::new() };
     lines.table(&[], &complete, Some(document));
     Ok(lines.text.trim_start().to_owned())
 }
 
-struct Lines {
+struct ResolvedText {
     /// Settings of a trial, for those that have no value when they are left out.
-    keys: Vec<Key>,
+    keys: Vec<ScenarioKey>,
     text: String,
 }
 
-impl Lines {
+impl ResolvedText {
     /// What stands below a path, beside what was `given` there.
     fn table(&mut self, path: &[&str], table: &Table, given: Option<&Table>) {
         let mut entries: Vec<(&String, &Value)> = table.iter().collect();
@@ -114,7 +108,7 @@ impl Lines {
             .filter(|(first, _)| ["validation", "also"].contains(first))
             .map_or(path, |(_, rest)| rest)
             .join(".");
-        for Key { key, unit, default, meaning } in &self.keys {
+        for ScenarioKey { key, unit, default, meaning } in &self.keys {
             let name = key.strip_prefix(&path).and_then(|rest| rest.strip_prefix('.'));
             let Some(name) = name.filter(|name| !name.contains('.') && !table.contains_key(*name)) else { continue };
             if *default == LeftOut::Nothing && unit != "table" {
@@ -146,7 +140,7 @@ fn written(name: &str) -> String {
 mod tests {
     use std::path::Path;
 
-    use simulate::settings::Assumption;
+    use simulate::Assumption;
 
     use crate::Scenario;
 

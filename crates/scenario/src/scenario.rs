@@ -7,33 +7,24 @@ use std::sync::Arc;
 use identify::{Identifier, Outside};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
-use simulate::settings::Assumption;
+use simulate::Assumption;
 use toml::Table;
 use trial::file::{self, FileError, Kind};
 
 use crate::answers::Answers;
-use crate::cell::{self, Cell};
+use crate::cell::{self, DesignCell};
 use crate::failure::Failure;
 use crate::identity::{self, hex};
 use crate::method::{Method, MethodName, Procedure, methods};
-use crate::part::Part;
+use crate::part::ScenarioPart;
 use crate::predictions::Predictions;
-use crate::problem::{KeyPath, Problem, of_text};
+use crate::problem::{KeyFault, KeyPath, of_text};
 use crate::ship::ShipWire;
 use crate::stop::StopRule;
-use crate::sweep::{self, Axis};
-use crate::wire::{PublishedWire, ScenarioWire};
-use crate::words::Words;
+use crate::sweep::{self, SweepAxis};
+use crate::wire::ScenarioWire;
+use crate::words::{Published, Words};
 use crate::{checks, locate, name, reader, resolve, resolved};
-
-/// Values of other authors, shown beside the results.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Published {
-    /// K, 1/s.
-    pub k_per_s: Option<f64>,
-    /// T, s.
-    pub t_s: Option<f64>,
-}
 
 /// A scenario that has been checked in every cell.
 pub struct Scenario {
@@ -44,15 +35,13 @@ pub struct Scenario {
     /// Trials per cell.
     pub replicates: u64,
     /// Axes of the design.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     /// Cells of the design, the first axis slowest.
-    pub cells: Vec<Cell>,
+    pub cells: Vec<DesignCell>,
     /// Values of other authors.
     pub published: Published,
     /// What it says about itself.
     pub words: Words,
-    /// Whether the first replicate of every cell is shown in detail.
-    pub showcase: bool,
     /// Keys that are drawn anew in every trial.
     pub draws: Vec<String>,
     /// When a cell has had enough trials.
@@ -69,7 +58,7 @@ pub struct Scenario {
 
 /// What a manifest says of the scenario that was run; it may say more.
 #[derive(Deserialize)]
-struct Stored {
+struct ManifestScenario {
     name: String,
     seed: u64,
     scenario: String,
@@ -82,9 +71,9 @@ impl Scenario {
     /// of the study, which its folder is called by, has to be one ([`name::file`]).
     pub fn read(path: &Path, seed: Option<u64>) -> Result<Self, Failure> {
         let text = read_text(path)?;
-        if let Ok(manifest) = toml::from_str::<Stored>(&text) {
+        if let Ok(manifest) = toml::from_str::<ManifestScenario>(&text) {
             name::file(&manifest.name).map_err(|unfit| {
-                let Problem { key, mark, found, expected, advice } =
+                let KeyFault { key, mark, found, expected, advice } =
                     of_text(KeyPath::dotted("name"), &manifest.name, unfit);
                 Failure::at(path, &text, locate::span(&text, &key, mark), &found, &expected, &advice)
             })?;
@@ -96,89 +85,70 @@ impl Scenario {
     /// Resolves the text of a scenario; `path` is where messages and relative files refer to.
     pub fn parse(path: &Path, name: &str, text: String, seed: Option<u64>) -> Result<Self, Failure> {
         let document: Table = text.parse().map_err(|error| not_toml(path, &text, &error))?;
-        let fail = |problem: Problem| {
+        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
+        let scenario = Self::of_document(&document, name, &folder).map_err(|problem| {
             let span = locate::span(&text, &problem.key, problem.mark);
             Failure::at(path, &text, span, &problem.found, &problem.expected, &problem.advice)
-        };
+        })?;
+        let methods = scenario.cells.iter().flat_map(|cell| &cell.methods);
+        let outside = methods.filter_map(|method| method.procedure.outside());
+        let words: BTreeSet<&str> = outside.flat_map(|outside| outside.command()).map(String::as_str).collect();
+        let design_sha256 = identity::sha256_of(&identity::design_of(&document), &folder)?;
+        let design_sha256 = identity::with_files(design_sha256, &words, &folder)?;
+        let seed = seed.unwrap_or(scenario.seed);
+        Ok(Self { seed, design_sha256, sha256: hex(&Sha256::digest(text.as_bytes())), text, ..scenario })
+    }
+
+    /// Resolves a document; its identity and text are for the caller to set.
+    fn of_document(document: &Table, name: &str, folder: &Path) -> Result<Self, KeyFault> {
         if document.is_empty() {
-            return Err(fail(Problem::name(
+            return Err(KeyFault::name(
                 KeyPath::default(),
                 "there is nothing in this scenario",
                 "expected keys",
                 "start from one of the files in scenarios/; docs/src/reference/scenarios.md explains the keys",
-            )));
+            ));
         }
-        let wire: ScenarioWire = reader::document(&document).map_err(&fail)?;
-        let folder = path.parent().map(PathBuf::from).unwrap_or_default();
-        for (key, text) in [("question", &wire.question), ("analysis", &wire.analysis), ("finding", &wire.finding)] {
-            name::prose(text).map_err(|unfit| fail(of_text(KeyPath::dotted(key), text, unfit)))?;
-        }
-        if let Some(stem) = &wire.output.figure {
-            name::file(stem).map_err(|unfit| fail(of_text(KeyPath::dotted("output.figure"), stem, unfit)))?;
-        }
-        for (index, stem) in wire.output.figures.iter().flatten().enumerate() {
-            let key = KeyPath::dotted("output.figures").child(index);
-            name::file(stem).map_err(|unfit| fail(of_text(key, stem, unfit)))?;
-        }
-        if let Some(title) = &wire.output.title {
-            name::prose(title).map_err(|unfit| fail(of_text(KeyPath::dotted("output.title"), title, unfit)))?;
-        }
+        let wire: ScenarioWire = reader::document(document)?;
+        let words = Words {
+            question: wire.question.clone(),
+            analysis: wire.analysis.clone(),
+            finding: wire.finding.clone(),
+            output: wire.output.clone(),
+        };
+        words.check()?;
         // The document as written has to make sense by itself: sweeps and draws change it, they do not complete it.
-        let ship = ShipWire::read(&wire.ship).map_err(&fail)?;
-        resolve::specification(&ship, &wire, &folder).map_err(&fail)?;
-        let methods = methods(&wire.identifier, &folder).map_err(&fail)?;
-        let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose().map_err(&fail)?;
-        let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose().map_err(&fail)?;
-        let axes: Vec<Axis> = wire
-            .sweep
-            .iter()
-            .enumerate()
-            .map(|(index, axis)| axis.resolve(index))
-            .collect::<Result<_, _>>()
-            .map_err(&fail)?;
-        let combinations = sweep::product(&axes).map_err(&fail)?;
-        checks::titles(&axes).map_err(&fail)?;
-        checks::size(wire.replicates, combinations.len(), methods.len()).map_err(&fail)?;
-        checks::draws(&wire.draw, &axes).map_err(&fail)?;
-        let of_cells = cell::only(&document, &[Part::Trial, Part::Cell]);
-        let cells: Vec<Cell> = combinations
-            .iter()
-            .map(|points| cell::swept(&of_cells, points, &methods, &folder))
-            .map(|cell| cell.map(|cell| cell.named(name)))
-            .collect::<Result<_, _>>()
-            .map_err(&fail)?;
-        checks::detail(&wire.output.detail, &cells).map_err(&fail)?;
-        checks::marks(&wire.output.marks, &axes).map_err(&fail)?;
-        checks::about(&wire.output.methods, &methods).map_err(&fail)?;
-        let outside = cells.iter().flat_map(|cell| &cell.methods).filter_map(|method| method.procedure.outside());
-        let words: BTreeSet<&str> = outside.flat_map(|outside| outside.command()).map(String::as_str).collect();
-        let design_sha256 = identity::sha256_of(&identity::design_of(&document), &folder)?;
-        let design_sha256 = identity::with_files(design_sha256, &words, &folder)?;
+        resolve::specification(&ShipWire::read(&wire.ship)?, &wire, folder)?;
+        let methods = methods(&wire.identifier, folder)?;
+        let predictions = wire.predict.as_ref().map(|predict| predict.resolve()).transpose()?;
+        let stop = wire.stop.as_ref().map(|stop| stop.resolve(&methods)).transpose()?;
+        let axes = wire.sweep.iter().enumerate().map(|(index, axis)| axis.resolve(index));
+        let axes: Vec<SweepAxis> = axes.collect::<Result<_, _>>()?;
+        let combinations = sweep::product(&axes)?;
+        checks::titles(&axes)?;
+        checks::size(wire.replicates, combinations.len(), methods.len())?;
+        checks::draws(&wire.draw, &axes)?;
+        let of_cells = cell::only(document, &[ScenarioPart::Trial, ScenarioPart::Cell]);
+        let cells = combinations.iter().map(|points| cell::swept(&of_cells, points, &methods, folder));
+        let cells: Vec<DesignCell> = cells.map(|cell| cell.map(|cell| cell.named(name))).collect::<Result<_, _>>()?;
+        checks::detail(&words.output.detail, &cells)?;
+        checks::marks(&words.output.marks, &axes)?;
+        checks::about(&words.output.methods, &methods)?;
+        wire.published.check()?;
         Ok(Self {
             name: name.to_owned(),
-            seed: seed.unwrap_or(wire.seed),
+            seed: wire.seed,
             replicates: wire.replicates,
             draws: wire.draw.iter().map(|draw| draw.key().to_owned()).collect(),
             axes,
             cells,
-            published: published(&wire.published).map_err(&fail)?,
-            showcase: wire.output.showcase,
-            words: Words {
-                question: wire.question,
-                analysis: wire.analysis,
-                finding: wire.finding,
-                figure: wire.output.figure,
-                title: wire.output.title,
-                methods: wire.output.methods,
-                figures: wire.output.figures,
-                marks: wire.output.marks,
-                detail: wire.output.detail,
-            },
+            published: wire.published,
+            words,
             stop,
             predictions,
-            design_sha256,
-            sha256: hex(&Sha256::digest(text.as_bytes())),
-            text,
+            design_sha256: String::new(),
+            sha256: String::new(),
+            text: String::new(),
         })
     }
 
@@ -256,19 +226,6 @@ impl Scenario {
     pub fn labels(&self) -> impl Iterator<Item = &str> {
         self.cells[0].methods.iter().map(|method| method.label.as_str())
     }
-}
-
-/// Values of other authors; fails where one is no number.
-fn published(wire: &PublishedWire) -> Result<Published, Problem> {
-    let finite = |name: &str, value: Option<f64>| match value {
-        Some(value) if !value.is_finite() => {
-            let key = KeyPath::dotted("published").child(name);
-            let found = format!("`{key}` is {value}");
-            Err(Problem::value(key, found, "expected a finite number", "give the number, or leave the key out"))
-        }
-        _ => Ok(value),
-    };
-    Ok(Published { k_per_s: finite("K-per-s", wire.K_per_s)?, t_s: finite("T-s", wire.T_s)? })
 }
 
 /// A file that is not TOML, at the place where it stops to be.

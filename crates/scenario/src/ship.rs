@@ -11,10 +11,10 @@ use ::ship::{Particulars, Ship, Shown};
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
 use simulate::numbers;
-use simulate::settings::Numbers;
+use simulate::numbers::Numbers;
 use toml::{Table, Value};
 
-use crate::problem::{KeyPath, Problem, suggestion};
+use crate::problem::{KeyFault, KeyPath, suggestion};
 use crate::{reader, sweep};
 
 /// A ship that a scenario names or describes.
@@ -79,8 +79,10 @@ pub struct SecondOrderWire {
 }
 
 numbers! {
-    FirstOrderWire: K_per_s T_s K_prime T_prime rudder_bias_deg length_m speed_kn;
-    SecondOrderWire: K_per_s T1_s T2_s T3_s rudder_bias_deg length_m speed_kn;
+    FirstOrderWire as written: "K-per-s" K_per_s, "T-s" T_s, "K-prime" K_prime, "T-prime" T_prime,
+        "rudder-bias-deg" rudder_bias_deg, "length-m" length_m, "speed-kn" speed_kn;
+    SecondOrderWire as written: "K-per-s" K_per_s, "T1-s" T1_s, "T2-s" T2_s, "T3-s" T3_s,
+        "rudder-bias-deg" rudder_bias_deg, "length-m" length_m, "speed-kn" speed_kn;
 }
 
 impl Numbers for ShipWire {
@@ -96,7 +98,7 @@ impl Numbers for ShipWire {
 
 impl ShipWire {
     /// Reads `[ship]`, which has one key.
-    pub fn read(wire: &BTreeMap<String, Table>) -> Result<Self, Problem> {
+    pub fn read(wire: &BTreeMap<String, Table>) -> Result<Self, KeyFault> {
         let registry = || ships::all().into_iter().map(|ship| ship.id.to_string());
         let known = || registry().chain([FIRST_ORDER, SECOND_ORDER].map(str::to_owned)).collect::<Vec<_>>();
         let mut entries = wire.iter();
@@ -107,7 +109,7 @@ impl ShipWire {
                 several => format!("`ship` names {} ships: {}", several.len(), several.join(", ")),
             };
             let advice = suggestion("", &known());
-            return Err(Problem::name(KeyPath::dotted("ship"), found, "expected exactly one ship", advice));
+            return Err(KeyFault::name(KeyPath::dotted("ship"), found, "expected exactly one ship", advice));
         };
         let key = key_of(id);
         match id.as_str() {
@@ -116,10 +118,10 @@ impl ShipWire {
             _ => match ships::find(id) {
                 None => {
                     let found = format!("no ship is called `{id}`");
-                    Err(Problem::name(key, found, "no such ship", suggestion(id, &known())))
+                    Err(KeyFault::name(key, found, "no such ship", suggestion(id, &known())))
                 }
                 Some(ship) if table.is_empty() => Ok(Self::Known(ship)),
-                Some(_) => Err(Problem::name(
+                Some(_) => Err(KeyFault::name(
                     key,
                     format!("the ship `{id}` has settings below it, and its numbers are fixed"),
                     "expected no keys below this ship",
@@ -132,7 +134,7 @@ impl ShipWire {
     /// The ship.
     ///
     /// Fails with the number that makes none.
-    pub fn build(&self) -> Result<Ship, Problem> {
+    pub fn build(&self) -> Result<Ship, KeyFault> {
         match self {
             Self::Known(ship) => Ok(ship.clone()),
             Self::FirstOrder(own) => {
@@ -180,13 +182,13 @@ fn key_of(id: &str) -> KeyPath {
 
 impl FirstOrderWire {
     /// K (1/s) and T (s), given as they are or without dimension.
-    fn indices(&self, key: &KeyPath, particulars: Option<Particulars>) -> Result<(f64, f64), Problem> {
+    fn indices(&self, key: &KeyPath, particulars: Option<Particulars>) -> Result<(f64, f64), KeyFault> {
         match (self.K_per_s, self.T_s, self.K_prime, self.T_prime, particulars) {
             (Some(k), Some(t), None, None, _) => Ok((k, t)),
             (None, None, Some(k), Some(t), Some(Particulars { length, speed })) => {
                 Ok((k * speed / length, t * length / speed))
             }
-            (None, None, Some(_), Some(_), None) => Err(Problem::name(
+            (None, None, Some(_), Some(_), None) => Err(KeyFault::name(
                 key.clone(),
                 format!("`{key}` has K' and T' without length and speed"),
                 "expected `length-m` and `speed-kn` as well",
@@ -196,7 +198,7 @@ impl FirstOrderWire {
             (None, _, None, None, _) => Err(reader::missing(key, "K-per-s")),
             (None, None, Some(_), None, _) => Err(reader::missing(key, "T-prime")),
             (None, None, None, Some(_), _) => Err(reader::missing(key, "K-prime")),
-            _ => Err(Problem::name(
+            _ => Err(KeyFault::name(
                 key.clone(),
                 format!("`{key}` gives K and T both with and without dimension"),
                 "expected `K-per-s` and `T-s`, or `K-prime` and `T-prime`",
@@ -207,7 +209,7 @@ impl FirstOrderWire {
 }
 
 /// Numbers that make no ship, at the key of the one at fault; of all other faults that is the rudder bias.
-fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f64, error: &ShipError) -> Problem {
+fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f64, error: &ShipError) -> KeyFault {
     let (symbol, expected) = match *error {
         ShipError::Value { symbol, reason, .. } => (symbol, reason.to_owned()),
         ShipError::Range { symbol, parameter, value } => {
@@ -220,13 +222,13 @@ fn not_a_ship(key: &KeyPath, numbers: &[(&str, &str, Option<f64>)], bias_deg: f6
     let (name, value) = own.find_map(|&(_, key, value)| Some((key, value?))).unwrap_or(("rudder-bias-deg", bias_deg));
     let key = key.child(name);
     let found = format!("`{key}` is {}", sweep::written(&Value::Float(value)));
-    Problem::value(key, found, expected, "change the number")
+    KeyFault::value(key, found, expected, "change the number")
 }
 
-fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> Result<Option<Particulars>, Problem> {
+fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> Result<Option<Particulars>, KeyFault> {
     let half = |given: &str, missing: &str| {
         let found = format!("`{key}` has `{given}` without `{missing}`");
-        Problem::name(
+        KeyFault::name(
             key.child(given),
             found,
             "length and speed belong together",
@@ -238,7 +240,7 @@ fn particulars(key: &KeyPath, length_m: Option<f64>, speed_kn: Option<f64>) -> R
         is_right.then_some(value).ok_or_else(|| {
             let key = key.child(name);
             let found = format!("`{key}` is {}", Shown(value));
-            Problem::value(key, found, "expected a finite number above 0", "change the number")
+            KeyFault::value(key, found, "expected a finite number above 0", "change the number")
         })
     };
     match (length_m, speed_kn) {

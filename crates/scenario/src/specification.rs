@@ -1,8 +1,7 @@
 //! What the engine accepts: everything about a trial but its chance.
 
 use ship::FirstOrder;
-use simulate::settings::Assumption;
-use simulate::{Simulation, StreamKey};
+use simulate::{Assumption, Simulation, StreamKey};
 
 /// Everything about a trial but its chance.
 #[derive(Debug, Clone)]

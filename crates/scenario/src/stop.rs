@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use ship::Shown;
 
 use crate::method::Method;
-use crate::problem::{KeyPath, Problem, suggestion};
+use crate::problem::{KeyFault, KeyPath, suggestion};
 
 /// When a cell has had enough trials; `replicates` is then the most.
 #[derive(Debug, Clone, Deserialize, Serialize, schemars::JsonSchema)]
@@ -91,15 +91,20 @@ impl StopFigure {
 
 impl StopWire {
     /// Checks the rule against the methods there are.
-    pub(crate) fn resolve(&self, methods: &[Method]) -> Result<StopRule, Problem> {
+    pub(crate) fn resolve(&self, methods: &[Method]) -> Result<StopRule, KeyFault> {
         let key = KeyPath::dotted("stop");
         if !(self.standard_error > 0.0 && self.standard_error.is_finite()) {
             let found = format!("`stop.standard-error` is {}", Shown(self.standard_error));
             let advice = "give the standard error, in per cent, at which a cell has enough trials";
-            return Err(Problem::value(key.child("standard-error"), found, "expected a finite number above 0", advice));
+            return Err(KeyFault::value(
+                key.child("standard-error"),
+                found,
+                "expected a finite number above 0",
+                advice,
+            ));
         }
         if self.every < FEWEST {
-            return Err(Problem::value(
+            return Err(KeyFault::value(
                 key.child("every"),
                 format!("`stop.every` is {}", self.every),
                 format!("expected at least {FEWEST}"),
@@ -110,7 +115,7 @@ impl StopWire {
         let method = self.method.as_ref().map(|label| {
             labels.iter().position(|known| known == label).ok_or_else(|| {
                 let found = format!("`stop.method` is {label:?}");
-                Problem::value(
+                KeyFault::value(
                     key.child("method"),
                     found,
                     "no such method in this scenario",

@@ -11,8 +11,8 @@ use toml::{Table, Value};
 
 use crate::limits;
 use crate::name;
-use crate::part::Part;
-use crate::problem::{KeyPath, Mark, Problem, of_text};
+use crate::part::ScenarioPart;
+use crate::problem::{AtFault, KeyFault, KeyPath, of_text};
 
 /// Largest number of cells; more is a mistake in a range.
 const MOST_CELLS: usize = 100_000;
@@ -63,27 +63,27 @@ struct PointWire {
 
 /// One axis of the design.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
+pub struct SweepAxis {
     /// Name on plots and in tables.
     pub name: String,
     /// The points in order.
-    pub points: Vec<Point>,
+    pub points: Vec<SweepPoint>,
 }
 
 /// One point of an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct SweepPoint {
     /// What it is called.
     pub label: String,
     /// Its value, where the axis is a number.
     pub value: Option<f64>,
     /// The keys it sets.
-    pub set: Vec<Setting>,
+    pub set: Vec<SweepSetting>,
 }
 
 /// A key that a point sets.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Setting {
+pub struct SweepSetting {
     /// The key that is changed.
     pub key: KeyPath,
     /// The value it gets.
@@ -94,30 +94,83 @@ pub struct Setting {
     pub value_place: KeyPath,
 }
 
-impl Setting {
+impl SweepSetting {
+    /// Whether its key is one that a sweep may change.
+    fn check(&self) -> Result<(), KeyFault> {
+        limits::depth(&self.key, &self.key_place)?;
+        let first = self.key.parts().first().map_or("", String::as_str);
+        if first.is_empty() || matches!(ScenarioPart::of(first), ScenarioPart::Prose | ScenarioPart::Study) {
+            let found = match first {
+                "" => "the sweep names no key".to_owned(),
+                _ => format!("the sweep changes `{}`, which is the same for the whole study", self.key),
+            };
+            return Err(KeyFault {
+                mark: if self.key_place == self.value_place { AtFault::Name } else { AtFault::Value },
+                ..KeyFault::value(
+                    self.key_place.clone(),
+                    found,
+                    "expected a key of the trial or of a method",
+                    "for instance `sensor.heading-noise-deg`, `ship.first-order.T-s`, `identifier.0.method.srivc.max-iterations`",
+                )
+            });
+        }
+        Ok(())
+    }
+
     /// The problem of a changed scenario, moved to the sweep that caused it; `cell` names the cell where it helps.
-    pub fn blamed(&self, problem: Problem, cell: Option<&str>) -> Problem {
-        let name = problem.mark == Mark::Name;
+    pub fn blamed(&self, problem: KeyFault, cell: Option<&str>) -> KeyFault {
+        let name = problem.mark == AtFault::Name;
         let place = if name { &self.key_place } else { &self.value_place };
         // Where the point itself names the key, its name is underlined and not its value.
-        let mark = if name && self.key_place == self.value_place { Mark::Name } else { Mark::Value };
+        let mark = if name && self.key_place == self.value_place { AtFault::Name } else { AtFault::Value };
         let cell = cell.map_or_else(String::new, |cell| format!(" (cell {cell})"));
         let mut found = format!("the sweep sets `{}` to {}{cell}", self.key, written(&self.value));
         // "to −1: `key` is −1" would say it twice.
         if !problem.found.starts_with(&format!("`{}` is", self.key)) {
             found = format!("{found}: {}", problem.found);
         }
-        Problem { key: place.clone(), mark, found, ..problem }
+        KeyFault { key: place.clone(), mark, found, ..problem }
     }
 }
 
 impl AxisWire {
     /// Checks an axis; `index` is its place in the `sweep` array.
-    pub fn resolve(&self, index: usize) -> Result<Axis, Problem> {
+    pub fn resolve(&self, index: usize) -> Result<SweepAxis, KeyFault> {
         let place = KeyPath::dotted("sweep").child(index);
+        let mut points = self.points(&place)?;
+        if points.is_empty() {
+            return Err(KeyFault::name(
+                place,
+                "this sweep has no points",
+                "expected at least one",
+                "add a value, or remove the sweep",
+            ));
+        }
+        for setting in points.iter().flat_map(|point| &point.set) {
+            setting.check()?;
+        }
+        let odd = points.iter().position(|point| point.value.is_some_and(|value| !value.is_finite()));
+        if let (Some(index), true) = (odd, self.points.is_some()) {
+            let key = place.child("points").child(index).child("value");
+            let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
+            return Err(KeyFault::value(
+                key,
+                found,
+                "expected a finite number",
+                "give the place of the point on its axis",
+            ));
+        }
+        distinguish(&mut points);
+        let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| "point".to_owned());
+        self.check_names(&place, &name, &points)?;
+        Ok(SweepAxis { name, points })
+    }
+
+    /// The points, as they are written or spread over a range.
+    fn points(&self, place: &KeyPath) -> Result<Vec<SweepPoint>, KeyFault> {
         let single =
-            |key: &str, value: Value, value_place: KeyPath| Point::of(key, value, place.child("key"), value_place);
-        let mut points: Vec<Point> = match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
+            |key: &str, value: Value, value_place: KeyPath| SweepPoint::of(key, value, place.child("key"), value_place);
+        Ok(match (&self.key, &self.values, &self.linear, &self.log, &self.points) {
             (Some(key), Some(values), None, None, None) => values
                 .iter()
                 .enumerate()
@@ -135,93 +188,62 @@ impl AxisWire {
                 points.iter().enumerate().map(|(i, point)| point.resolve(&place.child("points").child(i))).collect()
             }
             _ => {
-                return Err(Problem::name(
-                    place,
+                return Err(KeyFault::name(
+                    place.clone(),
                     "this sweep does not say what it changes and how",
                     "expected `key` with one of `values`, `linear` and `log`, or `points` alone",
                     "for instance `key = \"sensor.heading-noise-deg\"` and `values = [0.01, 0.1, 1.0]`",
                 ));
             }
-        };
-        if points.is_empty() {
-            return Err(Problem::name(
-                place,
-                "this sweep has no points",
-                "expected at least one",
-                "add a value, or remove the sweep",
-            ));
-        }
-        for setting in points.iter().flat_map(|point| &point.set) {
-            limits::depth(&setting.key, &setting.key_place)?;
-            let first = setting.key.parts().first().map_or("", String::as_str);
-            if first.is_empty() || matches!(Part::of(first), Part::Prose | Part::Study) {
-                let found = match first {
-                    "" => "the sweep names no key".to_owned(),
-                    _ => format!("the sweep changes `{}`, which is the same for the whole study", setting.key),
-                };
-                return Err(Problem {
-                    mark: if setting.key_place == setting.value_place { Mark::Name } else { Mark::Value },
-                    ..Problem::value(
-                        setting.key_place.clone(),
-                        found,
-                        "expected a key of the trial or of a method",
-                        "for instance `sensor.heading-noise-deg`, `ship.first-order.T-s`, `identifier.0.method.srivc.max-iterations`",
-                    )
-                });
-            }
-        }
-        let odd = points.iter().position(|point| point.value.is_some_and(|value| !value.is_finite()));
-        if let (Some(index), true) = (odd, self.points.is_some()) {
-            let key = place.child("points").child(index).child("value");
-            let found = format!("`{key}` is {}", points[index].value.unwrap_or(f64::NAN));
-            return Err(Problem::value(
-                key,
-                found,
-                "expected a finite number",
-                "give the place of the point on its axis",
-            ));
-        }
-        distinguish(&mut points);
+        })
+    }
+
+    /// Whether the axis and its points have names that can be printed, each point one of its own.
+    fn check_names(&self, place: &KeyPath, name: &str, points: &[SweepPoint]) -> Result<(), KeyFault> {
         for (i, point) in points.iter().enumerate() {
             name::label(&point.label).map_err(|unfit| {
                 let (key, advice) = match &self.points {
                     Some(_) => (place.child("points").child(i).child("label"), "change the label"),
                     None => (place.child("values").child(i), "give the value a shorter name: a `label` under `points`"),
                 };
-                Problem { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
+                KeyFault { advice: advice.to_owned(), ..of_text(key, &point.label, unfit) }
             })?;
         }
-        let name = self.name.clone().or_else(|| self.key.clone()).unwrap_or_else(|| "point".to_owned());
-        name::label(&name).map_err(|unfit| {
+        name::label(name).map_err(|unfit| {
             let key = if self.name.is_some() { "name" } else { "key" };
-            Problem { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), &name, unfit) }
+            KeyFault { advice: "give the sweep a short `name`".to_owned(), ..of_text(place.child(key), name, unfit) }
         })?;
         let mut labels: Vec<&str> = points.iter().map(|point| point.label.as_str()).collect();
         labels.sort_unstable();
         if let Some(twice) = labels.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(Problem::name(
-                place,
+            return Err(KeyFault::name(
+                place.clone(),
                 format!("two points of this sweep are called `{}`", twice[0]),
                 "expected points with names of their own",
                 "remove one of them, or give it another label",
             ));
         }
-        Ok(Axis { name, points })
+        Ok(())
     }
 }
 
 impl PointWire {
-    fn resolve(&self, place: &KeyPath) -> Point {
+    fn resolve(&self, place: &KeyPath) -> SweepPoint {
         let set = self.set.iter().map(|(key, value)| {
             let place = place.child("set").child(key);
-            Setting { key: KeyPath::dotted(key), value: value.clone(), key_place: place.clone(), value_place: place }
+            SweepSetting {
+                key: KeyPath::dotted(key),
+                value: value.clone(),
+                key_place: place.clone(),
+                value_place: place,
+            }
         });
-        Point { label: self.label.clone(), value: self.value, set: set.collect() }
+        SweepPoint { label: self.label.clone(), value: self.value, set: set.collect() }
     }
 }
 
 impl RangeWire {
-    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, Problem> {
+    fn linear(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, KeyFault> {
         if !(self.from.is_finite() && self.to.is_finite()) {
             return Err(self.problem(place, "expected finite ends"));
         }
@@ -233,7 +255,7 @@ impl RangeWire {
         Ok((0..points).map(move |k| if k + 1 == points { to } else { from + k as f64 * step }))
     }
 
-    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, Problem> {
+    fn log(&self, place: &KeyPath) -> Result<impl Iterator<Item = f64> + use<>, KeyFault> {
         if !(self.from > 0.0 && self.to > 0.0) {
             return Err(self.problem(place, "expected both ends of a logarithmic range to be above 0"));
         }
@@ -248,13 +270,13 @@ impl RangeWire {
         Ok(self.linear(place)?.enumerate().map(move |(k, _)| exact(k)))
     }
 
-    fn problem(&self, place: &KeyPath, expected: &str) -> Problem {
+    fn problem(&self, place: &KeyPath, expected: &str) -> KeyFault {
         let found = format!("a range of {} points from {} to {}", self.points, Shown(self.from), Shown(self.to));
-        Problem::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
+        KeyFault::name(place.clone(), found, expected, "change the range, or write the `values` one by one")
     }
 }
 
-impl Point {
+impl SweepPoint {
     fn of(key: &str, value: Value, key_place: KeyPath, value_place: KeyPath) -> Self {
         let number = value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64));
         let label = match (&value, number) {
@@ -262,13 +284,13 @@ impl Point {
             (Value::String(text), None) => text.clone(),
             (other, None) => other.to_string(),
         };
-        let set = vec![Setting { key: KeyPath::dotted(key), value, key_place, value_place }];
+        let set = vec![SweepSetting { key: KeyPath::dotted(key), value, key_place, value_place }];
         Self { label, value: number, set }
     }
 }
 
 /// Gives numbers all their digits where four are too few to tell points apart.
-fn distinguish(points: &mut [Point]) {
+fn distinguish(points: &mut [SweepPoint]) {
     let mut labels: Vec<String> = points.iter().map(|point| point.label.clone()).collect();
     labels.sort_unstable();
     let before = labels.len();
@@ -304,12 +326,12 @@ fn trim(number: f64) -> String {
 /// Every combination of points, the first axis slowest; one empty combination when there is no axis.
 ///
 /// Fails when there are too many, and when two axes change the same key.
-pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
+pub fn product(axes: &[SweepAxis]) -> Result<Vec<Vec<&SweepPoint>>, KeyFault> {
     limits::entries("sweep", axes.len(), limits::MOST_SWEEPS)?;
     let count = axes.iter().try_fold(1usize, |count, axis| count.checked_mul(axis.points.len())).unwrap_or(usize::MAX);
     if count > MOST_CELLS {
         let sizes: Vec<String> = axes.iter().map(|axis| axis.points.len().to_string()).collect();
-        return Err(Problem::name(
+        return Err(KeyFault::name(
             KeyPath::dotted("sweep"),
             format!("the sweeps make {} = {count} cells", sizes.join(" × ")),
             format!("expected at most {MOST_CELLS} cells"),
@@ -320,7 +342,7 @@ pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
     for (index, axis) in axes.iter().enumerate() {
         let keys = || axis.points.iter().flat_map(|point| &point.set).map(|setting| &setting.key);
         if let Some(again) = keys().find(|key| before.contains(key)) {
-            return Err(Problem::name(
+            return Err(KeyFault::name(
                 KeyPath::dotted("sweep").child(index),
                 format!("two sweeps change `{again}`"),
                 "expected every sweep to change keys of its own",
@@ -329,7 +351,7 @@ pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
         }
         before.extend(keys());
     }
-    let mut cells: Vec<Vec<&Point>> = vec![Vec::new()];
+    let mut cells: Vec<Vec<&SweepPoint>> = vec![Vec::new()];
     for axis in axes {
         cells = cells
             .into_iter()
@@ -342,8 +364,8 @@ pub fn product(axes: &[Axis]) -> Result<Vec<Vec<&Point>>, Problem> {
 /// Sets a key in a document, making tables on the way; numbers in the path count the entries of lists from 0.
 ///
 /// Fails when the path leads through something that is neither table nor list, or beyond the end of a list.
-pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), Problem> {
-    let fault = |problem: String, expected: String| Problem::name(key.clone(), problem, expected, "change the key");
+pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), KeyFault> {
+    let fault = |problem: String, expected: String| KeyFault::name(key.clone(), problem, expected, "change the key");
     let mut place = document;
     let mut parts = key.parts().iter().peekable();
     while let Some(part) = parts.next() {
@@ -377,7 +399,7 @@ pub fn set(document: &mut Table, key: &KeyPath, value: Value) -> Result<(), Prob
 mod tests {
     use super::*;
 
-    fn axis(text: &str) -> Result<Axis, Problem> {
+    fn axis(text: &str) -> Result<SweepAxis, KeyFault> {
         toml::from_str::<AxisWire>(text).expect("well formed").resolve(0)
     }
 
@@ -398,13 +420,13 @@ mod tests {
         let sizes = axis("key = \"a\"\nvalues = [1e308, -2.34567e-30, 1e-12, 0.1, 12345.6, 0]").expect("six values");
         let labels: Vec<&str> = sizes.points.iter().map(|point| point.label.as_str()).collect();
         assert_eq!(labels, ["1e308", "-2.346e-30", "1e-12", "0.1", "12346", "0"]);
-        let refused = Setting {
+        let refused = SweepSetting {
             key: KeyPath::dotted("a"),
             value: Value::Float(1e308),
             key_place: KeyPath::default(),
             value_place: KeyPath::default(),
         }
-        .blamed(Problem::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
+        .blamed(KeyFault::value(KeyPath::dotted("a"), "`b` is wrong", "", ""), None);
         assert_eq!(refused.found, "the sweep sets `a` to 1e308: `b` is wrong");
     }
 

@@ -1,7 +1,12 @@
 //! What a scenario says about itself: question, findings, and which figures stand for it. None of it decides a row.
+#![expect(non_snake_case, reason = "K and T are the symbols of the field")]
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
+
+use crate::name;
+use crate::problem::{KeyFault, KeyPath, of_text};
 
 /// The words of a scenario.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,24 +17,34 @@ pub struct Words {
     pub analysis: String,
     /// The answer in one sentence.
     pub finding: String,
-    /// Stem of the figure that stands for the study.
+    /// Which figures are made, and which stands for the study.
+    pub output: Presentation,
+}
+
+/// Which figures are made.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Presentation {
+    /// Figures of the first replicate of every cell: trial, fit, derivatives, replays, intervals.
+    pub showcase: bool,
+    /// Stem of the figure that stands for the study on an overview.
     pub figure: Option<String>,
-    /// What that figure shows, in a sentence: its title.
+    /// Title of that figure: what it shows, in a sentence.
     pub title: Option<String>,
-    /// Labels of the methods that figure is about; the others are grey. Empty: all of them.
+    /// Labels of the methods that figure is about; the others are grey.
     pub methods: Vec<String>,
-    /// Stems of the figures that are made beside it; `None` for all there are.
+    /// Stems of the figures that are made beside it; all there are when left out.
     pub figures: Option<Vec<String>>,
-    /// Values of axes that have a name.
-    pub marks: Vec<AxisMark>,
-    /// Titles of the cells whose errors are shown one by one.
+    /// Values of an axis with a name of their own.
+    pub marks: Vec<MarkedValue>,
+    /// Cells, by the labels of their points joined by commas, whose errors are shown one by one.
     pub detail: Vec<String>,
 }
 
 /// A value of an axis with a name, such as the limit of a rule.
-#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct AxisMark {
+pub struct MarkedValue {
     /// Name of the axis.
     pub axis: String,
     /// The value.
@@ -38,27 +53,55 @@ pub struct AxisMark {
     pub label: String,
 }
 
+/// Values of other authors, shown beside the results and never used.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Published {
+    /// K as published.
+    #[serde(rename = "K-per-s")]
+    pub K_per_s: Option<f64>,
+    /// T as published.
+    #[serde(rename = "T-s")]
+    pub T_s: Option<f64>,
+}
+
 impl Words {
     /// The words in the text of a scenario; a text that is none has no words.
     pub fn of(scenario: &str) -> Self {
         let document: Table = scenario.parse().unwrap_or_default();
         let text = |key: &str| document.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
-        let output = |key: &str| document.get("output").and_then(|output| output.get(key));
-        let list = |key: &str| {
-            let names = output(key).and_then(Value::as_array)?.iter();
-            Some(names.filter_map(Value::as_str).map(str::to_owned).collect::<Vec<String>>())
-        };
-        let marks = output("marks").and_then(Value::as_array).into_iter().flatten();
-        Self {
-            question: text("question"),
-            analysis: text("analysis"),
-            finding: text("finding"),
-            figure: output("figure").and_then(Value::as_str).map(str::to_owned),
-            title: output("title").and_then(Value::as_str).map(str::to_owned),
-            methods: list("methods").unwrap_or_default(),
-            figures: list("figures"),
-            marks: marks.filter_map(|mark| mark.clone().try_into().ok()).collect(),
-            detail: list("detail").unwrap_or_default(),
+        let output = document.get("output").cloned().and_then(|output| output.try_into().ok()).unwrap_or_default();
+        Self { question: text("question"), analysis: text("analysis"), finding: text("finding"), output }
+    }
+
+    /// Whether all of them can be printed, and what is to be a name of a file can be one.
+    pub(crate) fn check(&self) -> Result<(), KeyFault> {
+        let Self { question, analysis, finding, output } = self;
+        let prose = [("question", question), ("analysis", analysis), ("finding", finding)].into_iter();
+        for (key, text) in prose.chain(output.title.iter().map(|title| ("output.title", title))) {
+            name::prose(text).map_err(|unfit| of_text(KeyPath::dotted(key), text, unfit))?;
         }
+        let figure = output.figure.iter().map(|stem| (KeyPath::dotted("output.figure"), stem));
+        let figures = output.figures.iter().flatten().enumerate();
+        let figures = figures.map(|(index, stem)| (KeyPath::dotted("output.figures").child(index), stem));
+        for (key, stem) in figure.chain(figures) {
+            name::file(stem).map_err(|unfit| of_text(key, stem, unfit))?;
+        }
+        Ok(())
+    }
+}
+
+impl Published {
+    /// Whether both are numbers.
+    pub(crate) fn check(&self) -> Result<(), KeyFault> {
+        for (name, value) in [("K-per-s", self.K_per_s), ("T-s", self.T_s)] {
+            if let Some(value) = value.filter(|value| !value.is_finite()) {
+                let key = KeyPath::dotted("published").child(name);
+                let found = format!("`{key}` is {value}");
+                let advice = "give the number, or leave the key out";
+                return Err(KeyFault::value(key, found, "expected a finite number", advice));
+            }
+        }
+        Ok(())
     }
 }

@@ -3,13 +3,11 @@
 //! it misses stops in the run itself, with [`SimulateError::TooLong`](crate::SimulateError::TooLong).
 
 use ship::narrow_band::NarrowBand;
+use trial::manoeuvre::{Manoeuvre, OrderStep, Trigger};
 
-use crate::error::{Checked, Expected, SpecificationError};
-use crate::helm::Watches;
+use crate::error::{Check, Expected, SpecificationError};
 use crate::limits::MOST_STEPS;
-use crate::manoeuvre::{Manoeuvre, PullOut, TurnEnd, ZigZagEnd, length};
 use crate::propagate::{ClosedForm, exposed};
-use crate::recording::{Recording, Start};
 use crate::simulation::Simulation;
 use crate::vessel::Solver;
 use crate::wave_path;
@@ -27,13 +25,13 @@ pub struct Cost {
 
 /// A part of a run: its key, its value, and how long it lasts at most, s.
 #[derive(Debug, Clone, Copy)]
-struct Part {
+struct RunPart {
     key: &'static str,
     value: f64,
     duration: f64,
 }
 
-impl Part {
+impl RunPart {
     fn time(key: &'static str, duration: f64) -> Self {
         Self { key, value: duration, duration }
     }
@@ -43,8 +41,8 @@ impl Simulation {
     /// What a run may take at most, for a specification whose values make sense one by one.
     pub fn cost(&self) -> Cost {
         let (manoeuvre, record) = (self.until_end_of_manoeuvre(), self.until_end_of_record());
-        let sum = |parts: &[Part]| parts.iter().map(|part| part.duration).sum::<f64>();
-        let parts: &[Part] = if sum(&manoeuvre) < sum(&record) { &manoeuvre } else { &record };
+        let sum = |parts: &[RunPart]| parts.iter().map(|part| part.duration).sum::<f64>();
+        let parts = if sum(&manoeuvre) < sum(&record) { &manoeuvre } else { &record };
         let longest =
             parts.iter().fold(parts[0], |longest, part| if part.duration > longest.duration { *part } else { longest });
         let duration = sum(parts);
@@ -52,7 +50,7 @@ impl Simulation {
     }
 
     /// Refuses a run that takes too many steps, with the value that makes it so.
-    pub(crate) fn check_cost(&self) -> Checked {
+    pub(crate) fn check_cost(&self) -> Check {
         let Cost { steps, longest: (key, value), .. } = self.cost();
         let most = MOST_STEPS as f64;
         if steps <= most {
@@ -61,74 +59,68 @@ impl Simulation {
         Err(SpecificationError { key, value, expected: Expected::Steps { estimate: steps, most } })
     }
 
-    /// The wait for one heading of a zig-zag; `number` of them are awaited before the `number + 1`-th execute.
-    fn waits(&self, key: &'static str, number: usize) -> Part {
-        let duration = number.saturating_sub(1) as f64 * (self.longest_wait + self.helmsman.reaction_time);
-        match self.helmsman.reaction_time > self.longest_wait {
-            true => Part { key: "helmsman.reaction-time-s", value: self.helmsman.reaction_time, duration },
-            false => Part { key, value: number as f64, duration },
+    /// The parts of the manoeuvre up to so many steps of it.
+    fn steps(&self, count: usize, key_of_waits: Option<&'static str>) -> Vec<RunPart> {
+        let mut parts = vec![RunPart::time("approach.lead-in-s", self.approach.lead_in)];
+        let wait = self.longest_wait + self.helmsman.reaction_time;
+        let tired = self.helmsman.reaction_time > self.longest_wait;
+        for (orders, OrderStep { trigger, key, .. }) in self.manoeuvre.steps().take(count).enumerate() {
+            let part = match trigger {
+                Trigger::Time(time) => RunPart::time(key, time),
+                Trigger::Never => RunPart::time(key, f64::INFINITY),
+                Trigger::Deviation { .. } if tired => {
+                    RunPart { key: "helmsman.reaction-time-s", value: self.helmsman.reaction_time, duration: wait }
+                }
+                // The number of the execute that is awaited.
+                Trigger::Deviation { .. } => {
+                    RunPart { key: key_of_waits.unwrap_or(key), value: (orders + 1) as f64, duration: wait }
+                }
+            };
+            match parts.last_mut().filter(|last| last.key == part.key) {
+                Some(last) => (last.value, last.duration) = (part.value.max(last.value), last.duration + part.duration),
+                None => parts.push(part),
+            }
+        }
+        parts
+    }
+
+    fn until_end_of_manoeuvre(&self) -> Vec<RunPart> {
+        match self.manoeuvre {
+            Manoeuvre::ZigZag { duration: Some(duration), .. } => {
+                let lead_in = RunPart::time("approach.lead-in-s", self.approach.lead_in);
+                vec![lead_in, RunPart::time("manoeuvre.zig-zag.duration-s", duration)]
+            }
+            Manoeuvre::ZigZag { executes: None, .. } => vec![RunPart::time("recording.duration-s", f64::INFINITY)],
+            _ => self.steps(usize::MAX, None),
         }
     }
 
-    fn until_end_of_manoeuvre(&self) -> [Part; 3] {
-        let nothing = Part::time("approach.lead-in-s", 0.0);
-        let [first, second] = match &self.manoeuvre {
-            Manoeuvre::ZigZag(zig_zag) => match zig_zag.end {
-                ZigZagEnd::Executes(count) => [self.waits("manoeuvre.zig-zag.executes", count), nothing],
-                ZigZagEnd::Duration(duration) => [Part::time("manoeuvre.zig-zag.duration-s", duration), nothing],
-                ZigZagEnd::Record => [Part::time("recording.duration-s", f64::INFINITY), nothing],
-            },
-            Manoeuvre::TurningCircle(turn) => match turn.end {
-                TurnEnd::Duration(duration) => [Part::time("manoeuvre.turning-circle.duration-s", duration), nothing],
-                TurnEnd::HeadingChange(_) => [Part::time("longest_wait", self.longest_wait), nothing],
-            },
-            Manoeuvre::PullOut(PullOut { hold, duration, .. }) => {
-                [Part::time("manoeuvre.pull-out.hold-s", *hold), Part::time("manoeuvre.pull-out.duration-s", *duration)]
-            }
-            Manoeuvre::Williamson(turn) => [
-                Part::time("longest_wait", 2.0 * (self.longest_wait + self.helmsman.reaction_time)),
-                Part::time("manoeuvre.williamson.duration-s", turn.duration),
-            ],
-            Manoeuvre::Replay(signal) => [Part::time("manoeuvre.replay.file", length(signal)), nothing],
+    fn until_end_of_record(&self) -> Vec<RunPart> {
+        let mut parts = match self.recording.after_execute {
+            None => Vec::new(),
+            Some(number) => self.steps(number, Some("recording.after-execute")),
         };
-        [Part::time("approach.lead-in-s", self.approach.lead_in), first, second]
-    }
-
-    fn until_end_of_record(&self) -> [Part; 5] {
-        let Recording { start, duration, .. } = self.recording;
-        let lead_in = Part::time("approach.lead-in-s", self.approach.lead_in);
-        let nothing = Part { duration: 0.0, ..lead_in };
-        let [lead_in, reached, offset] = match start {
-            Start::Run => [nothing; 3],
-            Start::Execute { number, offset } => {
-                let reached = match &self.manoeuvre {
-                    Manoeuvre::ZigZag(_) => self.waits("recording.after-execute", number),
-                    Manoeuvre::PullOut(pull_out) => Part::time("manoeuvre.pull-out.hold-s", pull_out.hold),
-                    Manoeuvre::Williamson(_) => self.waits("recording.after-execute", number),
-                    Manoeuvre::TurningCircle(_) | Manoeuvre::Replay(_) => nothing,
-                };
-                [lead_in, reached, Part::time("recording.offset-s", offset)]
-            }
-        };
-        let delay = self.sensors.clock.heading_delay;
-        // A heading that is younger than its row is read after the last row.
-        let late = Part { key: "sensor.heading-delay-s", value: delay, duration: (-delay).max(0.0) };
-        [lead_in, reached, offset, Part::time("recording.duration-s", duration.unwrap_or(f64::INFINITY)), late]
+        let delay = self.sensors.heading_delay;
+        parts.extend([
+            RunPart::time("recording.offset-s", self.recording.offset.unwrap_or(0.0)),
+            RunPart::time("recording.duration-s", self.recording.duration.unwrap_or(f64::INFINITY)),
+            // A heading that is younger than its row is read after the last row.
+            RunPart { key: "sensor.heading-delay-s", value: delay, duration: (-delay).max(0.0) },
+        ]);
+        parts
     }
 
     fn steps_per_second(&self) -> f64 {
         let step = match (self.closed_form(), self.solver) {
             (Some(ship), _) => ClosedForm::longest_step(&ship),
             (None, Solver::RungeKutta(step)) => step,
-            (None, Solver::Automatic) => exposed::largest_step(self.vessel.largest_step(), self.sensors.heading.lag),
+            (None, Solver::Automatic) => exposed::largest_step(self.vessel.largest_step(), self.sensors.heading_lag),
         };
-        let display = match self.helmsman.watches {
-            Watches::TrueHeading => 0.0,
-            Watches::Display { period } => 1.0 / period,
-        };
+        let display = self.helmsman.reads_display_every.map_or(0.0, |period| 1.0 / period);
         let weather = if self.disturbances.change() { 1.0 / self.weather_grid } else { 0.0 };
         let sea = |waves: &NarrowBand| 1.0 / wave_path::cell_width(waves);
-        let seas = self.disturbances.waves.iter().chain(self.vessel.random_headings()).map(sea).sum::<f64>();
+        let declared = self.disturbances.waves.map(|waves| waves.process());
+        let seas = declared.iter().chain(self.vessel.random_headings()).map(sea).sum::<f64>();
         // The rows, and the instants at which instruments are read.
         1.0 / step + 2.0 / self.recording.period + display + weather + seas
     }
@@ -154,7 +146,7 @@ mod tests {
             }
         };
         let executes = |s: &mut Simulation, count| {
-            s.manoeuvre = Manoeuvre::zig_zag(0.1, 0.1, ZigZagEnd::Executes(count));
+            s.manoeuvre = Manoeuvre::zig_zag(0.1, 0.1).until_execute(count);
             s.recording.duration = None;
         };
         assert_eq!(refused(&|s| executes(s, 1_000_000_000)), "manoeuvre.zig-zag.executes");
@@ -163,10 +155,7 @@ mod tests {
             "manoeuvre.zig-zag.executes",
             "a hundred days of zig-zags"
         );
-        assert_eq!(
-            refused(&|s| s.recording.start = Start::Execute { number: 90_000, offset: 0.0 }),
-            "recording.after-execute"
-        );
+        assert_eq!(refused(&|s| s.recording.after_execute = Some(90_000)), "recording.after-execute");
         assert_eq!(refused(&|s| s.recording.duration = Some(2e6)), "recording.duration-s");
         assert_eq!(refused(&|s| s.approach.lead_in = 1e300), "approach.lead-in-s");
         let fast = |s: &mut Simulation| {
@@ -183,8 +172,8 @@ mod tests {
     #[test]
     fn the_estimate_is_not_below_the_run() {
         let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
-        simulation.sensors.clock.heading_delay = -3.0;
-        simulation.recording.start = Start::Execute { number: 2, offset: 1.0 };
+        simulation.sensors.heading_delay = -3.0;
+        (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.0));
         let Cost { duration, steps, .. } = simulation.cost();
         assert_eq!(duration, 3600.0 + 1.0 + 100.0 + 3.0);
         // The closed form strides over a minute; every row is read twice.

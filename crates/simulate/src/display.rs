@@ -3,10 +3,10 @@
 
 use rand::rngs::ChaCha8Rng;
 
-use crate::sensor::{HeadingSensor, quantise};
+use crate::sensor::{Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal};
-use crate::wander::{Known, Reader, WanderPath};
-use crate::wave_path::Waves;
+use crate::wander::{CompassReader, WanderPath, WanderPoint};
+use crate::wave_path::SeaWaves;
 
 /// A reading this far (rad) short of the heading asked for has reached it: a multiple of the quantum may lie a rounding
 /// error below.
@@ -14,7 +14,7 @@ const READING_TOLERANCE: f64 = 1e-9;
 
 /// One reading of the display.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Reading {
+pub(crate) struct DisplayReading {
     /// Time, s.
     pub time: f64,
     /// Heading read, rad.
@@ -23,10 +23,10 @@ pub(crate) struct Reading {
     pub wander: f64,
 }
 
-impl Reading {
+impl DisplayReading {
     /// What it tells of the coloured error.
-    pub fn known(&self) -> Known {
-        Known { time: self.time, error: self.wander }
+    pub fn known(&self) -> WanderPoint {
+        WanderPoint { time: self.time, error: self.wander }
     }
 }
 
@@ -36,20 +36,20 @@ pub(crate) struct Display {
     period: f64,
     next: u64,
     base: f64,
-    sensor: HeadingSensor,
-    waves: Waves,
+    sensors: Sensors,
+    waves: SeaWaves,
     wander: Option<WanderPath>,
     rng: ChaCha8Rng,
-    log: Vec<Reading>,
+    log: Vec<DisplayReading>,
 }
 
 impl Display {
     /// A display that is renewed every `period` s; the base course is what it shows, without noise, at `heading`.
-    pub fn new(period: f64, sensor: HeadingSensor, waves: Waves, key: &StreamKey, heading: f64) -> Self {
-        let base = quantise(heading + sensor.bias, sensor.quantum);
-        let wander = sensor.wander.map(|process| WanderPath::new(process, Reader::Display, key));
+    pub fn new(period: f64, sensors: Sensors, waves: SeaWaves, key: &StreamKey, heading: f64) -> Self {
+        let base = quantise(heading + sensors.heading_bias, sensors.heading_quantum);
+        let wander = sensors.heading_wander.map(|process| WanderPath::new(process, CompassReader::Display, key));
         let (rng, log) = (key.rng(Purpose::Display), Vec::with_capacity(1024));
-        Self { period, next: 0, base, sensor, waves, wander, rng, log }
+        Self { period, next: 0, base, sensors, waves, wander, rng, log }
     }
 
     /// Passes over the readings before `t` (s): nobody looked.
@@ -72,15 +72,15 @@ impl Display {
         let time = self.next_time();
         self.next += 1;
         let [wave, _] = self.waves.at(time);
-        let noise = self.sensor.noise * normal(&mut self.rng);
+        let noise = self.sensors.heading_noise * normal(&mut self.rng);
         let wander = self.wander.as_mut().map_or(0.0, |wander| wander.at(time));
-        let heading = quantise(gyro + wave + self.sensor.bias + wander + noise, self.sensor.quantum);
-        self.log.push(Reading { time, heading, wander });
+        let heading = quantise(gyro + wave + self.sensors.heading_bias + wander + noise, self.sensors.heading_quantum);
+        self.log.push(DisplayReading { time, heading, wander });
         side * (heading - self.base) >= angle - READING_TOLERANCE
     }
 
     /// What was read, in the order of time.
-    pub fn into_log(self) -> Vec<Reading> {
+    pub fn into_log(self) -> Vec<DisplayReading> {
         self.log
     }
 }

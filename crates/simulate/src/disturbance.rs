@@ -3,60 +3,121 @@
 //! drawn in `weather` and `wave_path`, on grids that depend on nothing but this specification.
 #![expect(non_snake_case, reason = "U is the symbol of the field for the speed of a ship")]
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::narrow_band::NarrowBand;
+use trial::degrees::Degrees;
 
-use crate::error::{self, Checked};
+use crate::error::{self, Check};
+use crate::numbers;
 
-/// A stationary first-order Gauss–Markov process: g' = −g/τ + white noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GaussMarkov {
-    /// Standard deviation, in the unit of what it is added to.
-    pub sd: f64,
-    /// Correlation time τ, s.
-    pub correlation_time: f64,
+/// Wind and sea; a calm in all that is left out.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Disturbances {
+    /// Steady wind, whose moment depends on the heading.
+    pub wind: Option<Wind>,
+    /// Gusts that act as a moment of their own, whatever the heading.
+    pub gusts: Option<GaussMarkov>,
+    /// Linear trend of the moment from the beginning of the run, as rudder angle.
+    #[serde(rename = "drift-deg-per-s", with = "Degrees::<f64>")]
+    pub drift: f64,
+    /// A moment that is present for a part of the run only.
+    pub squall: Option<Squall>,
+    /// Random walk of the moment: its standard deviation after one second, as rudder angle.
+    #[serde(rename = "random-walk-deg-per-root-s", with = "Degrees::<f64>")]
+    pub random_walk: f64,
+    /// Narrow-band yaw from waves, seen on top of the response.
+    pub waves: Option<WaveSpectrum>,
 }
 
 /// A steady wind whose yaw moment depends on heading: w sin 2(ψ_w − ψ) (1 + g).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Wind {
-    /// Largest moment w as equivalent rudder angle, rad.
+    /// Largest moment, as rudder angle.
+    #[serde(rename = "moment-deg", with = "Degrees::<f64>")]
     pub moment: f64,
-    /// Direction ψ_w the true wind comes from, rad, clockwise from north.
+    /// Direction the true wind comes from, clockwise from north.
+    #[serde(rename = "from-deg", with = "Degrees::<f64>")]
     pub from: f64,
-    /// True wind speed, m/s, where the record shall have wind channels; `None` leaves them out.
+    /// True wind speed; with it the record has wind channels.
+    #[serde(rename = "speed-m-s")]
     pub speed: Option<f64>,
-    /// Gusting g of the moment, dimensionless; the speed follows as the square root of 1 + g.
-    pub gusting: Option<GaussMarkov>,
+    /// Gusting of this moment.
+    pub gusting: Option<Gusting>,
+}
+
+/// Gusting g of the moment of the wind; its speed follows as the square root of 1 + g.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gusting {
+    /// Standard deviation, as a share of the moment.
+    pub sd: f64,
+    /// Correlation time.
+    #[serde(rename = "correlation-s")]
+    pub correlation_time: f64,
+}
+
+/// A stationary first-order Gauss–Markov process of an angle: g' = −g/τ + white noise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GaussMarkov {
+    /// Standard deviation.
+    #[serde(rename = "sd-deg", with = "Degrees::<f64>")]
+    pub sd: f64,
+    /// Correlation time.
+    #[serde(rename = "correlation-s")]
+    pub correlation_time: f64,
 }
 
 /// A moment that is present for a part of the run only, with smooth (raised-cosine) edges.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Squall {
-    /// Beginning, s from the beginning of the run.
-    pub start: f64,
-    /// Length, edges included, s.
-    pub duration: f64,
-    /// Length of each edge, s, at most half the duration.
-    pub edge: f64,
-    /// Moment between the edges as equivalent rudder angle, rad.
+    /// Moment between the edges, as rudder angle.
+    #[serde(rename = "moment-deg", with = "Degrees::<f64>")]
     pub moment: f64,
+    /// Beginning, from the beginning of the run.
+    #[serde(rename = "start-s")]
+    pub start: f64,
+    /// Length, edges included.
+    #[serde(rename = "duration-s")]
+    pub duration: f64,
+    /// Length of each smooth edge, at most half the length.
+    #[serde(rename = "edge-s")]
+    pub edge: f64,
 }
 
-/// Everything that acts on the ship beside its rudder; the default is a calm.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Disturbances {
-    /// Steady or gusting wind.
-    pub wind: Option<Wind>,
-    /// Gusts that act as a moment of their own, whatever the heading, rad.
-    pub gusts: Option<GaussMarkov>,
-    /// Linear trend of the moment from the beginning of the run, rad/s.
-    pub drift: f64,
-    /// A squall.
-    pub squall: Option<Squall>,
-    /// Random walk of the moment from 0: its standard deviation after one second, rad/√s.
-    pub random_walk: f64,
-    /// Narrow-band yaw from waves, added to the heading and yaw rate that are seen.
-    pub waves: Option<NarrowBand>,
+/// Narrow-band yaw from waves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct WaveSpectrum {
+    /// Standard deviation of the heading they add.
+    #[serde(rename = "sd-deg", with = "Degrees::<f64>")]
+    pub sd: f64,
+    /// Frequency of encounter.
+    #[serde(rename = "frequency-rad-s")]
+    pub frequency: f64,
+    /// Relative damping: the smaller, the narrower the band.
+    pub damping: f64,
+}
+
+numbers! {
+    Disturbances: "wind" wind, "gusts" gusts, "drift-deg-per-s" drift, "squall" squall,
+        "random-walk-deg-per-root-s" random_walk, "waves" waves;
+    Wind: "moment-deg" moment, "from-deg" from, "speed-m-s" speed, "gusting" gusting;
+    Gusting: "sd" sd, "correlation-s" correlation_time;
+    GaussMarkov: "sd-deg" sd, "correlation-s" correlation_time;
+    Squall: "moment-deg" moment, "start-s" start, "duration-s" duration, "edge-s" edge;
+    WaveSpectrum: "sd-deg" sd, "frequency-rad-s" frequency, "damping" damping;
+}
+
+impl WaveSpectrum {
+    /// The process of the heading.
+    pub fn process(&self) -> NarrowBand {
+        NarrowBand { sd: self.sd, frequency: self.frequency, damping: self.damping }
+    }
 }
 
 impl Disturbances {
@@ -67,7 +128,7 @@ impl Disturbances {
     }
 
     /// Checks every value; fails with the first one that makes no sense.
-    pub fn validate(&self) -> Checked {
+    pub fn validate(&self) -> Check {
         if let Some(wind) = &self.wind {
             error::finite("disturbance.wind.moment-deg", wind.moment)?;
             error::finite("disturbance.wind.from-deg", wind.from)?;

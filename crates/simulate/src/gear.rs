@@ -2,39 +2,47 @@
 //! form, so it is kept as a list of segments with exact ends, never integrated. What the gear is ordered to do is
 //! decided in [`crate::helm`].
 
-use ship::Polyline;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use ship::angle::from_deg;
+use ship::{Polyline, Ship};
+use trial::degrees::Degrees;
 
-use crate::error::{self, Checked};
+use crate::error::{self, Check};
+use crate::numbers;
 
-/// A steering gear with optional rate limit, lag, dead time, dead band and stops.
+/// What moves the rudder: a steering gear with optional rate limit, lag, dead time, dead band and stops.
 ///
 /// δ' = ±min(rate, |δ_c − δ| / lag) while |δ_c − δ| > dead band, where δ_c is the order one dead time ago, held within
-/// the stops; the pump stands still as soon as the error is inside the dead band. Rate in rad/s (infinite: the rudder
-/// jumps), lag and dead time in s, angles in rad.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// the stops; the pump stands still as soon as the error is inside the dead band.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct SteeringGear {
-    /// Largest rudder rate, rad/s; infinite for none.
-    pub rate: f64,
-    /// Time constant of the first-order approach to the order, s; 0 for none.
+    /// Rudder rate; that of the ship where its source gives one, and else the rudder moves instantly.
+    #[serde(rename = "rate-deg-s", with = "Degrees::<Option<f64>>")]
+    pub rate: Option<f64>,
+    /// Time constant of the approach to the order.
+    #[serde(rename = "lag-s")]
     pub lag: f64,
-    /// Time from order to first movement, s.
+    /// Time from order to first movement.
+    #[serde(rename = "dead-time-s")]
     pub dead_time: f64,
-    /// Error at which the pump stops, and below which it does not start, rad.
+    /// Error at which the pump stops, and below which it does not start.
+    #[serde(rename = "dead-band-deg", with = "Degrees::<f64>")]
     pub dead_band: f64,
-    /// Largest rudder angle to either side, rad; infinite for none.
-    pub maximum: f64,
+    /// Largest rudder angle to either side; that of the ship where its source gives one, and else 90°.
+    #[serde(rename = "maximum-deg", with = "Degrees::<Option<f64>>")]
+    pub maximum: Option<f64>,
 }
 
-impl Default for SteeringGear {
-    /// A gear that does at once what it is told.
-    fn default() -> Self {
-        Self { rate: f64::INFINITY, lag: 0.0, dead_time: 0.0, dead_band: 0.0, maximum: f64::INFINITY }
-    }
+numbers! {
+    SteeringGear: "rate-deg-s" rate, "lag-s" lag, "dead-time-s" dead_time, "dead-band-deg" dead_band,
+        "maximum-deg" maximum;
 }
 
 /// How the rudder moves within one [`Segment`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shape {
+pub enum RudderMotion {
     /// It stands still.
     Hold,
     /// It moves at a constant rate, rad/s.
@@ -61,39 +69,64 @@ pub struct Segment {
     /// Rudder angle at the beginning, rad.
     pub angle: f64,
     /// Movement from there.
-    pub shape: Shape,
+    pub motion: RudderMotion,
 }
 
 impl Segment {
     /// Rudder angle, rad, at time `t`, s; also valid just outside the segment, as its smooth continuation.
     #[inline]
     pub fn at(&self, t: f64) -> f64 {
-        match self.shape {
-            Shape::Hold => self.angle,
-            Shape::Ramp { rate } => self.angle + rate * (t - self.start),
-            Shape::Exponential { target, lag } => target + (self.angle - target) * (-(t - self.start) / lag).exp(),
+        match self.motion {
+            RudderMotion::Hold => self.angle,
+            RudderMotion::Ramp { rate } => self.angle + rate * (t - self.start),
+            RudderMotion::Exponential { target, lag } => {
+                target + (self.angle - target) * (-(t - self.start) / lag).exp()
+            }
         }
     }
 }
 
 impl SteeringGear {
+    /// No rudder is put further than across the ship.
+    const LARGEST_DEG: f64 = 90.0;
+
     /// A gear with a rate limit, rad/s, and nothing else.
     pub fn with_rate(rate: f64) -> Self {
-        Self { rate, ..Self::default() }
+        Self { rate: Some(rate), ..Self::default() }
+    }
+
+    /// The gear of a ship: what is left out is hers, where her source gives it.
+    pub fn of(self, ship: &Ship) -> Self {
+        Self {
+            rate: self.rate.or(ship.rudder_rate),
+            maximum: self.maximum.or(ship.largest_rudder).or(Some(from_deg(Self::LARGEST_DEG))),
+            ..self
+        }
+    }
+
+    /// Largest rudder rate, rad/s; infinite for none.
+    pub fn largest_rate(&self) -> f64 {
+        self.rate.unwrap_or(f64::INFINITY)
+    }
+
+    /// Largest rudder angle to either side, rad; infinite for none.
+    pub fn largest_rudder(&self) -> f64 {
+        self.maximum.unwrap_or(f64::INFINITY)
     }
 
     /// Checks every value; fails with the first one that makes no sense.
-    pub fn validate(&self) -> Checked {
-        error::positive_or_infinite("steering-gear.rate-deg-s", self.rate)?;
+    pub fn validate(&self) -> Check {
+        error::positive_or_infinite("steering-gear.rate-deg-s", self.largest_rate())?;
         error::time("steering-gear.lag-s", self.lag)?;
         error::time("steering-gear.dead-time-s", self.dead_time)?;
         error::not_negative("steering-gear.dead-band-deg", self.dead_band)?;
-        error::positive_or_infinite("steering-gear.maximum-deg", self.maximum)
+        error::positive_or_infinite("steering-gear.maximum-deg", self.largest_rudder())
     }
 
     /// Appends the answer to an order that arrives at `start` with the rudder at `from`; the last segment has no end.
     fn respond(&self, start: f64, from: f64, order: f64, path: &mut Vec<Segment>) {
-        let target = order.clamp(-self.maximum, self.maximum);
+        let (rate, maximum) = (self.largest_rate(), self.largest_rudder());
+        let target = order.clamp(-maximum, maximum);
         let side = (target - from).signum();
         let mut t = start;
         let mut angle = from;
@@ -101,12 +134,12 @@ impl SteeringGear {
         let mut left = (target - from).abs();
         if left > self.dead_band {
             // Not the product alone: an infinite rate without lag gives ∞·0.
-            let knee = if self.lag > 0.0 { self.rate * self.lag } else { 0.0 };
+            let knee = if self.lag > 0.0 { rate * self.lag } else { 0.0 };
             let until = knee.max(self.dead_band);
             if left > until {
-                if self.rate.is_finite() {
-                    let end = t + (left - until) / self.rate;
-                    path.push(Segment { start: t, end, angle, shape: Shape::Ramp { rate: side * self.rate } });
+                if rate.is_finite() {
+                    let end = t + (left - until) / rate;
+                    path.push(Segment { start: t, end, angle, motion: RudderMotion::Ramp { rate: side * rate } });
                     t = end;
                 }
                 (left, angle) = (until, target - side * until);
@@ -114,12 +147,17 @@ impl SteeringGear {
             if self.lag > 0.0 && left > self.dead_band {
                 let end =
                     if self.dead_band > 0.0 { t + self.lag * (left / self.dead_band).ln() } else { f64::INFINITY };
-                path.push(Segment { start: t, end, angle, shape: Shape::Exponential { target, lag: self.lag } });
+                path.push(Segment {
+                    start: t,
+                    end,
+                    angle,
+                    motion: RudderMotion::Exponential { target, lag: self.lag },
+                });
                 (t, angle) = (end, target - side * self.dead_band);
             }
         }
         if t.is_finite() {
-            path.push(Segment { start: t, end: f64::INFINITY, angle, shape: Shape::Hold });
+            path.push(Segment { start: t, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         }
     }
 }
@@ -134,7 +172,7 @@ impl RudderPath {
     /// A rudder that stands at `angle` (rad) until it is ordered to move.
     pub fn standing(angle: f64) -> Self {
         let mut segments = Vec::with_capacity(64);
-        segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, shape: Shape::Hold });
+        segments.push(Segment { start: f64::NEG_INFINITY, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         Self { segments }
     }
 
@@ -144,14 +182,14 @@ impl RudderPath {
         let (times, values) = (signal.times(), signal.values());
         let shift = start - times[0];
         let mut path = Self { segments: Vec::with_capacity(times.len() + 1) };
-        path.segments.push(Segment { start: f64::NEG_INFINITY, end: start, angle, shape: Shape::Hold });
+        path.segments.push(Segment { start: f64::NEG_INFINITY, end: start, angle, motion: RudderMotion::Hold });
         for (t, delta) in times.windows(2).zip(values.windows(2)) {
-            let shape = Shape::Ramp { rate: (delta[1] - delta[0]) / (t[1] - t[0]) };
-            path.segments.push(Segment { start: t[0] + shift, end: t[1] + shift, angle: delta[0], shape });
+            let motion = RudderMotion::Ramp { rate: (delta[1] - delta[0]) / (t[1] - t[0]) };
+            path.segments.push(Segment { start: t[0] + shift, end: t[1] + shift, angle: delta[0], motion });
         }
         let last = times.len() - 1;
         let (start, angle) = (times[last] + shift, values[last]);
-        path.segments.push(Segment { start, end: f64::INFINITY, angle, shape: Shape::Hold });
+        path.segments.push(Segment { start, end: f64::INFINITY, angle, motion: RudderMotion::Hold });
         path
     }
 
@@ -216,8 +254,8 @@ mod tests {
     #[test]
     fn a_rate_limit_ramps_and_then_holds_exactly() {
         let path = answer(&SteeringGear::with_rate(2.5 * DEGREE), 10.0 * DEGREE, -10.0 * DEGREE);
-        let shapes: Vec<Shape> = path.segments().iter().map(|segment| segment.shape).collect();
-        assert_eq!(shapes, [Shape::Hold, Shape::Ramp { rate: -2.5 * DEGREE }, Shape::Hold]);
+        let motions: Vec<RudderMotion> = path.segments().iter().map(|segment| segment.motion).collect();
+        assert_eq!(motions, [RudderMotion::Hold, RudderMotion::Ramp { rate: -2.5 * DEGREE }, RudderMotion::Hold]);
         assert_eq!(path.segments()[2].start, 18.0);
         assert_relative_eq!(path.at(12.0), 5.0 * DEGREE, max_relative = 1e-12);
         assert_eq!(path.at(30.0), -10.0 * DEGREE);
@@ -225,7 +263,7 @@ mod tests {
 
     #[test]
     fn rate_lag_dead_time_and_dead_band_follow_one_another() {
-        let gear = SteeringGear { rate: 0.05, lag: 2.0, dead_time: 1.5, dead_band: 0.01, maximum: f64::INFINITY };
+        let gear = SteeringGear { rate: Some(0.05), lag: 2.0, dead_time: 1.5, dead_band: 0.01, maximum: None };
         let path = answer(&gear, 0.0, 0.4);
         let starts: Vec<f64> = path.segments()[1..].iter().map(|segment| segment.start).collect();
         // Ramp until the error is rate·lag = 0.1 (6 s), then lag·ln(0.1/0.01) until it is the dead band.
@@ -245,19 +283,19 @@ mod tests {
     /// δ' = clamp((δ_c − δ)/lag, ±rate), in small steps.
     #[test]
     fn segments_are_the_solution_of_the_equation() {
-        let gear = SteeringGear { rate: 0.08, lag: 1.0, ..SteeringGear::default() };
+        let gear = SteeringGear { rate: Some(0.08), lag: 1.0, ..SteeringGear::default() };
         let path = answer(&gear, 0.3, -0.1);
         let (mut delta, h) = (0.3, 1e-4);
         for step in 0..100_000 {
             let t = 10.0 + f64::from(step) * h;
             assert_abs_diff_eq!(path.at(t), delta, epsilon = 2e-5);
-            delta += h * ((-0.1 - delta) / gear.lag).clamp(-gear.rate, gear.rate);
+            delta += h * ((-0.1 - delta) / gear.lag).clamp(-0.08, 0.08);
         }
     }
 
     #[test]
     fn a_new_order_takes_over_where_the_rudder_is() {
-        let gear = SteeringGear { rate: 0.1, dead_time: 1.0, ..SteeringGear::default() };
+        let gear = SteeringGear { rate: Some(0.1), dead_time: 1.0, ..SteeringGear::default() };
         let mut path = answer(&gear, 0.0, 0.5);
         path.order(12.0, -0.5, &gear);
         assert_abs_diff_eq!(path.at(13.0), 0.2, epsilon = 1e-15);
@@ -270,7 +308,7 @@ mod tests {
 
     #[test]
     fn stops_and_dead_band_hold_the_rudder() {
-        let gear = SteeringGear { rate: 0.1, dead_band: 0.02, maximum: 0.6, ..SteeringGear::default() };
+        let gear = SteeringGear { rate: Some(0.1), dead_band: 0.02, maximum: Some(0.6), ..SteeringGear::default() };
         assert_abs_diff_eq!(answer(&gear, 0.0, 0.9).at(100.0), 0.58, epsilon = 1e-15);
         assert_eq!(answer(&gear, 0.3, 0.31).at(100.0), 0.3);
     }

@@ -1,30 +1,27 @@
 //! Who reads the compass and turns the wheel: the specification of the helmsman, and the [`Helm`], which is the state
 //! of one manoeuvre in one run. It decides; it neither moves the rudder ([`crate::gear`]) nor the ship.
 
-use crate::error::{self, Checked};
-use crate::manoeuvre::{Manoeuvre, TurnEnd, Williamson, ZigZag, ZigZagEnd, length};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use trial::manoeuvre::{Manoeuvre, Trigger};
 
-/// What the helmsman looks at.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub enum Watches {
-    /// The true heading, at every instant: an execute falls exactly on the heading asked for.
-    #[default]
-    TrueHeading,
-    /// The heading display: the measured heading with its noise and quantisation, renewed every `period` s from the
-    /// beginning of the run. An execute can then only fall on a reading.
-    Display {
-        /// Time between two readings, s.
-        period: f64,
-    },
+use crate::error::{self, Check};
+use crate::numbers;
+
+/// Who reads the compass and turns the wheel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Helmsman {
+    /// Time between readings of the heading display; left out, he knows the true heading at every instant.
+    #[serde(rename = "reads-display-every-s")]
+    pub reads_display_every: Option<f64>,
+    /// Time from seeing the heading waited for to giving the order.
+    #[serde(rename = "reaction-time-s")]
+    pub reaction_time: f64,
 }
 
-/// The helmsman.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Helmsman {
-    /// What he looks at.
-    pub watches: Watches,
-    /// Time from seeing the heading asked for to giving the order, s.
-    pub reaction_time: f64,
+numbers! {
+    Helmsman: "reads-display-every-s" reads_display_every, "reaction-time-s" reaction_time;
 }
 
 /// Times between two readings of an instrument, s, that make sense: none is read more often, and a manoeuvre is over in
@@ -34,33 +31,17 @@ pub(crate) const LONGEST_PERIOD: f64 = 1e3;
 
 impl Helmsman {
     /// Checks every value; fails with the first one that makes no sense.
-    pub fn validate(&self) -> Checked {
-        if let Watches::Display { period } = self.watches {
+    pub fn validate(&self) -> Check {
+        if let Some(period) = self.reads_display_every {
             error::between("helmsman.reads-display-every-s", period, SHORTEST_PERIOD, LONGEST_PERIOD)?;
         }
         error::time("helmsman.reaction-time-s", self.reaction_time)
     }
 }
 
-/// What the helm waits for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cue {
-    /// A time, s.
-    At(f64),
-    /// `side` · (ψ − base course) ≥ `angle`, with side ±1 and angle in rad.
-    Deviation {
-        /// Direction of the deviation, +1 to starboard.
-        side: f64,
-        /// Size of the deviation, rad.
-        angle: f64,
-    },
-    /// Nothing more.
-    Nothing,
-}
-
 /// An order of the helm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Execute {
+pub struct HelmOrder {
     /// Time the order is given, s.
     pub time: f64,
     /// True heading then, rad.
@@ -76,40 +57,22 @@ pub struct Execute {
 pub struct Helm<'a> {
     manoeuvre: &'a Manoeuvre,
     reaction_time: f64,
-    first_execute: f64,
-    made: usize,
+    /// Orders given so far.
+    orders: usize,
+    /// Time of the last order, s; before the first one that at which it is due.
+    last: f64,
     /// Time at which an order already decided is given, s.
     due: Option<f64>,
-    /// Whether the event that ends the manoeuvre has happened.
-    finished: bool,
     end: f64,
+    finished: bool,
 }
 
 impl<'a> Helm<'a> {
     /// The helm at the beginning of a run whose first execute is at `first_execute` s.
     pub fn new(manoeuvre: &'a Manoeuvre, helmsman: &Helmsman, first_execute: f64) -> Self {
-        let length = match manoeuvre {
-            Manoeuvre::ZigZag(zig_zag) => match zig_zag.end {
-                ZigZagEnd::Duration(duration) => duration,
-                ZigZagEnd::Executes(_) | ZigZagEnd::Record => f64::INFINITY,
-            },
-            Manoeuvre::TurningCircle(turn) => match turn.end {
-                TurnEnd::Duration(duration) => duration,
-                TurnEnd::HeadingChange(_) => f64::INFINITY,
-            },
-            Manoeuvre::PullOut(pull_out) => pull_out.hold + pull_out.duration,
-            Manoeuvre::Williamson(_) => f64::INFINITY,
-            Manoeuvre::Replay(signal) => length(signal),
-        };
-        Self {
-            manoeuvre,
-            reaction_time: helmsman.reaction_time,
-            first_execute,
-            made: 0,
-            due: None,
-            finished: false,
-            end: first_execute + length,
-        }
+        let Helmsman { reaction_time, .. } = *helmsman;
+        let end = first_execute + manoeuvre.length();
+        Self { manoeuvre, reaction_time, orders: 0, last: first_execute, due: None, end, finished: false }
     }
 
     /// Time at which the manoeuvre is over, s; infinite while it is not known.
@@ -117,82 +80,35 @@ impl<'a> Helm<'a> {
         self.end
     }
 
-    /// What the helm waits for now.
-    pub fn cue(&self) -> Cue {
-        if let Some(due) = self.due {
-            return Cue::At(due);
-        }
-        match (self.manoeuvre, self.made) {
-            _ if self.finished => Cue::Nothing,
-            (Manoeuvre::Replay(_), _) => Cue::Nothing,
-            (_, 0) => Cue::At(self.first_execute),
-            // The rudder lies to the side opposite to the next execute, and so does the deviation it causes.
-            (Manoeuvre::ZigZag(zig_zag), _) => {
-                Cue::Deviation { side: -self.zig_zag_side(zig_zag), angle: zig_zag.heading }
-            }
-            (Manoeuvre::TurningCircle(turn), _) => match turn.end {
-                TurnEnd::HeadingChange(angle) => Cue::Deviation { side: turn.side.sign(), angle },
-                TurnEnd::Duration(_) => Cue::Nothing,
-            },
-            (Manoeuvre::PullOut(pull_out), 1) => Cue::At(self.first_execute + pull_out.hold),
-            (Manoeuvre::PullOut(_), _) => Cue::Nothing,
-            (Manoeuvre::Williamson(turn), 1) => {
-                Cue::Deviation { side: turn.side.sign(), angle: Williamson::FIRST_TURN }
-            }
-            (Manoeuvre::Williamson(turn), 2) => {
-                Cue::Deviation { side: -turn.side.sign(), angle: Williamson::SECOND_TURN }
-            }
-            (Manoeuvre::Williamson(_), _) => Cue::Nothing,
+    /// What the helm waits for now; a time is that of the run.
+    pub fn trigger(&self) -> Trigger {
+        let step = self.manoeuvre.step(self.orders);
+        match (self.due, step.trigger) {
+            (Some(due), _) => Trigger::Time(due),
+            _ if self.finished => Trigger::Never,
+            (None, Trigger::Time(_)) if step.order.is_none() => Trigger::Never,
+            (None, Trigger::Time(time)) => Trigger::Time(self.last + time),
+            (None, heading) => heading,
         }
     }
 
-    /// Side of the next zig-zag execute.
-    fn zig_zag_side(&self, zig_zag: &ZigZag) -> f64 {
-        if self.made.is_multiple_of(2) { zig_zag.first.sign() } else { -zig_zag.first.sign() }
-    }
-
-    /// What the helm does at time `t` (s) when its cue has come: the rudder order, rad, if one is given now.
+    /// What the helm does at time `t` (s) when its trigger has come: the rudder order, rad, if one is given now.
     pub fn act(&mut self, t: f64) -> Option<f64> {
-        if let Cue::Deviation { .. } = self.cue() {
-            if let Manoeuvre::TurningCircle(_) = self.manoeuvre {
-                self.finish(t);
-                return None;
-            }
-            if self.reaction_time > 0.0 {
-                self.due = Some(t + self.reaction_time);
-                return None;
-            }
-        }
-        self.due = None;
-        let order = match self.manoeuvre {
-            Manoeuvre::ZigZag(zig_zag) => self.zig_zag_side(zig_zag) * zig_zag.rudder,
-            Manoeuvre::TurningCircle(turn) => turn.side.sign() * turn.rudder,
-            Manoeuvre::PullOut(pull_out) if self.made == 0 => pull_out.side.sign() * pull_out.rudder,
-            Manoeuvre::Williamson(turn) if self.made < 2 => {
-                if self.made == 0 {
-                    turn.side.sign() * turn.rudder
-                } else {
-                    -turn.side.sign() * turn.rudder
-                }
-            }
-            Manoeuvre::PullOut(_) | Manoeuvre::Williamson(_) | Manoeuvre::Replay(_) => 0.0,
+        let sees_heading = matches!(self.trigger(), Trigger::Deviation { .. });
+        let Some(order) = self.manoeuvre.step(self.orders).order else {
+            (self.finished, self.end) = (true, t);
+            return None;
         };
-        self.made += 1;
-        if let Manoeuvre::Williamson(turn) = self.manoeuvre
-            && self.made == 3
-        {
-            self.end = t + turn.duration;
+        if sees_heading && self.reaction_time > 0.0 {
+            self.due = Some(t + self.reaction_time);
+            return None;
         }
-        if let Manoeuvre::ZigZag(zig_zag) = self.manoeuvre
-            && zig_zag.end == ZigZagEnd::Executes(self.made)
-        {
-            self.finish(t);
+        (self.due, self.last) = (None, t);
+        self.orders += 1;
+        let next = self.manoeuvre.step(self.orders);
+        if let (Trigger::Time(time), None) = (next.trigger, next.order) {
+            self.end = self.end.min(t + time);
         }
         Some(order)
-    }
-
-    fn finish(&mut self, t: f64) {
-        self.finished = true;
-        self.end = t;
     }
 }

@@ -8,16 +8,16 @@ use rand::rngs::ChaCha8Rng;
 use ship::Particulars;
 use trial::{Channel, Columns};
 
-use crate::display::Reading;
+use crate::display::DisplayReading;
 use crate::disturbance::{Wind, gusting_speed};
 use crate::gear::RudderPath;
-use crate::helm::Execute;
-use crate::run::Wake;
+use crate::helm::HelmOrder;
+use crate::run::RunResult;
 use crate::sample::Sample;
-use crate::sensor::{DropOut, HeadingSensor, Loses, Sensors, quantise};
+use crate::sensor::{DropOut, Sensors, quantise};
 use crate::stream::{Purpose, StreamKey, normal, uniform};
-use crate::wander::{Known, Reader, WanderPath};
-use crate::wave_path::Waves;
+use crate::wander::{CompassReader, WanderPath, WanderPoint};
+use crate::wave_path::SeaWaves;
 
 /// Two instants closer together than this, s, are one.
 const SAME_INSTANT: f64 = 1e-9;
@@ -29,7 +29,7 @@ pub(crate) struct View<'a> {
     /// Deviation of the sampling instants from their stamps, s; empty for none.
     pub jitter: &'a [f64],
     /// Rudder, executes and readings of the helmsman.
-    pub wake: &'a Wake,
+    pub run: &'a RunResult,
     /// The rudder as somebody rebuilds it from the orders; `None` where it is recorded.
     pub assumed: Option<&'a RudderPath>,
     /// Rudder order before the first execute, rad; `None` where nobody gave orders.
@@ -57,11 +57,11 @@ pub(crate) struct Scene {
     /// Everything that no instrument disturbs.
     others: Vec<(Channel, Vec<f64>)>,
     /// What the helmsman read, in the order of time.
-    readings: Vec<Reading>,
+    readings: Vec<DisplayReading>,
 }
 
 /// The record as columns, and which rows are left of it.
-pub(crate) struct Written {
+pub(crate) struct WrittenRows {
     pub columns: Columns,
     /// `None` when every row is left.
     pub kept: Option<Vec<bool>>,
@@ -73,14 +73,14 @@ impl Scene {
         let column = |value: fn(&Sample) -> f64| view.samples.iter().map(value).collect::<Vec<f64>>();
         let jitter = |row: usize| view.jitter.get(row).copied().unwrap_or(0.0);
         let rows = || stamps.iter().enumerate();
-        let path = &view.wake.path;
+        let path = &view.run.path;
         let rudder = match view.assumed {
             None => path.at_each(rows().map(|(row, &stamp)| stamp + jitter(row))),
             Some(path) => path.at_each(stamps.iter().copied()),
         };
         let mut others = Vec::new();
         if let Some(first) = view.first_order {
-            let order = |(row, &stamp): (usize, &f64)| order_at(&view.wake.executes, first, stamp + jitter(row));
+            let order = |(row, &stamp): (usize, &f64)| order_at(&view.run.executes, first, stamp + jitter(row));
             others.push((Channel::RudderOrder, rows().map(order).collect()));
         }
         let optional = |value: fn(&Sample) -> Option<f64>| view.samples.iter().map(value).collect::<Option<Vec<f64>>>();
@@ -94,19 +94,19 @@ impl Scene {
             rudder,
             rudder_is_read: view.assumed.is_none(),
             others,
-            readings: view.wake.readings.clone(),
+            readings: view.run.readings.clone(),
             stamps,
         }
     }
 }
 
 /// The record that `key` makes of a scene.
-pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: Waves, key: &StreamKey) -> Written {
+pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: SeaWaves, key: &StreamKey) -> WrittenRows {
     let (mut heading, yaw_rate) = compass_and_rate(sensors, scene, waves, key);
     let mut rudder = scene.rudder.clone();
     if scene.rudder_is_read {
-        disturb(&mut rudder, sensors.rudder.noise, key.rng(Purpose::Rudder));
-        quantise_all(&mut rudder, sensors.rudder.quantum);
+        disturb(&mut rudder, sensors.rudder_noise, key.rng(Purpose::Rudder));
+        quantise_all(&mut rudder, sensors.rudder_quantum);
     }
     let mut channels: BTreeMap<Channel, Vec<f64>> = scene.others.iter().cloned().collect();
     channels.insert(Channel::Rudder, rudder);
@@ -117,13 +117,12 @@ pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: Waves, key: &Stream
     let lost = lost_rows(&sensors.drop_out, scene.stamps.len(), key);
     let mut kept: Option<Vec<bool>> = None;
     if let Some(lost) = lost {
-        match sensors.drop_out.loses {
-            Loses::Heading => {
-                for (psi, _) in heading.iter_mut().zip(&lost).filter(|(_, lost)| **lost) {
-                    *psi = f64::NAN;
-                }
+        if sensors.drop_out.whole_row {
+            kept = Some(lost.into_iter().map(|lost| !lost).collect());
+        } else {
+            for (psi, _) in heading.iter_mut().zip(&lost).filter(|(_, lost)| **lost) {
+                *psi = f64::NAN;
             }
-            Loses::Row => kept = Some(lost.into_iter().map(|lost| !lost).collect()),
         }
     }
     channels.insert(Channel::Heading, heading);
@@ -132,7 +131,7 @@ pub(crate) fn write(sensors: &Sensors, scene: &Scene, waves: Waves, key: &Stream
         keep(&mut columns.time, kept);
         columns.channels.values_mut().for_each(|values| keep(values, kept));
     }
-    Written { columns, kept }
+    WrittenRows { columns, kept }
 }
 
 /// Leaves the rows that are kept.
@@ -157,11 +156,10 @@ fn quantise_all(column: &mut [f64], quantum: f64) {
 fn compass_and_rate(
     sensors: &Sensors,
     scene: &Scene,
-    mut waves: Waves,
+    mut waves: SeaWaves,
     key: &StreamKey,
 ) -> (Vec<f64>, Option<Vec<f64>>) {
-    let compass = &sensors.heading;
-    let (mut heading, mut yaw_rate) = (scene.gyro.clone(), sensors.yaw_rate.map(|_| scene.yaw_rate.clone()));
+    let (mut heading, mut yaw_rate) = (scene.gyro.clone(), sensors.read_yaw_rate().then(|| scene.yaw_rate.clone()));
     if !waves.are_none() {
         for (row, &instant) in scene.instants.iter().enumerate() {
             let [wave, wave_rate] = waves.at(instant);
@@ -169,15 +167,15 @@ fn compass_and_rate(
             yaw_rate.iter_mut().for_each(|yaw_rate| yaw_rate[row] += wave_rate);
         }
     }
-    heading.iter_mut().for_each(|psi| *psi += compass.bias);
-    if let Some(process) = compass.wander {
-        let known: Vec<Known> = scene.readings.iter().map(Reading::known).collect();
-        let errors = WanderPath::new(process, Reader::Record, key).through(&scene.instants, &known);
+    heading.iter_mut().for_each(|psi| *psi += sensors.heading_bias);
+    if let Some(process) = sensors.heading_wander {
+        let known: Vec<WanderPoint> = scene.readings.iter().map(DisplayReading::known).collect();
+        let errors = WanderPath::new(process, CompassReader::Record, key).through(&scene.instants, &known);
         heading.iter_mut().zip(errors).for_each(|(psi, error)| *psi += error);
     }
     // Drawn in every row, whether used or not, so that what the helmsman reads shifts no later draw.
-    disturb(&mut heading, compass.noise, key.rng(Purpose::Heading));
-    quantise_all(&mut heading, compass.quantum);
+    disturb(&mut heading, sensors.heading_noise, key.rng(Purpose::Heading));
+    quantise_all(&mut heading, sensors.heading_quantum);
     if !scene.readings.is_empty() {
         for (psi, &instant) in heading.iter_mut().zip(&scene.instants) {
             if let Some(reading) = reading_at(&scene.readings, instant) {
@@ -185,39 +183,41 @@ fn compass_and_rate(
             }
         }
     }
-    spoil(&mut heading, compass, key);
-    if let (Some(yaw_rate), Some(sensor)) = (&mut yaw_rate, &sensors.yaw_rate) {
-        yaw_rate.iter_mut().for_each(|r| *r = (1.0 + sensor.scale_error) * *r + sensor.bias);
-        disturb(yaw_rate, sensor.noise, key.rng(Purpose::YawRate));
+    spoil(&mut heading, sensors, key);
+    if let Some(yaw_rate) = &mut yaw_rate {
+        let [noise, bias, scale_error] = [sensors.yaw_rate_noise, sensors.yaw_rate_bias, sensors.yaw_rate_scale_error]
+            .map(Option::unwrap_or_default);
+        yaw_rate.iter_mut().for_each(|r| *r = (1.0 + scale_error) * *r + bias);
+        disturb(yaw_rate, noise, key.rng(Purpose::YawRate));
     }
     (heading, yaw_rate)
 }
 
 /// What goes wrong between the compass and the record: spikes, and rows without a heading.
-fn spoil(heading: &mut [f64], compass: &HeadingSensor, key: &StreamKey) {
-    if let Some(spikes) = compass.spikes {
+fn spoil(heading: &mut [f64], sensors: &Sensors, key: &StreamKey) {
+    if let Some(spikes) = sensors.heading_spikes {
         let mut rng = key.rng(Purpose::HeadingSpikes);
         for psi in heading.iter_mut() {
             // Both are drawn in every row, so that another probability shifts no later draw.
             let (hit, to_port) = (uniform(&mut rng) < spikes.probability, uniform(&mut rng) < 0.5);
             if hit {
-                *psi = quantise(*psi + if to_port { -spikes.size } else { spikes.size }, compass.quantum);
+                *psi = quantise(*psi + if to_port { -spikes.size } else { spikes.size }, sensors.heading_quantum);
             }
         }
     }
-    if compass.every_rows > 1 {
-        let between = |(row, psi)| (row % compass.every_rows != 0).then_some(psi);
+    if let Some(every) = sensors.heading_every_rows {
+        let between = |(row, psi)| (row % every != 0).then_some(psi);
         heading.iter_mut().enumerate().filter_map(between).for_each(|psi: &mut f64| *psi = f64::NAN);
     }
 }
 
 /// What the helmsman read at time `t`, if he did.
-fn reading_at(readings: &[Reading], t: f64) -> Option<&Reading> {
+fn reading_at(readings: &[DisplayReading], t: f64) -> Option<&DisplayReading> {
     let at = readings.partition_point(|reading| reading.time < t - SAME_INSTANT);
     readings.get(at).filter(|reading| reading.time <= t + SAME_INSTANT)
 }
 
-fn order_at(executes: &[Execute], first: f64, t: f64) -> f64 {
+fn order_at(executes: &[HelmOrder], first: f64, t: f64) -> f64 {
     let given = executes.partition_point(|execute| execute.time <= t);
     if given == 0 { first } else { executes[given - 1].order }
 }
@@ -244,17 +244,17 @@ fn wind_channels(view: &View) -> Vec<(Channel, Vec<f64>)> {
 
 /// Which rows are lost; `None` when none can be.
 fn lost_rows(drop_out: &DropOut, rows: usize, key: &StreamKey) -> Option<Vec<bool>> {
-    if drop_out.probability <= 0.0 && drop_out.bursts.is_none() {
+    if drop_out.probability <= 0.0 && drop_out.burst_probability.is_none() {
         return None;
     }
     let mut rng: ChaCha8Rng = key.rng(Purpose::DropOut);
     let mut lost: Vec<bool> = (0..rows).map(|_| uniform(&mut rng) < drop_out.probability).collect();
-    if let Some(bursts) = drop_out.bursts {
+    if let (Some(probability), Some(mean_rows)) = (drop_out.burst_probability, drop_out.burst_mean_rows) {
         let mut rng = key.rng(Purpose::Burst);
         let mut inside = false;
         for lost in &mut lost {
             let draw = uniform(&mut rng);
-            inside = if inside { draw >= 1.0 / bursts.mean_rows } else { draw < bursts.probability };
+            inside = if inside { draw >= 1.0 / mean_rows } else { draw < probability };
             *lost |= inside;
         }
     }
@@ -264,13 +264,11 @@ fn lost_rows(drop_out: &DropOut, rows: usize, key: &StreamKey) -> Option<Vec<boo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sensor::Bursts;
     use approx::assert_relative_eq;
 
     #[test]
     fn bursts_have_their_mean_length_and_frequency() {
-        let bursts = Bursts { probability: 0.01, mean_rows: 8.0 };
-        let drop_out = DropOut { bursts: Some(bursts), ..DropOut::default() };
+        let drop_out = DropOut { burst_probability: Some(0.01), burst_mean_rows: Some(8.0), ..DropOut::default() };
         let rows = 200_000;
         let lost = lost_rows(&drop_out, rows, &StreamKey::default()).expect("bursts are asked for");
         let begun = lost.windows(2).filter(|pair| !pair[0] && pair[1]).count();

@@ -2,13 +2,15 @@
 //! reading of the display) and never rounds one to a step. What is recorded is asked for from outside, so a run can be
 //! taken to an execute first and recorded from there.
 
-use crate::display::{Display, Reading};
+use crate::display::{Display, DisplayReading};
 use crate::error::SimulateError;
 use crate::gear::{RudderPath, SteeringGear};
-use crate::helm::{Cue, Execute, Helm};
+use crate::helm::{Helm, HelmOrder};
+use trial::manoeuvre::Trigger;
+
 use crate::limits::{MOST_EXECUTES, MOST_STEPS};
-use crate::propagate::{Crossing, Limits, Propagator, has_diverged};
-use crate::recording::Tap;
+use crate::propagate::{AwaitedHeading, Limits, Propagator, has_diverged};
+use crate::recording::Sampler;
 use crate::sample::Sample;
 
 /// Time, s, by which the end of a manoeuvre is generous, so that a row at k·period is not lost to rounding.
@@ -34,7 +36,7 @@ pub(crate) struct Run<'a, P> {
     helm: Helm<'a>,
     display: Option<Display>,
     base: f64,
-    executes: Vec<Execute>,
+    executes: Vec<HelmOrder>,
     longest_wait: f64,
     /// Steps so far.
     steps: usize,
@@ -42,10 +44,10 @@ pub(crate) struct Run<'a, P> {
 
 /// What is left of a run: the way of the rudder, the executes, and what the helmsman read.
 #[derive(Debug)]
-pub(crate) struct Wake {
+pub(crate) struct RunResult {
     pub path: RudderPath,
-    pub executes: Vec<Execute>,
-    pub readings: Vec<Reading>,
+    pub executes: Vec<HelmOrder>,
+    pub readings: Vec<DisplayReading>,
 }
 
 impl<'a, P: Propagator> Run<'a, P> {
@@ -88,38 +90,38 @@ impl<'a, P: Propagator> Run<'a, P> {
         loop {
             let end = self.helm.end() + END_TOLERANCE;
             let deadline = self.deadline();
-            let cue = self.helm.cue();
+            let trigger = self.helm.trigger();
             let mut to = until.min(end);
             let mut watch = None;
-            match cue {
-                Cue::At(time) => to = to.min(time),
-                Cue::Deviation { side, angle } => {
+            match trigger {
+                Trigger::Time(time) => to = to.min(time),
+                Trigger::Deviation { side, angle } => {
                     to = to.min(deadline);
                     match &mut self.display {
                         Some(display) => {
                             display.skip_to(self.propagator.time());
                             to = to.min(display.next_time());
                         }
-                        None => watch = Some(Crossing { base: self.base, side, angle }),
+                        None => watch = Some(AwaitedHeading { base: self.base, side, angle }),
                     }
                 }
-                Cue::Nothing => {}
+                Trigger::Never => {}
             }
             if to == f64::INFINITY {
                 return Ok(Progress::Over);
             }
             let crossed = self.travel(to, watch)?;
             let t = self.propagator.time();
-            let noticed = match cue {
-                Cue::At(time) => t >= time,
-                Cue::Deviation { side, angle } => match &mut self.display {
+            let noticed = match trigger {
+                Trigger::Time(time) => t >= time,
+                Trigger::Deviation { side, angle } => match &mut self.display {
                     Some(display) if t >= display.next_time() => {
                         display.read(self.propagator.sample(&self.path).gyro, side, angle)
                     }
                     Some(_) => false,
                     None => crossed,
                 },
-                Cue::Nothing => false,
+                Trigger::Never => false,
             };
             if noticed {
                 if let Some(order) = self.helm.act(t) {
@@ -133,7 +135,7 @@ impl<'a, P: Propagator> Run<'a, P> {
                 return Ok(Progress::Reached);
             } else if t >= end {
                 return Ok(Progress::Over);
-            } else if let Cue::Deviation { angle, .. } = cue
+            } else if let Trigger::Deviation { angle, .. } = trigger
                 && t >= deadline
             {
                 let execute = self.executes.len();
@@ -143,15 +145,17 @@ impl<'a, P: Propagator> Run<'a, P> {
     }
 
     /// Records the rows that come before anything can happen.
-    pub fn coast(&mut self, rows: &mut Tap) {
+    pub fn coast(&mut self, rows: &mut Sampler) {
         // A display is read at instants of its own.
         if self.display.is_some() {
             return;
         }
-        let (time, watch) = match self.helm.cue() {
-            Cue::At(time) => (time, None),
-            Cue::Deviation { side, angle } => (self.deadline(), Some(Crossing { base: self.base, side, angle })),
-            Cue::Nothing => (f64::INFINITY, None),
+        let (time, watch) = match self.helm.trigger() {
+            Trigger::Time(time) => (time, None),
+            Trigger::Deviation { side, angle } => {
+                (self.deadline(), Some(AwaitedHeading { base: self.base, side, angle }))
+            }
+            Trigger::Never => (f64::INFINITY, None),
         };
         let limits = Limits { before: time.min(self.helm.end()), watch, base: self.base };
         self.propagator.coast(&self.path, &limits, rows);
@@ -168,19 +172,19 @@ impl<'a, P: Propagator> Run<'a, P> {
     }
 
     /// Ends the run.
-    pub fn finish(self) -> Wake {
+    pub fn finish(self) -> RunResult {
         let readings = self.display.map(Display::into_log).unwrap_or_default();
-        Wake { path: self.path, executes: self.executes, readings }
+        RunResult { path: self.path, executes: self.executes, readings }
     }
 
     fn execute(&mut self, time: f64, order: f64) {
         let state = self.propagator.state();
         self.path.order(time, order, self.gear);
-        self.executes.push(Execute { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
+        self.executes.push(HelmOrder { time, heading: state.heading, yaw_rate: state.yaw_rate, order });
     }
 
     /// Moves the ship to `to`, or to the crossing if it is earlier: whether it is.
-    fn travel(&mut self, to: f64, watch: Option<Crossing>) -> Result<bool, SimulateError> {
+    fn travel(&mut self, to: f64, watch: Option<AwaitedHeading>) -> Result<bool, SimulateError> {
         let (ship, path) = (&mut self.propagator, &self.path);
         loop {
             // A travel of no length counts, too: nothing goes on for ever without moving.

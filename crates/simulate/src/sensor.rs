@@ -7,124 +7,102 @@
 //! `heading_delay`. Stamps themselves are never disturbed: a jittered stamp on an exact instant differs only in the
 //! sign of j.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::angle::from_deg;
 use trial::Noise;
+use trial::degrees::Degrees;
 
 use crate::disturbance::GaussMarkov;
-use crate::error::{self, Checked};
+use crate::error::{self, Check, Expected};
 use crate::limits::{LONGEST_TIME, MOST_ROWS};
+use crate::numbers;
+
+/// Instruments, perfect in all that is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
+pub struct Sensors {
+    /// Standard deviation of white heading noise.
+    #[serde(rename = "heading-noise-deg", with = "Degrees::<f64>")]
+    pub heading_noise: f64,
+    /// Step of the heading display.
+    #[serde(rename = "heading-quantum-deg", with = "Degrees::<f64>")]
+    pub heading_quantum: f64,
+    // τ ψ_g' + ψ_g = ψ.
+    /// Follow-up lag of the gyrocompass.
+    #[serde(rename = "heading-lag-s")]
+    pub heading_lag: f64,
+    /// Constant heading error.
+    #[serde(rename = "heading-bias-deg", with = "Degrees::<f64>")]
+    pub heading_bias: f64,
+    /// Coloured compass error, on top of the white noise; a helmsman who reads the display sees it too.
+    pub heading_wander: Option<GaussMarkov>,
+    /// Rows whose recorded heading is off by a spike.
+    pub heading_spikes: Option<Spikes>,
+    // Counted before any row is lost.
+    /// The heading stands in the first row and in every n-th after it, the rudder in all; 1 when left out.
+    pub heading_every_rows: Option<usize>,
+    /// Standard deviation of white yaw-rate noise; any yaw-rate key adds a rate-of-turn indicator.
+    #[serde(rename = "yaw-rate-noise-deg-s", with = "Degrees::<Option<f64>>")]
+    pub yaw_rate_noise: Option<f64>,
+    /// Constant yaw-rate error.
+    #[serde(rename = "yaw-rate-bias-deg-s", with = "Degrees::<Option<f64>>")]
+    pub yaw_rate_bias: Option<f64>,
+    /// Scale error of the yaw rate, as a share.
+    pub yaw_rate_scale_error: Option<f64>,
+    /// Standard deviation of white noise of the rudder feedback.
+    #[serde(rename = "rudder-noise-deg", with = "Degrees::<f64>")]
+    pub rudder_noise: f64,
+    /// Step of the rudder feedback.
+    #[serde(rename = "rudder-quantum-deg", with = "Degrees::<f64>")]
+    pub rudder_quantum: f64,
+    // Cut at 0.45 periods, so that rows keep their order.
+    /// Standard deviation of the sampling instants about their stamps.
+    #[serde(rename = "jitter-s")]
+    pub jitter: f64,
+    // The yaw rate, speed and wind in a row are as old; negative when it is the rudder that is late.
+    /// Age of the heading against the rudder in the same row.
+    #[serde(rename = "heading-delay-s")]
+    pub heading_delay: f64,
+    /// Rows that are lost.
+    pub drop_out: DropOut,
+}
 
 /// Rows whose recorded heading is off: faults on the way from the compass to the record, which no helmsman sees.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Spikes {
     /// Probability per row, independently of the others.
     pub probability: f64,
-    /// Size of every spike, rad; to either side with the same probability.
+    /// Size of a spike, to either side.
+    #[serde(rename = "size-deg", with = "Degrees::<f64>")]
     pub size: f64,
 }
 
-/// The gyrocompass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeadingSensor {
-    /// Standard deviation of white noise, rad.
-    pub noise: f64,
-    /// Quantum of the reading, rad; 0 for none.
-    pub quantum: f64,
-    /// Follow-up lag τ: τ ψ_g' + ψ_g = ψ, s; 0 for none.
-    pub lag: f64,
-    /// Constant error, rad.
-    pub bias: f64,
-    /// Coloured error, rad: w' = −w/τ + white noise, stationary from the beginning of the run.
-    pub wander: Option<GaussMarkov>,
-    /// Rows whose recorded heading is off.
-    pub spikes: Option<Spikes>,
-    /// A heading stands in the first row and in every n-th after it, counted before any row is lost; 1 for in all. Only
-    /// the heading is recorded so rarely.
-    pub every_rows: usize,
-}
-
-impl Default for HeadingSensor {
-    fn default() -> Self {
-        Self { noise: 0.0, quantum: 0.0, lag: 0.0, bias: 0.0, wander: None, spikes: None, every_rows: 1 }
-    }
-}
-
-/// The rate-of-turn indicator.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct YawRateSensor {
-    /// Standard deviation of white noise, rad/s.
-    pub noise: f64,
-    /// Constant error, rad/s.
-    pub bias: f64,
-    /// Scale error e: the sensor reads (1 + e) r.
-    pub scale_error: f64,
-}
-
-/// The rudder feedback.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct RudderSensor {
-    /// Standard deviation of white noise, rad.
-    pub noise: f64,
-    /// Quantum of the reading, rad; 0 for none.
-    pub quantum: f64,
-}
-
-/// The clock of the recorder.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Clock {
-    /// Standard deviation of the true sampling instant about its stamp, s; cut at 0.45 periods, so rows keep their
-    /// order.
-    pub jitter: f64,
-    /// Time by which the heading (and yaw rate, speed, wind) in a row is older than the rudder in it, s; negative when
-    /// it is the rudder that is late.
-    pub heading_delay: f64,
-}
-
-/// What a lost row loses.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Loses {
-    /// The heading (NaN in the record); the other channels stay.
-    #[default]
-    Heading,
-    /// The whole row.
-    Row,
-}
-
-/// Losses that come in runs of rows: a two-state Markov chain.
+/// Rows that are lost, one by one or in bursts: a two-state Markov chain.
 ///
 /// Source: Gilbert (1960), Bell System Technical Journal 39:1253-1265.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bursts {
-    /// Probability per good row that a burst begins with the next one.
-    pub probability: f64,
-    /// Mean length of a burst, rows, at least 1.
-    pub mean_rows: f64,
-}
-
-/// Rows that are lost.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct DropOut {
-    /// Probability that a single row is lost, independently of the others.
+    /// Probability that a row is lost, independently of the others.
     pub probability: f64,
-    /// Losses in runs of rows.
-    pub bursts: Option<Bursts>,
-    /// What a lost row loses.
-    pub loses: Loses,
+    /// Probability per row that a burst of lost rows begins with the next one; with `burst-mean-rows`.
+    pub burst_probability: Option<f64>,
+    /// Mean length of a burst; with `burst-probability`.
+    pub burst_mean_rows: Option<f64>,
+    /// Whether a lost row is lost whole, or only its heading.
+    pub whole_row: bool,
 }
 
-/// All instruments of a trial; the default is perfect and has no rate-of-turn indicator.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Sensors {
-    /// The gyrocompass.
-    pub heading: HeadingSensor,
-    /// The rate-of-turn indicator, where there is one.
-    pub yaw_rate: Option<YawRateSensor>,
-    /// The rudder feedback.
-    pub rudder: RudderSensor,
-    /// The clock of the recorder.
-    pub clock: Clock,
-    /// Rows that are lost.
-    pub drop_out: DropOut,
+numbers! {
+    Sensors: "heading-noise-deg" heading_noise, "heading-quantum-deg" heading_quantum, "heading-lag-s" heading_lag,
+        "heading-bias-deg" heading_bias, "heading-wander" heading_wander, "heading-spikes" heading_spikes,
+        "yaw-rate-noise-deg-s" yaw_rate_noise, "yaw-rate-bias-deg-s" yaw_rate_bias,
+        "yaw-rate-scale-error" yaw_rate_scale_error, "rudder-noise-deg" rudder_noise,
+        "rudder-quantum-deg" rudder_quantum, "jitter-s" jitter, "heading-delay-s" heading_delay, "drop-out" drop_out;
+    Spikes: "probability" probability, "size-deg" size;
+    DropOut: "probability" probability, "burst-probability" burst_probability, "burst-mean-rows" burst_mean_rows;
 }
 
 /// The multiple of `quantum` that is nearest to `value`; the value itself without a quantum.
@@ -140,39 +118,37 @@ const LONGEST_LAG: f64 = 100.0;
 const LARGEST_SPIKE_DEG: f64 = 180.0;
 
 impl Sensors {
-    /// Checks every value; fails with the first one that makes no sense.
-    pub fn validate(&self) -> Checked {
-        error::not_negative("sensor.heading-noise-deg", self.heading.noise)?;
-        error::not_negative("sensor.heading-quantum-deg", self.heading.quantum)?;
-        if self.heading.lag != 0.0 {
-            error::between("sensor.heading-lag-s", self.heading.lag, SHORTEST_LAG, LONGEST_LAG)?;
+    /// Whether there is a rate-of-turn indicator.
+    pub fn read_yaw_rate(&self) -> bool {
+        [self.yaw_rate_noise, self.yaw_rate_bias, self.yaw_rate_scale_error].iter().any(Option::is_some)
+    }
+
+    /// Checks every value; fails with the first one that makes no sense, or that lacks another.
+    pub fn validate(&self) -> Check {
+        error::not_negative("sensor.heading-noise-deg", self.heading_noise)?;
+        error::not_negative("sensor.heading-quantum-deg", self.heading_quantum)?;
+        if self.heading_lag != 0.0 {
+            error::between("sensor.heading-lag-s", self.heading_lag, SHORTEST_LAG, LONGEST_LAG)?;
         }
-        error::finite("sensor.heading-bias-deg", self.heading.bias)?;
-        if let Some(wander) = &self.heading.wander {
+        error::finite("sensor.heading-bias-deg", self.heading_bias)?;
+        if let Some(wander) = &self.heading_wander {
             error::not_negative("sensor.heading-wander.sd-deg", wander.sd)?;
             error::positive_time("sensor.heading-wander.correlation-s", wander.correlation_time)?;
         }
-        if let Some(spikes) = &self.heading.spikes {
+        if let Some(spikes) = &self.heading_spikes {
             error::between("sensor.heading-spikes.probability", spikes.probability, 0.0, 1.0)?;
             error::positive("sensor.heading-spikes.size-deg", spikes.size)?;
             error::at_most("sensor.heading-spikes.size-deg", spikes.size, from_deg(LARGEST_SPIKE_DEG))?;
         }
-        error::count("sensor.heading-every-rows", self.heading.every_rows, MOST_ROWS)?;
-        if let Some(yaw_rate) = &self.yaw_rate {
-            error::not_negative("sensor.yaw-rate-noise-deg-s", yaw_rate.noise)?;
-            error::finite("sensor.yaw-rate-bias-deg-s", yaw_rate.bias)?;
-            error::finite("sensor.yaw-rate-scale-error", yaw_rate.scale_error)?;
-        }
-        error::not_negative("sensor.rudder-noise-deg", self.rudder.noise)?;
-        error::not_negative("sensor.rudder-quantum-deg", self.rudder.quantum)?;
-        error::time("sensor.jitter-s", self.clock.jitter)?;
-        error::between("sensor.heading-delay-s", self.clock.heading_delay, -LONGEST_TIME, LONGEST_TIME)?;
-        error::between("sensor.drop-out.probability", self.drop_out.probability, 0.0, 1.0)?;
-        if let Some(bursts) = &self.drop_out.bursts {
-            error::between("sensor.drop-out.burst-probability", bursts.probability, 0.0, 1.0)?;
-            error::between("sensor.drop-out.burst-mean-rows", bursts.mean_rows, 1.0, 1e9)?;
-        }
-        Ok(())
+        error::count("sensor.heading-every-rows", self.heading_every_rows.unwrap_or(1), MOST_ROWS)?;
+        error::not_negative("sensor.yaw-rate-noise-deg-s", self.yaw_rate_noise.unwrap_or(0.0))?;
+        error::finite("sensor.yaw-rate-bias-deg-s", self.yaw_rate_bias.unwrap_or(0.0))?;
+        error::finite("sensor.yaw-rate-scale-error", self.yaw_rate_scale_error.unwrap_or(0.0))?;
+        error::not_negative("sensor.rudder-noise-deg", self.rudder_noise)?;
+        error::not_negative("sensor.rudder-quantum-deg", self.rudder_quantum)?;
+        error::time("sensor.jitter-s", self.jitter)?;
+        error::between("sensor.heading-delay-s", self.heading_delay, -LONGEST_TIME, LONGEST_TIME)?;
+        self.drop_out.validate()
     }
 
     /// The noise such instruments declare, which is independent from reading to reading: white noise and quantisation
@@ -184,9 +160,30 @@ impl Sensors {
             (sd > 0.0).then_some(sd)
         };
         Noise {
-            heading: total(self.heading.noise, self.heading.quantum),
-            yaw_rate: self.yaw_rate.and_then(|sensor| total(sensor.noise, 0.0)),
-            rudder: total(self.rudder.noise, self.rudder.quantum),
+            heading: total(self.heading_noise, self.heading_quantum),
+            yaw_rate: self.yaw_rate_noise.and_then(|noise| total(noise, 0.0)),
+            rudder: total(self.rudder_noise, self.rudder_quantum),
+        }
+    }
+}
+
+impl DropOut {
+    fn validate(&self) -> Check {
+        error::between("sensor.drop-out.probability", self.probability, 0.0, 1.0)?;
+        match (self.burst_probability, self.burst_mean_rows) {
+            (Some(probability), Some(mean_rows)) => {
+                error::between("sensor.drop-out.burst-probability", probability, 0.0, 1.0)?;
+                error::between("sensor.drop-out.burst-mean-rows", mean_rows, 1.0, 1e9)
+            }
+            (None, None) => Ok(()),
+            _ => error::refused(
+                "sensor.drop-out",
+                Expected::Other([
+                    "`sensor.drop-out` has only one of `burst-probability` and `burst-mean-rows`",
+                    "the two belong together",
+                    "give both, or leave both out",
+                ]),
+            ),
         }
     }
 }

@@ -3,44 +3,58 @@
 
 use std::sync::Arc;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use ship::first_order::State;
+use trial::degrees::Degrees;
+use trial::manoeuvre::Manoeuvre;
 use trial::{Origin, Trial};
 
 use crate::display::Display;
 use crate::disturbance::Disturbances;
-use crate::error::{self, Checked, Expected, SimulateError, SpecificationError};
+use crate::error::{self, Check, Expected, SimulateError, SpecificationError};
 use crate::gear::{RudderPath, SteeringGear};
-use crate::helm::{Execute, Helm, Helmsman, Watches};
-use crate::limits::MOST_ROWS;
-use crate::manoeuvre::{Manoeuvre, ZigZagEnd};
+use crate::helm::{Helm, HelmOrder, Helmsman};
+use crate::limits::{MOST_EXECUTES, MOST_ROWS};
 use crate::measure::{self, Scene, View};
-use crate::propagate::{ClosedForm, Exposed, Integrated, Propagator};
-use crate::recording::{Recording, RudderColumn, Start, Tap};
-use crate::run::{Progress, Run, Wake};
+use crate::numbers;
+use crate::propagate::{ClosedForm, Integrated, Propagator, ShipInWeather};
+use crate::recording::{Recording, RudderSource, Sampler};
+use crate::run::{Progress, Run, RunResult};
 use crate::sample::Sample;
 use crate::sensor::Sensors;
 use crate::stream::StreamKey;
 use crate::vessel::{Solver, Vessel};
-use crate::wave_path::Waves;
+use crate::wave_path::SeaWaves;
 use crate::weather::{GRID, Weather};
 
 /// How the ship comes to the first execute.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Approach {
-    /// Heading at the beginning of the run, rad: the base course.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BeforeExecute {
+    /// Heading at the beginning of the run: the base course.
+    #[serde(rename = "heading-deg", with = "Degrees::<f64>")]
     pub heading: f64,
-    /// Yaw rate at the beginning of the run, rad/s.
+    /// Yaw rate at the beginning of the run.
+    #[serde(rename = "yaw-rate-deg-s", with = "Degrees::<f64>")]
     pub yaw_rate: f64,
-    /// Rudder angle until the first execute, rad: the neutral rudder where the ship needs one to go straight.
+    // The neutral rudder where the ship needs one to go straight.
+    /// Rudder until the first execute.
+    #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
     pub rudder: f64,
-    /// Time from the beginning of the run to the first execute, s.
+    /// Straight run before the first execute.
+    #[serde(rename = "lead-in-s")]
     pub lead_in: f64,
 }
 
-impl Approach {
+numbers! {
+    BeforeExecute: "heading-deg" heading, "yaw-rate-deg-s" yaw_rate, "rudder-deg" rudder, "lead-in-s" lead_in;
+}
+
+impl BeforeExecute {
     /// Checks every value; fails with the first one that makes no sense.
-    pub fn validate(&self) -> Checked {
+    pub fn validate(&self) -> Check {
         error::finite("approach.heading-deg", self.heading)?;
         error::finite("approach.yaw-rate-deg-s", self.yaw_rate)?;
         error::finite("approach.rudder-deg", self.rudder)?;
@@ -51,14 +65,14 @@ impl Approach {
 /// The specification of a simulated trial.
 ///
 /// ```
-/// use kempf_simulate::manoeuvre::ZigZagEnd;
 /// use kempf_simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
 /// use ship::{FirstOrder, angle::from_deg};
 ///
 /// let ship = Vessel::first_order(FirstOrder::from_indices(0.1, 16.3, 0.0));
-/// let zig_zag = Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0), ZigZagEnd::Executes(4));
+/// let zig_zag = Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0));
 /// let mut simulation = Simulation::new(ship, zig_zag);
-/// simulation.sensors.heading.noise = from_deg(0.2);
+/// simulation.recording.duration = Some(200.0);
+/// simulation.sensors.heading_noise = from_deg(0.2);
 /// // The same key gives the same trial, another replicate another one.
 /// let run = |replicate| simulation.run(&StreamKey { seed: 7, cell: 0, replicate });
 /// assert_eq!(run(0)?.trial.heading(), run(0)?.trial.heading());
@@ -72,7 +86,7 @@ pub struct Simulation {
     /// What is steered.
     pub vessel: Vessel,
     /// How it comes to the first execute.
-    pub approach: Approach,
+    pub approach: BeforeExecute,
     /// What it is asked to do.
     pub manoeuvre: Manoeuvre,
     /// Who asks.
@@ -94,7 +108,7 @@ pub struct Simulation {
     pub longest_wait: f64,
 }
 
-/// What really happened, at the stamps of the rows of the record. Waves are not part of it: they are a heading that is
+/// What really happened, at the stamps of the rows of the record. SeaWaves are not part of it: they are a heading that is
 /// seen, not a response.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Truth {
@@ -113,7 +127,7 @@ pub struct Truth {
     /// Speed through the water, m/s, where the ship has one.
     pub speed: Option<Vec<f64>>,
     /// Every order from the beginning of the run to the end of the record, also those before its first row.
-    pub executes: Vec<Execute>,
+    pub executes: Vec<HelmOrder>,
 }
 
 /// What one run gives.
@@ -127,7 +141,7 @@ pub struct Simulated {
 
 /// A run as it happened, whatever chance does to the record of it.
 #[derive(Debug, Clone)]
-struct Passage {
+struct TrueRun {
     scene: Scene,
     truth: Arc<Truth>,
 }
@@ -135,27 +149,27 @@ struct Passage {
 /// A simulation that is run for many keys. Where nothing random moves ship or helmsman the run is made once, and every
 /// key only draws what the instruments add; the records are those of [`Simulation::run`], bit for bit.
 #[derive(Debug, Clone)]
-pub struct Prepared {
+pub struct PreparedSimulation {
     simulation: Simulation,
-    passage: Option<Passage>,
+    true_run: Option<TrueRun>,
 }
 
-impl Prepared {
+impl PreparedSimulation {
     /// Checks a simulation and makes as much of it as all keys share.
     ///
     /// Fails as [`Simulation::run`] does.
     pub fn new(simulation: Simulation) -> Result<Self, SimulateError> {
         simulation.validate()?;
-        let passage = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
-        Ok(Self { simulation, passage })
+        let true_run = simulation.is_repeatable().then(|| simulation.sail(&StreamKey::default())).transpose()?;
+        Ok(Self { simulation, true_run })
     }
 
     /// Makes the one trial that belongs to `key`.
     ///
     /// Fails as [`Simulation::run`] does.
     pub fn run(&self, key: &StreamKey) -> Result<Simulated, SimulateError> {
-        match &self.passage {
-            Some(passage) => self.simulation.record(passage, key),
+        match &self.true_run {
+            Some(true_run) => self.simulation.record(true_run, key),
             None => self.simulation.record(&self.simulation.sail(key)?, key),
         }
     }
@@ -174,7 +188,7 @@ impl Simulation {
         Self {
             scenario: String::from("simulation"),
             vessel,
-            approach: Approach::default(),
+            approach: BeforeExecute::default(),
             manoeuvre,
             helmsman: Helmsman::default(),
             gear: SteeringGear::default(),
@@ -187,9 +201,10 @@ impl Simulation {
         }
     }
 
-    /// Checks the whole specification; fails with the first value that makes no sense.
-    pub fn validate(&self) -> Result<(), SpecificationError> {
-        self.manoeuvre.validate()?;
+    /// Checks the whole specification; fails with the first value that makes no sense, or that does not go with the
+    /// manoeuvre.
+    pub fn validate(&self) -> Check {
+        check_manoeuvre(&self.manoeuvre)?;
         self.helmsman.validate()?;
         self.gear.validate()?;
         self.disturbances.validate()?;
@@ -201,24 +216,45 @@ impl Simulation {
         if let Solver::RungeKutta(step) = self.solver {
             error::between("solver.step", step, SHORTEST_STEP, LONGEST_STEP)?;
         }
-        error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.maximum)?;
-        let [rudder, length] = self.manoeuvre.keys();
-        if !matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
-            error::at_most(rudder, self.manoeuvre.largest_rudder(), self.gear.maximum)?;
+        error::at_most("approach.rudder-deg", self.approach.rudder.abs(), self.gear.largest_rudder())?;
+        let is_replay = matches!(self.manoeuvre, Manoeuvre::Replay { .. });
+        if !is_replay {
+            error::at_most(key_of(&self.manoeuvre)[0], self.manoeuvre.rudder(), self.gear.largest_rudder())?;
         }
         // A rudder that acts before it moves belongs to a record with a late clock, not to a ship.
         error::time("vessel.dead_time", self.vessel.dynamics().dead_time())?;
-        let end = Helm::new(&self.manoeuvre, &self.helmsman, self.approach.lead_in).end();
+        let end = self.approach.lead_in + self.manoeuvre.length();
         match (&self.manoeuvre, self.recording.duration) {
-            (_, None) if end.is_finite() => error::at_most(length, end, self.recording.longest())?,
+            (_, None) if end.is_finite() => {
+                error::at_most(key_of(&self.manoeuvre)[1], end, self.recording.longest())?;
+            }
             (_, Some(duration)) => error::at_most("recording.duration-s", duration, self.recording.longest())?,
-            (Manoeuvre::ZigZag(zig_zag), None) if zig_zag.end == ZigZagEnd::Record => {
-                let key = "recording.duration-s";
-                return Err(SpecificationError { key, value: f64::NAN, expected: Expected::Duration });
+            (Manoeuvre::ZigZag { executes: None, .. }, None) => {
+                error::refused("recording.duration-s", Expected::Duration)?;
             }
             _ => {}
         }
-        self.check_cost()
+        self.check_cost()?;
+        let most = self.manoeuvre.most_executes();
+        if let Some(number) = self.recording.after_execute.filter(|number| *number > most) {
+            let value = number as f64;
+            return Err(SpecificationError {
+                key: "recording.after-execute",
+                value,
+                expected: Expected::Execute(most),
+            });
+        }
+        if is_replay && self.recording.rudder == RudderSource::Orders {
+            return error::refused(
+                "recording.rudder",
+                Expected::Value([
+                    "`recording.rudder` is \"orders\", and a replayed rudder follows none",
+                    "expected \"feedback\"",
+                    "leave the key out",
+                ]),
+            );
+        }
+        Ok(())
     }
 
     /// Makes the one trial that belongs to `key`.
@@ -236,13 +272,13 @@ impl Simulation {
         let Disturbances { wind, gusts, random_walk, waves, .. } = &self.disturbances;
         let weather = gusts.is_some() || *random_walk > 0.0 || wind.is_some_and(|wind| wind.gusting.is_some());
         let seas = waves.is_some() || !self.vessel.random_headings().is_empty();
-        let compass = self.sensors.heading.noise > 0.0 || self.sensors.heading.wander.is_some();
-        let display = self.helmsman.watches != Watches::TrueHeading && (compass || seas);
-        !weather && !display && self.sensors.clock.jitter == 0.0
+        let compass = self.sensors.heading_noise > 0.0 || self.sensors.heading_wander.is_some();
+        let display = self.helmsman.reads_display_every.is_some() && (compass || seas);
+        !weather && !display && self.sensors.jitter == 0.0
     }
 
     /// Moves the ship from the beginning to the end of its record.
-    fn sail(&self, key: &StreamKey) -> Result<Passage, SimulateError> {
+    fn sail(&self, key: &StreamKey) -> Result<TrueRun, SimulateError> {
         let approach = State { heading: self.approach.heading, yaw_rate: self.approach.yaw_rate };
         let weather = || Weather::new(&self.disturbances, self.weather_grid, key);
         match self.closed_form() {
@@ -252,9 +288,9 @@ impl Simulation {
                     Solver::Automatic => None,
                     Solver::RungeKutta(step) => Some(step),
                 };
-                let (ship, wind, lag) = (self.vessel.dynamics(), self.disturbances.wind, self.sensors.heading.lag);
+                let (ship, wind, lag) = (self.vessel.dynamics(), self.disturbances.wind, self.sensors.heading_lag);
                 let speed = self.vessel.particulars().map(|particulars| particulars.speed);
-                let exposed = || Exposed::new(ship, wind, speed, lag, weather());
+                let exposed = || ShipInWeather::new(ship, wind, speed, lag, weather());
                 self.drive(key, || Integrated::new(exposed(), approach, step))
             }
         }
@@ -262,39 +298,35 @@ impl Simulation {
 
     /// The ship, if its whole run has a closed form.
     pub(crate) fn closed_form(&self) -> Option<FirstOrder> {
-        let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay(_));
+        let rudder_is_linear = self.gear.lag == 0.0 || matches!(self.manoeuvre, Manoeuvre::Replay { .. });
         let moment_is_linear = self.disturbances.wind.is_none_or(|wind| wind.moment == 0.0);
-        let exact = rudder_is_linear && moment_is_linear && self.sensors.heading.lag == 0.0;
+        let exact = rudder_is_linear && moment_is_linear && self.sensors.heading_lag == 0.0;
         self.vessel.closed_form().filter(|_| exact && self.solver == Solver::Automatic)
     }
 
     fn begin<P: Propagator>(&self, key: &StreamKey, propagator: P) -> Run<'_, P> {
-        let Approach { heading, rudder, lead_in, .. } = self.approach;
+        let BeforeExecute { heading, rudder, lead_in, .. } = self.approach;
         let path = match &self.manoeuvre {
-            Manoeuvre::Replay(signal) => RudderPath::following(rudder, lead_in, signal),
+            Manoeuvre::Replay { rudder: Some(signal), .. } => RudderPath::following(rudder, lead_in, signal),
             _ => RudderPath::standing(rudder),
         };
         let helm = Helm::new(&self.manoeuvre, &self.helmsman, lead_in);
-        let display = match self.helmsman.watches {
-            Watches::TrueHeading => None,
-            Watches::Display { period } => {
-                let waves = Waves::new(&self.disturbances, &self.vessel, key);
-                Some(Display::new(period, self.sensors.heading, waves, key, heading))
-            }
-        };
+        let display = self.helmsman.reads_display_every.map(|period| {
+            let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
+            Display::new(period, self.sensors, waves, key, heading)
+        });
         Run::new(propagator, path, &self.gear, helm, display, self.longest_wait)
     }
 
-    fn drive<P: Propagator>(&self, key: &StreamKey, propagator: impl Fn() -> P) -> Result<Passage, SimulateError> {
+    fn drive<P: Propagator>(&self, key: &StreamKey, propagator: impl Fn() -> P) -> Result<TrueRun, SimulateError> {
         let mut run = self.begin(key, propagator());
-        let start = match self.recording.start {
-            Start::Run => 0.0,
-            Start::Execute { number, offset } => run.reach_execute(number)? + offset,
+        let start = match self.recording.after_execute {
+            None => 0.0,
+            Some(number) => run.reach_execute(number)? + self.recording.offset.unwrap_or(0.0),
         };
-        let clock = &self.sensors.clock;
-        let mut rows = Tap::rows(start, &self.recording);
-        let mut instruments = Tap::instruments(start, &self.recording, clock, key);
-        if instruments.as_ref().is_some_and(|tap| tap.next() < run.time()) {
+        let mut rows = Sampler::rows(start, &self.recording);
+        let mut instruments = Sampler::instruments(start, &self.recording, &self.sensors, key);
+        if instruments.as_ref().is_some_and(|sampler| sampler.next() < run.time()) {
             // The first row holds a heading from before the execute it is tied to: now that its time is known, again.
             run = self.begin(key, propagator());
         }
@@ -302,7 +334,7 @@ impl Simulation {
             if instruments.is_none() {
                 run.coast(&mut rows);
             }
-            let next = instruments.as_ref().map_or(rows.next(), |tap| tap.next().min(rows.next()));
+            let next = instruments.as_ref().map_or(rows.next(), |sampler| sampler.next().min(rows.next()));
             if next == f64::INFINITY {
                 break;
             }
@@ -312,8 +344,8 @@ impl Simulation {
                 Progress::Reached => {
                     let sample = run.sample();
                     rows.take(&sample);
-                    if let Some(tap) = &mut instruments {
-                        tap.take(&sample);
+                    if let Some(sampler) = &mut instruments {
+                        sampler.take(&sample);
                     }
                 }
             }
@@ -324,47 +356,44 @@ impl Simulation {
         Ok(self.look_back(rows, instruments, &run.finish()))
     }
 
-    /// The rudder as it is rebuilt from the orders; `None` where it is recorded, or followed a record without orders.
-    fn assumed_path(&self, executes: &[Execute]) -> Option<RudderPath> {
-        let RudderColumn::Orders { assumed_rate } = self.recording.rudder else { return None };
-        if matches!(self.manoeuvre, Manoeuvre::Replay(_)) {
-            return None;
-        }
-        let gear = SteeringGear::with_rate(assumed_rate);
+    /// The rudder as it is rebuilt from the orders; `None` where it is recorded.
+    fn assumed_path(&self, executes: &[HelmOrder]) -> Option<RudderPath> {
+        let rate = self.recording.assumed_rudder_rate.filter(|_| self.recording.rudder == RudderSource::Orders)?;
+        let gear = SteeringGear::with_rate(rate);
         let mut path = RudderPath::standing(self.approach.rudder);
         executes.iter().for_each(|execute| path.order(execute.time, execute.order, &gear));
         Some(path)
     }
 
     /// What was to be seen, once the run is over.
-    fn look_back(&self, mut rows: Tap, mut instruments: Option<Tap>, wake: &Wake) -> Passage {
-        if let Some(tap) = &mut instruments {
+    fn look_back(&self, mut rows: Sampler, mut instruments: Option<Sampler>, run: &RunResult) -> TrueRun {
+        if let Some(sampler) = &mut instruments {
             // Cut to the shorter one: with a delay, the end of the manoeuvre parts them.
-            let count = rows.samples.len().min(tap.samples.len());
+            let count = rows.samples.len().min(sampler.samples.len());
             rows.samples.truncate(count);
-            tap.samples.truncate(count);
+            sampler.samples.truncate(count);
         }
-        let truth = truth(&rows.samples, wake);
-        let assumed = self.assumed_path(&wake.executes);
+        let truth = truth(&rows.samples, run);
+        let assumed = self.assumed_path(&run.executes);
         let view = View {
-            samples: instruments.as_ref().map_or(&rows.samples, |tap| &tap.samples),
-            jitter: instruments.as_ref().map_or(&[], |tap| &tap.jitter),
-            wake,
+            samples: instruments.as_ref().map_or(&rows.samples, |sampler| &sampler.samples),
+            jitter: instruments.as_ref().map_or(&[], |sampler| &sampler.jitter),
+            run,
             assumed: assumed.as_ref(),
-            first_order: (!matches!(self.manoeuvre, Manoeuvre::Replay(_))).then_some(self.approach.rudder),
+            first_order: (!matches!(self.manoeuvre, Manoeuvre::Replay { .. })).then_some(self.approach.rudder),
             wind: self.disturbances.wind,
             particulars: self.vessel.particulars(),
         };
-        Passage { scene: Scene::new(truth.time.clone(), &view), truth: Arc::new(truth) }
+        TrueRun { scene: Scene::new(truth.time.clone(), &view), truth: Arc::new(truth) }
     }
 
-    /// The record that `key` makes of a passage.
-    fn record(&self, passage: &Passage, key: &StreamKey) -> Result<Simulated, SimulateError> {
-        let waves = Waves::new(&self.disturbances, &self.vessel, key);
-        let written = measure::write(&self.sensors, &passage.scene, waves, key);
+    /// The record that `key` makes of a true_run.
+    fn record(&self, true_run: &TrueRun, key: &StreamKey) -> Result<Simulated, SimulateError> {
+        let waves = SeaWaves::new(&self.disturbances, &self.vessel, key);
+        let written = measure::write(&self.sensors, &true_run.scene, waves, key);
         let truth = match &written.kept {
-            None => Arc::clone(&passage.truth),
-            Some(kept) => Arc::new(passage.truth.keep(kept)),
+            None => Arc::clone(&true_run.truth),
+            Some(kept) => Arc::new(true_run.truth.keep(kept)),
         };
         let StreamKey { cell, replicate, .. } = *key;
         let origin = Origin::Simulated { scenario: self.scenario.clone(), cell, replicate };
@@ -388,16 +417,86 @@ impl Truth {
     }
 }
 
-fn truth(samples: &[Sample], wake: &Wake) -> Truth {
+/// Checks every value of a manoeuvre; fails with the first one that makes no sense.
+fn check_manoeuvre(manoeuvre: &Manoeuvre) -> Check {
+    let [rudder_key, duration_key] = key_of(manoeuvre);
+    if !matches!(manoeuvre, Manoeuvre::Replay { .. }) {
+        error::positive(rudder_key, manoeuvre.rudder())?;
+    }
+    match manoeuvre {
+        Manoeuvre::ZigZag { executes: Some(_), duration: Some(_), .. } => {
+            return error::refused(
+                "manoeuvre.zig-zag.duration-s",
+                Expected::Other([
+                    "`manoeuvre.zig-zag` has both `executes` and `duration-s`",
+                    "expected one end of the manoeuvre",
+                    "leave out `executes` or `duration-s`",
+                ]),
+            );
+        }
+        Manoeuvre::ZigZag { heading, executes, .. } => {
+            error::positive("manoeuvre.zig-zag.heading-deg", *heading)?;
+            error::count("manoeuvre.zig-zag.executes", executes.unwrap_or(1), MOST_EXECUTES)?;
+        }
+        Manoeuvre::TurningCircle { duration: Some(_), heading_change: Some(_), .. } => {
+            return error::refused(
+                "manoeuvre.turning-circle.heading-change-deg",
+                Expected::Other([
+                    "`manoeuvre.turning-circle` has both `duration-s` and `heading-change-deg`",
+                    "expected one end of the manoeuvre",
+                    "leave out `duration-s` or `heading-change-deg`",
+                ]),
+            );
+        }
+        Manoeuvre::TurningCircle { duration: None, heading_change: None, .. } => {
+            return error::refused(
+                "manoeuvre.turning-circle",
+                Expected::Other([
+                    "nothing ends the turning circle",
+                    "expected `duration-s` or `heading-change-deg` here",
+                    "add a line `heading-change-deg = 540.0`, or one with `duration-s`",
+                ]),
+            );
+        }
+        Manoeuvre::TurningCircle { heading_change: Some(angle), .. } => {
+            error::positive("manoeuvre.turning-circle.heading-change-deg", *angle)?;
+        }
+        Manoeuvre::PullOut { hold, .. } => error::positive_time("manoeuvre.pull-out.hold-s", *hold)?,
+        _ => {}
+    }
+    match manoeuvre {
+        Manoeuvre::ZigZag { duration: Some(duration), .. }
+        | Manoeuvre::TurningCircle { duration: Some(duration), .. }
+        | Manoeuvre::PullOut { duration, .. }
+        | Manoeuvre::Williamson { duration, .. } => error::positive_time(duration_key, *duration),
+        Manoeuvre::Replay { .. } => error::positive_time(duration_key, manoeuvre.length()),
+        _ => Ok(()),
+    }
+}
+
+/// Keys of the rudder angle and of the length of a manoeuvre in a scenario.
+fn key_of(manoeuvre: &Manoeuvre) -> [&'static str; 2] {
+    match manoeuvre {
+        Manoeuvre::ZigZag { .. } => ["manoeuvre.zig-zag.rudder-deg", "manoeuvre.zig-zag.duration-s"],
+        Manoeuvre::TurningCircle { .. } => {
+            ["manoeuvre.turning-circle.rudder-deg", "manoeuvre.turning-circle.duration-s"]
+        }
+        Manoeuvre::PullOut { .. } => ["manoeuvre.pull-out.rudder-deg", "manoeuvre.pull-out.duration-s"],
+        Manoeuvre::Replay { .. } => ["manoeuvre.replay.file"; 2],
+        _ => ["manoeuvre.rudder-deg", "manoeuvre.duration-s"],
+    }
+}
+
+fn truth(samples: &[Sample], run: &RunResult) -> Truth {
     let column = |value: fn(&Sample) -> f64| samples.iter().map(value).collect();
     Truth {
         time: column(|sample| sample.time),
         heading: column(|sample| sample.motion.heading),
         yaw_rate: column(|sample| sample.motion.yaw_rate),
         yaw_acceleration: column(|sample| sample.motion.yaw_acceleration),
-        rudder: wake.path.at_each(samples.iter().map(|sample| sample.time)),
+        rudder: run.path.at_each(samples.iter().map(|sample| sample.time)),
         disturbance: column(|sample| sample.disturbance),
         speed: samples.iter().map(|sample| sample.motion.speed).collect(),
-        executes: wake.executes.clone(),
+        executes: run.executes.clone(),
     }
 }

@@ -8,7 +8,7 @@ use crate::stream::{Purpose, StreamKey, normal};
 
 /// The error at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Known {
+pub(crate) struct WanderPoint {
     /// Time, s.
     pub time: f64,
     /// Error, rad.
@@ -17,7 +17,7 @@ pub(crate) struct Known {
 
 /// Who reads the compass: each draws from a stream of its own.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Reader {
+pub(crate) enum CompassReader {
     /// The recorder.
     Record = 0,
     /// The display of the helmsman.
@@ -29,12 +29,12 @@ pub(crate) enum Reader {
 pub(crate) struct WanderPath {
     process: GaussMarkov,
     rng: ChaCha8Rng,
-    last: Option<Known>,
+    last: Option<WanderPoint>,
 }
 
 impl WanderPath {
     /// A path at its beginning, as `reader` sees it.
-    pub fn new(process: GaussMarkov, reader: Reader, key: &StreamKey) -> Self {
+    pub fn new(process: GaussMarkov, reader: CompassReader, key: &StreamKey) -> Self {
         Self { process, rng: key.indexed(Purpose::HeadingWander, reader as u32), last: None }
     }
 
@@ -44,7 +44,7 @@ impl WanderPath {
     }
 
     /// The errors at `times` (s), rad, of the path that goes through what is `known`.
-    pub fn through(&mut self, times: &[f64], known: &[Known]) -> Vec<f64> {
+    pub fn through(&mut self, times: &[f64], known: &[WanderPoint]) -> Vec<f64> {
         let mut ahead = known.iter().copied().peekable();
         let mut at = |&t: &f64| {
             while let Some(passed) = ahead.next_if(|known| known.time <= t) {
@@ -60,14 +60,14 @@ impl WanderPath {
     /// With a = exp(−(t − t₀)/τ) and b = exp(−(t₁ − t)/τ), each 0 where there is no neighbour, w is normal about
     /// (a(1 − b²) w₀ + b(1 − a²) w₁)/(1 − a²b²) with variance σ²(1 − a²)(1 − b²)/(1 − a²b²): w is Markov, so nothing
     /// but its neighbours matters.
-    fn before(&mut self, t: f64, next: Option<Known>) -> f64 {
+    fn before(&mut self, t: f64, next: Option<WanderPoint>) -> f64 {
         let GaussMarkov { sd, correlation_time } = self.process;
         // Decay over a time, and one less its square without the loss of digits over a short one.
         let over = |time: f64| ((-time / correlation_time).exp(), -(-2.0 * time / correlation_time).exp_m1());
         let since = self.last.map_or(f64::INFINITY, |last| t - last.time);
         let until = next.map_or(f64::INFINITY, |next| next.time - t);
         let ((a, lost), (b, to_come), (_, both)) = (over(since), over(until), over(since + until));
-        let of = |known: Option<Known>| known.map_or(0.0, |known| known.error);
+        let of = |known: Option<WanderPoint>| known.map_or(0.0, |known| known.error);
         // Drawn in any case, so that an instant on a reading shifts no later draw.
         let draw = normal(&mut self.rng);
         let error = if both > 0.0 {
@@ -76,7 +76,7 @@ impl WanderPath {
         } else {
             of(self.last)
         };
-        self.last = Some(Known { time: t, error });
+        self.last = Some(WanderPoint { time: t, error });
         error
     }
 }
@@ -88,7 +88,7 @@ mod tests {
 
     const PROCESS: GaussMarkov = GaussMarkov { sd: 0.01, correlation_time: 5.0 };
 
-    fn path(reader: Reader, replicate: u64) -> WanderPath {
+    fn path(reader: CompassReader, replicate: u64) -> WanderPath {
         WanderPath::new(PROCESS, reader, &StreamKey { seed: 11, cell: 0, replicate })
     }
 
@@ -109,8 +109,8 @@ mod tests {
     #[test]
     fn it_is_stationary_from_the_first_instant_and_exact_over_uneven_ones() {
         let times = [3.0, 3.4, 5.0, 5.0, 11.0, 31.0];
-        assert_covariance(&times, 20_000, |replicate| path(Reader::Record, replicate).through(&times, &[]));
-        let same = path(Reader::Record, 0).through(&times, &[]);
+        assert_covariance(&times, 20_000, |replicate| path(CompassReader::Record, replicate).through(&times, &[]));
+        let same = path(CompassReader::Record, 0).through(&times, &[]);
         assert_eq!(same[2], same[3]);
     }
 
@@ -120,9 +120,9 @@ mod tests {
         let (rows, readings) = ([0.0, 2.0, 4.0, 9.0], [1.0, 4.0, 4.5]);
         let times: Vec<f64> = rows.iter().chain(&readings).copied().collect();
         assert_covariance(&times, 20_000, |replicate| {
-            let mut display = path(Reader::Display, replicate);
-            let known = readings.map(|time| Known { time, error: display.at(time) });
-            let errors = path(Reader::Record, replicate).through(&rows, &known);
+            let mut display = path(CompassReader::Display, replicate);
+            let known = readings.map(|time| WanderPoint { time, error: display.at(time) });
+            let errors = path(CompassReader::Record, replicate).through(&rows, &known);
             assert_relative_eq!(errors[2], known[1].error, max_relative = 1e-12);
             errors.into_iter().chain(known.map(|known| known.error)).collect()
         });
@@ -134,7 +134,7 @@ mod tests {
         let steps: Vec<f64> = (0..4000).map(f64::from).collect();
         let of = |correlation_time| {
             let process = GaussMarkov { correlation_time, ..PROCESS };
-            WanderPath::new(process, Reader::Record, &key).through(&steps, &[])
+            WanderPath::new(process, CompassReader::Record, &key).through(&steps, &[])
         };
         let white = of(1e-300);
         let product = white.windows(2).map(|pair| pair[0] * pair[1]).sum::<f64>() / 4000.0;

@@ -52,14 +52,14 @@ impl WavePath {
 
 /// The sum of all waves a run has: those declared as a disturbance, and those of the response model.
 #[derive(Debug)]
-pub(crate) struct Waves {
+pub(crate) struct SeaWaves {
     paths: Vec<WavePath>,
 }
 
-impl Waves {
+impl SeaWaves {
     /// The waves of one run.
     pub fn new(disturbances: &Disturbances, vessel: &Vessel, key: &StreamKey) -> Self {
-        let declared = disturbances.waves.iter().map(|waves| WavePath::new(waves, key.rng(Purpose::Waves)));
+        let declared = disturbances.waves.iter().map(|waves| WavePath::new(&waves.process(), key.rng(Purpose::Waves)));
         let own = vessel
             .random_headings()
             .iter()

@@ -4,7 +4,7 @@
 
 use rand::rngs::ChaCha8Rng;
 
-use crate::disturbance::{Disturbances, GaussMarkov, Squall};
+use crate::disturbance::{Disturbances, Squall};
 use crate::stream::{Purpose, StreamKey, normal};
 
 /// Width of a cell, s, unless a simulation asks for another: short against every correlation time of weather and every
@@ -13,7 +13,7 @@ pub(crate) const GRID: f64 = 0.1;
 
 /// The weather within one cell, linear in time.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Cell {
+pub(crate) struct WeatherCell {
     /// Beginning, s.
     pub start: f64,
     /// End, s; infinite when nothing ever changes.
@@ -24,7 +24,7 @@ pub(crate) struct Cell {
     gust: [f64; 2],
 }
 
-impl Cell {
+impl WeatherCell {
     /// Slope of the moment, rad/s.
     #[inline]
     pub fn moment_slope(&self) -> f64 {
@@ -46,18 +46,18 @@ impl Cell {
 
 /// A Gauss–Markov process at the points of the grid.
 #[derive(Debug)]
-struct Chain {
+struct MarkovChain {
     rng: ChaCha8Rng,
     value: f64,
     decay: f64,
     kick: f64,
 }
 
-impl Chain {
-    fn new(process: &GaussMarkov, grid: f64, mut rng: ChaCha8Rng) -> Self {
-        let decay = (-grid / process.correlation_time).exp();
-        let value = process.sd * normal(&mut rng);
-        Self { rng, value, decay, kick: process.sd * (1.0 - decay * decay).sqrt() }
+impl MarkovChain {
+    fn new(sd: f64, correlation_time: f64, grid: f64, mut rng: ChaCha8Rng) -> Self {
+        let decay = (-grid / correlation_time).exp();
+        let value = sd * normal(&mut rng);
+        Self { rng, value, decay, kick: sd * (1.0 - decay * decay).sqrt() }
     }
 
     fn advance(&mut self) {
@@ -68,13 +68,13 @@ impl Chain {
 /// The weather of one run, entered cell by cell.
 #[derive(Debug)]
 pub(crate) struct Weather {
-    cell: Cell,
+    cell: WeatherCell,
     index: u64,
     drift: f64,
     squall: Option<Squall>,
-    walk: Option<Chain>,
-    gusts: Option<Chain>,
-    gusting: Option<Chain>,
+    walk: Option<MarkovChain>,
+    gusts: Option<MarkovChain>,
+    gusting: Option<MarkovChain>,
 }
 
 impl Weather {
@@ -82,18 +82,21 @@ impl Weather {
     pub fn new(disturbances: &Disturbances, grid: f64, key: &StreamKey) -> Self {
         let gusting = disturbances.wind.and_then(|wind| wind.gusting);
         let mut weather = Self {
-            cell: Cell { start: 0.0, end: f64::INFINITY, width: grid, moment: [0.0; 2], gust: [1.0; 2] },
+            cell: WeatherCell { start: 0.0, end: f64::INFINITY, width: grid, moment: [0.0; 2], gust: [1.0; 2] },
             index: 0,
             drift: disturbances.drift,
             squall: disturbances.squall,
-            walk: (disturbances.random_walk > 0.0).then(|| Chain {
+            walk: (disturbances.random_walk > 0.0).then(|| MarkovChain {
                 rng: key.rng(Purpose::RandomWalk),
                 value: 0.0,
                 decay: 1.0,
                 kick: disturbances.random_walk * grid.sqrt(),
             }),
-            gusts: disturbances.gusts.map(|process| Chain::new(&process, grid, key.rng(Purpose::Gust))),
-            gusting: gusting.map(|process| Chain::new(&process, grid, key.rng(Purpose::WindGust))),
+            gusts: disturbances
+                .gusts
+                .map(|gusts| MarkovChain::new(gusts.sd, gusts.correlation_time, grid, key.rng(Purpose::Gust))),
+            gusting: gusting
+                .map(|own| MarkovChain::new(own.sd, own.correlation_time, grid, key.rng(Purpose::WindGust))),
         };
         if disturbances.change() {
             weather.cell.end = grid;
@@ -107,7 +110,7 @@ impl Weather {
 
     /// The cell that is current.
     #[inline]
-    pub fn cell(&self) -> &Cell {
+    pub fn cell(&self) -> &WeatherCell {
         &self.cell
     }
 
@@ -116,7 +119,7 @@ impl Weather {
         self.index += 1;
         let end = (self.index + 1) as f64 * self.cell.width;
         self.step();
-        self.cell = Cell {
+        self.cell = WeatherCell {
             start: self.cell.end,
             end,
             width: self.cell.width,
@@ -132,7 +135,7 @@ impl Weather {
     }
 
     fn moment(&self, t: f64) -> f64 {
-        let value = |chain: &Option<Chain>| chain.as_ref().map_or(0.0, |chain| chain.value);
+        let value = |chain: &Option<MarkovChain>| chain.as_ref().map_or(0.0, |chain| chain.value);
         self.drift * t + self.squall.map_or(0.0, |squall| squall.moment(t)) + value(&self.walk) + value(&self.gusts)
     }
 
@@ -144,6 +147,7 @@ impl Weather {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::disturbance::{GaussMarkov, Gusting};
     use approx::assert_relative_eq;
 
     fn path(disturbances: &Disturbances, cells: usize, replicate: u64) -> Vec<[f64; 2]> {
@@ -196,7 +200,7 @@ mod tests {
                 moment: 0.01,
                 from: 0.0,
                 speed: None,
-                gusting: Some(GaussMarkov { sd: 0.2, correlation_time: 10.0 }),
+                gusting: Some(Gusting { sd: 0.2, correlation_time: 10.0 }),
             }),
             ..walk
         };

@@ -9,10 +9,10 @@ pub use crate::style_options::{FigureChoice, FigureOptions, StudyFigureOptions};
 use ::trace::{EffectId, Rule, Selection};
 use campaign::task::Shard;
 use clap::{Args, ValueEnum};
-use predict::Kind;
 use report::Table;
 use scenario::problem::suggestion;
 use ship::angle::KNOT;
+use trial::Manoeuvre;
 use trial::clock::Stamp;
 
 /// How a scenario is run.
@@ -293,7 +293,7 @@ pub struct PredictRequest {
     /// Manoeuvre to predict: zig-zag:10/10, initial-turning:10, turning-circle:35, pull-out:20, spiral:15, williamson;
     /// a negative rudder begins to port [default: those of the IMO criteria, unless a record is replayed]
     #[arg(long = "manoeuvre", value_name = "KIND", allow_hyphen_values = true)]
-    pub manoeuvres: Vec<Kind>,
+    pub manoeuvres: Vec<Manoeuvre>,
     /// Record whose rudder is replayed, and which is held against its prediction; nothing is fitted to it
     #[arg(long = "replay", value_name = "RECORD")]
     pub replays: Vec<PathBuf>,

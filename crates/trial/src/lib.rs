@@ -7,12 +7,14 @@
 //! | what is random in a record | [`noise_model`] |
 //! | which files are opened, and how much of them is read | [`mod@file`] |
 //! | decoders that may panic | [`decoder`] |
+//! | angles in files | [`degrees`] |
 //! | stamps of date and time | [`clock`] |
 //! | particulars and conditions that are declared | [`conditions`] |
 //! | reading CSV and other tables | [`reader`] and [`sidecar`] |
 //! | writing CSV | [`writer`] |
 //! | what is checked before a record is believed | [`plausibility`] |
 //! | zig-zag characteristics (ITTC) | [`zigzag`] |
+//! | what a ship can be asked to do | [`manoeuvre`] |
 //! | manoeuvres inside a long log | [`find`] |
 //! | IMO criteria | [`imo`] |
 //! | records of similar ships of different size and speed | [`scale`] |
@@ -23,10 +25,12 @@ mod cleaning;
 pub mod clock;
 pub mod conditions;
 pub mod decoder;
+pub mod degrees;
 mod encoding;
 pub mod file;
 pub mod find;
 pub mod imo;
+pub mod manoeuvre;
 pub mod names;
 pub mod noise_model;
 pub mod plausibility;
@@ -46,10 +50,11 @@ pub mod zigzag;
 pub use channel::Channel;
 pub use conditions::{Conditions, Loading};
 pub use file::FileError;
+pub use manoeuvre::Manoeuvre;
 pub use quantity::Quantity;
 pub use reader::{Log, ReadError, ReadRecord, read, read_with};
 pub use record::{Columns, Corner, Noise, Origin, RejectedReading, Trial, TrialError};
 pub use scale::{ScaleError, Scales, Scaling};
 pub use sidecar::{Sidecar, SidecarError};
 pub use writer::write_csv;
-pub use zigzag::{ZigZag, ZigZagError};
+pub use zigzag::{Side, ZigZag, ZigZagError};

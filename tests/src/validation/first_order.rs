@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use estimation::statistics::median;
 use ship::angle::to_deg;
-use simulate::helm::Watches;
 use simulate::vessel::Solver;
 use simulate::{Simulation, StreamKey, Truth};
 
@@ -69,7 +68,7 @@ impl Way {
     fn set(self, simulation: &mut Simulation, jumps: bool) {
         if self == Self::Stepped {
             simulation.solver = Solver::RungeKutta(STEP);
-            simulation.helmsman.watches = Watches::Display { period: STEP };
+            simulation.helmsman.reads_display_every = Some(STEP);
             // A rudder without rate limit moves within a step of the independent program: half a step late.
             simulation.gear.dead_time = if jumps { 0.5 * STEP } else { 0.0 };
         }

@@ -5,7 +5,6 @@ use ship::linear::PrimeSwayYaw;
 use ship::ships::{self, kvlcc2, mariner, seiun_like};
 use ship::vessel::mmg::Mmg;
 use ship::{Particulars, Ship};
-use simulate::manoeuvre::{TurnEnd, TurningCircle};
 use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
 
 use super::{Check, Section, Tolerance};
@@ -137,8 +136,7 @@ fn straight_approach() -> impl Iterator<Item = Check> {
 /// Yaw rate, deg/s, at the end of a long turn.
 fn steady_rate(ship: &Ship, rudder_deg: f64) -> f64 {
     let side = if rudder_deg < 0.0 { Side::Port } else { Side::Starboard };
-    let end = TurnEnd::Duration(STEADY);
-    let manoeuvre = Manoeuvre::TurningCircle(TurningCircle { rudder: from_deg(rudder_deg.abs()), side, end });
+    let manoeuvre = Manoeuvre::turning_circle(from_deg(rudder_deg.abs())).to(side).lasting(STEADY);
     let mut simulation = Simulation::new(Vessel::ship(ship), manoeuvre);
     simulation.gear = SteeringGear::with_rate(from_deg(2.32));
     simulation.recording.period = 100.0;

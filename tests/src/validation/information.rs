@@ -6,8 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use ship::first_order::State;
-use simulate::manoeuvre::{TurnEnd, TurningCircle};
-use simulate::{Manoeuvre, Side, Simulated, StreamKey};
+use simulate::{Manoeuvre, Simulated, StreamKey};
 
 use super::{BOUND, Check, DEFINITION, Section, Tolerance};
 use crate::records::{Begin, Case};
@@ -80,8 +79,7 @@ pub fn bound() -> Section {
     }
     let case = Case::default();
     let mut turn = case.simulation();
-    let end = TurnEnd::Duration(270.0);
-    turn.manoeuvre = Manoeuvre::TurningCircle(TurningCircle { rudder: from_deg(10.0), side: Side::Starboard, end });
+    turn.manoeuvre = Manoeuvre::turning_circle(from_deg(10.0)).lasting(270.0);
     let turn = turn.run(&StreamKey::default()).expect("a first-order ship turns");
     push("turning circle with 10 deg", &bound_of(&turn, &case.ship, 0.1), [69.0, 0.56, 6.9, -0.47], [0, 2, 1, 2], 0.02);
     let case = Case { begin: Begin::Mid, ..Case::default() };

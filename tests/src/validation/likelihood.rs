@@ -96,7 +96,7 @@ pub fn section() -> Section {
     for (name, walk_deg, rudder_deg) in [("walk of 0.1 deg/√s", 0.1, 0.0), ("rudder noise of 0.1 deg", 0.0, 0.1)] {
         let mut simulation = case.simulation();
         simulation.disturbances.random_walk = from_deg(walk_deg);
-        simulation.sensors.rudder.noise = from_deg(rudder_deg);
+        simulation.sensors.rudder_noise = from_deg(rudder_deg);
         let moment_level = truth.K_over_T * from_deg(walk_deg);
         let moment = if walk_deg > 0.0 { Moment::Walk } else { Moment::None };
         let noise = NoiseModel { moment, moment_level, rudder_sd: from_deg(rudder_deg), ..compass };

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 use ship::angle::to_deg;
 use simulate::StreamKey;
-use simulate::recording::Start;
 
 use super::{Check, Section, Tolerance};
 use crate::records::Case;
@@ -48,7 +47,7 @@ fn score(rudder: f64, heading: f64, gain: f64, time: f64, rate: f64) -> Option<f
         Case { ship, rudder_deg: rudder, heading_deg: heading, rate_deg_s: rate, duration_s: 480.0, ..Case::default() };
     let mut simulation = case.simulation();
     // The record begins while the rudder falls through 7°.
-    simulation.recording.start = Start::Execute { number: 2, offset: (rudder - FIRST_RUDDER) / rate };
+    (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some((rudder - FIRST_RUDDER) / rate));
     simulation.recording.duration = Some(270.0);
     let trial = simulation.run(&StreamKey { seed: 0, cell: 0, replicate: 0 }).ok()?.trial;
     if trial.len() < 271 {

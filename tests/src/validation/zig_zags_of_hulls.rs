@@ -11,9 +11,8 @@ use identify::{Identifier, output_error};
 use ship::angle::{from_deg, to_deg};
 use ship::ships::kvlcc2;
 use ship::vessel::mmg::Mmg;
-use simulate::helm::Watches;
 use simulate::vessel::Solver;
-use simulate::{Manoeuvre, Side, Simulated, Simulation, StreamKey, Vessel};
+use simulate::{Side, Simulated, Simulation, StreamKey, Vessel};
 
 use super::first_order::peak;
 use super::hulls::registered;
@@ -106,12 +105,10 @@ impl Anchor {
             Vessel::ship(&ship)
         };
         let mut simulation = zig_zag(vessel, self.rudder_deg, self.heading_deg, from_deg(self.rate_deg_s), duration);
-        if let Manoeuvre::ZigZag(zig_zag) = &mut simulation.manoeuvre {
-            zig_zag.first = self.first;
-        }
+        simulation.manoeuvre = simulation.manoeuvre.to(self.first);
         if way == Way::Stepped {
             simulation.solver = Solver::RungeKutta(STEP);
-            simulation.helmsman.watches = Watches::Display { period: STEP };
+            simulation.helmsman.reads_display_every = Some(STEP);
         }
         simulation
     }

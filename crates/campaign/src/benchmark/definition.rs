@@ -9,17 +9,15 @@ use crate::task::Task as Replicate;
 use scenario::failure::Failure;
 use scenario::{HULL, Scenario, hex, name};
 use sha2::{Digest, Sha256};
-use trial::Sidecar;
 use trial::file::{self, Kind};
+use trial::{Manoeuvre, Sidecar};
 
 use crate::benchmark::cases::MEASURED;
 use crate::benchmark::embedded;
 use crate::benchmark::task::Task;
 use crate::benchmark::wire::{
-    DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire,
+    DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire, words,
 };
-
-pub use crate::benchmark::wire::Deed;
 
 /// A benchmark that has been checked.
 pub struct Definition {
@@ -58,7 +56,9 @@ pub struct Member {
     /// What it is called.
     pub name: String,
     /// What the ship was asked to do.
-    pub deed: Deed,
+    pub manoeuvre: Manoeuvre,
+    /// The same in words.
+    pub words: String,
 }
 
 /// Where records come from.
@@ -234,8 +234,8 @@ impl Reading<'_> {
 
     fn measured(&self, wire: &MeasuredWire, digest: &mut Sha256) -> Result<Set, Failure> {
         self.distinct(wire.record.iter().map(|record| &record.name), "record")?;
-        let members = wire.record.iter().map(|record| self.member(&record.name, record.manoeuvre));
-        let records: Vec<Member> = members.collect();
+        let member = |record: &RecordWire| self.member(&record.name, &record.manoeuvre, "mend its manoeuvre");
+        let records = wire.record.iter().map(member).collect::<Result<Vec<_>, _>>()?;
         let copies = wire.record.iter().map(|record| self.copies(record, digest)).collect::<Result<_, _>>()?;
         let ship = wire.tasks.indices.iter().chain(&wire.tasks.name).next();
         if let Some(of_a_ship) = ship {
@@ -257,8 +257,12 @@ impl Reading<'_> {
         })
     }
 
-    fn member(&self, own: &Name, deed: Deed) -> Member {
-        Member { name: own.get_ref().clone(), deed }
+    fn member(&self, own: &Name, manoeuvre: &Manoeuvre, advice: &str) -> Result<Member, Failure> {
+        let words = words(manoeuvre).ok_or_else(|| {
+            let found = format!("{} is no zig-zag and no turning circle", own.get_ref());
+            self.at(own.span(), &found, "expected one of the two", advice)
+        })?;
+        Ok(Member { name: own.get_ref().clone(), manoeuvre: manoeuvre.clone(), words })
     }
 
     fn copies(&self, record: &RecordWire, digest: &mut Sha256) -> Result<Vec<RecordFile>, Failure> {
@@ -310,15 +314,9 @@ impl Reading<'_> {
             }
             let key = crate::engine::key(&scenario, Replicate { cell, replicate: 0 });
             let first = own.specimen(&key).map_err(Failure::input)?;
-            let deeds = first.specification.records(&key).map(|(simulation, _)| Deed::of(&simulation.manoeuvre));
-            let mut records = Vec::new();
-            for (member, deed) in wire.records.iter().zip(deeds) {
-                let Some(deed) = deed else {
-                    let found = format!("{} is no zig-zag and no turning circle", member.get_ref());
-                    return refuse(member, found, "expected one of the two", "change the manoeuvre in the scenario");
-                };
-                records.push(self.member(member, deed));
-            }
+            let made = first.specification.records(&key).map(|(simulation, _)| &simulation.manoeuvre);
+            let member = |(name, made)| self.member(name, made, "change the manoeuvre in the scenario");
+            let records = wire.records.iter().zip(made).map(member).collect::<Result<Vec<_>, _>>()?;
             if let Some(at) = wire.tasks.indices.first().filter(|_| !own.is_first_order()) {
                 let found = format!("{} is asked for K and T", own.title());
                 return refuse(at, found, "expected a ship that is first order", "leave it out");
@@ -384,11 +382,10 @@ impl Reading<'_> {
                 for (fit, score) in asked {
                     let fitted = fit.into_iter().map(place).collect::<Result<Vec<usize>, _>>()?;
                     let scored = place(score)?;
-                    let deeds: Vec<Deed> = fitted.iter().map(|&one| records[one].deed).collect();
-                    if let Err(expected) = is_that(task, &deeds, records[scored].deed) {
-                        let words: Vec<String> = deeds.into_iter().map(Deed::words).collect();
-                        let found =
-                            format!("`{}` from {} to {}", task.id(), words.join("; "), records[scored].deed.words());
+                    let made: Vec<&Manoeuvre> = fitted.iter().map(|&one| &records[one].manoeuvre).collect();
+                    if let Err(expected) = is_that(task, &made, &records[scored].manoeuvre) {
+                        let words: Vec<&str> = fitted.iter().map(|&one| records[one].words.as_str()).collect();
+                        let found = format!("`{}` from {} to {}", task.id(), words.join("; "), records[scored].words);
                         return Err(self.at(
                             score.span(),
                             &found,
@@ -405,15 +402,15 @@ impl Reading<'_> {
 }
 
 /// Whether a prediction from some manoeuvres to another one is what its task says; fails with what was expected.
-fn is_that(task: Task, fitted: &[Deed], scored: Deed) -> Result<(), &'static str> {
-    let zig_zag = |deed: &Deed| match *deed {
-        Deed::ZigZag { rudder_deg, heading_deg, first } => Some(([rudder_deg, heading_deg], first)),
-        Deed::TurningCircle { .. } => None,
+fn is_that(task: Task, fitted: &[&Manoeuvre], scored: &Manoeuvre) -> Result<(), &'static str> {
+    let zig_zag = |manoeuvre: &Manoeuvre| match *manoeuvre {
+        Manoeuvre::ZigZag { rudder, heading, first, .. } => Some(([rudder, heading], first)),
+        _ => None,
     };
-    let Some(fitted) = fitted.iter().map(zig_zag).collect::<Option<Vec<_>>>() else {
+    let Some(fitted) = fitted.iter().copied().map(zig_zag).collect::<Option<Vec<_>>>() else {
         return Err("expected zig-zags to be fitted");
     };
-    let holds = match (task, zig_zag(&scored)) {
+    let holds = match (task, zig_zag(scored)) {
         (Task::OtherSide, Some((angles, first))) => fitted.iter().all(|own| own.0 == angles && own.1 != first),
         (Task::OtherAmplitude, Some((angles, _))) => fitted.iter().all(|own| own.0 != angles),
         (Task::Circle, None) => true,

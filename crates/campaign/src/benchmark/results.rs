@@ -106,7 +106,7 @@ impl Present {
         let files = files.into_iter().chain(std::iter::repeat(None));
         let record = |(member, file): (&crate::benchmark::definition::Member, Option<UsedFile>)| PresentRecord {
             name: member.name.clone(),
-            manoeuvre: member.deed.words(),
+            manoeuvre: member.words.clone(),
             file,
         };
         Self {

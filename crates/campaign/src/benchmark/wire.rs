@@ -1,9 +1,9 @@
 //! A definition as it is written: what serde reads. [`crate::benchmark::definition`] checks it.
 
-use serde::{Deserialize, Serialize};
-use ship::angle::to_deg;
-use simulate::manoeuvre::{Manoeuvre, Side};
+use serde::Deserialize;
 use toml::Spanned;
+use trial::Manoeuvre;
+use trial::manoeuvre::whole_deg;
 
 /// A name with its place in the file.
 pub type Name = Spanned<String>;
@@ -41,7 +41,7 @@ pub struct MeasuredWire {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RecordWire {
     pub name: Name,
-    pub manoeuvre: Deed,
+    pub manoeuvre: Manoeuvre,
     pub copies: Vec<CopyWire>,
 }
 
@@ -89,56 +89,14 @@ pub struct PredictionWire {
     pub pairs: Vec<Name>,
 }
 
-/// What the ship was asked to do on a record.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", rename_all_fields = "kebab-case", deny_unknown_fields)]
-pub enum Deed {
-    /// Zig-zag.
-    ZigZag {
-        /// Rudder angle δ.
-        rudder_deg: f64,
-        /// Heading ψ at which the rudder is reversed.
-        heading_deg: f64,
-        /// Side of the first execute.
-        first: Side,
-    },
-    /// Turning circle.
-    TurningCircle {
-        /// Rudder angle δ.
-        rudder_deg: f64,
-        /// Side of the turn.
-        side: Side,
-    },
-}
-
-impl Deed {
-    /// What a simulated ship is asked to do; `None` for a manoeuvre that no task knows.
-    pub fn of(manoeuvre: &Manoeuvre) -> Option<Self> {
-        // A scenario is written in degrees, which come back from radians with an error in the last digit.
-        let deg = |angle: f64| (1e6 * to_deg(angle)).round() / 1e6;
-        match manoeuvre {
-            Manoeuvre::ZigZag(own) => {
-                Some(Self::ZigZag { rudder_deg: deg(own.rudder), heading_deg: deg(own.heading), first: own.first })
-            }
-            Manoeuvre::TurningCircle(own) => Some(Self::TurningCircle { rudder_deg: deg(own.rudder), side: own.side }),
-            _ => None,
+/// A manoeuvre in words: "zig-zag 20/10, starboard first"; `None` for one that no task knows.
+pub fn words(manoeuvre: &Manoeuvre) -> Option<String> {
+    let rudder = whole_deg(manoeuvre.rudder());
+    match manoeuvre {
+        Manoeuvre::ZigZag { heading, first, .. } => {
+            Some(format!("zig-zag {rudder}/{}, {first} first", whole_deg(*heading)))
         }
-    }
-
-    /// In words: "zig-zag 20/10, starboard first".
-    pub fn words(self) -> String {
-        match self {
-            Self::ZigZag { rudder_deg, heading_deg, first } => {
-                format!("zig-zag {rudder_deg}/{heading_deg}, {} first", side(first))
-            }
-            Self::TurningCircle { rudder_deg, side: of } => format!("turning circle {rudder_deg}° to {}", side(of)),
-        }
-    }
-}
-
-fn side(side: Side) -> &'static str {
-    match side {
-        Side::Starboard => "starboard",
-        Side::Port => "port",
+        Manoeuvre::TurningCircle { side, .. } => Some(format!("turning circle {rudder}° to {side}")),
+        _ => None,
     }
 }

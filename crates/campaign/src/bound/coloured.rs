@@ -74,13 +74,12 @@ mod tests {
     use identify::{maximum_likelihood, output_error};
     use nalgebra::DMatrix;
     use ship::angle::from_deg;
-    use simulate::manoeuvre::ZigZagEnd;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
     use trial::noise_model::NoiseModel;
 
     fn zig_zag(truth: FirstOrder) -> Trial {
         let angle = from_deg(10.0);
-        let manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Duration(200.0));
+        let manoeuvre = Manoeuvre::zig_zag(angle, angle).lasting(200.0);
         let mut simulation = Simulation::new(Vessel::first_order(truth), manoeuvre);
         simulation.gear = SteeringGear::with_rate(from_deg(2.5));
         simulation.sensors.drop_out.probability = 0.2;

@@ -3,7 +3,7 @@ use crate::design::CellFacts;
 use crate::design::Design;
 use crate::rows::{Bound, Row};
 use crate::statistics::Statistic;
-use scenario::{MethodName, Words};
+use scenario::{MethodName, Presentation, Words};
 
 fn design(methods: &[&str], cells: usize) -> Design {
     let cell = |index: usize| CellFacts {
@@ -21,7 +21,10 @@ fn design(methods: &[&str], cells: usize) -> Design {
         predicts: false,
         draws: Vec::new(),
         cells: (0..cells).map(cell).collect(),
-        words: Words { detail: vec!["0".into()], ..Words::default() },
+        words: Words {
+            output: Presentation { detail: vec!["0".into()], ..Presentation::default() },
+            ..Words::default()
+        },
     }
 }
 

@@ -3,9 +3,9 @@
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Motion};
 
-use crate::gear::{RudderPath, Segment, Shape};
+use crate::gear::{RudderMotion, RudderPath, Segment};
 use crate::propagate::propagator::{Limits, Propagator, acting, has_diverged};
-use crate::recording::Tap;
+use crate::recording::Sampler;
 use crate::sample::Sample;
 use crate::weather::Weather;
 
@@ -55,10 +55,10 @@ impl ClosedForm {
 
     /// Steering term b (δ + δ_r + disturbance) now (rad/s²) and its slope (rad/s³).
     fn steering(&self, segment: &Segment) -> (f64, f64) {
-        let slope = match segment.shape {
-            Shape::Ramp { rate } => rate,
+        let slope = match segment.motion {
+            RudderMotion::Ramp { rate } => rate,
             // An exponential never gets here: a gear with a lag is integrated.
-            Shape::Hold | Shape::Exponential { .. } => 0.0,
+            RudderMotion::Hold | RudderMotion::Exponential { .. } => 0.0,
         };
         let cell = self.weather.cell();
         let rudder = segment.at(self.time) + self.ship.rudder_bias + cell.moment(self.time);
@@ -126,9 +126,9 @@ impl Propagator for ClosedForm {
         self.sample_under(u0)
     }
 
-    fn coast(&mut self, path: &RudderPath, limits: &Limits, rows: &mut Tap) {
+    fn coast(&mut self, path: &RudderPath, limits: &Limits, rows: &mut Sampler) {
         let segment = acting(path, &mut self.cursor, self.time, 0.0);
-        let still = segment.shape == Shape::Hold && self.weather.cell().end == f64::INFINITY;
+        let still = segment.motion == RudderMotion::Hold && self.weather.cell().end == f64::INFINITY;
         if !still {
             return;
         }

@@ -3,11 +3,11 @@
 use ship::{Dynamics, Input, Measured, Motion};
 
 use crate::disturbance::{Wind, gusting_speed};
-use crate::weather::{Cell, Weather};
+use crate::weather::{Weather, WeatherCell};
 
 /// A ship with the weather of one run acting on it and the lag of its gyrocompass as the last state.
 #[derive(Debug)]
-pub(crate) struct Exposed<'a, D: ?Sized> {
+pub(crate) struct ShipInWeather<'a, D: ?Sized> {
     ship: &'a D,
     wind: Option<Wind>,
     /// Approach speed of the ship, m/s, where its own equations have none.
@@ -18,7 +18,7 @@ pub(crate) struct Exposed<'a, D: ?Sized> {
     pub weather: Weather,
 }
 
-impl<'a, D: Dynamics + ?Sized> Exposed<'a, D> {
+impl<'a, D: Dynamics + ?Sized> ShipInWeather<'a, D> {
     /// `ship` in the weather of one run, at its beginning.
     pub fn new(ship: &'a D, wind: Option<Wind>, approach_speed: Option<f64>, gyro_lag: f64, weather: Weather) -> Self {
         Self { ship, wind, approach_speed, gyro_lag, weather }
@@ -26,7 +26,7 @@ impl<'a, D: Dynamics + ?Sized> Exposed<'a, D> {
 
     /// Total disturbance as equivalent rudder angle, rad.
     pub fn disturbance(&self, t: f64, heading: f64) -> f64 {
-        let cell: &Cell = self.weather.cell();
+        let cell: &WeatherCell = self.weather.cell();
         cell.moment(t) + self.wind.map_or(0.0, |wind| wind.yaw_moment(heading, cell.gust(t)))
     }
 
@@ -54,7 +54,7 @@ impl<'a, D: Dynamics + ?Sized> Exposed<'a, D> {
     }
 }
 
-impl<D: Dynamics + ?Sized> Dynamics for Exposed<'_, D> {
+impl<D: Dynamics + ?Sized> Dynamics for ShipInWeather<'_, D> {
     fn dimension(&self) -> usize {
         self.ship.dimension() + usize::from(self.gyro_lag > 0.0)
     }

@@ -4,14 +4,14 @@ use ship::first_order::State;
 use ship::integrate::RungeKutta4;
 use ship::{Dynamics, Input};
 
-use super::exposed::Exposed;
+use super::exposed::ShipInWeather;
 use crate::gear::{RudderPath, Segment};
 use crate::propagate::propagator::{Propagator, acting};
 use crate::sample::Sample;
 
 /// Integrated motion of any ship.
 pub(crate) struct Integrated<'a, D: ?Sized> {
-    ship: Exposed<'a, D>,
+    ship: ShipInWeather<'a, D>,
     solver: RungeKutta4,
     time: f64,
     state: Vec<f64>,
@@ -27,7 +27,7 @@ fn input(segment: &Segment, dead_time: f64, t: f64) -> Input {
 
 impl<'a, D: Dynamics + ?Sized> Integrated<'a, D> {
     /// The ship at time 0 on its approach; `step` is the largest step, s, where it is not left to the ship.
-    pub fn new(ship: Exposed<'a, D>, approach: State, step: Option<f64>) -> Self {
+    pub fn new(ship: ShipInWeather<'a, D>, approach: State, step: Option<f64>) -> Self {
         let dimension = ship.dimension();
         let mut state = vec![0.0; dimension];
         ship.approach(approach.heading, approach.yaw_rate, &mut state);

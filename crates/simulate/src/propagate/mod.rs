@@ -9,6 +9,6 @@ mod integrated;
 mod propagator;
 
 pub(crate) use closed_form::ClosedForm;
-pub(crate) use exposed::Exposed;
+pub(crate) use exposed::ShipInWeather;
 pub(crate) use integrated::Integrated;
-pub(crate) use propagator::{Crossing, Limits, Propagator, has_diverged};
+pub(crate) use propagator::{AwaitedHeading, Limits, Propagator, has_diverged};

@@ -3,7 +3,7 @@
 use ship::first_order::State;
 
 use crate::gear::{RudderPath, Segment};
-use crate::recording::Tap;
+use crate::recording::Sampler;
 use crate::root;
 use crate::sample::Sample;
 
@@ -29,7 +29,7 @@ pub(crate) trait Propagator {
 
     /// Records row after row as long as nothing happens on the way, as going there step by step would, bit for bit;
     /// stops before the first row that needs a closer look, which may be the next one.
-    fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Tap) {}
+    fn coast(&mut self, _path: &RudderPath, _limits: &Limits, _rows: &mut Sampler) {}
 }
 
 /// What ends a stretch in which nothing happens.
@@ -38,7 +38,7 @@ pub(crate) struct Limits {
     /// Time before which it has to end, s.
     pub before: f64,
     /// Heading whose crossing ends it.
-    pub watch: Option<Crossing>,
+    pub watch: Option<AwaitedHeading>,
     /// Base course, rad, from which a diverging ship goes away.
     pub base: f64,
 }
@@ -64,7 +64,7 @@ pub(crate) fn acting<'a>(path: &'a RudderPath, cursor: &mut usize, t: f64, dead_
 
 /// A heading that is waited for: `side` · (ψ − base) ≥ `angle`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Crossing {
+pub(crate) struct AwaitedHeading {
     /// Base course, rad.
     pub base: f64,
     /// +1 to starboard, −1 to port.
@@ -76,7 +76,7 @@ pub(crate) struct Crossing {
 /// Width, s, of the bracket at which an event counts as located.
 const EVENT_TOLERANCE: f64 = 1e-13;
 
-impl Crossing {
+impl AwaitedHeading {
     /// How far the heading is beyond the deviation waited for, rad.
     pub fn excess(&self, heading: f64) -> f64 {
         self.side * (heading - self.base) - self.angle

@@ -6,12 +6,9 @@ use trial::TrialError;
 
 use super::{KEY, zig_zag};
 use crate::disturbance::GaussMarkov;
-use crate::helm::Watches;
 use crate::limits::{LONGEST_TIME, MOST_EXECUTES, MOST_ROWS};
-use crate::manoeuvre::{Manoeuvre, Side, TurnEnd, TurningCircle, ZigZagEnd};
-use crate::recording::Start;
 use crate::sensor::Spikes;
-use crate::{Expected, SimulateError, Simulation, Solver, Vessel};
+use crate::{Expected, Manoeuvre, SimulateError, Simulation, Solver, Vessel};
 
 fn failure(simulation: &Simulation) -> SimulateError {
     simulation.run(&KEY).expect_err("this must fail")
@@ -28,40 +25,37 @@ fn refused(change: impl FnOnce(&mut Simulation)) -> (&'static str, Expected) {
 
 #[test]
 fn a_specification_that_makes_no_sense_is_refused_by_name() {
-    assert_eq!(refused(|s| s.gear.rate = -0.1), ("steering-gear.rate-deg-s", Expected::PositiveOrInfinite));
-    assert_eq!(refused(|s| s.gear.rate = f64::NAN), ("steering-gear.rate-deg-s", Expected::PositiveOrInfinite));
+    assert_eq!(refused(|s| s.gear.rate = Some(-0.1)), ("steering-gear.rate-deg-s", Expected::PositiveOrInfinite));
+    assert_eq!(refused(|s| s.gear.rate = Some(f64::NAN)), ("steering-gear.rate-deg-s", Expected::PositiveOrInfinite));
     assert_eq!(refused(|s| s.gear.lag = f64::NAN), ("steering-gear.lag-s", Expected::NotNegative));
     assert_eq!(refused(|s| s.recording.period = 0.0), ("recording.sampling-s", Expected::Positive));
     let limit = from_deg(8.0);
-    assert_eq!(refused(|s| s.gear.maximum = limit), ("manoeuvre.zig-zag.rudder-deg", Expected::AtMost(8.0)));
+    assert_eq!(refused(|s| s.gear.maximum = Some(limit)), ("manoeuvre.zig-zag.rudder-deg", Expected::AtMost(8.0)));
     assert_eq!(refused(|s| s.recording.duration = None), ("recording.duration-s", Expected::Duration));
     assert_eq!(
         refused(|s| s.recording.duration = Some(1e300)),
         ("recording.duration-s", Expected::AtMost((MOST_ROWS - 1) as f64))
     );
     assert_eq!(refused(|s| s.solver = Solver::RungeKutta(1e-300)).0, "solver.step");
-    assert_eq!(refused(|s| s.sensors.heading.lag = 1e-300).0, "sensor.heading-lag-s");
-    assert_eq!(
-        refused(|s| s.helmsman.watches = Watches::Display { period: 1e-300 }).0,
-        "helmsman.reads-display-every-s"
-    );
+    assert_eq!(refused(|s| s.sensors.heading_lag = 1e-300).0, "sensor.heading-lag-s");
+    assert_eq!(refused(|s| s.helmsman.reads_display_every = Some(1e-300)).0, "helmsman.reads-display-every-s");
     assert_eq!(refused(|s| s.approach.heading = f64::INFINITY), ("approach.heading-deg", Expected::Finite));
-    assert_eq!(refused(|s| s.sensors.heading.noise = -1.0), ("sensor.heading-noise-deg", Expected::NotNegative));
+    assert_eq!(refused(|s| s.sensors.heading_noise = -1.0), ("sensor.heading-noise-deg", Expected::NotNegative));
     assert_eq!(
         refused(|s| s.sensors.drop_out.probability = 1.5),
         ("sensor.drop-out.probability", Expected::Between(0.0, 1.0))
     );
     let wander =
-        |sd, correlation_time| refused(|s| s.sensors.heading.wander = Some(GaussMarkov { sd, correlation_time }));
+        |sd, correlation_time| refused(|s| s.sensors.heading_wander = Some(GaussMarkov { sd, correlation_time }));
     assert_eq!(wander(-0.1, 10.0), ("sensor.heading-wander.sd-deg", Expected::NotNegative));
     assert_eq!(wander(0.1, 0.0), ("sensor.heading-wander.correlation-s", Expected::Positive));
     assert_eq!(wander(0.1, 1e9), ("sensor.heading-wander.correlation-s", Expected::AtMost(LONGEST_TIME)));
-    let spikes = |probability, size| refused(|s| s.sensors.heading.spikes = Some(Spikes { probability, size }));
+    let spikes = |probability, size| refused(|s| s.sensors.heading_spikes = Some(Spikes { probability, size }));
     assert_eq!(spikes(-0.1, 0.1), ("sensor.heading-spikes.probability", Expected::Between(0.0, 1.0)));
     assert_eq!(spikes(0.1, 0.0), ("sensor.heading-spikes.size-deg", Expected::Positive));
     assert_eq!(spikes(0.1, 4.0), ("sensor.heading-spikes.size-deg", Expected::AtMost(180.0)));
     let rows = Expected::Between(1.0, MOST_ROWS as f64);
-    assert_eq!(refused(|s| s.sensors.heading.every_rows = 0), ("sensor.heading-every-rows", rows));
+    assert_eq!(refused(|s| s.sensors.heading_every_rows = Some(0)), ("sensor.heading-every-rows", rows));
     assert_eq!(refused(|s| s.disturbances.random_walk = f64::NAN).0, "disturbance.random-walk-deg-per-root-s");
 }
 
@@ -77,8 +71,7 @@ fn a_message_says_what_was_found_and_what_was_expected() {
 fn an_unstable_ship_that_runs_away_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 4000.0);
     simulation.vessel = Vessel::first_order(FirstOrder { inverse_T: -0.05, K_over_T: 6e-3, rudder_bias: 0.0 });
-    let turn = TurningCircle { rudder: 0.1, side: Side::Starboard, end: TurnEnd::Duration(4000.0) };
-    simulation.manoeuvre = Manoeuvre::TurningCircle(turn);
+    simulation.manoeuvre = Manoeuvre::turning_circle(0.1).lasting(4000.0);
     match failure(&simulation) {
         SimulateError::Diverged { time, .. } => assert!(time > 100.0 && time < 400.0, "{time}"),
         other => panic!("expected divergence, found {other}"),
@@ -101,9 +94,12 @@ fn a_heading_that_is_never_reached_is_an_error() {
 fn a_record_that_starts_at_no_execute_is_an_error() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
     let angle = from_deg(10.0);
-    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Executes(3));
-    simulation.recording.start = Start::Execute { number: 5, offset: 0.0 };
-    assert_eq!(failure(&simulation), SimulateError::NoSuchExecute { execute: 5, made: 3 });
+    simulation.recording.after_execute = Some(5);
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).lasting(60.0);
+    assert!(matches!(failure(&simulation), SimulateError::NoSuchExecute { execute: 5, .. }));
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).until_execute(3);
+    let SimulateError::Specification(refused) = failure(&simulation) else { panic!("known before it is run") };
+    assert_eq!((refused.key, refused.expected), ("recording.after-execute", Expected::Execute(3)));
 }
 
 /// What no estimate foresees: a helmsman who reverses the rudder at every breath of the heading, and a record that
@@ -116,7 +112,7 @@ fn a_run_that_takes_too_much_is_given_up() {
         other => panic!("expected to be given up, found {other}"),
     };
     assert_eq!(given_up(&simulation), ("executes", MOST_EXECUTES));
-    simulation.manoeuvre = Manoeuvre::zig_zag(0.1, 0.4, ZigZagEnd::Executes(12));
+    simulation.manoeuvre = Manoeuvre::zig_zag(0.1, 0.4).until_execute(12);
     (simulation.recording.duration, simulation.recording.period) = (None, 1e-3);
     assert_eq!(given_up(&simulation), ("rows", MOST_ROWS));
 }
@@ -127,6 +123,6 @@ fn a_record_with_too_few_rows_is_an_error() {
     assert!(matches!(failure(&simulation), SimulateError::Record(_)));
     // Enough rows, of which every fiftieth has a heading.
     simulation = zig_zag(10.0, 10.0, 2.5, 300.0);
-    simulation.sensors.heading.every_rows = 50;
+    simulation.sensors.heading_every_rows = Some(50);
     assert_eq!(failure(&simulation), SimulateError::Record(TrialError::TooShort { needed: 8, found: 7 }));
 }

@@ -8,10 +8,9 @@ use ship::{Dynamics, Input, Motion, Particulars};
 use trial::Channel;
 
 use super::{KEY, zig_zag};
-use crate::disturbance::{GaussMarkov, Wind};
-use crate::helm::Watches;
-use crate::recording::{RudderColumn, Start};
-use crate::sensor::{Bursts, Loses, Spikes, YawRateSensor};
+use crate::disturbance::{GaussMarkov, Gusting, WaveSpectrum, Wind};
+use crate::recording::RudderSource;
+use crate::sensor::Spikes;
 use crate::{Recording, Simulated, Simulation, Vessel};
 
 const ROWS: f64 = 2001.0;
@@ -42,8 +41,8 @@ fn sd_tolerance() -> f64 {
 fn heading_noise_bias_and_its_declaration() {
     let mut simulation = long();
     let (noise, bias) = (from_deg(0.3), from_deg(1.0));
-    simulation.sensors.heading.noise = noise;
-    simulation.sensors.heading.bias = bias;
+    simulation.sensors.heading_noise = noise;
+    simulation.sensors.heading_bias = bias;
     let Simulated { trial, truth } = run(&simulation);
     let (mean, sd) = statistics(trial.heading(), &truth.heading);
     assert_relative_eq!(sd, noise, max_relative = sd_tolerance());
@@ -57,8 +56,8 @@ fn heading_noise_bias_and_its_declaration() {
 fn quantisation_is_uniform_and_declared_so() {
     let mut simulation = long();
     let quantum = from_deg(0.5);
-    simulation.sensors.heading.quantum = quantum;
-    simulation.sensors.rudder.quantum = from_deg(1.0);
+    simulation.sensors.heading_quantum = quantum;
+    simulation.sensors.rudder_quantum = from_deg(1.0);
     let Simulated { trial, truth } = run(&simulation);
     let (_, sd) = statistics(trial.heading(), &truth.heading);
     let uniform = quantum / 12.0_f64.sqrt();
@@ -74,20 +73,22 @@ fn quantisation_is_uniform_and_declared_so() {
 #[test]
 fn the_yaw_rate_sensor_scales_shifts_and_adds_noise() {
     let mut simulation = long();
-    let sensor = YawRateSensor { noise: from_deg(0.05), bias: from_deg(0.02), scale_error: 0.05 };
+    let [noise, bias] = [0.05, 0.02].map(from_deg);
     assert!(run(&simulation).trial.yaw_rate().is_none());
-    simulation.sensors.yaw_rate = Some(sensor);
+    simulation.sensors.yaw_rate_noise = Some(noise);
+    simulation.sensors.yaw_rate_bias = Some(bias);
+    simulation.sensors.yaw_rate_scale_error = Some(0.05);
     let Simulated { trial, truth } = run(&simulation);
     let scaled: Vec<f64> = truth.yaw_rate.iter().map(|r| 1.05 * r).collect();
     let (mean, sd) = statistics(trial.yaw_rate().expect("there is a sensor"), &scaled);
-    assert_relative_eq!(sd, sensor.noise, max_relative = sd_tolerance());
-    assert_abs_diff_eq!(mean, sensor.bias, epsilon = 3.0 * sensor.noise / ROWS.sqrt());
+    assert_relative_eq!(sd, noise, max_relative = sd_tolerance());
+    assert_abs_diff_eq!(mean, bias, epsilon = 3.0 * noise / ROWS.sqrt());
 }
 
 #[test]
 fn rudder_noise_has_its_sd_and_the_order_has_none() {
     let mut simulation = long();
-    simulation.sensors.rudder.noise = from_deg(0.4);
+    simulation.sensors.rudder_noise = from_deg(0.4);
     let Simulated { trial, truth } = run(&simulation);
     let (_, sd) = statistics(trial.rudder(), &truth.rudder);
     assert_relative_eq!(sd, from_deg(0.4), max_relative = sd_tolerance());
@@ -101,7 +102,7 @@ fn rudder_noise_has_its_sd_and_the_order_has_none() {
 fn gyro_lag_trails_the_heading() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 270.0);
     let lag = 0.8;
-    simulation.sensors.heading.lag = lag;
+    simulation.sensors.heading_lag = lag;
     simulation.recording.period = 0.05;
     let Simulated { trial, truth } = run(&simulation);
     let trail: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(gyro, psi)| gyro - psi).collect();
@@ -116,9 +117,9 @@ fn gyro_lag_trails_the_heading() {
 #[test]
 fn a_delayed_heading_is_the_heading_of_then() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
-    simulation.recording.start = Start::Execute { number: 2, offset: 0.0 };
+    (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(0.0));
     let prompt = run(&simulation);
-    simulation.sensors.clock.heading_delay = 2.0;
+    simulation.sensors.heading_delay = 2.0;
     let late = run(&simulation);
     // The delay is a whole number of rows; the first two rows look back before the execute.
     assert_eq!(late.trial.time(), prompt.trial.time());
@@ -130,7 +131,7 @@ fn a_delayed_heading_is_the_heading_of_then() {
         assert_abs_diff_eq!(late.truth.heading[row], prompt.truth.heading[row], epsilon = 1e-12);
     }
     assert!(late.trial.heading()[0] < prompt.trial.heading()[0] - from_deg(1.0));
-    simulation.sensors.clock.heading_delay = -2.0;
+    simulation.sensors.heading_delay = -2.0;
     let early = run(&simulation);
     for row in 0..early.trial.len() - 2 {
         assert_abs_diff_eq!(early.trial.heading()[row], prompt.trial.heading()[row + 2], epsilon = 1e-12);
@@ -141,7 +142,7 @@ fn a_delayed_heading_is_the_heading_of_then() {
 fn jitter_moves_heading_and_rudder_by_the_same_instants() {
     let mut simulation = zig_zag(20.0, 20.0, 2.5, 400.0);
     let jitter = 0.2;
-    simulation.sensors.clock.jitter = jitter;
+    simulation.sensors.jitter = jitter;
     let Simulated { trial, truth } = run(&simulation);
     // Δψ = r j + r' j²/2, so that j can be read back where the ship turns.
     let (mut instants, mut agreeing) = (Vec::new(), 0);
@@ -175,8 +176,9 @@ fn lost_headings_are_nan_and_lost_rows_are_gone() {
     assert_abs_diff_eq!(lost, 0.2 * ROWS, epsilon = tolerance);
     assert!(headings.truth.heading.iter().all(|psi| psi.is_finite()));
 
-    simulation.sensors.drop_out.loses = Loses::Row;
-    simulation.sensors.drop_out.bursts = Some(Bursts { probability: 0.01, mean_rows: 5.0 });
+    simulation.sensors.drop_out.whole_row = true;
+    simulation.sensors.drop_out.burst_probability = Some(0.01);
+    simulation.sensors.drop_out.burst_mean_rows = Some(5.0);
     let rows = run(&simulation);
     assert!(rows.trial.len() < headings.trial.len() - lost as usize);
     assert_eq!(rows.trial.time(), rows.truth.time);
@@ -189,10 +191,10 @@ fn the_coloured_error_has_its_sd_and_its_correlation() {
     let (mut wandering, mut calm) = (long(), long());
     let wander = GaussMarkov { sd: from_deg(0.3), correlation_time: 5.0 };
     for simulation in [&mut wandering, &mut calm] {
-        simulation.sensors.heading.noise = from_deg(0.1);
-        simulation.sensors.yaw_rate = Some(YawRateSensor { noise: 1e-3, ..YawRateSensor::default() });
+        simulation.sensors.heading_noise = from_deg(0.1);
+        simulation.sensors.yaw_rate_noise = Some(1e-3);
     }
-    wandering.sensors.heading.wander = Some(wander);
+    wandering.sensors.heading_wander = Some(wander);
     let (wandering, calm) = (run(&wandering), run(&calm));
     let errors: Vec<f64> =
         wandering.trial.heading().iter().zip(calm.trial.heading()).map(|(one, other)| one - other).collect();
@@ -214,12 +216,12 @@ fn the_coloured_error_has_its_sd_and_its_correlation() {
 #[test]
 fn a_display_shows_the_coloured_error() {
     let mut simulation = long();
-    simulation.helmsman.watches = Watches::Display { period: 1.0 };
+    simulation.helmsman.reads_display_every = Some(1.0);
     // Rows between the readings.
     (simulation.recording.period, simulation.recording.duration) = (0.5, Some(0.5 * (ROWS - 1.0)));
     let calm = run(&simulation).truth;
     let wander = GaussMarkov { sd: from_deg(0.3), correlation_time: 20.0 };
-    simulation.sensors.heading.wander = Some(wander);
+    simulation.sensors.heading_wander = Some(wander);
     let Simulated { trial, truth } = run(&simulation);
     assert_ne!(truth.executes, calm.executes);
     let errors: Vec<f64> = trial.heading().iter().zip(&truth.heading).map(|(psi, own)| psi - own).collect();
@@ -231,10 +233,10 @@ fn a_display_shows_the_coloured_error() {
 #[test]
 fn spikes_are_as_many_and_as_large_as_asked_for() {
     let mut simulation = long();
-    simulation.sensors.heading.noise = from_deg(0.1);
+    simulation.sensors.heading_noise = from_deg(0.1);
     let calm = run(&simulation);
     let size = from_deg(5.0);
-    simulation.sensors.heading.spikes = Some(Spikes { probability: 0.05, size });
+    simulation.sensors.heading_spikes = Some(Spikes { probability: 0.05, size });
     let spiked = run(&simulation);
     let (mut to_port, mut to_starboard) = (0, 0);
     for (psi, own) in spiked.trial.heading().iter().zip(calm.trial.heading()) {
@@ -250,10 +252,10 @@ fn spikes_are_as_many_and_as_large_as_asked_for() {
     assert_eq!(spiked.trial.noise(), calm.trial.noise());
 
     // They come after the display: no helmsman acts on one, and what is recorded is still a multiple of its quantum.
-    simulation.helmsman.watches = Watches::Display { period: 1.0 };
-    simulation.sensors.heading.quantum = from_deg(1.0);
+    simulation.helmsman.reads_display_every = Some(1.0);
+    simulation.sensors.heading_quantum = from_deg(1.0);
     let seen = run(&simulation);
-    simulation.sensors.heading.spikes = None;
+    simulation.sensors.heading_spikes = None;
     assert_eq!(seen.truth, run(&simulation).truth);
     assert!(seen.trial.heading().iter().all(|psi| (to_deg(*psi) - to_deg(*psi).round()).abs() < 1e-9));
 }
@@ -261,10 +263,10 @@ fn spikes_are_as_many_and_as_large_as_asked_for() {
 #[test]
 fn a_heading_in_every_fifth_row_leaves_the_others_their_rudder() {
     let mut simulation = long();
-    simulation.sensors.heading.noise = from_deg(0.1);
-    simulation.sensors.yaw_rate = Some(YawRateSensor::default());
+    simulation.sensors.heading_noise = from_deg(0.1);
+    simulation.sensors.yaw_rate_noise = Some(0.0);
     let full = run(&simulation);
-    simulation.sensors.heading.every_rows = 5;
+    simulation.sensors.heading_every_rows = Some(5);
     let rare = run(&simulation);
     assert!(rare.trial.observed_rows().eq((0..ROWS as usize).step_by(5)));
     assert!(rare.trial.observed_rows().all(|row| rare.trial.heading()[row] == full.trial.heading()[row]));
@@ -275,7 +277,7 @@ fn a_heading_in_every_fifth_row_leaves_the_others_their_rudder() {
 
     // Rows are counted before any is lost.
     simulation.sensors.drop_out.probability = 0.2;
-    simulation.sensors.drop_out.loses = Loses::Row;
+    simulation.sensors.drop_out.whole_row = true;
     let lossy = run(&simulation).trial;
     assert!(lossy.len() < rare.trial.len());
     for (time, psi) in lossy.time().iter().zip(lossy.heading()) {
@@ -286,9 +288,9 @@ fn a_heading_in_every_fifth_row_leaves_the_others_their_rudder() {
 #[test]
 fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 600.0);
-    simulation.helmsman.watches = Watches::Display { period: 1.0 };
-    simulation.sensors.heading.noise = from_deg(0.5);
-    simulation.sensors.heading.quantum = from_deg(0.1);
+    simulation.helmsman.reads_display_every = Some(1.0);
+    simulation.sensors.heading_noise = from_deg(0.5);
+    simulation.sensors.heading_quantum = from_deg(0.1);
     let Simulated { trial, truth } = run(&simulation);
     let mut off = 0;
     for execute in &truth.executes[1..] {
@@ -314,7 +316,7 @@ fn the_display_helmsman_acts_on_readings_and_the_record_holds_what_he_read() {
 fn without_noise_a_display_only_delays_to_the_next_reading() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 100.0);
     let exact = run(&simulation).truth.executes[1].time;
-    simulation.helmsman.watches = Watches::Display { period: 0.5 };
+    simulation.helmsman.reads_display_every = Some(0.5);
     let read = run(&simulation).truth.executes[1].time;
     assert_eq!(read, (exact / 0.5).ceil() * 0.5);
 }
@@ -324,8 +326,8 @@ fn waves_are_seen_but_do_not_steer() {
     let mut simulation = long();
     let calm = run(&simulation).truth;
     let sd = from_deg(0.6);
-    simulation.disturbances.waves = Some(ship::narrow_band::NarrowBand { sd, frequency: 0.8, damping: 0.2 });
-    simulation.sensors.yaw_rate = Some(YawRateSensor::default());
+    simulation.disturbances.waves = Some(WaveSpectrum { sd, frequency: 0.8, damping: 0.2 });
+    simulation.sensors.yaw_rate_noise = Some(0.0);
     let Simulated { trial, truth } = run(&simulation);
     assert_eq!(truth.heading, calm.heading);
     let (_, heading) = statistics(trial.heading(), &truth.heading);
@@ -387,7 +389,7 @@ fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
     let mut simulation = zig_zag(10.0, 10.0, 2.5, 60.0);
     simulation.vessel = Vessel::hull(Arc::new(Vane));
     simulation.longest_wait = 1e3;
-    let gusting = Some(GaussMarkov { sd: 0.3, correlation_time: 5.0 });
+    let gusting = Some(Gusting { sd: 0.3, correlation_time: 5.0 });
     simulation.disturbances.wind = Some(Wind { moment: 0.0, from: 1.5, speed: Some(9.0), gusting });
     let Simulated { trial, truth } = run(&simulation);
     let from = trial.channel(Channel::WindRelativeFrom).expect("speed of wind and ship are known");
@@ -401,20 +403,23 @@ fn the_wind_a_ship_feels_is_the_wind_its_record_holds() {
 #[test]
 fn a_rudder_rebuilt_from_orders_is_as_right_as_its_rate() {
     let trial = || zig_zag(10.0, 20.0, 2.5, 300.0);
-    let rudder = |column: RudderColumn| {
-        let recording = Recording { rudder: column, ..trial().recording };
-        let simulated = Simulation { recording, ..trial() }.run(&KEY).expect("a plain zig-zag");
+    let recorded = |assumed_rudder_rate: Option<f64>| {
+        let rudder = if assumed_rudder_rate.is_some() { RudderSource::Orders } else { RudderSource::Feedback };
+        let recording = Recording { rudder, assumed_rudder_rate, ..trial().recording };
+        Simulation { recording, ..trial() }.run(&KEY)
+    };
+    let rudder = |assumed_rate| {
+        let simulated = recorded(assumed_rate).expect("a plain zig-zag");
         (simulated.trial.time().to_vec(), simulated.trial.rudder().to_vec(), simulated.truth.executes.clone())
     };
-    let (time, feedback, executes) = rudder(RudderColumn::Feedback);
-    let (_, same, _) = rudder(RudderColumn::Orders { assumed_rate: trial().gear.rate });
-    let (_, jumping, _) = rudder(RudderColumn::Orders { assumed_rate: f64::INFINITY });
+    let (time, feedback, executes) = rudder(None);
+    let (_, same, _) = rudder(trial().gear.rate);
+    let (_, jumping, _) = rudder(Some(f64::INFINITY));
     for (row, &t) in time.iter().enumerate() {
         assert_abs_diff_eq!(same[row], feedback[row], epsilon = 1e-12);
         let ordered = executes.iter().rfind(|execute| execute.time <= t).map_or(0.0, |execute| execute.order);
         assert_abs_diff_eq!(jumping[row], ordered, epsilon = 1e-12);
     }
     assert!(jumping.iter().zip(&feedback).any(|(a, b)| (a - b).abs() > 0.05), "the ramps differ");
-    let refused = Recording { rudder: RudderColumn::Orders { assumed_rate: 0.0 }, ..Recording::default() };
-    assert!(Simulation { recording: refused, ..trial() }.run(&KEY).is_err());
+    assert!(recorded(Some(0.0)).is_err());
 }

@@ -7,13 +7,10 @@ use ship::angle::{from_deg, to_deg};
 use ship::{Dynamics, FirstOrder, Input, Motion, Polyline};
 
 use super::{KEY, training_ship, zig_zag};
-use crate::disturbance::{GaussMarkov, Squall, Wind};
-use crate::helm::Watches;
-use crate::manoeuvre::{Manoeuvre, PullOut, Side, TurnEnd, TurningCircle, Williamson, ZigZag, ZigZagEnd};
-use crate::recording::Start;
-use crate::sensor::{Clock, DropOut, HeadingSensor, Loses, Spikes, YawRateSensor};
+use crate::disturbance::{GaussMarkov, Gusting, Squall, WaveSpectrum, Wind};
+use crate::sensor::{DropOut, Spikes};
 use crate::vessel::Solver;
-use crate::{Prepared, Sensors, Simulated, Simulation, StreamKey, Truth, Vessel};
+use crate::{Manoeuvre, PreparedSimulation, Sensors, Side, Simulated, Simulation, StreamKey, Truth, Vessel};
 
 /// A ship with cubic damping and a rudder that acts late, for which nothing has a closed form.
 struct Cubic {
@@ -82,7 +79,7 @@ fn variety() -> Vec<Simulation> {
         list.push(zig_zag(delta_deg, psi_deg, rate, 270.0));
     }
     let mut anchored = list[0].clone();
-    anchored.recording.start = Start::Execute { number: 2, offset: 1.2 };
+    (anchored.recording.after_execute, anchored.recording.offset) = (Some(2), Some(1.2));
     anchored.approach.lead_in = 7.3;
     anchored.approach.heading = 1.0;
     anchored.gear.dead_time = 0.7;
@@ -96,16 +93,15 @@ fn variety() -> Vec<Simulation> {
     list.push(anchored);
     let mut turn = list[0].clone();
     let rudder = from_deg(35.0);
-    turn.manoeuvre =
-        Manoeuvre::TurningCircle(TurningCircle { rudder, side: Side::Port, end: TurnEnd::HeadingChange(9.0) });
+    turn.manoeuvre = Manoeuvre::TurningCircle { rudder, side: Side::Port, duration: None, heading_change: Some(9.0) };
     turn.recording.duration = None;
     list.push(turn.clone());
-    turn.manoeuvre = Manoeuvre::PullOut(PullOut { rudder, side: Side::Starboard, hold: 80.5, duration: 60.0 });
+    turn.manoeuvre = Manoeuvre::PullOut { rudder, side: Side::Starboard, hold: 80.5, duration: 60.0 };
     list.push(turn.clone());
-    turn.manoeuvre = Manoeuvre::Williamson(Williamson { rudder, side: Side::Starboard, duration: 60.0 });
+    turn.manoeuvre = Manoeuvre::Williamson { rudder, side: Side::Starboard, duration: 60.0 };
     list.push(turn.clone());
     let recorded = Polyline::new(vec![100.0, 103.0, 120.0, 125.5, 180.0], vec![0.0, 0.2, 0.2, -0.3, 0.1]);
-    turn.manoeuvre = Manoeuvre::Replay(recorded.expect("increasing times"));
+    turn.manoeuvre = Manoeuvre::replay(recorded.expect("increasing times"));
     list.push(turn);
     list
 }
@@ -125,10 +121,9 @@ fn port_first_is_the_exact_mirror() {
         let mut starboard = zig_zag(15.0, 10.0, 2.5, 300.0);
         starboard.vessel = vessel;
         starboard.gear.lag = 0.5;
-        starboard.sensors.heading = spoilt();
+        starboard.sensors = spoilt();
         let mut port = starboard.clone();
-        let (rudder, heading) = (from_deg(15.0), from_deg(10.0));
-        port.manoeuvre = Manoeuvre::ZigZag(ZigZag { rudder, heading, first: Side::Port, end: ZigZagEnd::Record });
+        port.manoeuvre = port.manoeuvre.to(Side::Port);
         let (starboard, port) = (starboard.run(&KEY).expect("a zig-zag"), port.run(&KEY).expect("a zig-zag"));
         // What instruments add knows no side.
         let errors = |simulated: &Simulated| {
@@ -216,7 +211,7 @@ fn a_late_rudder_is_the_same_motion_with_a_late_gear() {
 #[test]
 fn the_record_starts_after_the_execute_and_has_its_rows() {
     let mut simulation = zig_zag(10.0, 20.0, 2.5, 270.0);
-    simulation.recording.start = Start::Execute { number: 2, offset: 1.2 };
+    (simulation.recording.after_execute, simulation.recording.offset) = (Some(2), Some(1.2));
     let simulated = simulation.run(&KEY).expect("a zig-zag");
     assert_eq!(simulated.trial.len(), 271);
     assert_abs_diff_eq!(simulated.trial.time()[0], 36.31 + 1.2, epsilon = 0.01);
@@ -234,11 +229,11 @@ fn zig_zag_ends_at_its_execute_or_its_duration() {
     simulation.recording.duration = None;
     simulation.approach.lead_in = 10.0;
     let angle = from_deg(10.0);
-    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Executes(4));
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).until_execute(4);
     let by_executes = truth(&simulation);
     assert_eq!(by_executes.executes.len(), 4);
     assert_eq!(by_executes.time.last().copied(), Some(147.0));
-    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle, ZigZagEnd::Duration(200.0));
+    simulation.manoeuvre = Manoeuvre::zig_zag(angle, angle).lasting(200.0);
     let by_duration = truth(&simulation);
     assert_eq!(by_duration.time.last().copied(), Some(210.0));
     assert_eq!(by_duration.executes[0].time, 10.0);
@@ -261,13 +256,13 @@ fn a_turning_circle_ends_at_its_heading_and_a_pull_out_comes_to_rest() {
 }
 
 /// A compass with every error that chance brings.
-fn spoilt() -> HeadingSensor {
-    HeadingSensor {
-        noise: from_deg(0.2),
-        wander: Some(GaussMarkov { sd: from_deg(0.3), correlation_time: 10.0 }),
-        spikes: Some(Spikes { probability: 0.1, size: from_deg(5.0) }),
-        every_rows: 2,
-        ..HeadingSensor::default()
+fn spoilt() -> Sensors {
+    Sensors {
+        heading_noise: from_deg(0.2),
+        heading_wander: Some(GaussMarkov { sd: from_deg(0.3), correlation_time: 10.0 }),
+        heading_spikes: Some(Spikes { probability: 0.1, size: from_deg(5.0) }),
+        heading_every_rows: Some(2),
+        ..Sensors::default()
     }
 }
 
@@ -278,16 +273,15 @@ fn noisy() -> Simulation {
         moment: from_deg(1.0),
         from: 1.0,
         speed: Some(12.0),
-        gusting: Some(GaussMarkov { sd: 0.2, correlation_time: 8.0 }),
+        gusting: Some(Gusting { sd: 0.2, correlation_time: 8.0 }),
     });
-    simulation.disturbances.waves =
-        Some(ship::narrow_band::NarrowBand { sd: from_deg(0.3), frequency: 0.7, damping: 0.1 });
-    simulation.sensors.heading = HeadingSensor { quantum: from_deg(0.1), ..spoilt() };
-    simulation.sensors.yaw_rate = Some(YawRateSensor { noise: 1e-3, ..YawRateSensor::default() });
-    simulation.sensors.rudder.noise = from_deg(0.2);
-    simulation.sensors.clock.jitter = 0.1;
+    simulation.disturbances.waves = Some(WaveSpectrum { sd: from_deg(0.3), frequency: 0.7, damping: 0.1 });
+    simulation.sensors = Sensors { heading_quantum: from_deg(0.1), ..spoilt() };
+    simulation.sensors.yaw_rate_noise = Some(1e-3);
+    simulation.sensors.rudder_noise = from_deg(0.2);
+    simulation.sensors.jitter = 0.1;
     simulation.sensors.drop_out.probability = 0.05;
-    simulation.helmsman.watches = Watches::Display { period: 1.0 };
+    simulation.helmsman.reads_display_every = Some(1.0);
     simulation
 }
 
@@ -312,7 +306,7 @@ fn the_same_key_gives_the_same_bits() {
 fn going_on_without_looking_changes_nothing() {
     for (case, simulation) in variety().into_iter().enumerate() {
         let mut watched = simulation.clone();
-        watched.sensors.clock.heading_delay = 1e-6;
+        watched.sensors.heading_delay = 1e-6;
         assert_same(&truth(&simulation), &truth(&watched), 1e-10);
         assert_eq!(truth(&simulation).time.len(), truth(&watched).time.len(), "case {case}");
     }
@@ -324,28 +318,28 @@ fn going_on_without_looking_changes_nothing() {
 fn a_prepared_simulation_gives_the_same_bits() {
     let shaken: [fn(&mut Simulation); 11] = [
         |_| {},
-        |simulation| simulation.sensors = Sensors { clock: Clock::default(), ..noisy().sensors },
-        |simulation| simulation.sensors.clock.jitter = 0.1,
-        |simulation| simulation.sensors.clock.heading_delay = 0.4,
+        |simulation| simulation.sensors = Sensors { jitter: 0.0, heading_delay: 0.0, ..noisy().sensors },
+        |simulation| simulation.sensors.jitter = 0.1,
+        |simulation| simulation.sensors.heading_delay = 0.4,
         |simulation| simulation.disturbances.waves = noisy().disturbances.waves,
         |simulation| simulation.disturbances = noisy().disturbances,
-        |simulation| simulation.helmsman.watches = Watches::Display { period: 1.0 },
-        |simulation| simulation.sensors.heading = spoilt(),
+        |simulation| simulation.helmsman.reads_display_every = Some(1.0),
+        |simulation| simulation.sensors = spoilt(),
         |simulation| {
-            simulation.sensors.heading = HeadingSensor { noise: 0.0, ..spoilt() };
-            simulation.helmsman.watches = Watches::Display { period: 1.0 };
+            simulation.sensors = Sensors { heading_noise: 0.0, ..spoilt() };
+            simulation.helmsman.reads_display_every = Some(1.0);
         },
         |simulation| {
-            simulation.sensors.drop_out = DropOut { probability: 0.1, bursts: None, loses: Loses::Row };
+            simulation.sensors.drop_out = DropOut { probability: 0.1, whole_row: true, ..DropOut::default() };
             simulation.vessel = cubic(0.4);
         },
         |simulation| *simulation = noisy(),
     ];
     for (case, shake) in shaken.into_iter().enumerate() {
         let mut simulation = zig_zag(10.0, 10.0, 2.32, 270.0);
-        simulation.sensors.heading.noise = from_deg(0.2);
+        simulation.sensors.heading_noise = from_deg(0.2);
         shake(&mut simulation);
-        let prepared = Prepared::new(simulation.clone()).expect("a zig-zag");
+        let prepared = PreparedSimulation::new(simulation.clone()).expect("a zig-zag");
         for replicate in 0..3 {
             let key = StreamKey { replicate, ..KEY };
             let (one, other) = (simulation.run(&key).expect("a zig-zag"), prepared.run(&key).expect("a zig-zag"));
@@ -365,13 +359,13 @@ fn a_prepared_simulation_gives_the_same_bits() {
 #[test]
 fn a_new_source_of_noise_leaves_the_others_as_they_were() {
     let mut few = zig_zag(10.0, 10.0, 2.5, 100.0);
-    few.sensors.heading.noise = from_deg(0.3);
+    few.sensors.heading_noise = from_deg(0.3);
     let mut many = few.clone();
-    many.sensors.rudder.noise = from_deg(0.2);
-    many.sensors.yaw_rate = Some(YawRateSensor { noise: 1e-3, ..YawRateSensor::default() });
+    many.sensors.rudder_noise = from_deg(0.2);
+    many.sensors.yaw_rate_noise = Some(1e-3);
     many.sensors.drop_out.probability = 0.1;
-    many.sensors.heading.spikes = Some(Spikes { probability: 0.1, size: 1.0 });
-    many.sensors.heading.every_rows = 2;
+    many.sensors.heading_spikes = Some(Spikes { probability: 0.1, size: 1.0 });
+    many.sensors.heading_every_rows = Some(2);
     let (few, many) = (few.run(&KEY).expect("a zig-zag").trial, many.run(&KEY).expect("a zig-zag").trial);
     let mut kept = 0;
     for (left, right) in few.heading().iter().zip(many.heading()).filter(|(_, right)| right.is_finite()) {

@@ -11,7 +11,7 @@ use campaign::outside;
 use scenario::Scenario;
 use scenario::failure::{Blame, Failure};
 use serde_json::{Value, json};
-use simulate::settings::Assumption;
+use simulate::Assumption;
 
 /// What `study check` is asked to do.
 #[derive(Debug, Clone, Args)]

@@ -17,7 +17,7 @@ use trial::sidecar::{self, Key};
 
 use scenario::effect_keys;
 use scenario::failure::Failure;
-use scenario::keys::{Key as ScenarioKey, keys as keys_of_scenario};
+use scenario::keys::{ScenarioKey, keys as keys_of_scenario};
 
 /// What `study list` is asked to do.
 #[derive(Debug, Clone, Args)]
@@ -84,8 +84,8 @@ fn effects() -> Table {
     for effect in effects::all() {
         let parameters: Vec<String> =
             effect.parameters().iter().map(|parameter| format!("{} [{}]", parameter.symbol, parameter.unit)).collect();
-        let keys = effect_keys(effect.as_ref()).unwrap_or(MISSING);
-        table.push([effect.id(), effect.form(), keys, effect.equation(), &parameters.join(", ")]);
+        let keys = effect_keys(effect.as_ref()).unwrap_or_else(|| MISSING.to_owned());
+        table.push([effect.id(), effect.form(), &keys, effect.equation(), &parameters.join(", ")]);
     }
     table
 }

@@ -87,7 +87,7 @@ fn study(folder: &Path) -> Result<Study, Failure> {
     let unfit = |stem: &str, unfit| {
         Failure::input(format!("{}: `output.figure` is {}; {unfit}", path.display(), name::shown(stem)))
     };
-    let figure = match &words.figure {
+    let figure = match &words.output.figure {
         Some(stem) => Some(name::file(stem).map_err(|error| unfit(stem, error)).and_then(|()| figure(folder, stem))?),
         None => None,
     };

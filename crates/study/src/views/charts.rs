@@ -376,8 +376,8 @@ fn curves(measure: &Measure, x: usize, groups: &[Group]) -> ErrorCurves {
     let (least, most) =
         values.iter().filter(|v| **v > 0.0).fold((f64::INFINITY, 0.0), |(a, b), &v| (v.min(a), v.max(b)));
     let is_wide = values.iter().all(|value| *value >= 0.0) && most > WIDE * least;
-    let mark = |mark: &scenario::AxisMark| AxisMark { at: mark.at, label: mark.label.clone() };
-    let marks = design.words.marks.iter().filter(|mark| mark.axis == design.axes[x]);
+    let mark = |mark: &scenario::MarkedValue| AxisMark { at: mark.at, label: mark.label.clone() };
+    let marks = design.words.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);
     ErrorCurves {
         x_title: design.axes[x].clone(),
         x_scale: if is_wide { Scale::Log } else { Scale::Linear },

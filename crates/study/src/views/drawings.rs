@@ -73,14 +73,14 @@ pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) ->
         let known: Vec<&str> = drawings.iter().map(|drawing| drawing.stem.as_str()).collect();
         screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; there are: {}", known.join(", ")));
     };
-    let hero = words.figure.as_ref().and_then(|stem| {
+    let hero = words.output.figure.as_ref().and_then(|stem| {
         let found = drawings.iter().position(|drawing| drawing.stem == *stem);
         if found.is_none() {
             warn("figure", stem);
         }
         found
     });
-    let named = words.figures.as_deref().filter(|_| choice == FigureChoice::Named);
+    let named = words.output.figures.as_deref().filter(|_| choice == FigureChoice::Named);
     for name in named.into_iter().flatten().filter(|name| drawings.iter().all(|drawing| drawing.stem != **name)) {
         warn("figures", name);
     }
@@ -92,9 +92,9 @@ pub fn of<'a>(stored: &'a Stored, summary: &'a Summary, choice: FigureChoice) ->
     let kept: Vec<bool> = drawings.iter().map(is_kept).collect();
     let mut chosen = Vec::new();
     if let Some(place) = hero {
-        let labels = &words.methods;
+        let labels = &words.output.methods;
         let about = |label: &String| campaign::curves::origin(&stored.design.methods, label);
-        let look = Hero { title: words.title.clone(), about: labels.iter().map(about).collect() };
+        let look = Hero { title: words.output.title.clone(), about: labels.iter().map(about).collect() };
         let draw = Arc::clone(&drawings[place].draw);
         let caption = drawings[place].caption.clone();
         chosen.push(Drawing::new(HERO, caption, move |theme, _| draw(theme, Some(&look))));

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use predict::PredictDocument;
-use predict::kind::Pattern;
 use predict::prediction::Bands;
 use ship::angle::to_deg;
+use trial::Manoeuvre;
 
 use super::picture::slug;
 use crate::records::names;
@@ -25,8 +25,8 @@ pub fn curves(document: &PredictDocument) -> Vec<(String, String)> {
     let mut tables = Vec::new();
     let mut stems = stems(document).into_iter();
     for (prediction, stem) in document.manoeuvres.iter().zip(stems.by_ref()) {
-        let table = match prediction.kind.pattern {
-            Pattern::Spiral => {
+        let table = match prediction.kind {
+            Manoeuvre::Spiral { .. } => {
                 let mut table = String::from("ship,rudder_deg,yaw_rate_deg_s\n");
                 for (ship, curve) in prediction.curves.iter().enumerate() {
                     for (rudder, rate) in curve.rudder.iter().zip(&curve.yaw_rate) {

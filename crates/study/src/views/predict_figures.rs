@@ -3,7 +3,6 @@
 
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
-use predict::kind::Pattern;
 use predict::known::ValidityRange;
 use predict::prediction::Bands;
 use predict::steady::SteadyCurve;
@@ -12,6 +11,7 @@ use rayon::prelude::*;
 use report::figures::{self, OvershootRow, Overshoots, PhasePlane, PredictionBands, SteadyCurves, Track};
 use report::{Curve, Figure, Theme};
 use ship::angle::to_deg;
+use trial::Manoeuvre;
 use trial::imo::Unit;
 
 use super::index_figures;
@@ -40,7 +40,7 @@ pub fn draw(
     let stems = stems(document);
     for (prediction, stem) in document.manoeuvres.iter().zip(&stems) {
         let kind = prediction.kind.to_string();
-        if prediction.kind.pattern == Pattern::Spiral {
+        if matches!(prediction.kind, Manoeuvre::Spiral { .. }) {
             let caption =
                 format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
             let draw = move || figures::steady_curves(&steady(&prediction.curves, document.seen), theme);
@@ -49,7 +49,7 @@ pub fn draw(
         }
         let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
         drawings.push((stem.clone(), caption, Box::new(move || bands_of(prediction, theme))));
-        if let (Pattern::ZigZag { .. }, Some(passage)) = (prediction.kind.pattern, &prediction.most_probable) {
+        if let (Manoeuvre::ZigZag { .. }, Some(passage)) = (&prediction.kind, &prediction.most_probable) {
             let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
             let draw = move || {
                 let way = index_figures::phase_named("most probable ship", &passage.heading, &passage.yaw_rate);

@@ -1,11 +1,11 @@
 //! The page of a prediction: words, tables and figures.
 
-use predict::kind::Pattern;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::markdown::text;
 use report::number::{fixed, with_uncertainty};
 use ship::angle::to_deg;
+use trial::Manoeuvre;
 
 use super::predict_tables;
 
@@ -26,7 +26,7 @@ pub fn words(document: &PredictDocument) -> String {
             fixed(to_deg(document.seen.yaw_rate_rad_s), 2)
         );
     }
-    let turns = document.manoeuvres.iter().filter(|one| one.kind.pattern == Pattern::TurningCircle);
+    let turns = document.manoeuvres.iter().filter(|one| matches!(one.kind, Manoeuvre::TurningCircle { .. }));
     if turns.filter_map(|one| one.most_probable.as_ref()).any(|passage| passage.way.is_none()) {
         words += "no track: the length of the ship is not known, or its records do not tell speed loss and drift\n";
     }

@@ -2,7 +2,6 @@
 
 use ::trace::Analysis;
 use ship::angle::{from_deg, to_deg};
-use simulate::manoeuvre::{PullOut, TurnEnd, TurningCircle, ZigZag, ZigZagEnd};
 use simulate::{Manoeuvre, Side, Simulation, SteeringGear, StreamKey, Vessel};
 use trial::Trial;
 
@@ -23,28 +22,19 @@ pub fn trials(analysis: &Analysis, records: &[Trial]) -> Vec<(String, Trial)> {
     let longest = records.iter().map(Trial::duration).fold(0.0, f64::max);
     let zigzags = ZIGZAGS.into_iter().flat_map(|[rudder, heading]| {
         [(Side::Starboard, ""), (Side::Port, ", first execute to port")].map(|(first, words)| {
-            let end = ZigZagEnd::Executes(EXECUTES);
-            let zigzag = ZigZag { rudder: from_deg(rudder), heading: from_deg(heading), first, end };
-            (format!("{rudder:.0}/{heading:.0} zig-zag{words}"), Manoeuvre::ZigZag(zigzag))
+            let zigzag = Manoeuvre::zig_zag(from_deg(rudder), from_deg(heading)).to(first).until_execute(EXECUTES);
+            (format!("{rudder:.0}/{heading:.0} zig-zag{words}"), zigzag)
         })
     });
-    let turn = (
-        String::from("35° turning circle"),
-        Manoeuvre::TurningCircle(TurningCircle {
-            rudder: from_deg(35.0),
-            side: Side::Starboard,
-            end: TurnEnd::Duration(0.5 * longest),
-        }),
-    );
-    let pull_out = (
-        String::from("pull-out after 20° of rudder"),
-        Manoeuvre::PullOut(PullOut {
-            rudder: from_deg(20.0),
-            side: Side::Starboard,
-            hold: 0.4 * longest,
-            duration: 0.4 * longest,
-        }),
-    );
+    let turn = Manoeuvre::turning_circle(from_deg(35.0)).lasting(0.5 * longest);
+    let pull_out = Manoeuvre::PullOut {
+        rudder: from_deg(20.0),
+        side: Side::Starboard,
+        hold: 0.4 * longest,
+        duration: 0.4 * longest,
+    };
+    let turn = (String::from("35° turning circle"), turn);
+    let pull_out = (String::from("pull-out after 20° of rudder"), pull_out);
     zigzags
         .chain([turn, pull_out])
         .filter_map(|(name, manoeuvre)| Some((name, sailed(analysis, records, manoeuvre)?)))

@@ -5,17 +5,16 @@ use std::path::Path;
 use predict::correction::{self, Correction};
 use predict::document::ModelWeight;
 use predict::form::{self, FormRecord};
-use predict::kind::Kind;
 use predict::known::is_same_length;
 use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
-use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo};
+use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo, standard};
 use report::number::fixed;
 use scenario::failure::Failure;
 use scenario::name;
 use serde_json::Value;
 use ship::Particulars;
-use trial::{Conditions, Trial, file};
+use trial::{Conditions, Manoeuvre, Trial, file};
 
 use crate::options::{PredictRequest, ReadingOptions};
 use crate::progress;
@@ -129,9 +128,9 @@ pub struct PredictInput<'a> {
 }
 
 /// The manoeuvres that were asked for; those of the IMO criteria where nothing is; those of the form beside them.
-fn manoeuvres(request: &PredictRequest) -> Vec<Kind> {
+fn manoeuvres(request: &PredictRequest) -> Vec<Manoeuvre> {
     let mut kinds = match (request.manoeuvres.as_slice(), request.replays.is_empty() && !request.form) {
-        ([], true) => Kind::of_imo(),
+        ([], true) => standard::of_imo(),
         (asked, _) => asked.to_vec(),
     };
     let of_form = form::manoeuvres().into_iter().filter(|_| request.form);

@@ -1,11 +1,10 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
-use predict::kind::Pattern;
 use predict::known::ValidityRange;
 use predict::steady::SteadyCurve;
-use predict::{IdentifiedShip, Kind, ShipMixture};
+use predict::{IdentifiedShip, ShipMixture};
 use ship::angle::from_deg;
-use simulate::Side;
+use trial::Manoeuvre;
 
 /// Ships that are drawn.
 const DRAWS: usize = 40;
@@ -21,8 +20,7 @@ pub fn of_ship(known: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRang
     let ship = IdentifiedShip { hull: None, ..known.in_calm().ok()? };
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
-    let kind =
-        Kind { pattern: Pattern::Spiral, rudder: (BEYOND * seen.rudder_rad).clamp(least, most), side: Side::Starboard };
+    let kind = Manoeuvre::Spiral { rudder: (BEYOND * seen.rudder_rad).clamp(least, most) };
     let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves;
     let has_turns = curves.first().is_some_and(|curve| curve.rudder.len() > 2);
     has_turns.then_some((curves, seen))

@@ -6,7 +6,6 @@ use std::process::{Child, Command, Output, Stdio};
 
 use ship::Ship;
 use ship::angle::{from_deg, to_deg};
-use simulate::manoeuvre::ZigZagEnd;
 use simulate::{Manoeuvre, Recording, Simulation, SteeringGear, StreamKey, Vessel};
 
 use crate::schemas;
@@ -135,7 +134,7 @@ pub fn zig_zag_csv_of(ship: &Ship) -> String {
 
 /// The same with another time between rows, s.
 pub fn zig_zag_csv_every(ship: &Ship, period: f64) -> String {
-    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0), ZigZagEnd::Record);
+    let manoeuvre = Manoeuvre::zig_zag(from_deg(10.0), from_deg(10.0));
     let simulation = Simulation {
         gear: SteeringGear::with_rate(from_deg(2.5)),
         recording: Recording { period, duration: Some(300.0), ..Recording::default() },

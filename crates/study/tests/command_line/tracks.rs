@@ -1,7 +1,6 @@
 //! Tracks: records of position alone, and the current that a circle shows.
 
 use ship::angle::{from_deg, to_deg};
-use simulate::manoeuvre::{TurnEnd, TurningCircle, ZigZagEnd};
 use simulate::{Manoeuvre, Recording, Side, Simulation, SteeringGear, StreamKey, Vessel};
 
 use crate::desk::{Desk, measured, of_repository};
@@ -39,13 +38,14 @@ fn record(manoeuvre: Manoeuvre, duration: f64, current: [f64; 2]) -> String {
 }
 
 fn zig_zag() -> String {
-    record(Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0), ZigZagEnd::Record), 600.0, [0.0; 2])
+    record(Manoeuvre::zig_zag(from_deg(20.0), from_deg(20.0)), 600.0, [0.0; 2])
 }
 
 fn circle(current: [f64; 2], turn_deg: f64) -> String {
-    let end = TurnEnd::HeadingChange(from_deg(turn_deg));
-    let turn = TurningCircle { rudder: from_deg(20.0), side: Side::Starboard, end };
-    record(Manoeuvre::TurningCircle(turn), if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
+    let heading_change = Some(from_deg(turn_deg));
+    let turn =
+        Manoeuvre::TurningCircle { rudder: from_deg(20.0), side: Side::Starboard, duration: None, heading_change };
+    record(turn, if turn_deg > 700.0 { 1700.0 } else { 700.0 }, current)
 }
 
 /// Positions and headings tell speed and drift: the model predicts an advance and a tactical diameter from them, with

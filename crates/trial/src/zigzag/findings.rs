@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use thiserror::Error;
 
@@ -34,12 +36,14 @@ pub enum ZigZagError {
 }
 
 /// A side of the ship.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// Left; negative rudder, heading and yaw rate.
-    Port,
-    /// Right; positive rudder, heading and yaw rate.
+    /// Right, seen forward: positive rudder, growing heading.
+    #[default]
     Starboard,
+    /// Left, seen forward.
+    Port,
 }
 
 impl Side {

@@ -64,10 +64,9 @@ fn what_is_wrong_is_told_with_line_and_place() {
 
 #[test]
 fn tasks_are_what_they_say() {
-    let zig_zag = |rudder_deg, first| Deed::ZigZag { rudder_deg, heading_deg: 20.0, first };
-    let (starboard, port) = (simulate::manoeuvre::Side::Starboard, simulate::manoeuvre::Side::Port);
-    let [one, mirrored, small] = [zig_zag(20.0, starboard), zig_zag(20.0, port), zig_zag(10.0, starboard)];
-    let circle = Deed::TurningCircle { rudder_deg: 35.0, side: starboard };
+    let zig_zag = |rudder| Manoeuvre::zig_zag(rudder, 0.3);
+    let [one, mirrored, small] = &[zig_zag(0.3), zig_zag(0.3).to(trial::Side::Port), zig_zag(0.2)];
+    let circle = &Manoeuvre::turning_circle(0.6);
     assert!(is_that(Task::OtherSide, &[one], mirrored).is_ok() && is_that(Task::OtherSide, &[one], small).is_err());
     assert!(is_that(Task::OtherAmplitude, &[one, mirrored], small).is_ok());
     assert!(is_that(Task::OtherAmplitude, &[one, small], mirrored).is_err());

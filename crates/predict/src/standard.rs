@@ -1,0 +1,38 @@
+//! The manoeuvres that are predicted: those of the IMO criteria, and what the helm does in one whose ends are left open.
+
+use ship::angle::from_deg;
+use simulate::Manoeuvre;
+
+/// Executes of a predicted zig-zag; four overshoots are whole.
+pub(crate) const EXECUTES: usize = 6;
+
+/// Change of heading of a predicted turning circle, rad: a little more than the 540° after which speed, drift and pivot
+/// of a steady turn can be read.
+const TURN: f64 = 3.05 * std::f64::consts::PI;
+
+/// Times of the ship that a turn of a pull-out is held, and that is waited after it.
+const PULL_OUT: f64 = 40.0;
+
+/// Times of the ship after the last order of a Williamson turn.
+const AFTER_WILLIAMSON: f64 = 20.0;
+
+/// The manoeuvres of the IMO criteria, to starboard.
+pub fn of_imo() -> Vec<Manoeuvre> {
+    let zig_zag = |angle_deg| Manoeuvre::zig_zag(from_deg(angle_deg), from_deg(angle_deg));
+    vec![zig_zag(10.0), zig_zag(20.0), Manoeuvre::turning_circle(from_deg(35.0))]
+}
+
+/// A manoeuvre as it was asked for with what ends it, for a ship with this time, s; `None` for a spiral, which is a curve
+/// of steady turns.
+pub fn steered(asked: &Manoeuvre, timescale: f64) -> Option<Manoeuvre> {
+    let mut manoeuvre = asked.clone();
+    match &mut manoeuvre {
+        Manoeuvre::ZigZag { executes, .. } => *executes = Some(EXECUTES),
+        Manoeuvre::TurningCircle { heading_change, .. } => *heading_change = Some(TURN),
+        Manoeuvre::PullOut { hold, duration, .. } => [*hold, *duration] = [PULL_OUT * timescale; 2],
+        Manoeuvre::Williamson { duration, .. } => *duration = AFTER_WILLIAMSON * timescale,
+        Manoeuvre::Spiral { .. } => return None,
+        Manoeuvre::InitialTurning { .. } | Manoeuvre::Replay { .. } => {}
+    }
+    Some(manoeuvre)
+}

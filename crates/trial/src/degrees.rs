@@ -1,0 +1,66 @@
+//! Angles in files: degrees there, radians in the program.
+
+use std::borrow::Cow;
+use std::marker::PhantomData;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use ship::Shown;
+use ship::angle::{from_deg, to_deg};
+
+/// An angle or angular rate, rad, or none of it, which a file gives in degrees: for `#[serde(with = "Degrees::<…>")]`.
+pub struct Degrees<T>(PhantomData<T>);
+
+/// What [`Degrees`] can stand for.
+pub trait Angle: Sized {
+    /// The same with every number changed.
+    fn map_angle(self, change: fn(f64) -> f64) -> Self;
+}
+
+impl Angle for f64 {
+    fn map_angle(self, change: fn(f64) -> f64) -> Self {
+        change(self)
+    }
+}
+
+impl Angle for Option<f64> {
+    fn map_angle(self, change: fn(f64) -> f64) -> Self {
+        self.map(change)
+    }
+}
+
+/// Degrees as they were written: their way to radians and back must not show.
+pub fn written_deg(angle: f64) -> f64 {
+    Shown::rounded(to_deg(angle), 14).0
+}
+
+impl<T: Angle + Copy + Serialize> Degrees<T> {
+    /// Writes degrees.
+    pub fn serialize<S: Serializer>(angle: &T, serializer: S) -> Result<S::Ok, S::Error> {
+        angle.map_angle(written_deg).serialize(serializer)
+    }
+}
+
+impl<T: Angle> Degrees<T> {
+    /// Reads degrees.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error>
+    where
+        T: Deserialize<'de>,
+    {
+        T::deserialize(deserializer).map(|angle| angle.map_angle(from_deg))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Degrees<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}

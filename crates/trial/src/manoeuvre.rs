@@ -1,0 +1,447 @@
+//! Manoeuvres: what the helm orders when, under which keys a file gives it, and what a list calls it. Everything about
+//! one manoeuvre is in this file; who steers it is in the simulator, what is found of it in a log in [`crate::find`].
+//!
+//! In a file angles are in degrees, here in rad; times are in s.
+//!
+//! Sources: ITTC 7.5-04-02-01 Full Scale Manoeuvring Trials; MSC.137(76) for the initial turning test; IAMSAR Manual,
+//! volume III, for the Williamson turn.
+
+use std::borrow::Cow;
+use std::f64::consts::PI;
+use std::fmt;
+use std::str::FromStr;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use ship::Polyline;
+use ship::angle::{DEGREE, from_deg, to_deg};
+
+use crate::degrees::Degrees;
+use crate::zigzag::Side;
+
+/// A manoeuvre: one key, its name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Manoeuvre {
+    /// Zig-zag: the rudder is reversed whenever the heading deviates far enough from the base course.
+    ZigZag {
+        /// Rudder angle δ to either side.
+        #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
+        rudder: f64,
+        /// Deviation of the heading ψ from the base course at which the rudder is reversed.
+        #[serde(rename = "heading-deg", with = "Degrees::<f64>")]
+        heading: f64,
+        /// Side of the first execute.
+        #[serde(default)]
+        first: Side,
+        /// Number of the execute that ends the manoeuvre, or `duration-s`; left out, the end of the record is its end.
+        executes: Option<usize>,
+        /// Time from the first execute to the end, or `executes`.
+        #[serde(rename = "duration-s")]
+        duration: Option<f64>,
+    },
+    /// Turning circle: one order, held.
+    TurningCircle {
+        /// Rudder angle δ.
+        #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
+        rudder: f64,
+        /// Side of the turn.
+        #[serde(default)]
+        side: Side,
+        /// Time from the execute to the end, or `heading-change-deg`.
+        #[serde(rename = "duration-s")]
+        duration: Option<f64>,
+        /// Change of heading that ends the turn, or `duration-s`.
+        #[serde(default, rename = "heading-change-deg", with = "Degrees::<Option<f64>>")]
+        heading_change: Option<f64>,
+    },
+    /// Pull-out: a turn, then rudder amidships.
+    PullOut {
+        /// Rudder angle δ of the turn.
+        #[serde(rename = "rudder-deg", with = "Degrees::<f64>")]
+        rudder: f64,
+        /// Side of the turn.
+        #[serde(default)]
+        side: Side,
+        /// Time the rudder is held.
+        #[serde(rename = "hold-s")]
+        hold: f64,
+        /// Time from the order amidships to the end.
+        #[serde(rename = "duration-s")]
+        duration: f64,
+    },
+    /// The rudder of a record, followed as it is, without helmsman and steering gear.
+    Replay {
+        /// Record with a rudder, relative to the scenario.
+        file: String,
+        /// That rudder, rad; its first point is put at the first execute.
+        #[serde(skip)]
+        rudder: Option<Polyline>,
+    },
+    /// A turn until the heading has changed by 10°, MSC.137(76).
+    #[serde(skip)]
+    InitialTurning {
+        /// Rudder angle, rad.
+        rudder: f64,
+        /// Side of the turn.
+        side: Side,
+    },
+    /// A Williamson turn, which brings a ship back to her own track on the opposite course: hard over until the heading
+    /// has changed by 60°, hard over to the other side until it is 20° short of the opposite course, then amidships.
+    #[serde(skip)]
+    Williamson {
+        /// Rudder angle, rad.
+        rudder: f64,
+        /// Side of the first turn.
+        side: Side,
+        /// Time from the order amidships to the end, s.
+        duration: f64,
+    },
+    /// Steady turns up to a rudder to either side, their unstable branch included; no helm steers it.
+    #[serde(skip)]
+    Spiral {
+        /// Largest rudder angle, rad.
+        rudder: f64,
+    },
+}
+
+/// What the helm waits for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Trigger {
+    /// A time, s: of a step from the order before it, or else from the beginning of the manoeuvre.
+    Time(f64),
+    /// `side` · (ψ − base course) ≥ `angle`, with side ±1 and angle in rad.
+    Deviation {
+        /// Direction of the deviation, +1 to starboard.
+        side: f64,
+        /// Size of the deviation, rad.
+        angle: f64,
+    },
+    /// Nothing more.
+    Never,
+}
+
+/// One step of a manoeuvre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrderStep {
+    /// What is waited for.
+    pub trigger: Trigger,
+    /// The rudder ordered then, rad; `None` where the manoeuvre ends.
+    pub order: Option<f64>,
+    /// Key of what it depends on, in a scenario.
+    pub key: &'static str,
+}
+
+/// Change of heading of the initial turning test, rad.
+pub const INITIAL_TURN: f64 = 10.0 * DEGREE;
+
+/// Change of heading at which the rudder of a Williamson turn is put over to the other side, and that to the other side
+/// at which it is put amidships, rad.
+const WILLIAMSON: [f64; 2] = [PI / 3.0, PI - PI / 9.0];
+
+/// Rudder of a Williamson turn whose rudder is not given.
+const HARD_OVER_DEG: f64 = 35.0;
+
+impl Manoeuvre {
+    /// A zig-zag with starboard first, until the end of the record.
+    pub fn zig_zag(rudder: f64, heading: f64) -> Self {
+        Self::ZigZag { rudder, heading, first: Side::Starboard, executes: None, duration: None }
+    }
+
+    /// A turning circle to starboard, which still lacks an end.
+    pub fn turning_circle(rudder: f64) -> Self {
+        Self::TurningCircle { rudder, side: Side::Starboard, duration: None, heading_change: None }
+    }
+
+    /// A rudder that was recorded, rad.
+    pub fn replay(rudder: Polyline) -> Self {
+        Self::Replay { file: String::new(), rudder: Some(rudder) }
+    }
+
+    /// The same zig-zag, ended by an execute, counted from 1; n executes show n − 2 whole overshoots.
+    pub fn until_execute(mut self, number: usize) -> Self {
+        if let Self::ZigZag { executes, .. } = &mut self {
+            *executes = Some(number);
+        }
+        self
+    }
+
+    /// The same zig-zag or turning circle, ended so long after its first execute, s.
+    pub fn lasting(mut self, time: f64) -> Self {
+        if let Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. } = &mut self {
+            *duration = Some(time);
+        }
+        self
+    }
+
+    /// The step after so many orders, the first of which is given at once.
+    pub fn step(&self, orders: usize) -> OrderStep {
+        use Trigger::{Deviation, Never, Time};
+        let (trigger, order, key) = match (self, orders) {
+            (Self::ZigZag { executes: Some(executes), .. }, _) if orders >= *executes => {
+                (Time(0.0), None, "manoeuvre.zig-zag.executes")
+            }
+            (Self::ZigZag { rudder, heading, first, .. }, _) => {
+                let side = if orders.is_multiple_of(2) { first.sign() } else { -first.sign() };
+                // The rudder lies to the side opposite to the next execute, and so does the deviation it causes.
+                let deviation = Deviation { side: -side, angle: *heading };
+                (if orders == 0 { Time(0.0) } else { deviation }, Some(side * rudder), "manoeuvre.zig-zag.executes")
+            }
+            (
+                Self::TurningCircle { rudder, side, .. }
+                | Self::InitialTurning { rudder, side }
+                | Self::PullOut { rudder, side, .. }
+                | Self::Williamson { rudder, side, .. },
+                0,
+            ) => (Time(0.0), Some(side.sign() * rudder), "approach.lead-in-s"),
+            (Self::TurningCircle { duration: Some(duration), .. }, _) => {
+                (Time(*duration), None, "manoeuvre.turning-circle.duration-s")
+            }
+            (Self::TurningCircle { side, heading_change: Some(angle), .. }, _) => {
+                let trigger = Deviation { side: side.sign(), angle: *angle };
+                (trigger, None, "manoeuvre.turning-circle.heading-change-deg")
+            }
+            (Self::TurningCircle { .. }, _) => (Never, None, "recording.duration-s"),
+            (Self::InitialTurning { side, .. }, _) => {
+                (Deviation { side: side.sign(), angle: INITIAL_TURN }, None, "manoeuvre")
+            }
+            (Self::PullOut { hold, .. }, 1) => (Time(*hold), Some(0.0), "manoeuvre.pull-out.hold-s"),
+            (Self::PullOut { duration, .. }, _) => (Time(*duration), None, "manoeuvre.pull-out.duration-s"),
+            (Self::Williamson { rudder, side, .. }, 1) => {
+                (Deviation { side: side.sign(), angle: WILLIAMSON[0] }, Some(-side.sign() * rudder), "manoeuvre")
+            }
+            (Self::Williamson { side, .. }, 2) => {
+                (Deviation { side: -side.sign(), angle: WILLIAMSON[1] }, Some(0.0), "manoeuvre")
+            }
+            (Self::Williamson { duration, .. }, _) => (Time(*duration), None, "manoeuvre"),
+            (Self::Replay { .. }, _) => (Time(self.length_of_record()), None, "manoeuvre.replay.file"),
+            (Self::Spiral { .. }, _) => (Never, None, "manoeuvre"),
+        };
+        OrderStep { trigger, order, key }
+    }
+
+    /// The steps in order, as long as something is ordered or ends the manoeuvre; those of a zig-zag that only the
+    /// record ends are without end.
+    pub fn steps(&self) -> impl Iterator<Item = OrderStep> {
+        let mut ended = false;
+        (0..)
+            .map(|orders| self.step(orders))
+            .take_while(move |step| !std::mem::replace(&mut ended, step.order.is_none()))
+    }
+
+    /// Time from the first execute to the end, s; infinite where headings or the record decide.
+    pub fn length(&self) -> f64 {
+        if let Self::ZigZag { duration: Some(duration), .. } = self {
+            return *duration;
+        }
+        let mut length = 0.0;
+        for step in self.steps() {
+            match step.trigger {
+                Trigger::Time(time) => length += time,
+                Trigger::Deviation { .. } | Trigger::Never => return f64::INFINITY,
+            }
+        }
+        length
+    }
+
+    /// Number of executes it has at most.
+    pub fn most_executes(&self) -> usize {
+        match self {
+            Self::ZigZag { executes, .. } => executes.unwrap_or(usize::MAX),
+            _ => self.steps().filter(|step| step.order.is_some()).count(),
+        }
+    }
+
+    /// Largest rudder angle asked for, rad.
+    pub fn rudder(&self) -> f64 {
+        match self {
+            Self::ZigZag { rudder, .. }
+            | Self::TurningCircle { rudder, .. }
+            | Self::PullOut { rudder, .. }
+            | Self::InitialTurning { rudder, .. }
+            | Self::Williamson { rudder, .. }
+            | Self::Spiral { rudder } => *rudder,
+            Self::Replay { rudder, .. } => {
+                let values = rudder.iter().flat_map(Polyline::values);
+                values.fold(0.0, |largest: f64, delta| largest.max(delta.abs()))
+            }
+        }
+    }
+
+    /// Side of the first execute; starboard where there is none.
+    pub fn side(&self) -> Side {
+        match self {
+            Self::ZigZag { first: side, .. }
+            | Self::TurningCircle { side, .. }
+            | Self::PullOut { side, .. }
+            | Self::InitialTurning { side, .. }
+            | Self::Williamson { side, .. } => *side,
+            Self::Replay { .. } | Self::Spiral { .. } => Side::Starboard,
+        }
+    }
+
+    /// The same manoeuvre to that side; a spiral goes to either.
+    pub fn to(mut self, other: Side) -> Self {
+        match &mut self {
+            Self::ZigZag { first: side, .. }
+            | Self::TurningCircle { side, .. }
+            | Self::PullOut { side, .. }
+            | Self::InitialTurning { side, .. }
+            | Self::Williamson { side, .. } => *side = other,
+            Self::Replay { .. } | Self::Spiral { .. } => {}
+        }
+        self
+    }
+
+    /// Name of its key in a scenario, where it has one.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::ZigZag { .. } => "zig-zag",
+            Self::TurningCircle { .. } => "turning-circle",
+            Self::PullOut { .. } => "pull-out",
+            Self::Replay { .. } => "replay",
+            Self::InitialTurning { .. } => "initial-turning",
+            Self::Williamson { .. } => "williamson",
+            Self::Spiral { .. } => "spiral",
+        }
+    }
+
+    /// The number under a key (SI, rad), so that a study can draw it; `None` where there is none, or one left out.
+    pub fn number(&mut self, key: &str) -> Option<&mut f64> {
+        match (self, key) {
+            (
+                Self::ZigZag { rudder, .. } | Self::TurningCircle { rudder, .. } | Self::PullOut { rudder, .. },
+                "rudder-deg",
+            ) => Some(rudder),
+            (Self::ZigZag { heading, .. }, "heading-deg") => Some(heading),
+            (Self::ZigZag { duration, .. } | Self::TurningCircle { duration, .. }, "duration-s") => duration.as_mut(),
+            (Self::TurningCircle { heading_change, .. }, "heading-change-deg") => heading_change.as_mut(),
+            (Self::PullOut { hold, .. }, "hold-s") => Some(hold),
+            (Self::PullOut { duration, .. }, "duration-s") => Some(duration),
+            _ => None,
+        }
+    }
+
+    /// Time from the first to the last point of a recorded rudder, s.
+    fn length_of_record(&self) -> f64 {
+        let Self::Replay { rudder: Some(rudder), .. } = self else { return 0.0 };
+        let times = rudder.times();
+        times[times.len() - 1] - times[0]
+    }
+}
+
+/// As it is asked for on the command line, with a blank for the colon: "zig-zag 20/10", "pull-out -20" to port.
+impl fmt::Display for Manoeuvre {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {}", self.name(), whole_deg(self.rudder() * self.side().sign()))?;
+        match self {
+            Self::ZigZag { heading, .. } => write!(f, "/{}", whole_deg(*heading)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// An angle in degrees without the rounding of its conversion.
+pub fn whole_deg(angle: f64) -> f64 {
+    (to_deg(angle) * 1e6).round() / 1e6
+}
+
+/// A text that names no manoeuvre.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no manoeuvre; expected zig-zag:RUDDER/HEADING, initial-turning:RUDDER, turning-circle:RUDDER, \
+     pull-out:RUDDER, spiral:RUDDER or williamson, angles in degrees, negative for port"
+)]
+pub struct NoManoeuvre(pub String);
+
+/// Reads what is asked for on the command line; what ends the manoeuvre is left open, and times of it are 0.
+impl FromStr for Manoeuvre {
+    type Err = NoManoeuvre;
+
+    fn from_str(text: &str) -> Result<Self, NoManoeuvre> {
+        let refused = || NoManoeuvre(text.to_owned());
+        let (name, rest) = text.trim().split_once([':', ' ']).unwrap_or((text.trim(), ""));
+        let (rudder, heading) = match rest.split_once('/') {
+            Some((rudder, heading)) if name == "zig-zag" => (rudder, Some(heading)),
+            _ => (rest, None),
+        };
+        let angle = |text: &str| -> Result<(f64, Side), NoManoeuvre> {
+            let value: f64 = text.trim().parse().map_err(|_| refused())?;
+            if !(value != 0.0 && value.abs() <= 60.0) {
+                return Err(refused());
+            }
+            Ok((from_deg(value.abs()), if value < 0.0 { Side::Port } else { Side::Starboard }))
+        };
+        if (name, rest) == ("williamson", "") {
+            return Ok(Self::Williamson { rudder: from_deg(HARD_OVER_DEG), side: Side::Starboard, duration: 0.0 });
+        }
+        let (rudder, side) = angle(rudder)?;
+        Ok(match name {
+            "zig-zag" => {
+                let (heading, _) = angle(heading.ok_or_else(refused)?)?;
+                Self::ZigZag { rudder, heading, first: side, executes: None, duration: None }
+            }
+            "initial-turning" => Self::InitialTurning { rudder, side },
+            "turning-circle" => Self::TurningCircle { rudder, side, duration: None, heading_change: None },
+            "pull-out" => Self::PullOut { rudder, side, hold: 0.0, duration: 0.0 },
+            "williamson" => Self::Williamson { rudder, side, duration: 0.0 },
+            "spiral" => Self::Spiral { rudder },
+            _ => return Err(refused()),
+        })
+    }
+}
+
+/// A manoeuvre as the words of its [`Display`](fmt::Display): for `#[serde(with = "InWords")]`.
+pub struct InWords;
+
+impl InWords {
+    /// Writes the words.
+    pub fn serialize<S: Serializer>(manoeuvre: &Manoeuvre, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(manoeuvre)
+    }
+
+    /// Reads the words.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Manoeuvre, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl JsonSchema for InWords {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        String::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        String::json_schema(generator)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_written() {
+        for (text, name) in [
+            ("zig-zag:10/10", "zig-zag 10/10"),
+            ("zig-zag:-20/10", "zig-zag -20/10"),
+            ("turning-circle:35", "turning-circle 35"),
+            ("pull-out:-20", "pull-out -20"),
+            ("spiral:15", "spiral 15"),
+            ("initial-turning:10", "initial-turning 10"),
+            ("williamson", "williamson 35"),
+        ] {
+            let manoeuvre: Manoeuvre = text.parse().expect("known");
+            assert_eq!(manoeuvre.to_string(), name);
+            assert_eq!(name.parse::<Manoeuvre>(), Ok(manoeuvre));
+        }
+        for wrong in ["", "zig-zag", "zig-zag:10", "zig-zag:0/10", "circle:35", "spiral:x", "pull-out:90"] {
+            let said = wrong.parse::<Manoeuvre>().expect_err("refused").to_string();
+            assert!(said.contains("zig-zag:RUDDER/HEADING"), "{said}");
+        }
+    }
+}
