@@ -25,7 +25,7 @@ use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit};
 use found::Analysed;
-use points::{BaseCourse, Points};
+use points::{BaseCourseSource, Points};
 
 /// Which points are used, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -202,9 +202,9 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<String> {
     let told = |(trial, analysed): (&Trial, &Analysed)| {
         let taken = match analysed.points.base_from {
-            BaseCourse::Given | BaseCourse::Approach => return None,
-            BaseCourse::Zero => "heading 0",
-            BaseCourse::Middle => "the middle of its headings",
+            BaseCourseSource::Given | BaseCourseSource::Approach => return None,
+            BaseCourseSource::Zero => "heading 0",
+            BaseCourseSource::Middle => "the middle of its headings",
         };
         Some(format!(
             "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",

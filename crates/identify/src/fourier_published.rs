@@ -22,7 +22,7 @@ use trial::Trial;
 
 use crate::error::IdentifyError;
 use crate::estimate::{Estimate, StopReason, Uncertainty};
-use crate::fourier::triples::{self, Answer, Drawn, Instant, MOST_TRIPLES, Selection};
+use crate::fourier::triples::{self, Answer, Drawn, EquationInstant, MOST_TRIPLES, Selection};
 use crate::fourier::{self, Fitted, Fundamental, MOST_HARMONICS};
 use crate::identifier::{Accuracy, Identifier, Promises};
 use crate::samples::Samples;
@@ -110,7 +110,7 @@ impl FourierPublished {
     }
 
     /// The instants of one trial that triples are drawn from.
-    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<Instant> {
+    fn instants(&self, trial: &Trial, samples: &Samples, fitted: &Fitted) -> Vec<EquationInstant> {
         let first = trial.observed_rows().next().expect("samples hold at least one observed row");
         let start = trial.time()[first];
         let length = samples.time[samples.len() - 1];
@@ -127,7 +127,7 @@ impl FourierPublished {
                         && rudder_range.at(start + t, RUDDER_REST_S) < from_deg(RUDDER_REST_DEG)
                 }
             })
-            .map(|row| Instant {
+            .map(|row| EquationInstant {
                 rudder: samples.rudder[row],
                 yaw_rate: yaw_rate[row],
                 yaw_acceleration: yaw_acceleration[row],

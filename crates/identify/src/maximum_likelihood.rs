@@ -23,7 +23,7 @@ mod settings;
 #[cfg(test)]
 mod tests;
 
-use choice::Prepared;
+use choice::PreparedRecords;
 use trial::Trial;
 
 pub use answer::cramer_rao;
@@ -38,7 +38,7 @@ use crate::settings::{SettingsError, check_iterations};
 /// stand alone against what `output-error` leaves of the headings about them. None where more than a tenth of the
 /// readings do: that is noise of another law. Fails as `output-error` does.
 pub fn spikes(trials: &[Trial]) -> Result<Vec<Vec<f64>>, IdentifyError> {
-    Ok(Prepared::new(&Settings::default(), trials)?.spikes())
+    Ok(PreparedRecords::new(&Settings::default(), trials)?.spikes())
 }
 
 impl Settings {
@@ -76,7 +76,7 @@ impl Identifier for MaximumLikelihood {
         if trials.is_empty() {
             return Err(IdentifyError::NoTrial);
         }
-        let prepared = choice::Prepared::new(&self.settings, trials)?;
+        let prepared = choice::PreparedRecords::new(&self.settings, trials)?;
         let chosen = prepared.choose(&self.settings)?;
         answer::estimate(trials, chosen)
     }

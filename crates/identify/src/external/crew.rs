@@ -29,7 +29,7 @@ pub struct Crew {
     command: Vec<String>,
     folder: PathBuf,
     idle: Mutex<Vec<Process>>,
-    log: Mutex<Option<Arc<Mutex<Log>>>>,
+    log: Mutex<Option<Arc<Mutex<StderrLog>>>>,
 }
 
 impl Crew {
@@ -80,7 +80,7 @@ impl Crew {
 
     /// Where what its processes say beside their answers goes from now on.
     pub fn log_to(&self, open: Opener) {
-        *locked(&self.log) = Some(Arc::new(Mutex::new(Log { open, file: None, left: MOST_LOG })));
+        *locked(&self.log) = Some(Arc::new(Mutex::new(StderrLog { open, file: None, left: MOST_LOG })));
     }
 
     /// Ends the processes that wait, and with them the log.
@@ -117,13 +117,13 @@ impl Drop for Crew {
 }
 
 /// What processes say beside their answers, up to a size. A log that cannot be written is not missed.
-struct Log {
+struct StderrLog {
     open: Opener,
     file: Option<File>,
     left: u64,
 }
 
-impl Log {
+impl StderrLog {
     fn add(&mut self, words: &[u8]) {
         if self.left == 0 {
             return;

@@ -33,13 +33,13 @@ struct Record<'a> {
     heading_rad: &'a [f64],
     rudder_rad: &'a [f64],
     yaw_rate_rad_s: Option<&'a [f64]>,
-    noise: Noise,
+    noise: DeclaredNoise,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     also: Vec<Record<'a>>,
 }
 
 #[derive(Serialize)]
-struct Noise {
+struct DeclaredNoise {
     heading_rad: Option<f64>,
     rudder_rad: Option<f64>,
 }
@@ -53,7 +53,7 @@ impl<'a> Record<'a> {
             heading_rad: trial.heading(),
             rudder_rad: trial.rudder(),
             yaw_rate_rad_s: trial.yaw_rate(),
-            noise: Noise { heading_rad: heading, rudder_rad: rudder },
+            noise: DeclaredNoise { heading_rad: heading, rudder_rad: rudder },
             also: Vec::new(),
         }
     }

@@ -112,7 +112,7 @@ fn normal_equations_agree_with_singular_values() {
     let heading = trial.heading().iter().map(|psi| psi + from_deg(350.0)).collect();
     let trial = record("base course", trial.time().to_vec(), heading, trial.rudder().to_vec());
     let samples = Samples::new(&trial, 8).expect("valid");
-    let piece = Piece::new(&samples, 0..samples.len());
+    let piece = IntegratedStretch::new(&samples, 0..samples.len());
     let columns = piece.columns;
     let one = vec![1.0; samples.len()];
     let reference =
