@@ -29,9 +29,9 @@ use crate::fourier::fundamental::zero_crossing_period;
 use crate::fourier::regression::{Equations, RegressionForm, white_variance};
 use crate::fourier::{self, Fitted, FourierFit, Fundamental, MOST_HARMONICS, TRUSTED_CONDITION};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::samples::Samples;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, require};
 
 /// Fewest observed rows of a trial.
 const FEWEST_ROWS: usize = 20;
@@ -105,14 +105,11 @@ impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<FourierProjected, SettingsError> {
         match self.harmonics {
-            Order::Fixed(harmonics) if harmonics == 0 || harmonics > MOST_HARMONICS => {
-                return Err(SettingsError::new("harmonics.fixed", harmonics, "1 to 64"));
+            Order::Fixed(fixed) => require((1..=MOST_HARMONICS).contains(&fixed), "harmonics.fixed", fixed, "1 to 64"),
+            Order::Gcv { reach } => {
+                require((1.5..=50.0).contains(&reach), "harmonics.reach", Shown(reach), "1.5 to 50")
             }
-            Order::Gcv { reach } if !(1.5..=50.0).contains(&reach) => {
-                return Err(SettingsError::new("harmonics.reach", Shown(reach), "1.5 to 50"));
-            }
-            _ => {}
-        }
+        }?;
         self.fundamental.check()?;
         Ok(FourierProjected { settings: self, most_rows: MOST_ROWS })
     }
@@ -299,12 +296,9 @@ impl Identifier for FourierProjected {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // A residue of the truncation of r': within half a percent but for the long swings of 10/20.
-        Promises {
-            whole: Accuracy { K: 0.004, T: 0.018, rudder_bias_deg: 0.04 },
-            with_gaps: Accuracy { K: 0.012, T: 0.018, rudder_bias_deg: 0.1 },
-        }
+        NoiseFreeAccuracy { whole: [0.004, 0.018, 0.04], with_gaps: [0.012, 0.018, 0.1] }
     }
 }
 

@@ -19,7 +19,7 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::robust::{judge, newey_west_of_three};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
@@ -126,10 +126,10 @@ impl Identifier for IntegralLeastSquares {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // Where whole rows are lost the rudder between them is a straight line as well. An error of it grows with time
         // in an equation that is integrated twice, while it dies out in a simulation: 0.3 % of T against 0.1 %.
-        Promises { with_gaps: Accuracy { K: 0.001, T: 0.005, rudder_bias_deg: 0.012 }, ..Promises::default() }
+        NoiseFreeAccuracy { with_gaps: [0.001, 0.005, 0.012], ..NoiseFreeAccuracy::default() }
     }
 }
 

@@ -31,7 +31,7 @@ pub use settings::{CompassChoice, MomentChoice, RudderChoice, Settings};
 
 use crate::error::IdentifyError;
 use crate::estimate::Estimate;
-use crate::identifier::{Accuracy, Identifier, Promises};
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::settings::{SettingsError, check_iterations};
 
 /// Times, s, of the readings of every record that belong to no ship: single spikes and sentinels such as −999, which
@@ -65,11 +65,8 @@ impl Identifier for MaximumLikelihood {
     }
 
     /// Without any noise the corners of the rudder between rows are all there is to see, and may pass for a moment.
-    fn promises(&self) -> Promises {
-        Promises {
-            whole: Accuracy { K: 2e-3, T: 3e-3, rudder_bias_deg: 2e-3 },
-            with_gaps: Accuracy { K: 5e-3, T: 1e-2, rudder_bias_deg: 0.02 },
-        }
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
+        NoiseFreeAccuracy { whole: [2e-3, 3e-3, 2e-3], with_gaps: [5e-3, 1e-2, 0.02] }
     }
 
     fn identify(&self, trials: &[Trial]) -> Result<Estimate, IdentifyError> {

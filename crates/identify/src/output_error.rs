@@ -22,7 +22,7 @@ use crate::profile::{NewtonStep, Profile, invert};
 use crate::robust;
 use crate::samples::track;
 use crate::scan::{self, Fit};
-use crate::settings::{SettingsError, check_iterations};
+use crate::settings::{SettingsError, check_iterations, require};
 
 /// Settings of [`OutputError`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -45,14 +45,12 @@ impl Default for Settings {
 impl Settings {
     /// Checks the settings and makes the method.
     pub fn build(self) -> Result<OutputError, SettingsError> {
-        if !(1..=FINEST_GRID).contains(&self.grid_per_decade) {
-            return Err(SettingsError::new("grid-per-decade", self.grid_per_decade, "1 to 1000"));
-        }
+        let per_decade = self.grid_per_decade;
+        require((1..=FINEST_GRID).contains(&per_decade), "grid-per-decade", per_decade, "1 to 1000")?;
         check_iterations("iterations", self.iterations)?;
-        if let Some(smallest) = self.smallest_time_constant_s
-            && !TIME_CONSTANTS.contains(&smallest)
-        {
-            return Err(SettingsError::new("smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s"));
+        if let Some(smallest) = self.smallest_time_constant_s {
+            let holds = TIME_CONSTANTS.contains(&smallest);
+            require(holds, "smallest-time-constant-s", Shown(smallest), "a time of 1e-6 to 1e6 s")?;
         }
         Ok(OutputError { settings: self })
     }

@@ -93,11 +93,6 @@ impl Samples {
     pub fn len(&self) -> usize {
         self.time.len()
     }
-
-    /// Whether there are no rows.
-    pub fn is_empty(&self) -> bool {
-        self.time.is_empty()
-    }
 }
 
 /// The track of a trial that is excited and holds `needed` headings; fails as [`Samples::new`] does.

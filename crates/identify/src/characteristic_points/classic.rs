@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use super::found::{Analysed, PointsFit};
 use super::points::{Point, Points};
 use crate::error::IdentifyError;
-use crate::linear::LeastSquares;
+use estimation::least_squares::LeastSquares;
 
 /// The points one trial contributes.
 struct Used<'a> {

@@ -7,8 +7,8 @@ use nalgebra::Matrix3;
 use super::found::{Analysed, PointsFit};
 use super::points::rudder_integral;
 use crate::error::IdentifyError;
-use crate::linear::LeastSquares;
 use crate::savitzky_golay::local_polynomial;
+use estimation::least_squares::LeastSquares;
 
 /// Columns of T, K, K δ_r and the right-hand side.
 #[derive(Debug, Default)]

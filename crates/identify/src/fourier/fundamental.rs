@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 use super::profile::Profile;
 use crate::error::IdentifyError;
 use crate::estimate::StopReason;
-use crate::settings::SettingsError;
+use crate::settings::{SettingsError, require};
 
 /// How the fundamental is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -59,12 +59,9 @@ const DESCENT_STEP: f64 = 0.15;
 impl Fundamental {
     /// Refuses settings that cannot mean anything.
     pub fn check(&self) -> Result<(), SettingsError> {
-        match self {
-            Self::RecordAndPeriods(x) if !(*x >= 0.0 && *x <= 2.0) => {
-                Err(SettingsError::new("fundamental.record-and-periods", Shown(*x), "0 to 2 periods"))
-            }
-            _ => Ok(()),
-        }
+        let Self::RecordAndPeriods(periods) = self else { return Ok(()) };
+        let holds = (0.0..=2.0).contains(periods);
+        require(holds, "fundamental.record-and-periods", Shown(*periods), "0 to 2 periods")
     }
 
     /// Chooses w for `heading` (rad) at `time` (s, increasing), to be used with `harmonics` harmonics.

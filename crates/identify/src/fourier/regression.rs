@@ -11,7 +11,7 @@ use ship::FirstOrder;
 
 use super::basis::{Basis, Projection};
 use crate::error::IdentifyError;
-use crate::linear::LeastSquares;
+use estimation::least_squares::LeastSquares;
 
 /// The side of the equation of motion that the other terms are regressed on.
 ///

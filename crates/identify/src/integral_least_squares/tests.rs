@@ -4,8 +4,8 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use ship::angle::from_deg;
 
 use super::*;
-use crate::linear::LeastSquares;
 use crate::testing::{Case, Start, record};
+use estimation::least_squares::LeastSquares;
 
 fn identify(trials: &[Trial]) -> Estimate {
     Settings::default().build().expect("valid").identify(trials).expect("identifiable")
