@@ -12,12 +12,12 @@ use trial::Trial;
 use crate::error::IdentifyError;
 use crate::estimate::{Covariance, Estimate, StopReason, Uncertainty};
 use crate::gaps::{longest_gap, pieces};
-use crate::identifier::{Accuracy, Identifier, Promises};
-use crate::linear::LeastSquares as Solution;
+use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::robust::newey_west_of_three;
 use crate::samples::Samples;
 use crate::savitzky_golay::{SavitzkyGolay, WindowWeights};
 use crate::settings::{SettingsError, check_condition_limit, check_longest_gap};
+use estimation::least_squares::LeastSquares as Solution;
 
 /// Bias of 1/T by noise, as a share, from which on a reader is warned.
 const WARN_OF_BIAS: f64 = 0.02;
@@ -193,12 +193,9 @@ impl Identifier for LeastSquares {
         })
     }
 
-    fn promises(&self) -> Promises {
+    fn noise_free_accuracy(&self) -> NoiseFreeAccuracy {
         // Central differences over 1 s of a response with T = 16.3 s; around a gap equations are lost.
-        Promises {
-            whole: Accuracy { K: 0.001, T: 0.0015, rudder_bias_deg: 0.004 },
-            with_gaps: Accuracy { K: 0.003, T: 0.003, rudder_bias_deg: 0.02 },
-        }
+        NoiseFreeAccuracy { whole: [0.001, 0.0015, 0.004], with_gaps: [0.003, 0.003, 0.02] }
     }
 }
 

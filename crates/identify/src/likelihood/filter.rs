@@ -34,7 +34,7 @@ fn system<R: Real, const N: usize>(
         Sensor { state: 1, beside: None, variance: parameters.gyro * parameters.gyro },
     ];
     let steps: Vec<Step<R, N>> = schedule.spans.iter().map(|span| step(parameters, span)).collect();
-    let reading = |reading: &super::schedule::Reading| Reading {
+    let reading = |reading: &super::schedule::ScheduledReading| Reading {
         step: reading.step,
         sensor: match reading.of {
             Instrument::Heading => 0,
