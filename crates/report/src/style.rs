@@ -6,7 +6,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::changes::{COLOURS, Changes, colour};
-use crate::colour::Colour;
+use crate::paint::Paint;
 use crate::palette::{BEFORE, DIMENSION, GRID, HEADING, INK, Origin, PAPER, RECORD, RUDDER, method_ids};
 use crate::theme::Theme;
 
@@ -90,7 +90,7 @@ pub enum StyleError {
 }
 
 /// Everything that has a colour of its own.
-fn coloured() -> impl Iterator<Item = (&'static str, Colour)> {
+fn coloured() -> impl Iterator<Item = (&'static str, Paint)> {
     let parts = [
         ("ink", INK),
         ("paper", PAPER),
@@ -132,8 +132,8 @@ impl Style {
         })
     }
 
-    fn colours(&self) -> Result<[Option<(Colour, Colour)>; COLOURS], StyleError> {
-        let mut found: Vec<(&str, Colour, Colour)> = Vec::new();
+    fn colours(&self) -> Result<[Option<(Paint, Paint)>; COLOURS], StyleError> {
+        let mut found: Vec<(&str, Paint, Paint)> = Vec::new();
         for (name, text) in &self.colours {
             let Some((_, old)) = coloured().find(|(known, _)| known == name) else {
                 let known: Vec<&str> = coloured().map(|(known, _)| known).collect();

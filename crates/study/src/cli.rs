@@ -116,12 +116,13 @@ enum Command {
         #[command(flatten)]
         common: Common,
     },
-    /// Rebuild tables and plots of a study or a trace from what is stored; nothing is simulated or fitted
+    /// Rebuild tables and plots of a study, a fit, a trace or a prediction from what is stored; nothing is simulated or
+    /// fitted
     Report {
-        /// Folder of a finished study or of a trace; with --open also that of a fit or a prediction
+        /// Folder of a finished study, a fit, a trace or a prediction
         #[arg(value_name = "DIR")]
         folder: PathBuf,
-        /// Show report.html in a browser; of a fit or a prediction as it is
+        /// Show report.html in a browser
         #[arg(long)]
         open: bool,
         #[command(flatten)]

@@ -1,4 +1,5 @@
-//! `study report DIR`: tables and figures of a finished study or of a trace, from what is stored and nothing else.
+//! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace or a prediction, from what is stored
+//! and nothing else.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -7,23 +8,28 @@ use campaign::folder::ResultFolder;
 use campaign::store::{self, Stored};
 use scenario::failure::Failure;
 
-use super::trace;
+use super::predict::{self, PREDICT};
+use super::{fit, trace};
+use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
 use crate::options::{Common, StudyStyle};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
-/// Makes tables, figures and the pages of a finished study or of a trace where it is stored, or in `--out`; with `open`
-/// shows the page in a browser, which is all that can be done for a fit and a prediction.
-pub fn run(rows: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
-    let folder = common.out.as_deref().unwrap_or(rows);
-    let is_page = ["fit.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
-    if rows.join(TRACE).is_file() {
-        trace::show(&ResultFolder::hold(folder)?, rows, &style.style.theme()?, common, &[])?;
-    } else if !(open && is_page) {
-        rebuild(rows, style, common)?;
+/// Makes tables, figures and the pages of a finished study, a fit, a trace or a prediction where it is stored, or in
+/// `--out`; with `open` shows the page in a browser.
+pub fn run(stored: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+    let folder = common.out.as_deref().unwrap_or(stored);
+    let theme = || style.style.theme();
+    let held = || ResultFolder::hold(folder);
+    let has = |name: &str| stored.join(name).is_file();
+    match () {
+        () if has(TRACE) => trace::show(&held()?, stored, &theme()?, common, &[])?,
+        () if has(FIT) => fit::show(&held()?, stored, &theme()?, common)?,
+        () if has(PREDICT) => predict::show(&held()?, stored, &theme()?, common, &[])?,
+        () => rebuild(stored, style, common)?,
     }
-    if open { show(&(if is_page { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
+    if open { show(&folder.join(BROWSER)) } else { Ok(()) }
 }
 
 fn rebuild(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {

@@ -15,7 +15,7 @@ use serde_json::json;
 
 use crate::options::{Common, Format, SimulateRequest};
 use crate::views::document;
-use crate::views::picture::first_failure;
+use crate::views::page_files::first_failure;
 use crate::work::simulate::{Made, records, tasks};
 use crate::{progress, screen};
 
