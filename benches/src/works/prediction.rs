@@ -1,7 +1,7 @@
 //! Predicting a manoeuvre from a thousand drawn ships.
 
-use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
-use predict::{Kind, KnownShip, Mixture};
+use predict::known::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
+use predict::{IdentifiedShip, Kind, ShipMixture};
 use ship::angle::from_deg;
 use ship::effects::{Effect, NonlinearDamping};
 
@@ -12,8 +12,8 @@ use crate::work::{Group, Reach, Work};
 const DRAWS: usize = 1000;
 
 /// What a good 10/10 tells of a ship of 75 m at 6 m/s.
-fn known(effect: Option<&dyn Effect>, moment: Moment) -> KnownShip {
-    let damping = effect.map(|effect| WrittenEffect {
+fn known(effect: Option<&dyn Effect>, moment: Moment) -> IdentifiedShip {
+    let damping = effect.map(|effect| StoredEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
         constants: Vec::new(),
@@ -25,8 +25,8 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> KnownShip {
     }
     let count = parameters.len();
     let variance = |i: usize, j: usize| if i == j { sd[i] * sd[i] } else { 0.0 };
-    KnownShip {
-        members: vec![Member {
+    IdentifiedShip {
+        members: vec![WeightedStructure {
             weight: 1.0,
             effects: damping.into_iter().collect(),
             parameters,
@@ -42,7 +42,7 @@ fn known(effect: Option<&dyn Effect>, moment: Moment) -> KnownShip {
         },
         gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
-        seen: Seen { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
+        seen: ValidityRange { rudder_rad: from_deg(10.0), yaw_rate_rad_s: from_deg(1.0) },
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         motion: None,
@@ -59,8 +59,8 @@ pub fn prediction() -> Group {
          of the heading.",
     );
     let kind: Kind = "zig-zag:20/20".parse().expect("a manoeuvre");
-    let mut add = |name: &str, known: KnownShip| {
-        let mixture = Mixture::new(vec![(known, 1.0)]).expect("a ship");
+    let mut add = |name: &str, known: IdentifiedShip| {
+        let mixture = ShipMixture::new(vec![(known, 1.0)]).expect("a ship");
         let work = Work::new(name, move || mixture.predict(&kind, DRAWS, false).is_ok()).slow();
         group.alone(work, Some(Reach::Time(0.05)));
     };

@@ -10,7 +10,7 @@ use ::trace::document::EffectEntry;
 use ::trace::judge::ReplayResult;
 use ::trace::{Analysis, TraceError};
 use identify::{Estimate, StopReason};
-use predict::KnownShip;
+use predict::IdentifiedShip;
 use ship::FirstOrder;
 use ship::angle::{from_deg, to_deg};
 use simulate::{Prepared, SimulateError, Simulated, StreamKey};
@@ -142,7 +142,7 @@ impl<'a> Bench<'a> {
         let trials: Vec<Trial> = simulated.into_iter().map(|record| record.trial).collect();
         let trials = trials.as_slice();
         let shown = predictions.map(|_| Shown::of(trials));
-        let predicted = |known: &dyn Fn(&Shown) -> Option<KnownShip>| {
+        let predicted = |known: &dyn Fn(&Shown) -> Option<IdentifiedShip>| {
             let ((asked, deeds), shown) = predictions.zip(deeds.as_ref()).zip(shown.as_ref())?;
             Some(known(shown).map(|known| foretell::foretold(asked, known, deeds)).unwrap_or_default())
         };

@@ -1,7 +1,7 @@
 //! Manoeuvres predicted from an answer, and the same ship making them: whether intervals hold.
 
-use predict::passage::Passage;
-use predict::{Kind, KnownShip, Mixture, figures};
+use predict::passage::SimulatedManoeuvre;
+use predict::{IdentifiedShip, Kind, ShipMixture, figures};
 use scenario::Predictions;
 use simulate::{Sensors, Simulation, StreamKey};
 
@@ -27,7 +27,7 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
     let one = |kind: &Kind| {
         let calm =
             Simulation { manoeuvre: kind.manoeuvre(timescale)?, sensors: Sensors::default(), ..simulation.clone() };
-        let passage = Passage::of(calm, &other(key), timescale, None).ok()?;
+        let passage = SimulatedManoeuvre::of(calm, &other(key), timescale, None).ok()?;
         Some(figures::of(kind, &passage, None))
     };
     Deeds(predictions.kinds.iter().map(one).collect())
@@ -35,8 +35,8 @@ pub fn deeds(predictions: &Predictions, simulation: &Simulation, key: &StreamKey
 
 /// What is predicted of the manoeuvres, beside the deeds; figures that the ship or the prediction does not have are
 /// left out.
-pub fn foretold(predictions: &Predictions, known: KnownShip, deeds: &Deeds) -> Box<[Foretold]> {
-    let Ok(mixture) = Mixture::new(vec![(known, 1.0)]) else { return Box::default() };
+pub fn foretold(predictions: &Predictions, known: IdentifiedShip, deeds: &Deeds) -> Box<[Foretold]> {
+    let Ok(mixture) = ShipMixture::new(vec![(known, 1.0)]) else { return Box::default() };
     let mut all = Vec::new();
     for (kind, deeds) in predictions.kinds.iter().zip(&deeds.0) {
         let Some(deeds) = deeds else { continue };

@@ -3,9 +3,9 @@
 use identify::estimate::{Estimate, Uncertainty};
 use identify::replay::replay;
 use identify::{Identifier, maximum_likelihood};
-use predict::KnownShip;
-use predict::known::{KnownGear, KnownNoise, Member, Moment, Seen, WrittenEffect};
-use predict::motion::{self, Hull, Planar};
+use predict::IdentifiedShip;
+use predict::known::{KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
+use predict::motion::{self, IdentifiedHull, Planar};
 use ship::angle::{from_deg, to_deg};
 use ship::{Particulars, Response};
 use trace::Analysis;
@@ -25,7 +25,7 @@ pub struct Shown<'a> {
     length: Option<f64>,
     speed: Option<f64>,
     motion: Option<Planar>,
-    hull: Option<Hull>,
+    hull: Option<IdentifiedHull>,
     /// Why records with a speed or positions tell no speed loss and drift.
     untold: Option<String>,
 }
@@ -77,21 +77,21 @@ impl<'a> Shown<'a> {
     /// What is known of the ship, when a model says the rest of it.
     fn with<'b>(
         &self,
-        members: Vec<Member>,
+        members: Vec<WeightedStructure>,
         noise: KnownNoise,
         initial_yaw_rate: f64,
         rates: impl Iterator<Item = &'b [f64]>,
-    ) -> KnownShip {
+    ) -> IdentifiedShip {
         let largest =
             |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most: f64, value| most.max(value.abs()));
         // A hull leaves no residual that would tell the noise of a reading.
         let of_readings = self.hull.as_ref().and(self.reading_noise);
-        KnownShip {
+        IdentifiedShip {
             members,
             noise: KnownNoise { heading_sd_rad: of_readings.unwrap_or(noise.heading_sd_rad), ..noise },
             gear: self.gear,
             approach_yaw_rate_rad_s: self.approach.unwrap_or(initial_yaw_rate),
-            seen: Seen {
+            seen: ValidityRange {
                 rudder_rad: largest(&mut self.trials.iter().flat_map(|trial| trial.rudder().iter().copied())),
                 yaw_rate_rad_s: largest(&mut rates.flat_map(|rates| rates.iter().copied())),
             },
@@ -107,7 +107,7 @@ impl<'a> Shown<'a> {
 ///
 /// The random moment is that of `maximum-likelihood`, which alone looks for one; of any other method the heading noise
 /// is that of the readings, or what its replay leaves where the records are no zig-zags.
-pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<KnownShip> {
+pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<IdentifiedShip> {
     let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
     let response = &estimate.response;
     let replays: Vec<_> = shown.trials.iter().map(|trial| replay(trial, response)).collect::<Option<_>>()?;
@@ -126,7 +126,7 @@ pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<KnownShip> {
     let moment = kinds.into_iter().find_map(|(kind, name)| Some((kind, from_deg(told(name)?))));
     let (moment, moment_sd_rudder_rad) = moment.unwrap_or_default();
     let initial: f64 = replays.iter().map(|replay| replay.initial()[1].powi(2)).sum();
-    let member = Member {
+    let member = WeightedStructure {
         weight: 1.0,
         effects: Vec::new(),
         parameters: vec![response.inverse_T, response.K_over_T, response.rudder_bias],
@@ -148,7 +148,7 @@ pub fn of_estimate(estimate: &Estimate, shown: &Shown) -> Option<KnownShip> {
 ///
 /// Where nothing is missing and a random moment is there, the ship is the one that `maximum-likelihood` is made for:
 /// its covariance holds the doubt about the noise, which that of a trace does not.
-pub fn of_analysis(analysis: &Analysis, shown: &Shown) -> KnownShip {
+pub fn of_analysis(analysis: &Analysis, shown: &Shown) -> IdentifiedShip {
     let members = analysis.plausible().iter().map(member).collect();
     let rates = analysis.identification.iter().map(|compared| compared.after.replay.yaw_rate.as_slice());
     let noise = mean_noise(&analysis.document.noise);
@@ -180,7 +180,7 @@ fn mean_noise(records: &[RecordNoiseEntry]) -> KnownNoise {
 }
 
 /// The same with the first-order member and the noise of `maximum-likelihood`, where that finds a random moment, too.
-fn with_likelihood(mut known: KnownShip, shown: &Shown) -> KnownShip {
+fn with_likelihood(mut known: IdentifiedShip, shown: &Shown) -> IdentifiedShip {
     let method = maximum_likelihood::Settings::default().build().expect("default settings are valid");
     let Some(likelihood) = method.identify(shown.trials).ok().and_then(|estimate| of_estimate(&estimate, shown)) else {
         return known;
@@ -188,7 +188,7 @@ fn with_likelihood(mut known: KnownShip, shown: &Shown) -> KnownShip {
     if let [member] = &likelihood.members[..]
         && likelihood.noise.moment != Moment::None
     {
-        known.members[0] = Member { weight: known.members[0].weight, ..member.clone() };
+        known.members[0] = WeightedStructure { weight: known.members[0].weight, ..member.clone() };
         known.noise = likelihood.noise;
     }
     known
@@ -222,13 +222,13 @@ fn approach(zigzags: &[Option<ZigZag>]) -> Option<f64> {
     mean(zigzags, square).map(|square| square.max(0.0).sqrt())
 }
 
-fn member(plausible: &Plausible) -> Member {
+fn member(plausible: &Plausible) -> WeightedStructure {
     let Plausible { weight, response, fitted, covariance } = plausible;
     let rows = |all: &nalgebra::DMatrix<f64>| -> Vec<Vec<f64>> {
         all.row_iter().map(|row| row.iter().copied().collect()).collect()
     };
     let sound = covariance.as_ref().filter(|all| all.iter().all(|entry| entry.is_finite()));
-    Member {
+    WeightedStructure {
         weight: *weight,
         effects: written(response),
         parameters: response.parameters().to_vec(),
@@ -238,8 +238,8 @@ fn member(plausible: &Plausible) -> Member {
     }
 }
 
-fn written(response: &Response) -> Vec<WrittenEffect> {
-    let write = |effect: &std::sync::Arc<dyn ship::effects::Effect>| WrittenEffect {
+fn written(response: &Response) -> Vec<StoredEffect> {
+    let write = |effect: &std::sync::Arc<dyn ship::effects::Effect>| StoredEffect {
         id: effect.id().to_owned(),
         form: effect.form().to_owned(),
         constants: effect.constants(),
@@ -311,7 +311,7 @@ fn inside_movements(trial: &Trial, rate: f64) -> Vec<f64> {
 mod tests {
     use super::*;
     use identify::output_error;
-    use predict::{Kind, Mixture};
+    use predict::{Kind, ShipMixture};
     use ship::FirstOrder;
     use simulate::manoeuvre::ZigZagEnd;
     use simulate::{Manoeuvre, Simulation, SteeringGear, StreamKey, Vessel};
@@ -336,7 +336,8 @@ mod tests {
         assert!((to_deg(gear.rate_rad_s) - 2.32).abs() < 0.1, "{gear:?}");
         assert!((to_deg(known.noise.heading_sd_rad) - 0.1).abs() < 0.02 && known.noise.moment == Moment::None);
         let kind: Kind = "zig-zag:20/20".parse().expect("known");
-        let prediction = Mixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
+        let prediction =
+            ShipMixture::new(vec![(known, 1.0)]).expect("sound").predict(&kind, 200, true).expect("a trial");
         let first = &prediction.figures["first_overshoot_deg"];
         assert!((first.interval.median - 19.71).abs() < 0.5, "{:?}", first.interval);
         assert!(first.interval.ci90[1] - first.interval.ci90[0] < 1.5, "{:?}", first.interval);
@@ -361,6 +362,6 @@ mod tests {
         let first = &known.members[0];
         assert!(first.effects.is_empty() && first.fitted == [0, 1, 2] && first.covariance.len() == 3);
         assert!((first.parameters[1] / first.parameters[0] - 0.1).abs() < 0.003);
-        Mixture::new(vec![(known, 1.0)]).expect("what is known can be drawn from");
+        ShipMixture::new(vec![(known, 1.0)]).expect("what is known can be drawn from");
     }
 }

@@ -6,9 +6,19 @@
 //! | the Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother and its derivatives | [`kalman`] |
 //! | numbers that carry their derivatives | [`number`] |
+//! | linear least squares with covariance and condition number | [`least_squares`] |
+//! | nonlinear least squares between bounds | [`levenberg_marquardt`] |
+//! | the lowest point of a function of one number | [`minimum`](fn@minimum::minimum) |
+//! | covariances of scores that are correlated in time | [`covariance`] |
+//! | medians and quantiles | [`statistics`] |
 
 pub mod column;
+pub mod covariance;
 pub mod kalman;
 pub mod lanes;
+pub mod least_squares;
+pub mod levenberg_marquardt;
+pub mod minimum;
 pub mod number;
+pub mod statistics;
 pub mod transform;

@@ -12,6 +12,7 @@
 use std::collections::VecDeque;
 use std::ops::Range;
 
+use estimation::statistics::quantile;
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use ship::angle::from_deg;
@@ -297,14 +298,6 @@ fn sorted(answers: &[Answer], of: impl Fn(&Answer) -> f64) -> Vec<f64> {
     let mut values: Vec<f64> = answers.iter().map(of).collect();
     values.sort_by(f64::total_cmp);
     values
-}
-
-/// Quantile of sorted values, linear between them.
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let below = place.floor() as usize;
-    let above = (below + 1).min(sorted.len() - 1);
-    sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
 /// Ranks, from 0, of the order statistics that hold the median with at least 95 %; `None` below six values.

@@ -18,13 +18,13 @@ use simulate::{Manoeuvre, Purpose, StreamKey};
 use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
-use crate::interval::{Interval, median};
-use crate::known::{KnownShip, is_same_length};
-use crate::mixture::{Mixture, Source};
-use crate::passage::Passage;
+use crate::interval::PredictionInterval;
+use crate::known::{IdentifiedShip, is_same_length};
+use crate::mixture::{ShipMixture, UncertaintySource};
+use crate::passage::SimulatedManoeuvre;
 use crate::prediction::{drawn, enough};
 use crate::replay::{file_of, thinned};
-use crate::steered::{Sailed, Steered};
+use crate::steered::{DrawResult, Steered};
 use crate::turn::{self, Turn};
 
 /// Half width of the 90 % interval of F/B, as a share of its median, above which R says little more than F.
@@ -51,13 +51,13 @@ pub struct Corrected {
     pub sd: Option<f64>,
     /// R = T F/B.
     #[serde(flatten)]
-    pub result: Interval,
+    pub result: PredictionInterval,
     /// F/B.
-    pub factor: Interval,
+    pub factor: PredictionInterval,
     /// F, told of the ship at full load.
-    pub full: Interval,
+    pub full: PredictionInterval,
     /// B, told of the ship in the condition of the trial.
-    pub ballast: Interval,
+    pub ballast: PredictionInterval,
     /// Why it says little; empty where nothing speaks against it.
     pub warnings: Vec<String>,
 }
@@ -83,8 +83,8 @@ pub struct Correction {
 /// Where two models differ that are to be held against each other, before they are scaled to a record.
 ///
 /// Structures are those of the most probable member. Source: MSC/Circ.1053 (2002), 3.4.1.3: B and F by one method.
-pub fn differences(full: &KnownShip, trial: &KnownShip) -> Vec<String> {
-    let structure = |known: &KnownShip| {
+pub fn differences(full: &IdentifiedShip, trial: &IdentifiedShip) -> Vec<String> {
+    let structure = |known: &IdentifiedShip| {
         if known.hull.is_some() {
             return String::from("a hull");
         }
@@ -118,7 +118,7 @@ pub fn different(what: &str, full: &str, trial: &str) -> String {
 }
 
 /// Draws of one ship after the other; `None` for one that does not come to the end.
-type Draws = Vec<Option<Sailed>>;
+type Draws = Vec<Option<DrawResult>>;
 
 /// A manoeuvre of a record made by both ships.
 struct Made {
@@ -140,10 +140,15 @@ struct Made {
 ///
 /// Fails where less than half of the drawn ships come to the end of the manoeuvre.
 /// Source: MSC/Circ.1053 (2002), 3.4.1.2.
-pub fn correct(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) -> Result<Correction, PredictError> {
+pub fn correct(
+    full: &ShipMixture,
+    ballast: &ShipMixture,
+    record: &Trial,
+    draws: usize,
+) -> Result<Correction, PredictError> {
     let full = &if full.files() == ballast.files() { full.clone() } else { full.clone().apart() };
     let mut warnings = Vec::new();
-    let speed = |mixture: &Mixture| mixture.first().speed_m_s;
+    let speed = |mixture: &ShipMixture| mixture.first().speed_m_s;
     if let (Some(own), Some(other)) = (speed(full), speed(ballast))
         && (own / other - 1.0).abs() > SAME_SPEED
     {
@@ -162,7 +167,7 @@ pub fn correct(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) 
     for (ship, own, condition) in
         [(full, &made.full, "at full load"), (ballast, &made.trial, "in the condition of the trial")]
     {
-        if ship.is_unseen(made.rudder, median(own.iter().flatten().map(|sailed| sailed.largest_rate).collect())) {
+        if ship.is_unseen(made.rudder, own.iter().flatten().map(|sailed| sailed.largest_rate)) {
             warnings.push(format!("the model {condition} is extrapolated beyond its records"));
         }
     }
@@ -178,7 +183,7 @@ pub fn correct(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) 
 }
 
 /// A zig-zag steered anew; `None` where the record begins within the trial.
-fn zig_zag(full: &Mixture, ballast: &Mixture, record: &Trial, zigzag: &Measured, draws: usize) -> Option<Made> {
+fn zig_zag(full: &ShipMixture, ballast: &ShipMixture, record: &Trial, zigzag: &Measured, draws: usize) -> Option<Made> {
     let steered = Steered::of(zigzag, ballast.first().approach_yaw_rate_rad_s)?;
     let [full, trial] = [full, ballast].map(|ship| steered.draws(ship, draws));
     let names = trial.iter().flatten().next().into_iter().flat_map(|sailed| &sailed.figures);
@@ -187,7 +192,12 @@ fn zig_zag(full: &Mixture, ballast: &Mixture, record: &Trial, zigzag: &Measured,
 }
 
 /// A turn; `None` for a record that is none.
-fn turned(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) -> Result<Option<Made>, PredictError> {
+fn turned(
+    full: &ShipMixture,
+    ballast: &ShipMixture,
+    record: &Trial,
+    draws: usize,
+) -> Result<Option<Made>, PredictError> {
     let signal = record.rudder_signal();
     let length = record.particulars().or(ballast.particulars()).map(|own| own.length);
     let Some(turn) = Turn::of(signal) else { return Ok(None) };
@@ -202,13 +212,13 @@ fn turned(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) -> Re
         return Ok(None);
     }
     let manoeuvre = Manoeuvre::Replay(thinned(&rudder));
-    let sail = |mixture: &Mixture, number| {
-        let mut ship = mixture.draw(number, &Source::ALL);
+    let sail = |mixture: &ShipMixture, number| {
+        let mut ship = mixture.draw(number, &UncertaintySource::ALL);
         // Both ships begin as that of the record did.
         let key = StreamKey { seed: READING, cell: 1, replicate: number };
         let of_rate: f64 = key.rng(Purpose::Heading).sample(StandardNormal);
         ship.yaw_rate = rate.0 + rate.1 * of_rate;
-        let passage = Passage::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
+        let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
         let mut figures = turn.figures(&passage, start);
         // Of what is read at the end both ships have had as much time as that of the record.
         let cut = turn.figures(&passage.until(turn.until - start), start);
@@ -217,7 +227,7 @@ fn turned(full: &Mixture, ballast: &Mixture, record: &Trial, draws: usize) -> Re
                 figure.1 = value;
             }
         }
-        Some(Sailed { figures, largest_rate: passage.largest_rate() })
+        Some(DrawResult { figures, largest_rate: passage.largest_rate() })
     };
     let [full, trial] = [full, ballast].map(|mixture| drawn(draws, |number| sail(mixture, number)));
     Ok(Some(Made { rudder: turn.rudder.abs(), full, trial, shown }))
@@ -231,7 +241,7 @@ fn short(value: f64) -> String {
 
 /// R = T F/B of one figure; `None` where hardly a pair of ships has it.
 fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &[f64]) -> Option<Corrected> {
-    let value = |draw: &Option<Sailed>| draw.as_ref()?.figures.iter().find(|(own, _)| *own == name)?.1;
+    let value = |draw: &Option<DrawResult>| draw.as_ref()?.figures.iter().find(|(own, _)| *own == name)?.1;
     let sd = measured.sd.unwrap_or(0.0);
     let mut columns: [Vec<f64>; 4] = Default::default();
     for ((of_full, of_trial), reading) in full.iter().zip(trial).zip(readings) {
@@ -246,7 +256,7 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
     if share < 0.5 {
         return None;
     }
-    let [full, ballast, factor, result] = columns.map(|mut column| Interval::of(&mut column));
+    let [full, ballast, factor, result] = columns.map(|mut column| PredictionInterval::of(&mut column));
     let (full, ballast, factor, result) = (full?, ballast?, factor?, result?);
     let [low, high] = ballast.ci90.map(short);
     let mut warnings = Vec::new();
@@ -278,7 +288,7 @@ mod tests {
     use simulate::{Simulation, Vessel};
 
     /// The made-up ship, and the same at full load: heavier, and less stable on her course.
-    fn ships() -> [KnownShip; 2] {
+    fn ships() -> [IdentifiedShip; 2] {
         let ballast = made_up::known();
         let mut full = made_up::known();
         let parameters = &mut full.members[0].parameters;
@@ -289,13 +299,13 @@ mod tests {
         [full, ballast]
     }
 
-    fn mixture(known: KnownShip) -> Mixture {
-        Mixture::new(vec![(known, 1.0)]).expect("made up")
+    fn mixture(known: IdentifiedShip) -> ShipMixture {
+        ShipMixture::new(vec![(known, 1.0)]).expect("made up")
     }
 
     /// A record of a drawn ship; with number 0 of the most probable one in a calm.
-    fn record(mixture: &Mixture, kind: &str, number: u64, noise: f64) -> Trial {
-        let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &Source::ALL) };
+    fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64) -> Trial {
+        let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
         let kind: Kind = kind.parse().expect("known");
         let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
         let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
@@ -318,9 +328,9 @@ mod tests {
             let found = correct(&full, &ballast, &trial, 150).expect("both sail");
             let manoeuvre = kind.manoeuvre(full.timescale()).expect("steered");
             // R is the manoeuvre of the record, with its rudder and its straight approach.
-            let mut ship = full.draw(2000 + number, &Source::ALL);
-            (ship.yaw_rate, ship.gear) = (0.0, ballast.draw(1000 + number, &Source::ALL).gear);
-            let passage = Passage::sail(&ship, &manoeuvre, full.timescale()).expect("sails");
+            let mut ship = full.draw(2000 + number, &UncertaintySource::ALL);
+            (ship.yaw_rate, ship.gear) = (0.0, ballast.draw(1000 + number, &UncertaintySource::ALL).gear);
+            let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, full.timescale()).expect("sails");
             let truth = crate::figures::of(&kind, &passage, full.particulars());
             for name in names {
                 let Some(figure) = found.figures.get(name) else { continue };

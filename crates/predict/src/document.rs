@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::Correction;
-use crate::form::Entry;
-use crate::imo::Criterion;
-use crate::known::Seen;
+use crate::form::FormEntry;
+use crate::imo::PredictedCriterion;
+use crate::known::ValidityRange;
 use crate::prediction::Prediction;
-use crate::replay::Replayed;
+use crate::replay::RecordReplay;
 
 /// `predict.json`. Curves, and what stands as `skip` here, are beside the document and not in it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,15 +29,15 @@ pub struct PredictDocument {
     /// The manoeuvres.
     pub manoeuvres: Vec<Prediction>,
     /// Records with their replays.
-    pub replays: Vec<Replayed>,
+    pub replays: Vec<RecordReplay>,
     /// Criteria of IMO, where length and speed are known.
-    pub imo: Vec<Criterion>,
+    pub imo: Vec<PredictedCriterion>,
     /// The records that were corrected to full load.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corrected: Vec<Correction>,
     /// The form of MSC/Circ.1053, where it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub form: Option<Vec<Entry>>,
+    pub form: Option<Vec<FormEntry>>,
     /// What is to be said beside it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form_remarks: Option<Vec<String>>,
@@ -49,7 +49,7 @@ pub struct PredictDocument {
     pub hull: bool,
     /// Where the ship was seen.
     #[serde(skip)]
-    pub seen: Seen,
+    pub seen: ValidityRange,
 }
 
 /// A model that takes part in a prediction.
@@ -72,12 +72,12 @@ impl PredictDocument {
 mod tests {
     use super::*;
     use crate::made_up;
-    use crate::mixture::Mixture;
+    use crate::mixture::ShipMixture;
     use crate::{form, imo};
 
     #[test]
     fn what_is_written_is_read_again() {
-        let mixture = Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
         let manoeuvres: Vec<Prediction> =
             form::manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
         let particulars = mixture.particulars();

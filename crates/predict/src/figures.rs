@@ -4,7 +4,7 @@ use ship::Particulars;
 use ship::angle::to_deg;
 
 use crate::kind::{EXECUTES, INITIAL_TURN, Kind, Pattern};
-use crate::passage::Passage;
+use crate::passage::SimulatedManoeuvre;
 
 /// A figure of merit with its value.
 pub type Figure = (&'static str, Option<f64>);
@@ -18,7 +18,7 @@ pub(crate) const EXECUTE_TIMES: [&str; EXECUTES - 1] =
 /// The figures of a manoeuvre; lengths in ship lengths where length and speed are known.
 ///
 /// The way of the initial turning is V times its time where nothing is known of the speed.
-pub fn of(kind: &Kind, passage: &Passage, particulars: Option<Particulars>) -> Vec<Figure> {
+pub fn of(kind: &Kind, passage: &SimulatedManoeuvre, particulars: Option<Particulars>) -> Vec<Figure> {
     let mut figures = Vec::new();
     let side = kind.side.sign();
     match kind.pattern {
@@ -56,14 +56,14 @@ pub fn of(kind: &Kind, passage: &Passage, particulars: Option<Particulars>) -> V
 }
 
 /// The way of the initial turning in ship lengths.
-fn lengths(passage: &Passage, turning: Option<f64>, particulars: Option<Particulars>) -> Option<Figure> {
+fn lengths(passage: &SimulatedManoeuvre, turning: Option<f64>, particulars: Option<Particulars>) -> Option<Figure> {
     let Particulars { length, speed } = particulars?;
     let way = turning.map(|time| passage.distance(time).unwrap_or(speed * time) / length);
     Some(("initial_turning_lengths", way))
 }
 
 /// Figures of the track of a turn that was begun at `execute` s, where there is one.
-pub(crate) fn circle(passage: &Passage, execute: f64, figures: &mut Vec<Figure>) {
+pub(crate) fn circle(passage: &SimulatedManoeuvre, execute: f64, figures: &mut Vec<Figure>) {
     let (Some(circle), Some(way)) = (passage.circle(execute), &passage.way) else { return };
     figures.extend([
         ("advance_m", circle.advance),
@@ -77,7 +77,7 @@ pub(crate) fn circle(passage: &Passage, execute: f64, figures: &mut Vec<Figure>)
     ]);
 }
 
-fn end(passage: &Passage) -> f64 {
+fn end(passage: &SimulatedManoeuvre) -> f64 {
     passage.time(passage.heading.len().saturating_sub(1))
 }
 
@@ -85,7 +85,7 @@ fn end(passage: &Passage) -> f64 {
 ///
 /// An overshoot is counted from the heading at its execute. The period is the mean time between executes to the same
 /// side from the third on, when the transient of the start is over.
-fn zig_zag(passage: &Passage, figures: &mut Vec<Figure>) {
+fn zig_zag(passage: &SimulatedManoeuvre, figures: &mut Vec<Figure>) {
     let executes = &passage.executes;
     for (number, name) in OVERSHOOTS.into_iter().enumerate() {
         let overshoot = || {
@@ -105,7 +105,7 @@ fn zig_zag(passage: &Passage, figures: &mut Vec<Figure>) {
 }
 
 /// Times and steady rate of a turn to one side (±1).
-pub(crate) fn turn(passage: &Passage, side: f64, figures: &mut Vec<Figure>) {
+pub(crate) fn turn(passage: &SimulatedManoeuvre, side: f64, figures: &mut Vec<Figure>) {
     use std::f64::consts::{FRAC_PI_2, PI};
     figures.push(("time_to_90_s", passage.reached(FRAC_PI_2, side)));
     figures.push(("time_to_180_s", passage.reached(PI, side)));
@@ -119,7 +119,7 @@ pub(crate) fn turn(passage: &Passage, side: f64, figures: &mut Vec<Figure>) {
 }
 
 /// Mean yaw rate to a side (±1) over the last tenth of the rows before `until`, deg/s.
-fn mean_rate(passage: &Passage, until: usize, side: f64) -> Option<f64> {
+fn mean_rate(passage: &SimulatedManoeuvre, until: usize, side: f64) -> Option<f64> {
     let rows = &passage.yaw_rate[until - until / 10..until];
     (!rows.is_empty()).then(|| to_deg(side * rows.iter().sum::<f64>() / rows.len() as f64))
 }
@@ -131,10 +131,10 @@ mod tests {
     use ship::angle::from_deg;
     use simulate::{Disturbances, SteeringGear, StreamKey};
 
-    use crate::mixture::Drawn;
+    use crate::mixture::DrawnShip;
 
-    fn yukun(kind: &Kind) -> Passage {
-        let ship = Drawn {
+    fn yukun(kind: &Kind) -> SimulatedManoeuvre {
+        let ship = DrawnShip {
             response: ship::Response::first_order_ship(FirstOrder::from_indices(0.1, 16.3, 0.0)),
             planar: None,
             hull: None,
@@ -143,7 +143,7 @@ mod tests {
             yaw_rate: 0.0,
             key: StreamKey::default(),
         };
-        Passage::sail(&ship, &kind.manoeuvre(12.8).expect("steered"), 12.8).expect("a manoeuvre")
+        SimulatedManoeuvre::sail(&ship, &kind.manoeuvre(12.8).expect("steered"), 12.8).expect("a manoeuvre")
     }
 
     fn value(figures: &[Figure], name: &str) -> f64 {

@@ -17,7 +17,7 @@ use crate::correction::Correction;
 use crate::form_record::{self, Tested};
 use crate::form_remarks;
 use crate::imo::{LIMITS, Limit};
-use crate::interval::Interval;
+use crate::interval::PredictionInterval;
 use crate::kind::Kind;
 use crate::prediction::Prediction;
 use crate::replay::file_of;
@@ -34,7 +34,7 @@ pub const DECIMALS: usize = 2;
 
 /// An entry of the form.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Entry {
+pub struct FormEntry {
     /// Heading it stands under.
     pub section: String,
     /// What it is called.
@@ -71,14 +71,14 @@ pub struct Entry {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
     /// Entries in the order of the form.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<FormEntry>,
     /// Conditions that are not met or not known, and what else is to be said.
     pub remarks: Vec<String>,
 }
 
 /// A record with what corrects it to full load.
 #[derive(Debug, Clone, Copy)]
-pub struct Record<'a> {
+pub struct FormRecord<'a> {
     /// The record.
     pub trial: &'a Trial,
     /// Its correction, where a model of its condition was given.
@@ -87,7 +87,7 @@ pub struct Record<'a> {
     pub current: Option<Current>,
 }
 
-impl Record<'_> {
+impl FormRecord<'_> {
     /// How the ship was loaded; a record that is to be corrected was at partial load whatever else is known.
     pub(crate) fn loading(&self) -> Option<Loading> {
         self.correction.map(|_| Loading::Partial).or_else(|| self.trial.conditions().loading())
@@ -148,9 +148,9 @@ fn number(value: impl Into<f64>) -> Option<Value> {
 }
 
 /// An entry of one value; without one its source says that it is missing.
-fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: String) -> Entry {
+fn entry(section: &str, field: &str, unit: &str, value: Option<Value>, source: String) -> FormEntry {
     let source = if value.is_some() { source } else { String::from("not in the records") };
-    Entry { section: section.into(), field: field.into(), unit: unit.into(), value, source, ..Entry::default() }
+    FormEntry { section: section.into(), field: field.into(), unit: unit.into(), value, source, ..FormEntry::default() }
 }
 
 /// Fills in the form.
@@ -162,11 +162,12 @@ pub fn fill(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
     models: &str,
-    records: &[Record],
+    records: &[FormRecord],
     declared: Option<(&str, &Conditions)>,
 ) -> Form {
     let tested: Vec<Tested> = records.iter().map(form_record::of).collect();
-    let files = records.iter().map(|Record { trial, .. }| (file_of(trial), trial.conditions(), trial.particulars()));
+    let files =
+        records.iter().map(|FormRecord { trial, .. }| (file_of(trial), trial.conditions(), trial.particulars()));
     let said = files.chain(declared.map(|(file, form)| (file, form, None))).map(|(file, form, own)| {
         let length = form.particulars.or(own).map(|own| own.length);
         Declared { file, form, length }
@@ -178,13 +179,13 @@ pub fn fill(
         let (source, value) = found.or_else(|| Some(("scale of the prediction".into(), scale?))).unzip();
         entry(section, name, unit, value, source.unwrap_or_default())
     };
-    let mut entries: Vec<Entry> = FIELDS.iter().map(field).collect();
+    let mut entries: Vec<FormEntry> = FIELDS.iter().map(field).collect();
     entries.push(loading(records, &tested));
     // The order of the form.
     for limit in [4, 5, 1, 2, 3, 0].map(|place: usize| &LIMITS[place]) {
         for side in ["port", "starboard"] {
             let found = measured(limit, side, records, &tested);
-            entries.push(Entry {
+            entries.push(FormEntry {
                 section: limit.section.into(),
                 field: limit.field.into(),
                 side: Some(side.into()),
@@ -194,7 +195,7 @@ pub fn fill(
             });
         }
     }
-    entries.push(Entry {
+    entries.push(FormEntry {
         limit: Some(TRACK_REACH_LENGTHS),
         source: "never predicted: no model of this program goes astern; stop the ship and measure".into(),
         ..entry(STOPPING, "track reach", "ship lengths", None, String::new())
@@ -205,8 +206,8 @@ pub fn fill(
 
 /// Value and source of a figure that a record shows: what needs no correction, or has one, goes before what was made at
 /// partial load.
-fn measured(limit: &Limit, side: &str, records: &[Record], tested: &[Tested]) -> Option<Entry> {
-    let show = |(record, tested): (&Record, &Tested)| {
+fn measured(limit: &Limit, side: &str, records: &[FormRecord], tested: &[Tested]) -> Option<FormEntry> {
+    let show = |(record, tested): (&FormRecord, &Tested)| {
         let quantity = tested.figure(limit.manoeuvre, side, limit.figure)?;
         let file = file_of(record.trial);
         let corrected = record.correction.and_then(|own| Some((own, own.figures.get(limit.figure)?)));
@@ -219,15 +220,15 @@ fn measured(limit: &Limit, side: &str, records: &[Record], tested: &[Tested]) ->
                 range(&figure.factor),
                 range(&figure.result),
             );
-            return Some((false, Entry { source, ..of_interval(&figure.result) }));
+            return Some((false, FormEntry { source, ..of_interval(&figure.result) }));
         }
         let is_partial = record.loading() == Some(Loading::Partial);
         let load = if is_partial { ", at partial load, not corrected" } else { "" };
         let sd = quantity.sd.map_or_else(String::new, |sd| format!(" ± {}", one_digit(sd)));
         let source = format!("measured, {file}{sd}{load}");
-        Some((is_partial, Entry { value: number(quantity.value), sd: quantity.sd, source, ..Entry::default() }))
+        Some((is_partial, FormEntry { value: number(quantity.value), sd: quantity.sd, source, ..FormEntry::default() }))
     };
-    let found: Vec<(bool, Entry)> = records.iter().zip(tested).filter_map(show).collect();
+    let found: Vec<(bool, FormEntry)> = records.iter().zip(tested).filter_map(show).collect();
     found.into_iter().min_by_key(|(is_partial, _)| *is_partial).map(|(_, entry)| entry)
 }
 
@@ -238,8 +239,8 @@ fn predicted(
     predictions: &[Prediction],
     particulars: Option<Particulars>,
     models: &str,
-) -> Entry {
-    let untold = |why: &str| Entry { source: why.into(), ..Entry::default() };
+) -> FormEntry {
+    let untold = |why: &str| FormEntry { source: why.into(), ..FormEntry::default() };
     let kind: Kind = limit.manoeuvre.parse().expect("the name of a manoeuvre");
     let kind = if side == "port" { kind.to_port() } else { kind };
     let Some(prediction) = predictions.iter().find(|prediction| prediction.kind == kind) else {
@@ -251,7 +252,7 @@ fn predicted(
     let passing = (limit.of)(particulars).map(|limit| figure.share_within(limit));
     let beyond = if figure.extrapolated { ", extrapolated" } else { "" };
     let pass = passing.map_or_else(String::new, |share| format!("; {:.0} % pass", 100.0 * share));
-    Entry {
+    FormEntry {
         extrapolated: Some(figure.extrapolated),
         probability_of_passing: passing,
         source: format!("predicted from {models}, 90 % {}{beyond}{pass}", range(&figure.interval)),
@@ -259,12 +260,12 @@ fn predicted(
     }
 }
 
-fn of_interval(interval: &Interval) -> Entry {
-    Entry { median: Some(interval.median), ci90: Some(interval.ci90), ..Entry::default() }
+fn of_interval(interval: &PredictionInterval) -> FormEntry {
+    FormEntry { median: Some(interval.median), ci90: Some(interval.ci90), ..FormEntry::default() }
 }
 
 /// Decimals of an entry.
-fn decimals(interval: &Interval) -> usize {
+fn decimals(interval: &PredictionInterval) -> usize {
     interval.decimals().min(DECIMALS)
 }
 
@@ -284,17 +285,17 @@ fn one_digit(value: f64) -> String {
 }
 
 /// The interval of nine tenths of the draws.
-fn range(interval: &Interval) -> String {
+fn range(interval: &PredictionInterval) -> String {
     let [low, high] = interval.ci90.map(|end| fixed(end, decimals(interval)));
     format!("[{low}, {high}]")
 }
 
 /// How the ship was loaded when she was tested.
-fn loading(records: &[Record], tested: &[Tested]) -> Entry {
-    let used: Vec<&Record> =
+fn loading(records: &[FormRecord], tested: &[Tested]) -> FormEntry {
+    let used: Vec<&FormRecord> =
         records.iter().zip(tested).filter(|(_, tested)| tested.is_used()).map(|(record, _)| record).collect();
-    let any = |is: &dyn Fn(&Record) -> bool| used.iter().any(|record| is(record));
-    let is_partial = |record: &Record| record.loading() == Some(Loading::Partial);
+    let any = |is: &dyn Fn(&FormRecord) -> bool| used.iter().any(|record| is(record));
+    let is_partial = |record: &FormRecord| record.loading() == Some(Loading::Partial);
     let found = [
         (any(&|record| record.loading() == Some(Loading::Full)), "tested at full load"),
         (any(&|record| record.correction.is_some()), "tested at partial load and corrected"),
@@ -310,18 +311,18 @@ fn loading(records: &[Record], tested: &[Tested]) -> Entry {
 mod tests {
     use super::*;
     use crate::correction;
-    use crate::known::KnownShip;
+    use crate::known::IdentifiedShip;
     use crate::made_up;
-    use crate::mixture::Mixture;
+    use crate::mixture::ShipMixture;
     use ship::angle::from_deg;
     use simulate::{Simulation, StreamKey, Vessel};
     use trial::Trial;
 
-    fn mixture() -> Mixture {
-        Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
+    fn mixture() -> ShipMixture {
+        ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
     }
 
-    fn record(mixture: &Mixture, kind: &str, conditions: Conditions) -> Trial {
+    fn record(mixture: &ShipMixture, kind: &str, conditions: Conditions) -> Trial {
         let ship = mixture.draw(5, &[]);
         let kind: Kind = kind.parse().expect("known");
         let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
@@ -334,13 +335,14 @@ mod tests {
         trial.with_particulars(particulars).with_conditions(conditions)
     }
 
-    fn predictions(mixture: &Mixture) -> Vec<Prediction> {
+    fn predictions(mixture: &ShipMixture) -> Vec<Prediction> {
         manoeuvres().iter().map(|kind| mixture.predict(kind, 60, false).expect("sails")).collect()
     }
 
-    fn entry<'a>(form: &'a Form, section: &str, name: &str, side: Option<&str>) -> &'a Entry {
-        let is_it =
-            |entry: &&Entry| entry.section.contains(section) && entry.field == name && entry.side.as_deref() == side;
+    fn entry<'a>(form: &'a Form, section: &str, name: &str, side: Option<&str>) -> &'a FormEntry {
+        let is_it = |entry: &&FormEntry| {
+            entry.section.contains(section) && entry.field == name && entry.side.as_deref() == side
+        };
         form.entries.iter().find(is_it).unwrap_or_else(|| panic!("{section} {name}: {form:?}"))
     }
 
@@ -373,7 +375,7 @@ mod tests {
     fn every_entry_names_its_source() {
         let ship = mixture();
         let trial = record(&ship, "zig-zag:-10/10", calm(Loading::Full));
-        let records = [Record { trial: &trial, correction: None, current: None }];
+        let records = [FormRecord { trial: &trial, correction: None, current: None }];
         let form = fill(&predictions(&ship), ship.particulars(), "fit.json", &records, None);
         let port = entry(&form, "10°/10°", "1st overshoot angle", Some("port"));
         let starboard = entry(&form, "10°/10°", "1st overshoot angle", Some("starboard"));
@@ -382,7 +384,7 @@ mod tests {
         assert!(starboard.extrapolated == Some(false) && starboard.probability_of_passing.is_some());
         // L/V = 12.5 s: 11.25 and 26.875 deg.
         assert!((port.limit.expect("known") - 11.25).abs() < 1e-12);
-        let value = |entry: &Entry| entry.value.as_ref().and_then(Value::as_f64);
+        let value = |entry: &FormEntry| entry.value.as_ref().and_then(Value::as_f64);
         let (value, told) = (value(port).expect("measured"), starboard.median.expect("predicted"));
         assert!((value - told).abs() < 1.5 && port.sd.is_some_and(|sd| sd < 0.2), "{port:?} {told}");
         let turning = entry(&form, "initial", "distance to turn 10° with 10° rudder", Some("port"));
@@ -404,16 +406,16 @@ mod tests {
 
     #[test]
     fn a_trial_at_partial_load_is_corrected_or_said_to_be_so() {
-        let [full, ballast]: [KnownShip; 2] = std::array::from_fn(|_| made_up::known());
+        let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| made_up::known());
         let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut known, gain)| {
             known.members[0].parameters[1] *= gain;
-            Mixture::new(vec![(known, 1.0)]).expect("made up")
+            ShipMixture::new(vec![(known, 1.0)]).expect("made up")
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, 60).expect("both sail");
         let told = predictions(&full);
         let with = |correction| {
-            fill(&told, full.particulars(), "", &[Record { trial: &trial, correction, current: None }], None)
+            fill(&told, full.particulars(), "", &[FormRecord { trial: &trial, correction, current: None }], None)
         };
         let of = |form: &Form| entry(form, "20°/20°", "1st overshoot angle", Some("starboard")).clone();
         let corrected = of(&with(Some(&correction)));
@@ -436,10 +438,10 @@ mod tests {
                 &predictions(&ship),
                 ship.particulars(),
                 "",
-                &[Record { trial: &trial, correction: None, current: None }],
+                &[FormRecord { trial: &trial, correction: None, current: None }],
                 None,
             );
-            let measured = |entry: &Entry| entry.source.starts_with("measured");
+            let measured = |entry: &FormEntry| entry.source.starts_with("measured");
             assert!(!form.entries.iter().any(measured), "{kind}");
             form.remarks.join("\n")
         };

@@ -4,7 +4,7 @@ use ship::angle::{from_deg, to_deg};
 use trial::zigzag::BaseCourseSource;
 use trial::{Quantity, ZigZag as Measured};
 
-use crate::form::Record;
+use crate::form::FormRecord;
 use crate::imo::{CIRCLE, FormManoeuvre, TEN, TWENTY};
 use crate::steered;
 use crate::turn::{self, Turn};
@@ -50,7 +50,7 @@ pub(crate) fn side(sign: f64) -> &'static str {
 /// The record as a manoeuvre of the form: a zig-zag of 10/10 or 20/20, or a circle with 35° (± 5 %) of rudder, from a
 /// straight course: the rudder amidships, and, where the approach is recorded, a yaw rate below a twentieth of the
 /// largest or below three times its error.
-pub(crate) fn of(record: &Record) -> Tested {
+pub(crate) fn of(record: &FormRecord) -> Tested {
     let tested = match Measured::of(record.trial) {
         Ok(zigzag) if zigzag.executes.len() > 1 => zig_zag(record, &zigzag),
         _ => circle(record),
@@ -58,7 +58,7 @@ pub(crate) fn of(record: &Record) -> Tested {
     tested.unwrap_or_else(|remark| Tested { remark: Some(remark), ..Tested::default() })
 }
 
-fn zig_zag(record: &Record, zigzag: &Measured) -> Result<Tested, String> {
+fn zig_zag(record: &FormRecord, zigzag: &Measured) -> Result<Tested, String> {
     let is_pair = |angle: f64| zigzag.pair.is_some_and(|pair| pair.is_deg(angle, angle));
     let manoeuvre = match (is_pair(10.0), is_pair(20.0)) {
         (true, _) => TEN,
@@ -102,7 +102,7 @@ fn zig_zag(record: &Record, zigzag: &Measured) -> Result<Tested, String> {
     Ok(Tested { what: Some((manoeuvre, side(first.sign()))), figures, remark })
 }
 
-fn circle(record: &Record) -> Result<Tested, String> {
+fn circle(record: &FormRecord) -> Result<Tested, String> {
     let trial = record.trial;
     let neither = "neither a zig-zag nor a turning circle of the form";
     let Some(turn) = Turn::of(trial.rudder_signal()) else { return Err(neither.into()) };

@@ -4,7 +4,7 @@
 use ship::Particulars;
 use trial::{Conditions, Loading};
 
-use crate::form::{Entry, Record};
+use crate::form::{FormEntry, FormRecord};
 use crate::form_record::Tested;
 use crate::imo::{CIRCLE, TEN, TWENTY};
 use crate::replay::file_of;
@@ -14,8 +14,8 @@ const SHORTEST_SHIP: f64 = 100.0;
 
 /// The remarks, in the order in which a reader asks.
 pub(crate) fn remarks(
-    entries: &[Entry],
-    records: &[Record],
+    entries: &[FormEntry],
+    records: &[FormRecord],
     tested: &[Tested],
     declared: Option<(&str, &Conditions)>,
     particulars: Option<Particulars>,
@@ -105,7 +105,7 @@ impl OfFiles {
 }
 
 /// What is to be said of one record.
-fn of_record(record: &Record, tested: &Tested) -> Vec<String> {
+fn of_record(record: &FormRecord, tested: &Tested) -> Vec<String> {
     let mut remarks: Vec<String> = tested.remark.iter().cloned().collect();
     // A record that fills in nothing need not be by the book.
     if tested.is_used() {

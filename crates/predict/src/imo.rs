@@ -6,13 +6,13 @@ use ship::Particulars;
 use ship::angle::to_deg;
 use trial::imo::{self, Unit};
 
-use crate::interval::Interval;
+use crate::interval::PredictionInterval;
 use crate::kind::{Kind, Pattern};
 use crate::prediction::Prediction;
 
 /// One criterion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Criterion {
+pub struct PredictedCriterion {
     /// What is limited.
     pub criterion: String,
     /// The manoeuvre it is read from.
@@ -34,10 +34,10 @@ pub struct Criterion {
     pub extrapolated: bool,
 }
 
-impl Criterion {
+impl PredictedCriterion {
     /// The predicted value with its intervals.
-    pub fn interval(&self) -> Interval {
-        Interval { median: self.median, ci50: self.ci50, ci90: self.ci90 }
+    pub fn interval(&self) -> PredictionInterval {
+        PredictionInterval { median: self.median, ci50: self.ci50, ci90: self.ci90 }
     }
 }
 
@@ -133,12 +133,12 @@ impl Limit {
 }
 
 /// The criteria that some predicted manoeuvres answer, for a ship of this length and speed.
-pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Criterion> {
+pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<PredictedCriterion> {
     let answer = |prediction: &Prediction, limit: &Limit| {
         let figure = prediction.figures.get(limit.figure)?;
         let most = (limit.of)(Some(particulars))?;
-        let Interval { median, ci50, ci90 } = figure.interval;
-        Some(Criterion {
+        let PredictionInterval { median, ci50, ci90 } = figure.interval;
+        Some(PredictedCriterion {
             criterion: limit.name.to_owned(),
             manoeuvre: prediction.kind.to_string(),
             limit: most,
@@ -162,11 +162,11 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Cri
 mod tests {
     use super::*;
     use crate::made_up;
-    use crate::mixture::Mixture;
+    use crate::mixture::ShipMixture;
 
     #[test]
     fn probabilities_are_shares_of_the_draws() {
-        let mixture = Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
         let predictions: Vec<Prediction> =
             Kind::of_imo().iter().map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre")).collect();
         let found = criteria(&predictions, mixture.particulars().expect("made up"));

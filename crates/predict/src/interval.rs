@@ -1,34 +1,18 @@
 //! Quantiles of drawn values, and how many digits of them are worth writing.
 
+use estimation::statistics::quantile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Median with the intervals that hold half and nine tenths of the draws.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Interval {
+pub struct PredictionInterval {
     /// Half of the draws are below.
     pub median: f64,
     /// Quantiles of 25 and 75 %.
     pub ci50: [f64; 2],
     /// Quantiles of 5 and 95 %.
     pub ci90: [f64; 2],
-}
-
-/// Quantile of sorted values, linear between them (Hyndman and Fan 1996, type 7).
-fn quantile(sorted: &[f64], share: f64) -> f64 {
-    let place = share * (sorted.len() - 1) as f64;
-    let (low, part) = (place.floor() as usize, place.fract());
-    let high = (low + 1).min(sorted.len() - 1);
-    sorted[low] + part * (sorted[high] - sorted[low])
-}
-
-/// The middle of some values.
-///
-/// # Panics
-/// Without a value.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    quantile(&values, 0.5)
 }
 
 /// Quantiles of 5, 25, 50, 75 and 95 % of some values, which are put in order.
@@ -40,7 +24,7 @@ pub(crate) fn band(values: &mut [f64]) -> [f64; 5] {
     [0.05, 0.25, 0.5, 0.75, 0.95].map(|share| quantile(values, share))
 }
 
-impl Interval {
+impl PredictionInterval {
     /// The interval of some draws, which are put in order; `None` without one.
     pub fn of(values: &mut [f64]) -> Option<Self> {
         let [lowest, low, median, high, highest] = (!values.is_empty()).then(|| band(values))?;
@@ -66,11 +50,11 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_the_numbers() {
-        let interval = Interval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
+        let interval = PredictionInterval::of(&mut [4.0, 0.0, 2.0, 1.0, 3.0]).expect("five");
         assert_eq!((interval.median, interval.ci50), (2.0, [1.0, 3.0]));
         assert!((interval.ci90[0] - 0.2).abs() < 1e-12 && (interval.ci90[1] - 3.8).abs() < 1e-12);
         assert!(interval.holds90(0.3) && !interval.holds90(0.1));
-        assert_eq!(Interval::of(&mut []), None);
-        assert_eq!(Interval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
+        assert_eq!(PredictionInterval::of(&mut []), None);
+        assert_eq!(PredictionInterval::of(&mut [7.0]).expect("one").ci90, [7.0, 7.0]);
     }
 }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::motion::{Hull, Planar};
+use crate::motion::{IdentifiedHull, Planar};
 use serde::{Deserialize, Serialize};
 use ship::effects::{self, Effect, Parameter};
 use ship::{Response, ResponseModel};
@@ -13,7 +13,7 @@ use crate::error::PredictError;
 
 /// An effect as it is written down.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct WrittenEffect {
+pub struct StoredEffect {
     /// Identifier.
     pub id: String,
     /// Form.
@@ -25,11 +25,11 @@ pub struct WrittenEffect {
 
 /// One structure with its parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Member {
+pub struct WeightedStructure {
     /// Probability among the structures of its file.
     pub weight: f64,
     /// Effects in the order in which the rudder passes through them.
-    pub effects: Vec<WrittenEffect>,
+    pub effects: Vec<StoredEffect>,
     /// 1/T (1/s), K/T (1/s²), δ_r (rad) and the parameters of the effects, in the units these declare.
     pub parameters: Vec<f64>,
     /// Places among the parameters of those that were fitted.
@@ -67,7 +67,7 @@ pub struct KnownGear {
 
 /// The range in which the ship was seen; outside, a prediction is extrapolation.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct Seen {
+pub struct ValidityRange {
     /// Largest rudder angle, rad.
     pub rudder_rad: f64,
     /// Largest yaw rate, rad/s.
@@ -76,9 +76,9 @@ pub struct Seen {
 
 /// What is known of a ship.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-pub struct KnownShip {
+pub struct IdentifiedShip {
     /// The structures, the most probable first.
-    pub members: Vec<Member>,
+    pub members: Vec<WeightedStructure>,
     /// Noise of the records.
     pub noise: KnownNoise,
     /// Steering gear; none where the records do not show it: the rudder then jumps.
@@ -86,7 +86,7 @@ pub struct KnownShip {
     /// Root mean square of the yaw rate with which the records begin, rad/s.
     pub approach_yaw_rate_rad_s: f64,
     /// Where the ship was seen.
-    pub seen: Seen,
+    pub seen: ValidityRange,
     /// Length between perpendiculars, m.
     pub length_m: Option<f64>,
     /// Approach speed, m/s.
@@ -97,7 +97,7 @@ pub struct KnownShip {
     /// A hull of three degrees of freedom, where the records have speed and sway; predictions are then made with it and
     /// not with the structures.
     #[serde(default)]
-    pub hull: Option<Hull>,
+    pub hull: Option<IdentifiedHull>,
 }
 
 /// Structure and values of a member as the equations take them.
@@ -119,10 +119,10 @@ impl Equations {
     }
 }
 
-impl Member {
+impl WeightedStructure {
     /// The equations; fails for an effect that is not known and for numbers that do not fit it.
     pub(crate) fn equations(&self) -> Result<Equations, PredictError> {
-        let effect = |written: &WrittenEffect| -> Result<Arc<dyn Effect>, PredictError> {
+        let effect = |written: &StoredEffect| -> Result<Arc<dyn Effect>, PredictError> {
             effects::named(&written.id, &written.form, &written.constants)
                 .ok_or_else(|| PredictError::Effect { id: written.id.clone(), form: written.form.clone() })
         };
@@ -159,7 +159,7 @@ pub fn is_same_length(one: f64, other: f64) -> bool {
     (one / other - 1.0).abs() < SAME_LENGTH
 }
 
-impl KnownShip {
+impl IdentifiedShip {
     /// The same ship at another length and approach speed: every time grows by (L₂/U₂)/(L₁/U₁), every length by L₂/L₁,
     /// and what has no dimension stays (K′, T′ and all others). With U ~ √L this is the scaling of Froude (1868).
     ///
@@ -286,7 +286,7 @@ mod tests {
     fn another_scale_keeps_what_has_no_dimension() {
         let known = made_up::known();
         let ship = known.scaled_to(25.0 * known.length_m.expect("made up"), None).expect("particulars");
-        let prime = |known: &KnownShip| {
+        let prime = |known: &IdentifiedShip| {
             let [a, b] = [known.members[0].parameters[0], known.members[0].parameters[1]];
             b / a * known.length_m.expect("known") / known.speed_m_s.expect("known")
         };
@@ -295,7 +295,7 @@ mod tests {
         for (one, other) in back.members[0].parameters.iter().zip(&known.members[0].parameters) {
             assert!((one - other).abs() <= 1e-12 * other.abs());
         }
-        let unknown = KnownShip { length_m: None, ..known };
+        let unknown = IdentifiedShip { length_m: None, ..known };
         assert!(unknown.scaled_to(100.0, None).is_err());
     }
 
@@ -303,12 +303,12 @@ mod tests {
     fn what_is_written_is_read_again() {
         let known = made_up::known();
         let text = serde_json::to_string(&known).expect("plain data");
-        assert_eq!(serde_json::from_str::<KnownShip>(&text).expect("the same"), known);
+        assert_eq!(serde_json::from_str::<IdentifiedShip>(&text).expect("the same"), known);
     }
 
     #[test]
     fn numbers_that_do_not_fit_are_refused() {
-        let refused = |change: fn(&mut Member)| {
+        let refused = |change: fn(&mut WeightedStructure)| {
             let mut member = made_up::known().members.remove(0);
             change(&mut member);
             member.equations().expect_err("refused").to_string()

@@ -47,8 +47,8 @@ pub mod turn;
 
 pub use document::PredictDocument;
 pub use error::PredictError;
-pub use interval::Interval;
+pub use interval::PredictionInterval;
 pub use kind::Kind;
-pub use known::KnownShip;
-pub use mixture::{Mixture, Source};
+pub use known::IdentifiedShip;
+pub use mixture::{ShipMixture, UncertaintySource};
 pub use prediction::Prediction;

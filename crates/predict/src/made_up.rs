@@ -2,10 +2,10 @@
 
 use ship::angle::from_deg;
 
-use crate::known::{KnownGear, KnownNoise, KnownShip, Member, Moment, Seen, WrittenEffect};
+use crate::known::{IdentifiedShip, KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
 
 /// A ship of K = 0.1 1/s and T = 16.3 s whose damping grows with the cube of its yaw rate, 75 m long at 6 m/s.
-pub(crate) fn known() -> KnownShip {
+pub(crate) fn known() -> IdentifiedShip {
     let parameters = vec![1.0 / 16.3, 0.1 / 16.3, 0.0, 60.0];
     let sd = [2e-3, 1.5e-4, 1e-3, 6.0];
     let correlation = |i: usize, j: usize| match (i, j) {
@@ -14,10 +14,10 @@ pub(crate) fn known() -> KnownShip {
         (0, 3) | (3, 0) => -0.5,
         _ => 0.0,
     };
-    KnownShip {
-        members: vec![Member {
+    IdentifiedShip {
+        members: vec![WeightedStructure {
             weight: 1.0,
-            effects: vec![WrittenEffect {
+            effects: vec![StoredEffect {
                 id: "nonlinear_damping".into(),
                 form: ship::effects::Effect::form(&ship::effects::NonlinearDamping::Cubic).into(),
                 constants: Vec::new(),
@@ -35,7 +35,7 @@ pub(crate) fn known() -> KnownShip {
         },
         gear: Some(KnownGear { rate_rad_s: from_deg(2.5), sd_rad_s: from_deg(0.05) }),
         approach_yaw_rate_rad_s: from_deg(0.01),
-        seen: Seen { rudder_rad: from_deg(20.0), yaw_rate_rad_s: from_deg(1.5) },
+        seen: ValidityRange { rudder_rad: from_deg(20.0), yaw_rate_rad_s: from_deg(1.5) },
         length_m: Some(75.0),
         speed_m_s: Some(6.0),
         motion: None,

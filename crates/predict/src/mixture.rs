@@ -1,7 +1,7 @@
 //! Ships drawn from what is known: a structure by its probability, parameters by their covariance, and what chance adds
 //! to one trial. Every source can be switched off, so that the share of each in an interval can be told.
 
-use crate::motion::{Hull, Planar};
+use crate::motion::{IdentifiedHull, Planar};
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -10,11 +10,11 @@ use simulate::disturbance::GaussMarkov;
 use simulate::{Disturbances, Purpose, SteeringGear, StreamKey};
 
 use crate::error::PredictError;
-use crate::known::{Equations, KnownNoise, KnownShip, Moment};
+use crate::known::{Equations, IdentifiedShip, KnownNoise, Moment};
 
 /// Where an interval comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Source {
+pub enum UncertaintySource {
     /// Errors of the parameters.
     Parameters,
     /// Structures that the records cannot tell apart.
@@ -27,7 +27,7 @@ pub enum Source {
     InitialState,
 }
 
-impl Source {
+impl UncertaintySource {
     /// All sources.
     pub const ALL: [Self; 5] =
         [Self::Parameters, Self::Structure, Self::ProcessNoise, Self::SteeringGear, Self::InitialState];
@@ -52,7 +52,7 @@ const WHITE: f64 = 0.05;
 
 /// One structure with the square root of its covariance.
 #[derive(Debug, Clone)]
-struct Part {
+struct DrawableStructure {
     /// Probability among all.
     weight: f64,
     equations: Equations,
@@ -65,9 +65,9 @@ struct Part {
 
 /// Everything that is known of a ship from one or several files, ready to be drawn from.
 #[derive(Debug, Clone)]
-pub struct Mixture {
-    parts: Vec<Part>,
-    files: Vec<KnownShip>,
+pub struct ShipMixture {
+    parts: Vec<DrawableStructure>,
+    files: Vec<IdentifiedShip>,
     /// Square roots of the covariances of the hull, or of speed and drift, of every file.
     motions: Vec<DMatrix<f64>>,
     timescale: f64,
@@ -77,13 +77,13 @@ pub struct Mixture {
 
 /// A ship for one trial.
 #[derive(Debug, Clone)]
-pub struct Drawn {
+pub struct DrawnShip {
     /// How the ship turns.
     pub response: Response,
     /// How it loses speed and drifts, where that is known.
     pub planar: Option<Planar>,
     /// The hull, where one was fitted; it takes the place of the response.
-    pub hull: Option<Hull>,
+    pub hull: Option<IdentifiedHull>,
     /// Its steering gear.
     pub gear: SteeringGear,
     /// What acts on it.
@@ -118,9 +118,9 @@ fn root_of(covariance: &[Vec<f64>]) -> Result<DMatrix<f64>, PredictError> {
     Ok(DMatrix::from_fn(count, count, |i, j| scale(i) * eigen.eigenvectors[(i, j)] * roots[j]))
 }
 
-impl Mixture {
+impl ShipMixture {
     /// Takes what several files say of one ship, each with its weight; fails for what no file of this program holds.
-    pub fn new(files: Vec<(KnownShip, f64)>) -> Result<Self, PredictError> {
+    pub fn new(files: Vec<(IdentifiedShip, f64)>) -> Result<Self, PredictError> {
         let total: f64 = files.iter().map(|(_, weight)| weight).sum();
         let mut parts = Vec::new();
         for (file, (known, of_file)) in files.iter().enumerate() {
@@ -140,7 +140,7 @@ impl Mixture {
                         return Err(PredictError::Needs { channel, option });
                     }
                 }
-                parts.push(Part {
+                parts.push(DrawableStructure {
                     weight,
                     equations,
                     fitted: member.fitted.clone(),
@@ -150,7 +150,7 @@ impl Mixture {
                 });
             }
         }
-        let motion = |(known, _): &(KnownShip, f64)| match (&known.hull, &known.motion) {
+        let motion = |(known, _): &(IdentifiedShip, f64)| match (&known.hull, &known.motion) {
             (Some(hull), _) => root_of(&hull.covariance),
             (None, Some(planar)) => root_of(&planar.covariance.map(|row| row.to_vec())),
             (None, None) => Ok(DMatrix::zeros(0, 0)),
@@ -171,38 +171,38 @@ impl Mixture {
     }
 
     /// What the first file says of the ship.
-    pub fn first(&self) -> &KnownShip {
+    pub fn first(&self) -> &IdentifiedShip {
         &self.files[0]
     }
 
     /// The files.
-    pub fn files(&self) -> &[KnownShip] {
+    pub fn files(&self) -> &[IdentifiedShip] {
         &self.files
     }
 
     /// The most probable ship, without chance.
-    pub fn most_probable(&self) -> Drawn {
+    pub fn most_probable(&self) -> DrawnShip {
         self.draw(0, &[])
     }
 
     /// Ship number `number`; only the given sources of doubt are at work, all else is as in the most probable ship.
-    pub fn draw(&self, number: u64, sources: &[Source]) -> Drawn {
-        let has = |source: Source| sources.contains(&source);
+    pub fn draw(&self, number: u64, sources: &[UncertaintySource]) -> DrawnShip {
+        let has = |source: UncertaintySource| sources.contains(&source);
         let key = StreamKey { seed: u64::from(self.apart), cell: 0, replicate: number };
-        let part = if has(Source::Structure) { self.chosen(number) } else { self.likeliest() };
+        let part = if has(UncertaintySource::Structure) { self.chosen(number) } else { self.likeliest() };
         let known = &self.files[part.file];
         let mut rng = key.rng(Purpose::Specification);
-        let values = match has(Source::Parameters) {
+        let values = match has(UncertaintySource::Parameters) {
             true => part.drawn(&mut rng),
             false => part.equations.values.clone(),
         };
         let mut other = key.indexed(Purpose::Specification, 1);
         let [of_gear, of_rate]: [f64; 2] = std::array::from_fn(|_| other.sample(StandardNormal));
         let gear = known.gear.map_or_else(SteeringGear::default, |gear| {
-            let doubt = if has(Source::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
+            let doubt = if has(UncertaintySource::SteeringGear) { of_gear * gear.sd_rad_s } else { 0.0 };
             SteeringGear::with_rate((gear.rate_rad_s + doubt).max(0.1 * gear.rate_rad_s))
         });
-        let step = has(Source::Parameters).then(|| self.step(part.file, &key));
+        let step = has(UncertaintySource::Parameters).then(|| self.step(part.file, &key));
         let hull = known.hull.as_ref().map(|hull| match &step {
             Some(step) => hull.with_coefficients(&plus(hull.coefficients(), step)).unwrap_or_else(|_| hull.clone()),
             None => hull.clone(),
@@ -213,14 +213,14 @@ impl Mixture {
             }
             None => planar.clone(),
         });
-        let noise = if has(Source::ProcessNoise) { known.process_noise() } else { KnownNoise::default() };
-        Drawn {
+        let noise = if has(UncertaintySource::ProcessNoise) { known.process_noise() } else { KnownNoise::default() };
+        DrawnShip {
             response: part.equations.with(values),
             planar: hull.as_ref().map(|hull| hull.planar.clone()).or(planar),
             hull,
             gear,
             disturbances: self.disturbances(&noise),
-            yaw_rate: if has(Source::InitialState) { of_rate * known.approach_yaw_rate_rad_s } else { 0.0 },
+            yaw_rate: if has(UncertaintySource::InitialState) { of_rate * known.approach_yaw_rate_rad_s } else { 0.0 },
             key,
         }
     }
@@ -250,14 +250,14 @@ impl Mixture {
         disturbances
     }
 
-    fn likeliest(&self) -> &Part {
-        let most = |one: &&Part, other: &&Part| one.weight.total_cmp(&other.weight);
+    fn likeliest(&self) -> &DrawableStructure {
+        let most = |one: &&DrawableStructure, other: &&DrawableStructure| one.weight.total_cmp(&other.weight);
         self.parts.iter().rev().max_by(most).expect("there is a structure")
     }
 
     /// The structure of a draw: shares of every number of draws follow the probabilities (golden ratio). Those of a
     /// mixture that is apart follow √2, which has nothing in common with it.
-    fn chosen(&self, number: u64) -> &Part {
+    fn chosen(&self, number: u64) -> &DrawableStructure {
         const GOLDEN: f64 = 0.618_033_988_749_894_9;
         let step = if self.apart { std::f64::consts::SQRT_2 - 1.0 } else { GOLDEN };
         let mut left = (0.5 + number as f64 * step).fract();
@@ -276,7 +276,7 @@ fn plus(mut values: Vec<f64>, step: &DVector<f64>) -> Vec<f64> {
     values
 }
 
-impl Part {
+impl DrawableStructure {
     /// Parameters by their covariance, inside the ranges of the effects: normal, or Student's t.
     fn drawn(&self, rng: &mut impl rand::Rng) -> Vec<f64> {
         let described = self.equations.parameters();
@@ -313,8 +313,8 @@ mod tests {
     use super::*;
     use crate::made_up;
 
-    fn mixture() -> Mixture {
-        Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
+    fn mixture() -> ShipMixture {
+        ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up")
     }
 
     /// Mean and covariance of the draws are those that are known.
@@ -323,8 +323,9 @@ mod tests {
         let mixture = mixture();
         let known = &mixture.first().members[0];
         let count = 4000;
-        let draws: Vec<Vec<f64>> =
-            (0..count).map(|k| mixture.draw(k, &[Source::Parameters]).response.parameters().to_vec()).collect();
+        let draws: Vec<Vec<f64>> = (0..count)
+            .map(|k| mixture.draw(k, &[UncertaintySource::Parameters]).response.parameters().to_vec())
+            .collect();
         let mean = |place: usize| draws.iter().map(|draw| draw[place]).sum::<f64>() / count as f64;
         for (row, &one) in known.fitted.iter().enumerate() {
             for (column, &other) in known.fitted.iter().enumerate() {
@@ -347,8 +348,8 @@ mod tests {
         simple.covariance.iter_mut().for_each(|row| row.truncate(3));
         (simple.weight, known.members[0].weight) = (0.2, 0.6);
         known.members.push(simple);
-        let mixture = Mixture::new(vec![(known, 2.0)]).expect("made up");
-        let is_simple = |k| mixture.draw(k, &[Source::Structure]).response.parameters().len() == 3;
+        let mixture = ShipMixture::new(vec![(known, 2.0)]).expect("made up");
+        let is_simple = |k| mixture.draw(k, &[UncertaintySource::Structure]).response.parameters().len() == 3;
         let simple = (0..1000).filter(|&k| is_simple(k)).count();
         assert!((240..=260).contains(&simple), "{simple}");
         assert!((0..100).all(|k| mixture.draw(k, &[]).response.parameters().len() == 4));
@@ -357,7 +358,7 @@ mod tests {
     #[test]
     fn one_number_is_one_ship() {
         let mixture = mixture();
-        let [one, again, other] = [7, 7, 8].map(|k| mixture.draw(k, &Source::ALL));
+        let [one, again, other] = [7, 7, 8].map(|k| mixture.draw(k, &UncertaintySource::ALL));
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());
         assert_eq!(mixture.most_probable().response.parameters(), mixture.first().members[0].parameters);
@@ -371,7 +372,7 @@ mod tests {
         known.members[0].effects[0].id = ship::effects::Effect::id(&sway).into();
         known.members[0].effects[0].form = ship::effects::Effect::form(&sway).into();
         known.members[0].effects[0].constants = ship::effects::Effect::constants(&sway);
-        let error = Mixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
+        let error = ShipMixture::new(vec![(known, 1.0)]).expect_err("refused").to_string();
         assert!(error.contains("sway") && error.contains("--without sway"), "{error}");
     }
 
@@ -380,7 +381,7 @@ mod tests {
         let mut known = made_up::known();
         known.members[0].covariance[0][1] = 10.0;
         known.members[0].covariance[1][0] = 10.0;
-        assert_eq!(Mixture::new(vec![(known, 1.0)]).err(), Some(PredictError::Covariance));
-        assert!(Mixture::new(Vec::new()).is_err());
+        assert_eq!(ShipMixture::new(vec![(known, 1.0)]).err(), Some(PredictError::Covariance));
+        assert!(ShipMixture::new(Vec::new()).is_err());
     }
 }

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::motion::{Planar, PlanarShip, Turn, TurningCircle};
+use crate::motion::{Planar, PlanarShip, Turn, TurningCircleFigures};
 use ship::Regressor;
 use simulate::helm::Execute;
 use simulate::simulation::Truth;
 use simulate::vessel::Solver;
 use simulate::{Disturbances, Manoeuvre, Recording, SimulateError, Simulation, SteeringGear, StreamKey, Vessel};
 
-use crate::mixture::Drawn;
+use crate::mixture::DrawnShip;
 
 /// Rows per time of the ship.
 const ROWS: f64 = 20.0;
@@ -26,7 +26,7 @@ const LONGEST_WAIT: f64 = 500.0;
 
 /// What a ship did; time in s from the first execute, angles in rad.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Passage {
+pub struct SimulatedManoeuvre {
     /// Time between rows, s.
     pub period: f64,
     /// Heading, 0 at the first execute.
@@ -71,7 +71,7 @@ fn weather_grid(disturbances: &Disturbances, timescale: f64) -> f64 {
 }
 
 /// What is steered: with speed and drift where effects of the response ask for them.
-fn vessel(ship: &Drawn) -> Vessel {
+fn vessel(ship: &DrawnShip) -> Vessel {
     if let Some(hull) = &ship.hull {
         return Vessel::hull(Arc::new(hull.clone()));
     }
@@ -92,9 +92,9 @@ fn way(planar: &Planar, truth: &Truth) -> Way {
     Way { length: planar.length, surge, sway, track }
 }
 
-impl Passage {
+impl SimulatedManoeuvre {
     /// Figures of a turning circle that was begun at `execute` s; `None` where nothing is known of speed and drift.
-    pub fn circle(&self, execute: f64) -> Option<TurningCircle> {
+    pub fn circle(&self, execute: f64) -> Option<TurningCircleFigures> {
         let Way { surge, sway, track, .. } = self.way.as_ref()?;
         let time: Vec<f64> = (0..self.heading.len()).map(|row| self.time(row)).collect();
         let turn = Turn { time: &time, heading: &self.heading, track, surge, sway, yaw_rate: &self.yaw_rate };
@@ -122,7 +122,7 @@ impl Passage {
     /// Steers a ship through a manoeuvre; `timescale` is a time of the ship, s.
     ///
     /// Fails where the ship does not reach a heading that the helm waits for, or turns for ever.
-    pub fn sail(ship: &Drawn, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
+    pub fn sail(ship: &DrawnShip, manoeuvre: &Manoeuvre, timescale: f64) -> Result<Self, SimulateError> {
         let mut simulation = Simulation::new(vessel(ship), manoeuvre.clone());
         simulation.gear = match manoeuvre {
             Manoeuvre::Replay(_) => SteeringGear::default(),

@@ -1,5 +1,6 @@
 //! A manoeuvre predicted: every figure of merit with its intervals and where they come from, and bands of its curves.
 
+use estimation::statistics::median;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -8,11 +9,11 @@ use ship::Particulars;
 
 use crate::error::PredictError;
 use crate::figures::{self, Figure};
-use crate::interval::{Interval, band, median};
+use crate::interval::{PredictionInterval, band};
 use crate::kind::Kind;
-use crate::known::Seen;
-use crate::mixture::{Mixture, Source};
-use crate::passage::{self, Passage};
+use crate::known::ValidityRange;
+use crate::mixture::{ShipMixture, UncertaintySource};
+use crate::passage::{self, SimulatedManoeuvre};
 use crate::steady::SteadyCurve;
 
 /// Draws for every source alone, as a share of all.
@@ -30,7 +31,7 @@ const MARGIN: f64 = 1.05;
 pub struct Predicted {
     /// Median and intervals of the draws that have it.
     #[serde(flatten)]
-    pub interval: Interval,
+    pub interval: PredictionInterval,
     /// Whether rudder or yaw rate of the manoeuvre are beyond those of the records.
     pub extrapolated: bool,
     /// Share of the draws that have the figure.
@@ -75,7 +76,7 @@ pub struct Prediction {
     pub heading: Bands,
     /// The most probable ship without chance, but for a spiral.
     #[serde(skip)]
-    pub most_probable: Option<Passage>,
+    pub most_probable: Option<SimulatedManoeuvre>,
     /// Tracks of some of the draws, north and east, m; empty where nothing is known of speed and drift.
     #[serde(skip)]
     pub tracks: Vec<Vec<[f64; 2]>>,
@@ -110,7 +111,7 @@ pub(crate) fn enough(what: impl ToString, made: usize, draws: usize) -> Result<(
     Ok(())
 }
 
-impl Mixture {
+impl ShipMixture {
     /// Length and speed, where the first file has them.
     pub fn particulars(&self) -> Option<Particulars> {
         let first = self.first();
@@ -122,12 +123,12 @@ impl Mixture {
     /// Fails where less than half of the drawn ships come to the end of it.
     pub fn predict(&self, kind: &Kind, draws: usize, shares: bool) -> Result<Prediction, PredictError> {
         let Some(manoeuvre) = kind.manoeuvre(self.timescale()) else { return Ok(self.spiral(kind, draws, shares)) };
-        let sail = |number: u64, sources: &[Source]| {
-            let passage = Passage::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
+        let sail = |number: u64, sources: &[UncertaintySource]| {
+            let passage = SimulatedManoeuvre::sail(&self.draw(number, sources), &manoeuvre, self.timescale()).ok()?;
             Some((figures::of(kind, &passage, self.particulars()), passage))
         };
         let all: Vec<Option<Draw>> = drawn(draws, |number| {
-            let (figures, passage) = sail(number, &Source::ALL)?;
+            let (figures, passage) = sail(number, &UncertaintySource::ALL)?;
             let largest_rate = passage.largest_rate();
             let track = passage.way.filter(|_| number < TRACKS).map(|way| way.track);
             Some(Draw { figures, heading: passage.heading, largest_rate, track })
@@ -136,9 +137,9 @@ impl Mixture {
         enough(kind, made.len(), draws)?;
         let values: Vec<Option<&[Figure]>> =
             all.iter().map(|draw| draw.as_ref().map(|draw| draw.figures.as_slice())).collect();
-        let extrapolated = self.is_unseen(kind.rudder, median(made.iter().map(|draw| draw.largest_rate).collect()));
+        let extrapolated = self.is_unseen(kind.rudder, made.iter().map(|draw| draw.largest_rate));
         let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(sail(number, &[source])?.0));
-        let sources: &[Source] = if shares { &Source::ALL } else { &[] };
+        let sources: &[UncertaintySource] = if shares { &UncertaintySource::ALL } else { &[] };
         let most_probable = sail(0, &[]).map(|(_, passage)| passage);
         Ok(Prediction {
             kind: *kind,
@@ -153,18 +154,20 @@ impl Mixture {
 
     /// Steady turns; chance has no part in them.
     fn spiral(&self, kind: &Kind, draws: usize, shares: bool) -> Prediction {
-        let curve =
-            |number, sources: &[Source]| SteadyCurve::of(&self.draw(number, sources), kind.rudder, self.timescale());
-        let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &Source::ALL));
+        let curve = |number, sources: &[UncertaintySource]| {
+            SteadyCurve::of(&self.draw(number, sources), kind.rudder, self.timescale())
+        };
+        let all: Vec<SteadyCurve> = drawn(draws, |number| curve(number, &UncertaintySource::ALL));
         let own: Vec<Vec<Figure>> = all.iter().map(|curve| curve.figures(kind.rudder)).collect();
         let values: Vec<Option<&[Figure]>> = own.iter().map(|figures| Some(figures.as_slice())).collect();
         let alone = |source| drawn(draws.div_ceil(ALONE), |number| Some(curve(number, &[source]).figures(kind.rudder)));
-        let sources: &[Source] = if shares { &[Source::Parameters, Source::Structure] } else { &[] };
+        let sources: &[UncertaintySource] =
+            if shares { &[UncertaintySource::Parameters, UncertaintySource::Structure] } else { &[] };
         let most_probable = curve(0, &[]);
-        let largest = most_probable.yaw_rate.iter().fold(0.0, |largest: f64, rate| largest.max(rate.abs()));
+        let rates = std::iter::once(most_probable.yaw_rate.iter().fold(0.0, |most: f64, rate| most.max(rate.abs())));
         Prediction {
             kind: *kind,
-            figures: predicted(&values, self.is_unseen(kind.rudder, largest), sources, alone),
+            figures: predicted(&values, self.is_unseen(kind.rudder, rates), sources, alone),
             lost: 0,
             heading: Bands::default(),
             most_probable: None,
@@ -173,9 +176,11 @@ impl Mixture {
         }
     }
 
-    /// Whether a rudder (rad) or a yaw rate (rad/s) is beyond what the records have seen.
-    pub(crate) fn is_unseen(&self, rudder: f64, rate: f64) -> bool {
-        let most = |value: fn(&Seen) -> f64| self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max);
+    /// Whether a rudder (rad) or the median of the largest yaw rates (rad/s) is beyond what the records have seen.
+    pub(crate) fn is_unseen(&self, rudder: f64, rates: impl Iterator<Item = f64>) -> bool {
+        let rate = median(&mut rates.collect::<Vec<f64>>()).unwrap_or(0.0);
+        let most =
+            |value: fn(&ValidityRange) -> f64| self.files().iter().map(|known| value(&known.seen)).fold(0.0, f64::max);
         rudder > MARGIN * most(|seen| seen.rudder_rad) || rate > MARGIN * most(|seen| seen.yaw_rate_rad_s)
     }
 }
@@ -189,8 +194,8 @@ pub(crate) fn drawn<T: Send>(draws: usize, one: impl Fn(u64) -> T + Sync + Send)
 fn predicted(
     draws: &[Option<&[Figure]>],
     extrapolated: bool,
-    sources: &[Source],
-    alone: impl Fn(Source) -> Vec<Option<Vec<Figure>>>,
+    sources: &[UncertaintySource],
+    alone: impl Fn(UncertaintySource) -> Vec<Option<Vec<Figure>>>,
 ) -> IndexMap<String, Predicted> {
     let Some(names) = draws.iter().flatten().next() else { return IndexMap::new() };
     let alone: Vec<_> = sources.iter().map(|source| (source.as_str(), alone(*source))).collect();
@@ -198,10 +203,10 @@ fn predicted(
         let of_draws: Vec<Option<f64>> = draws.iter().map(|draw| draw.and_then(|figures| figures[place].1)).collect();
         let mut values: Vec<f64> = of_draws.iter().copied().flatten().collect();
         let defined = values.len() as f64 / draws.len() as f64;
-        let interval = Interval::of(&mut values)?;
+        let interval = PredictionInterval::of(&mut values)?;
         let spread = |few: &[Option<Vec<Figure>>]| {
             let mut values: Vec<f64> = few.iter().flatten().filter_map(|figures| figures[place].1).collect();
-            Interval::of(&mut values).map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
+            PredictionInterval::of(&mut values).map_or(0.0, |interval| (interval.ci90[1] - interval.ci90[0]).powi(2))
         };
         let spreads: Vec<(&str, f64)> = alone.iter().map(|(source, few)| (*source, spread(few))).collect();
         let sum: f64 = spreads.iter().map(|(_, spread)| spread).sum();
@@ -213,7 +218,7 @@ fn predicted(
 }
 
 /// Quantiles row by row, as long as nine tenths of the draws go on.
-fn bands(draws: &[&Draw], most_probable: Option<&Passage>, period: f64) -> Bands {
+fn bands(draws: &[&Draw], most_probable: Option<&SimulatedManoeuvre>, period: f64) -> Bands {
     let mut bands = Bands::default();
     let mut values = Vec::with_capacity(draws.len());
     for row in 0.. {
@@ -236,10 +241,10 @@ mod tests {
     use crate::known::Moment;
     use crate::made_up;
 
-    fn mixture(change: impl Fn(&mut crate::known::KnownShip)) -> Mixture {
+    fn mixture(change: impl Fn(&mut crate::known::IdentifiedShip)) -> ShipMixture {
         let mut known = made_up::known();
         change(&mut known);
-        Mixture::new(vec![(known, 1.0)]).expect("made up")
+        ShipMixture::new(vec![(known, 1.0)]).expect("made up")
     }
 
     fn kind(text: &str) -> Kind {
@@ -274,10 +279,10 @@ mod tests {
         });
         let prediction = noisy.predict(&kind("zig-zag:10/10"), 200, true).expect("a manoeuvre");
         let first = &prediction.figures["first_overshoot_deg"];
-        let share = |of: Source| first.shares[of.as_str()];
+        let share = |of: UncertaintySource| first.shares[of.as_str()];
         assert!((first.shares.values().sum::<f64>() - 1.0).abs() < 1e-12);
-        assert_eq!((share(Source::Parameters), share(Source::Structure)), (0.0, 0.0));
-        assert!(share(Source::ProcessNoise) > 0.3, "{:?}", first.shares);
+        assert_eq!((share(UncertaintySource::Parameters), share(UncertaintySource::Structure)), (0.0, 0.0));
+        assert!(share(UncertaintySource::ProcessNoise) > 0.3, "{:?}", first.shares);
         let [low, high] = first.interval.ci90;
         assert!(high - low > 0.2 && low < first.interval.median && first.interval.median < high);
     }

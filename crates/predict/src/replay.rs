@@ -13,9 +13,9 @@ use trial::{Origin, Quantity, Trial, ZigZag as Measured};
 
 use crate::error::PredictError;
 use crate::figures::Figure;
-use crate::interval::{Interval, band};
-use crate::mixture::{Mixture, Source};
-use crate::passage::Passage;
+use crate::interval::{PredictionInterval, band};
+use crate::mixture::{ShipMixture, UncertaintySource};
+use crate::passage::SimulatedManoeuvre;
 use crate::prediction::{Bands, drawn, enough};
 use crate::steered::{self, Steered};
 use crate::turn::{self, Turn};
@@ -33,14 +33,14 @@ pub struct Compared {
     pub measured: f64,
     /// What was predicted.
     #[serde(flatten)]
-    pub interval: Interval,
+    pub interval: PredictionInterval,
     /// Whether the 90 % interval holds what was measured.
     pub inside90: bool,
 }
 
 /// A record with its prediction; its curves are no part of the document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Replayed {
+pub struct RecordReplay {
     /// The file as the user named it.
     pub file: String,
     /// Share of the measured headings inside the 90 % band of a reading.
@@ -75,7 +75,7 @@ pub fn file_of(trial: &Trial) -> &str {
 
 /// First heading (rad) and yaw rate (rad/s) of a record with their standard deviations: a straight line through what
 /// the readings of its beginning are away from a ship that begins on heading 0 without a yaw rate.
-fn beginning(trial: &Trial, at_rest: &Passage, timescale: f64) -> Option<[(f64, f64); 2]> {
+fn beginning(trial: &Trial, at_rest: &SimulatedManoeuvre, timescale: f64) -> Option<[(f64, f64); 2]> {
     let start = trial.time()[0];
     let read = |row: usize| {
         let time = trial.time()[row] - start;
@@ -120,7 +120,7 @@ pub(crate) fn thinned(signal: &Polyline) -> Polyline {
     Polyline::new(only(times), only(values)).unwrap_or_else(|_| signal.clone())
 }
 
-impl Mixture {
+impl ShipMixture {
     /// Replays the rudder of a record and holds the prediction against it; the ship has to be of its scale.
     ///
     /// The band is that of the recorded rudder from the first heading and yaw rate on. Figures of a zig-zag are those
@@ -132,34 +132,34 @@ impl Mixture {
         trial: &Trial,
         draws: usize,
         current: Option<Current>,
-    ) -> Result<Option<Replayed>, PredictError> {
+    ) -> Result<Option<RecordReplay>, PredictError> {
         let start = trial.time()[0];
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
         let lost = |made: usize| PredictError::Lost { kind: trial.name().to_owned(), made, draws };
         let Some([first, rate]) = self.beginning(trial)? else { return Ok(None) };
-        let sail = |number: u64, sources: &[Source]| {
+        let sail = |number: u64, sources: &[UncertaintySource]| {
             let mut ship = self.draw(number, sources);
             let mut rng = ship.key.rng(Purpose::Heading);
             let [of_heading, of_rate]: [f64; 2] = std::array::from_fn(|_| rng.sample(StandardNormal));
             let doubt = if sources.is_empty() { 0.0 } else { 1.0 };
             ship.yaw_rate = rate.0 + doubt * rate.1 * of_rate;
-            let mut passage = Passage::sail(&ship, &manoeuvre, self.timescale()).ok()?;
+            let mut passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, self.timescale()).ok()?;
             let offset = first.0 + doubt * first.1 * of_heading;
             passage.turn_about(offset);
             Some((passage, rng))
         };
         let rows: Vec<usize> = trial.observed_rows().collect();
-        let at_rows = |passage: &Passage| -> Vec<f64> {
+        let at_rows = |passage: &SimulatedManoeuvre| -> Vec<f64> {
             rows.iter().map(|&row| passage.at(&passage.heading, trial.time()[row] - start)).collect()
         };
         let of_draw = |number| {
-            let (passage, mut rng) = sail(number, &Source::ALL)?;
+            let (passage, mut rng) = sail(number, &UncertaintySource::ALL)?;
             let noise = self.first().noise.heading_sd_rad;
             let mut headings = at_rows(&passage);
             headings.iter_mut().for_each(|heading| *heading += noise * rng.sample::<f64, _>(StandardNormal));
             Some((passage, headings))
         };
-        let made: Vec<(Passage, Vec<f64>)> = drawn(draws, of_draw).into_iter().flatten().collect();
+        let made: Vec<(SimulatedManoeuvre, Vec<f64>)> = drawn(draws, of_draw).into_iter().flatten().collect();
         let most_probable = sail(0, &[]).map(|(passage, _)| passage);
         enough(trial.name(), made.len(), draws)?;
         let Some(most_probable) = most_probable else { return Err(lost(made.len())) };
@@ -182,7 +182,7 @@ impl Mixture {
             Ok(zigzag) if zigzag.executes.len() > 1 => self.zig_zag(trial, &zigzag, draws)?,
             _ => turns(trial, &made, self.timescale(), current),
         };
-        Ok(Some(Replayed {
+        Ok(Some(RecordReplay {
             file: file_of(trial).to_owned(),
             name: trial.name().to_owned(),
             rudder: [trial.time().iter().map(|time| time - start).collect(), trial.rudder().to_vec()],
@@ -220,7 +220,7 @@ impl Mixture {
     pub(crate) fn beginning(&self, trial: &Trial) -> Result<Option<[(f64, f64); 2]>, PredictError> {
         let lost = |_| PredictError::Lost { kind: trial.name().to_owned(), made: 0, draws: 1 };
         let manoeuvre = Manoeuvre::Replay(thinned(trial.rudder_signal()));
-        let at_rest = Passage::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(lost)?;
+        let at_rest = SimulatedManoeuvre::sail(&self.most_probable(), &manoeuvre, self.timescale()).map_err(lost)?;
         Ok(beginning(trial, &at_rest, self.timescale()))
     }
 }
@@ -234,7 +234,7 @@ fn compared(drawn: &[Vec<Figure>], shown: impl Fn(&str) -> Option<f64>) -> ByNam
     let figure = |(place, &(name, _)): (usize, &Figure)| {
         let measured = shown(name)?;
         let mut values: Vec<f64> = drawn.iter().filter_map(|figures| figures[place].1).collect();
-        let interval = Interval::of(&mut values)?;
+        let interval = PredictionInterval::of(&mut values)?;
         Some((name.to_owned(), Compared { measured, interval, inside90: interval.holds90(measured) }))
     };
     names.iter().enumerate().filter_map(figure).collect()
@@ -243,18 +243,18 @@ fn compared(drawn: &[Vec<Figure>], shown: impl Fn(&str) -> Option<f64>) -> ByNam
 /// Figures of a record that is a turn.
 ///
 /// The doubt about a current that was taken out of its track is one of the prediction.
-fn turns(trial: &Trial, made: &[(Passage, Vec<f64>)], timescale: f64, current: Option<Current>) -> ByName {
+fn turns(trial: &Trial, made: &[(SimulatedManoeuvre, Vec<f64>)], timescale: f64, current: Option<Current>) -> ByName {
     let (Some(turn), Some((sample, _))) = (Turn::of(trial.rudder_signal()), made.first()) else { return ByName::new() };
     let length = sample.way.as_ref().map(|way| way.length);
     let Some(record) = turn::recorded(trial, timescale, length) else { return ByName::new() };
     let start = trial.time()[0];
-    let figures = |passage: &Passage| turn.figures(&passage.until(turn.until - start), start);
+    let figures = |passage: &SimulatedManoeuvre| turn.figures(&passage.until(turn.until - start), start);
     let measured = figures(&record);
     let is_turn = trial.duration() > timescale && measured.iter().any(|(_, value)| value.is_some());
     if !is_turn {
         return ByName::new();
     }
-    let doubtful = |(number, (passage, _)): (usize, &(Passage, Vec<f64>))| match current {
+    let doubtful = |(number, (passage, _)): (usize, &(SimulatedManoeuvre, Vec<f64>))| match current {
         None => figures(passage),
         Some(current) => figures(&turn::in_doubt(passage, &current, number as u64)),
     };
@@ -271,8 +271,8 @@ mod tests {
     use simulate::{Simulation, StreamKey, Vessel};
 
     /// A record of the ship that is known, with the noise that is known.
-    fn record(mixture: &Mixture, manoeuvre: Manoeuvre, number: u64) -> Trial {
-        let ship = mixture.draw(number, &Source::ALL);
+    fn record(mixture: &ShipMixture, manoeuvre: Manoeuvre, number: u64) -> Trial {
+        let ship = mixture.draw(number, &UncertaintySource::ALL);
         let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
         simulation.gear = ship.gear;
         simulation.disturbances = ship.disturbances;
@@ -285,7 +285,7 @@ mod tests {
     /// Records of ships that are drawn as the prediction draws them lie in its intervals nine times out of ten.
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
-        let mixture = Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
         let kind: Kind = "zig-zag:20/20".parse().expect("known");
         let manoeuvre = kind.manoeuvre(mixture.timescale()).expect("steered");
         let (mut inside, mut all, mut band) = (0, 0, 0.0);
@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn a_circle_has_the_figures_of_a_turn() {
-        let mixture = Mixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
+        let mixture = ShipMixture::new(vec![(made_up::known(), 1.0)]).expect("made up");
         let kind: Kind = "turning-circle:-15".parse().expect("known");
         let trial = record(&mixture, kind.manoeuvre(mixture.timescale()).expect("steered"), 3);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");

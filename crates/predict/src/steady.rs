@@ -4,7 +4,7 @@
 use ship::angle::to_deg;
 
 use crate::figures::Figure;
-use crate::mixture::Drawn;
+use crate::mixture::DrawnShip;
 
 /// Points to either side of a straight course.
 const POINTS: usize = 24;
@@ -33,7 +33,7 @@ pub struct Loop {
 impl SteadyCurve {
     /// The curve of a ship up to `largest` rad of rudder to either side; `timescale` is a time of the ship, s. Rates
     /// that no rudder makes are left out.
-    pub fn of(ship: &Drawn, largest: f64, timescale: f64) -> Self {
+    pub fn of(ship: &DrawnShip, largest: f64, timescale: f64) -> Self {
         let steady = |rate: f64| match &ship.hull {
             Some(hull) => hull.steady_rudder(rate),
             None => ship.response.steady_rudder(rate),

@@ -8,15 +8,15 @@ use trial::{Quantity, Trial, ZigZag as Measured};
 
 use crate::figures::{self, EXECUTE_TIMES, Figure, OVERSHOOTS};
 use crate::kind::{Kind, Pattern};
-use crate::mixture::{Mixture, Source};
-use crate::passage::Passage;
+use crate::mixture::{ShipMixture, UncertaintySource};
+use crate::passage::SimulatedManoeuvre;
 use crate::prediction::drawn;
 
 /// Share by which a mean angle of a zig-zag may be off the nominal one that was ordered.
 const NOMINAL: f64 = 0.05;
 
 /// What one drawn ship did.
-pub(crate) struct Sailed {
+pub(crate) struct DrawResult {
     /// Figures of merit; their names are the same for every draw.
     pub figures: Vec<Figure>,
     /// Largest |yaw rate|, rad/s.
@@ -66,17 +66,17 @@ impl Steered {
     }
 
     /// What drawn ships do, in the order of their numbers; `None` for one that does not come to the end.
-    pub fn draws(&self, mixture: &Mixture, draws: usize) -> Vec<Option<Sailed>> {
+    pub fn draws(&self, mixture: &ShipMixture, draws: usize) -> Vec<Option<DrawResult>> {
         let manoeuvre = self.kind.manoeuvre(mixture.timescale()).expect("a zig-zag is steered");
         drawn(draws, |number| {
-            let mut ship = mixture.draw(number, &Source::ALL);
+            let mut ship = mixture.draw(number, &UncertaintySource::ALL);
             ship.yaw_rate = self.yaw_rate;
             if let Some(rate) = self.rudder_rate {
                 ship.gear.rate = rate;
             }
-            let passage = Passage::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
+            let passage = SimulatedManoeuvre::sail(&ship, &manoeuvre, mixture.timescale()).ok()?;
             let figures = figures::of(&self.kind, &passage, mixture.particulars());
-            Some(Sailed { figures, largest_rate: passage.largest_rate() })
+            Some(DrawResult { figures, largest_rate: passage.largest_rate() })
         })
     }
 }

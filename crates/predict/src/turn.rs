@@ -9,7 +9,7 @@ use simulate::{Purpose, StreamKey};
 use trial::{Channel, Trial};
 
 use crate::figures::{self, Figure};
-use crate::passage::{self, Passage, Way};
+use crate::passage::{self, SimulatedManoeuvre, Way};
 
 /// Share of the largest angle above which a rudder is held.
 const HELD: f64 = 0.8;
@@ -39,7 +39,7 @@ pub fn without_current(trial: Trial, given: Option<Current>) -> (Trial, Option<C
 }
 
 /// A drawn passage with what is not known of a current, from its execute on.
-pub(crate) fn in_doubt(passage: &Passage, current: &Current, number: u64) -> Passage {
+pub(crate) fn in_doubt(passage: &SimulatedManoeuvre, current: &Current, number: u64) -> SimulatedManoeuvre {
     let mut rng = StreamKey { seed: 0, cell: 0, replicate: number }.indexed(Purpose::Specification, 3);
     let error = [current.north_sd_m_s, current.east_sd_m_s].map(|sd| sd * rng.sample::<f64, _>(StandardNormal));
     let mut passage = passage.clone();
@@ -83,11 +83,11 @@ impl Turn {
     }
 
     /// Figures of a turn of which a passage holds this much; its clock begins with that of the record at `start`, s.
-    pub fn figures(&self, passage: &Passage, start: f64) -> Vec<Figure> {
+    pub fn figures(&self, passage: &SimulatedManoeuvre, start: f64) -> Vec<Figure> {
         let execute = self.execute - start;
         let first = (execute / passage.period).round() as usize;
         let begin = passage.at(&passage.heading, execute);
-        let after = Passage {
+        let after = SimulatedManoeuvre {
             heading: passage.heading.iter().skip(first).map(|heading| heading - begin).collect(),
             yaw_rate: Vec::new(),
             rudder: Vec::new(),
@@ -113,7 +113,7 @@ impl Turn {
 
 /// The passage of a record on rows of a time of the ship, s; with its way where it has a track and the length is known,
 /// m. `None` without headings.
-pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<Passage> {
+pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Option<SimulatedManoeuvre> {
     let period = passage::period(timescale);
     let count = (trial.duration() / period) as usize + 1;
     let rows: Vec<usize> = trial.observed_rows().collect();
@@ -138,5 +138,5 @@ pub(crate) fn recorded(trial: &Trial, timescale: f64, length: Option<f64>) -> Op
         _ => (heading[row + 1] - heading[row]) / period,
     };
     let yaw_rate = (0..count).map(|row| slope(row.min(count.saturating_sub(2)))).collect();
-    Some(Passage { period, yaw_rate, rudder: Vec::new(), executes: Vec::new(), way: way(), heading })
+    Some(SimulatedManoeuvre { period, yaw_rate, rudder: Vec::new(), executes: Vec::new(), way: way(), heading })
 }

@@ -170,17 +170,16 @@ impl Style {
 mod tests {
     use super::*;
     use crate::curve::Curve;
-    use crate::figures::{RecordFit, record_fit};
+    use crate::figures::{Layer, PanelRow, Panels, Pen, Plot, Ruler};
 
     fn drawn(style: &Style) -> String {
-        let curve = |y: [f64; 3]| Curve::new(vec![0.0, 50.0, 100.0], y.to_vec());
-        let data = RecordFit {
-            heading: curve([0.0, 3.0, -2.0]),
-            rudder: curve([0.0, 10.0, -10.0]),
-            title: Some(String::from("\"#D55E00\"")),
-            ..RecordFit::default()
-        };
-        record_fit(&data, &style.on(Theme::screen()).unwrap()).svg().to_owned()
+        let line = |y: [f64; 3], colour| Layer::line("", Curve::new([0.0, 50.0, 100.0], y), Pen::new(colour));
+        let rows = vec![
+            (PanelRow::new(Ruler::heading(), 0.28), vec![line([0.0, 3.0, -2.0], HEADING)]),
+            (PanelRow::new(Ruler::rudder(), 0.13), vec![line([0.0, 10.0, -10.0], RUDDER)]),
+        ];
+        let data = Panels { title: Some(String::from("\"#D55E00\"")), ..Panels::over_time(rows) };
+        Plot::from(data).draw(&style.on(Theme::screen()).unwrap()).svg().to_owned()
     }
 
     #[test]

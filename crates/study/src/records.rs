@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use estimation::statistics::upper_median;
 use ship::Particulars;
 use ship::angle::KNOT;
 use trial::file::{STDIN, called};
 use trial::find::{Kind, Manoeuvre};
-use trial::zigzag::median::upper_median;
 use trial::{Channel, Log, Origin, Reading, Sidecar, Trial};
 
 use crate::options::{Moment, ReadingOptions};

@@ -12,8 +12,8 @@ use thiserror::Error;
 
 use crate::channel::Channel;
 use crate::conditions::{Conditions, LONGEST_INTERVAL, Shortcoming};
-use crate::zigzag::median::upper_median;
 use corners::Rudder;
+use estimation::statistics::upper_median;
 
 pub use corners::Corner;
 

@@ -48,7 +48,7 @@ pub struct Turn<'a> {
 ///
 /// Sources: IMO MSC.137(76) (2002); ITTC 7.5-04-02-01.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct TurningCircle {
+pub struct TurningCircleFigures {
     /// Way in the direction of the approach from the execute to a heading change of 90°, m.
     pub advance: Option<f64>,
     /// Way across, to the side of the turn, from the execute to a heading change of 90°, m.
@@ -75,8 +75,8 @@ const ENOUGH: f64 = PI;
 /// rows the heading runs straight. The steady turn is what follows a heading change of 360° when that is at least half
 /// a circle more; the series should end with the turn. All figures are `None` when columns differ in length, a number
 /// in time, heading or track is not finite, or the execute lies outside.
-pub fn turning_circle(turn: &Turn, execute: f64) -> TurningCircle {
-    let none = TurningCircle::default();
+pub fn turning_circle(turn: &Turn, execute: f64) -> TurningCircleFigures {
+    let none = TurningCircleFigures::default();
     let rows = turn.time.len();
     let lengths = [turn.heading.len(), turn.track.len(), turn.surge.len(), turn.sway.len(), turn.yaw_rate.len()];
     let finite = turn.time.iter().chain(turn.heading).chain(turn.track.iter().flatten()).all(|value| value.is_finite());
@@ -111,7 +111,7 @@ pub fn turning_circle(turn: &Turn, execute: f64) -> TurningCircle {
     let means = steady
         .and_then(|row| Some([mean(&turn.surge[row..])?, mean(&turn.sway[row..])?, mean(&turn.yaw_rate[row..])?]));
     let entry = at(turn.surge).hypot(at(turn.sway));
-    TurningCircle {
+    TurningCircleFigures {
         advance: quarter.map(|way| way[0]),
         transfer: quarter.map(|way| way[1]),
         tactical_diameter: reached(PI).map(|way| way[1]),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// Number of coefficients.
 pub const COEFFICIENTS: usize = 8;
 
-/// Symbols of the coefficients, in the order of [`Coefficients::to_array`].
+/// Symbols of the coefficients, in the order of [`PlanarCoefficients::to_array`].
 pub const SYMBOLS: [&str; COEFFICIENTS] = ["X_0", "X_vr", "X_dd", "X_dv", "Y_v", "Y_vv", "Y_r", "Y_d"];
 
 /// Least and largest value of every coefficient. The signs make the rudder and the hull slow the ship down in a turn,
@@ -15,8 +15,8 @@ pub(crate) const BOUNDS: [[f64; 2]; COEFFICIENTS] =
     [[1e-3, 2.0], [0.0, 5.0], [0.0, 5.0], [0.0, 5.0], [1e-3, 20.0], [0.0, 100.0], [-3.0, 3.0], [-3.0, 3.0]];
 
 /// A full ship, from which searches begin.
-pub(crate) const TYPICAL: Coefficients =
-    Coefficients { X_0: 0.05, X_vr: 1.3, X_dd: 0.1, X_dv: 0.1, Y_v: 0.4, Y_vv: 2.0, Y_r: 0.5, Y_d: 0.1 };
+pub(crate) const TYPICAL: PlanarCoefficients =
+    PlanarCoefficients { X_0: 0.05, X_vr: 1.3, X_dd: 0.1, X_dv: 0.1, Y_v: 0.4, Y_vv: 2.0, Y_r: 0.5, Y_d: 0.1 };
 
 /// Dimensionless coefficients of the planar equations.
 ///
@@ -43,7 +43,7 @@ pub(crate) const TYPICAL: Coefficients =
 /// Sources: Abkowitz (1964); Norrbin (1971); Yasukawa & Yoshimura (2015) for the rudder behind a propeller.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Coefficients {
+pub struct PlanarCoefficients {
     /// Surplus of thrust over resistance per U₀² − u|u|, at least 0.001.
     pub X_0: f64,
     /// Surge by drift in a turn: 1 is the rotation of the axes alone, added mass of sway adds to it; not negative.
@@ -62,14 +62,14 @@ pub struct Coefficients {
     pub Y_d: f64,
 }
 
-impl Coefficients {
+impl PlanarCoefficients {
     /// The coefficients in the order of [`SYMBOLS`].
     pub fn to_array(self) -> [f64; COEFFICIENTS] {
         let Self { X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d } = self;
         [X_0, X_vr, X_dd, X_dv, Y_v, Y_vv, Y_r, Y_d]
     }
 
-    /// Coefficients in the order of [`SYMBOLS`]; a value of the wrong sign is put to the nearest of the right one.
+    /// PlanarCoefficients in the order of [`SYMBOLS`]; a value of the wrong sign is put to the nearest of the right one.
     pub fn from_array(values: [f64; COEFFICIENTS]) -> Self {
         let mut values = values;
         for (value, [least, most]) in values.iter_mut().zip(BOUNDS) {

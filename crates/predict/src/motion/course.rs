@@ -1,6 +1,6 @@
 //! A record cut into windows that begin at measured states, and the hull stepped through them.
 
-use super::coefficients::Coefficients;
+use super::coefficients::PlanarCoefficients;
 use super::model::LARGEST_STEP;
 use super::record::{filled, smoothed};
 use super::yaw::Yaw;
@@ -23,7 +23,7 @@ pub(crate) const OUTPUTS: usize = 4;
 
 /// A record in units of L and U₀.
 #[derive(Debug, Clone)]
-pub(crate) struct Course {
+pub(crate) struct WindowedRecord {
     /// L/U₀.
     pub time: Vec<f64>,
     /// rad.
@@ -36,7 +36,7 @@ pub(crate) struct Course {
     pub windows: Vec<[usize; 2]>,
 }
 
-impl Course {
+impl WindowedRecord {
     /// `None` for a record without surge or sway.
     pub fn of(trial: &Trial, length: f64, speed: f64) -> Option<Self> {
         let has = |channel| trial.channel(channel).filter(|values| values.iter().any(|value| value.is_finite()));
@@ -71,7 +71,7 @@ impl Course {
     /// those of the record.
     pub fn replay(
         &self,
-        planar: &Coefficients,
+        planar: &PlanarCoefficients,
         yaw: &Yaw,
         [first, last]: [usize; 2],
         driven: bool,

@@ -3,12 +3,12 @@
 use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
-use super::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, SYMBOLS, TYPICAL};
+use super::coefficients::{BOUNDS, COEFFICIENTS, PlanarCoefficients, SYMBOLS, TYPICAL};
 use super::error::MotionError;
 use super::model::{Drive, velocities};
-use super::planar::{Planar, RecordFit, Residual, pooled};
-use super::record::{Output, Record, median, range};
-use super::search::{Column, Local, Squares, determined, free, minimise, sandwich};
+use super::planar::{MotionRecordFit, Planar, Residual, pooled};
+use super::record::{MotionOutput, MotionRecord, median, range};
+use super::search::{NormalEquations, ResidualColumn, Squares, determined, free, minimise, sandwich};
 
 /// Range of the heading that at least one record must have, rad (5°).
 const TURNS: f64 = 0.087;
@@ -46,8 +46,8 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     if !(length.is_finite() && length > 0.0) {
         return Err(MotionError::NotPositive { quantity: "length", value: length });
     }
-    let with_output = trials.iter().map(|trial| Record::of(trial, length)).collect::<Result<Vec<_>, _>>()?;
-    let records: Vec<Record> = with_output.into_iter().flatten().collect();
+    let with_output = trials.iter().map(|trial| MotionRecord::of(trial, length)).collect::<Result<Vec<_>, _>>()?;
+    let records: Vec<MotionRecord> = with_output.into_iter().flatten().collect();
     if records.is_empty() {
         return Err(MotionError::NoOutput { records: trials.len() });
     }
@@ -57,15 +57,15 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
     }
     let speed = records.iter().map(|record| record.approach.speed);
     let speed = median(speed).expect("there are records");
-    let scale = |output: Output| if output == Output::Position { length } else { speed };
-    let mut problem = Problem::new(records, length, Output::ALL.map(|output| FIRST_SHARE * scale(output)));
+    let scale = |output: MotionOutput| if output == MotionOutput::Position { length } else { speed };
+    let mut problem = PlanarSquares::new(records, length, MotionOutput::ALL.map(|output| FIRST_SHARE * scale(output)));
     let mut at = problem.start();
     for round in 0..=REWEIGHTED {
         at = minimise(&problem, at).map_err(|iterations| MotionError::NoConvergence { iterations })?;
         if round < REWEIGHTED {
             let residuals = problem.summary(&at);
-            problem.deviations =
-                Output::ALL.map(|output| pooled(&residuals, output).unwrap_or(0.0).max(LEAST_SHARE * scale(output)));
+            problem.deviations = MotionOutput::ALL
+                .map(|output| pooled(&residuals, output).unwrap_or(0.0).max(LEAST_SHARE * scale(output)));
         }
     }
     let covariance = problem.covariance(&at)?;
@@ -75,24 +75,24 @@ pub fn fit(trials: &[Trial], length: f64) -> Result<Planar, MotionError> {
 }
 
 /// Unknowns of one record after the coefficients: surge, sway, approach speed, and of positions north, east, current.
-fn unknowns(record: &Record) -> usize {
-    let position = record.outputs.iter().any(|(output, _)| *output == Output::Position);
+fn unknowns(record: &MotionRecord) -> usize {
+    let position = record.outputs.iter().any(|(output, _)| *output == MotionOutput::Position);
     3 + 2 * usize::from(position) + 2 * usize::from(record.current)
 }
 
 /// All records with the weights of their outputs.
-struct Problem<'a> {
-    records: Vec<Record<'a>>,
+struct PlanarSquares<'a> {
+    records: Vec<MotionRecord<'a>>,
     /// First unknown of every record.
     places: Vec<usize>,
     unknowns: usize,
     length: f64,
-    /// In the order of [`Output::ALL`].
+    /// In the order of [`MotionOutput::ALL`].
     deviations: [f64; 4],
 }
 
-impl<'a> Problem<'a> {
-    fn new(records: Vec<Record<'a>>, length: f64, deviations: [f64; 4]) -> Self {
+impl<'a> PlanarSquares<'a> {
+    fn new(records: Vec<MotionRecord<'a>>, length: f64, deviations: [f64; 4]) -> Self {
         let mut unknowns_so_far = COEFFICIENTS;
         let mut places = Vec::new();
         for record in &records {
@@ -108,7 +108,7 @@ impl<'a> Problem<'a> {
         for (record, &place) in self.records.iter().zip(&self.places) {
             let own = [record.start[0], record.start[1], record.approach.speed];
             at.as_mut_slice()[place..place + 3].copy_from_slice(&own);
-            let positions = record.outputs.iter().filter(|(output, _)| *output == Output::Position);
+            let positions = record.outputs.iter().filter(|(output, _)| *output == MotionOutput::Position);
             for (axis, column) in positions.flat_map(|(_, columns)| columns).enumerate() {
                 at[place + 3 + axis] = column.iter().copied().find(|value| value.is_finite()).unwrap_or(0.0);
             }
@@ -116,16 +116,16 @@ impl<'a> Problem<'a> {
         at
     }
 
-    fn coefficients(&self, at: &[f64]) -> Coefficients {
-        Coefficients::from_array(std::array::from_fn(|i| at[i]))
+    fn coefficients(&self, at: &[f64]) -> PlanarCoefficients {
+        PlanarCoefficients::from_array(std::array::from_fn(|i| at[i]))
     }
 
     fn own<'b>(&self, index: usize, at: &'b [f64]) -> &'b [f64] {
         &at[self.places[index]..self.places[index] + unknowns(&self.records[index])]
     }
 
-    fn summary(&self, at: &DVector<f64>) -> Vec<RecordFit> {
-        let one = |(index, record): (usize, &Record)| {
+    fn summary(&self, at: &DVector<f64>) -> Vec<MotionRecordFit> {
+        let one = |(index, record): (usize, &MotionRecord)| {
             let own = self.own(index, at.as_slice());
             let columns = self.residuals(index, at.as_slice());
             let mut columns = columns[1..].iter();
@@ -135,7 +135,7 @@ impl<'a> Problem<'a> {
                 let rms = (square / count.max(1) as f64).sqrt() * self.deviations[*output as usize];
                 Residual { output: *output, readings: count, rms }
             });
-            RecordFit {
+            MotionRecordFit {
                 name: record.name.to_owned(),
                 approach_speed: own[2],
                 start: [own[0], own[1]],
@@ -148,7 +148,7 @@ impl<'a> Problem<'a> {
 
     /// A⁻¹ S A⁻¹ of the coefficients, with A the normal matrix and S the long-run covariance of the scores.
     fn covariance(&self, at: &DVector<f64>) -> Result<[[f64; COEFFICIENTS]; COEFFICIENTS], MotionError> {
-        let Local { normal, gradient, .. } = self.local(at);
+        let NormalEquations { normal, gradient, .. } = self.local(at);
         let free = free(self, at, &gradient);
         let (scale, eigen) = determined(&normal, &free, |unknown| SYMBOLS.get(unknown).copied())?;
         let inverse = DMatrix::from_fn(free.len(), free.len(), |i, j| {
@@ -161,7 +161,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-impl Squares for Problem<'_> {
+impl Squares for PlanarSquares<'_> {
     const WIDTH: usize = 1;
 
     fn unknowns(&self) -> usize {
@@ -173,7 +173,7 @@ impl Squares for Problem<'_> {
     }
 
     /// What is known of the approach speed (in the first row), then model minus reading.
-    fn residuals(&self, index: usize, at: &[f64]) -> Vec<Column> {
+    fn residuals(&self, index: usize, at: &[f64]) -> Vec<ResidualColumn> {
         let (record, own, coefficients) = (&self.records[index], self.own(index, at), &self.coefficients(at));
         let drive = Drive { time: record.time, yaw_rate: &record.yaw_rate, rudder: record.rudder };
         let speed = own[2];
@@ -184,17 +184,17 @@ impl Squares for Problem<'_> {
         let mut columns = vec![approach];
         for (output, readings) in &record.outputs {
             let weight = 1.0 / self.deviations[*output as usize];
-            let compare = |readings: &[f64], model: &dyn Fn(usize) -> f64| -> Column {
+            let compare = |readings: &[f64], model: &dyn Fn(usize) -> f64| -> ResidualColumn {
                 let residual = |(row, reading): (usize, &f64)| {
                     if reading.is_finite() { (model(row) - reading) * weight } else { 0.0 }
                 };
                 readings.iter().enumerate().map(residual).collect()
             };
             match output {
-                Output::Surge => columns.push(compare(readings[0], &|row| found[row][0])),
-                Output::Sway => columns.push(compare(readings[0], &|row| found[row][1])),
-                Output::Speed => columns.push(compare(readings[0], &|row| found[row][0].hypot(found[row][1]))),
-                Output::Position => {
+                MotionOutput::Surge => columns.push(compare(readings[0], &|row| found[row][0])),
+                MotionOutput::Sway => columns.push(compare(readings[0], &|row| found[row][1])),
+                MotionOutput::Speed => columns.push(compare(readings[0], &|row| found[row][0].hypot(found[row][1]))),
+                MotionOutput::Position => {
                     let current = if record.current { [own[5], own[6]] } else { [0.0; 2] };
                     let (surge, sway): (Vec<f64>, Vec<f64>) = found.iter().map(|[u, v]| (u, v)).unzip();
                     let path = super::circle::track(record.time, &record.heading, &surge, &sway);
@@ -211,7 +211,7 @@ impl Squares for Problem<'_> {
     }
 
     /// Central differences.
-    fn derivatives(&self, index: usize, at: &[f64]) -> (Vec<Column>, Vec<Vec<Column>>) {
+    fn derivatives(&self, index: usize, at: &[f64]) -> (Vec<ResidualColumn>, Vec<Vec<ResidualColumn>>) {
         let speed = self.records[index].approach.speed;
         let by = |unknown: usize| {
             let place = self.global(index, unknown);
@@ -232,10 +232,10 @@ impl Squares for Problem<'_> {
                 (self.residuals(index, &moved), width)
             };
             let ((above, up), (below, down)) = (side(1.0), side(-1.0));
-            let slope = |(above, below): (&Column, &Column)| -> Column {
+            let slope = |(above, below): (&ResidualColumn, &ResidualColumn)| -> ResidualColumn {
                 above.iter().zip(below).map(|(above, below)| (above - below) / (up + down)).collect()
             };
-            above.iter().zip(&below).map(slope).collect::<Vec<Column>>()
+            above.iter().zip(&below).map(slope).collect::<Vec<ResidualColumn>>()
         };
         let slopes = (0..COEFFICIENTS + unknowns(&self.records[index])).map(by).collect();
         (self.residuals(index, at), slopes)

@@ -28,7 +28,7 @@ pub enum Spread {
 /// What is random in yaw: an Ornstein–Uhlenbeck moment that explains what is left of the yaw equation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Moment {
+pub struct RandomYawMoment {
     /// Standard deviation as the rudder angle that has the same moment at approach speed, rad.
     pub deviation: f64,
     /// Time in which its autocorrelation falls to 1/e, s.
@@ -50,7 +50,7 @@ pub struct HullRecord {
 
 /// A ship with surge, sway and yaw: coefficients, what is known of them, and what they leave open.
 ///
-/// States ψ (rad), r (rad/s), u and v (m/s). ψ' = r; u' and v' as in [`Coefficients`](super::coefficients::Coefficients), r' as in
+/// States ψ (rad), r (rad/s), u and v (m/s). ψ' = r; u' and v' as in [`PlanarCoefficients`](super::coefficients::PlanarCoefficients), r' as in
 /// [`Yaw`]. The disturbance of an input is added to the rudder of the yaw equation alone; the force of that rudder in
 /// surge and sway is left out. Made by [`fit_hull`](super::hull_fit::fit_hull) or from known coefficients; immutable.
 ///
@@ -58,22 +58,22 @@ pub struct HullRecord {
 /// straight course; replays without a helmsman then drift apart however good the coefficients are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Hull {
+pub struct IdentifiedHull {
     /// Surge and sway, with length and approach speed.
     pub planar: Planar,
     /// Yaw.
     pub yaw: Yaw,
-    /// Covariance of all coefficients in the order of [`Hull::symbols`].
+    /// Covariance of all coefficients in the order of [`IdentifiedHull::symbols`].
     pub covariance: Vec<Vec<f64>>,
     /// From what the covariance follows.
     pub spread: Spread,
     /// What is random in yaw; zero where the coefficients were given.
-    pub moment: Moment,
+    pub moment: RandomYawMoment,
     /// The records of the fit, in their order; none where the coefficients were given.
     pub records: Vec<HullRecord>,
 }
 
-impl Hull {
+impl IdentifiedHull {
     /// A ship with known coefficients.
     pub fn new(planar: Planar, yaw: Yaw) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Hull {
             yaw: Yaw::from_array(yaw.to_array()),
             covariance: vec![vec![0.0; HULL_COEFFICIENTS]; HULL_COEFFICIENTS],
             spread: Spread::Known,
-            moment: Moment { deviation: 0.0, correlation_time: 0.0 },
+            moment: RandomYawMoment { deviation: 0.0, correlation_time: 0.0 },
             records: Vec::new(),
         }
     }
@@ -93,11 +93,11 @@ impl Hull {
     pub fn scaled_to(&self, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
         let planar = self.planar.scaled_to(length, approach_speed)?;
         let ratio = length / approach_speed * self.planar.approach_speed / self.planar.length;
-        let moment = Moment { correlation_time: ratio * self.moment.correlation_time, ..self.moment };
+        let moment = RandomYawMoment { correlation_time: ratio * self.moment.correlation_time, ..self.moment };
         Ok(Self { planar, moment, ..self.clone() })
     }
 
-    /// The coefficients in the order of [`Hull::symbols`].
+    /// The coefficients in the order of [`IdentifiedHull::symbols`].
     pub fn coefficients(&self) -> Vec<f64> {
         [self.planar.coefficients(), self.yaw.to_array().to_vec()].concat()
     }
@@ -107,7 +107,7 @@ impl Hull {
         [&SYMBOLS[..], &YAW_SYMBOLS[..]].concat()
     }
 
-    /// The same ship with other coefficients, in the order of [`Hull::symbols`]: a draw from the covariance.
+    /// The same ship with other coefficients, in the order of [`IdentifiedHull::symbols`]: a draw from the covariance.
     ///
     /// A value of a sign that the equations do not allow is put to the nearest that they do. Fails with
     /// [`MotionError::Coefficients`] when the number is wrong or one is not finite.
@@ -140,7 +140,7 @@ const SETTLING: [usize; 2] = [60, 8];
 /// Largest rudder that is looked at in a turn, rad.
 const LARGEST_RUDDER: f64 = 1.2;
 
-impl Hull {
+impl IdentifiedHull {
     /// Rudder (rad) at which the hull turns steadily at a yaw rate (rad/s): speed and drift settle while the rudder
     /// keeps the rate (reversed spiral, Bech 1968), so the branch that a spiral test jumps over is found, too. `None`
     /// where no rudder within 1.2 rad does it.
@@ -169,7 +169,7 @@ impl Hull {
     }
 }
 
-impl Dynamics for Hull {
+impl Dynamics for IdentifiedHull {
     fn dimension(&self) -> usize {
         4
     }

@@ -4,14 +4,14 @@ use nalgebra::{DMatrix, DVector};
 use trial::Trial;
 
 use super::coefficients::COEFFICIENTS;
-use super::course::{Course, OUTPUTS};
+use super::course::{OUTPUTS, WindowedRecord};
 use super::error::MotionError;
 use super::fit::fit;
-use super::hull::{HULL_COEFFICIENTS, Hull, HullRecord, Spread};
+use super::hull::{HULL_COEFFICIENTS, HullRecord, IdentifiedHull, Spread};
 use super::hull_search::Windows;
 use super::moment::moment;
 use super::planar::Planar;
-use super::search::{Local, Squares, determined, free, minimise, part, sandwich};
+use super::search::{NormalEquations, Squares, determined, free, minimise, part, sandwich};
 use super::yaw::{TYPICAL_YAW, YAW_SYMBOLS, Yaw};
 
 /// Times the weights of the kinds of output are taken anew from their residuals.
@@ -40,24 +40,24 @@ const JACKKNIFE: usize = 3;
 ///
 /// Fails as [`fit()`](super::fit::fit()) does, with [`MotionError::NoDrift`] when no record has both surge and sway, and
 /// with [`MotionError::Undetermined`] when the records leave a coefficient of yaw open.
-pub fn fit_hull(trials: &[Trial], length: f64) -> Result<Hull, MotionError> {
+pub fn fit_hull(trials: &[Trial], length: f64) -> Result<IdentifiedHull, MotionError> {
     if !(length.is_finite() && length > 0.0) {
         return Err(MotionError::NotPositive { quantity: "length", value: length });
     }
-    let usable: Vec<&Trial> = trials.iter().filter(|trial| Course::of(trial, length, 1.0).is_some()).collect();
+    let usable: Vec<&Trial> = trials.iter().filter(|trial| WindowedRecord::of(trial, length, 1.0).is_some()).collect();
     if usable.is_empty() {
         return Err(MotionError::NoDrift { records: trials.len() });
     }
     let all: Vec<Trial> = usable.into_iter().cloned().collect();
-    let whole = Fitted::of(&all, length, TYPICAL_YAW)?;
+    let whole = HullFit::of(&all, length, TYPICAL_YAW)?;
     let (covariance, spread) = match jackknife(&all, length, whole.yaw) {
         Some(covariance) => (covariance, Spread::Records),
         None => (whole.sandwich()?, Spread::Scores),
     };
-    let Fitted { planar, yaw, courses } = &whole;
+    let HullFit { planar, yaw, courses } = &whole;
     let second = length / planar.approach_speed;
     let coefficients = whole.coefficients();
-    let record = |(trial, course): (&Trial, &Course)| {
+    let record = |(trial, course): (&Trial, &WindowedRecord)| {
         let windows = Windows::new(vec![course], false, [1.0; OUTPUTS]);
         let [heading, yaw_rate, ..] = windows.rms(coefficients.as_slice());
         HullRecord { name: trial.name().to_owned(), heading, yaw_rate: yaw_rate / second }
@@ -65,28 +65,28 @@ pub fn fit_hull(trials: &[Trial], length: f64) -> Result<Hull, MotionError> {
     let records = all.iter().zip(courses).map(record).collect();
     let mut random = moment(courses, yaw);
     random.correlation_time *= second;
-    Ok(Hull {
+    Ok(IdentifiedHull {
         covariance: (0..HULL_COEFFICIENTS).map(|i| covariance.row(i).iter().copied().collect()).collect(),
         spread,
         moment: random,
         records,
-        ..Hull::new(planar.clone(), *yaw)
+        ..IdentifiedHull::new(planar.clone(), *yaw)
     })
 }
 
 /// Both fits and the records in units of length and approach speed.
-struct Fitted {
+struct HullFit {
     planar: Planar,
     yaw: Yaw,
-    courses: Vec<Course>,
+    courses: Vec<WindowedRecord>,
 }
 
-impl Fitted {
+impl HullFit {
     fn of(trials: &[Trial], length: f64, start: Yaw) -> Result<Self, MotionError> {
         let planar = fit(trials, length)?;
         let speeds = planar.records.iter().map(|record| record.approach_speed);
-        let course = |(trial, speed)| Course::of(trial, length, speed).expect("it has surge and sway");
-        let courses: Vec<Course> = trials.iter().zip(speeds).map(course).collect();
+        let course = |(trial, speed)| WindowedRecord::of(trial, length, speed).expect("it has surge and sway");
+        let courses: Vec<WindowedRecord> = trials.iter().zip(speeds).map(course).collect();
         let mut windows = Windows::new(courses.iter().collect(), true, FIRST);
         let mut at = DVector::from_vec([planar.coefficients(), start.to_array().to_vec()].concat());
         for round in 0..=REWEIGHTED {
@@ -127,7 +127,7 @@ fn symbol(unknown: usize) -> Option<&'static str> {
 
 /// The normal matrix, and the yaw coefficients that are at no bound.
 fn of_yaw(windows: &Windows, at: &DVector<f64>) -> (DMatrix<f64>, Vec<usize>) {
-    let Local { normal, gradient, .. } = windows.local(at);
+    let NormalEquations { normal, gradient, .. } = windows.local(at);
     let free = free(windows, at, &gradient).into_iter().filter(|i| *i >= COEFFICIENTS).collect();
     (normal, free)
 }
@@ -142,7 +142,7 @@ fn jackknife(trials: &[Trial], length: f64, start: Yaw) -> Option<DMatrix<f64>> 
     let without = |left_out: usize| {
         let mut rest = trials.to_vec();
         rest.remove(left_out);
-        Some(Fitted::of(&rest, length, start).ok()?.coefficients())
+        Some(HullFit::of(&rest, length, start).ok()?.coefficients())
     };
     let found = (0..count).map(without).collect::<Option<Vec<_>>>()?;
     let mean = found.iter().sum::<DVector<f64>>() / count as f64;

@@ -1,14 +1,14 @@
 //! What a fit of all three degrees of freedom minimises.
 
-use super::coefficients::{BOUNDS, COEFFICIENTS, Coefficients, TYPICAL};
-use super::course::{Course, OUTPUTS};
+use super::coefficients::{BOUNDS, COEFFICIENTS, PlanarCoefficients, TYPICAL};
+use super::course::{OUTPUTS, WindowedRecord};
 use super::hull::HULL_COEFFICIENTS;
-use super::search::{Column, Squares};
+use super::search::{ResidualColumn, Squares};
 use super::yaw::{YAW_BOUNDS, Yaw};
 
 /// Windows with the weights of their outputs.
 pub(crate) struct Windows<'a> {
-    courses: Vec<&'a Course>,
+    courses: Vec<&'a WindowedRecord>,
     /// All windows: record and number of the window.
     places: Vec<(usize, usize)>,
     /// Surge and sway as measured; only the yaw equation is searched.
@@ -17,8 +17,9 @@ pub(crate) struct Windows<'a> {
 }
 
 impl<'a> Windows<'a> {
-    pub fn new(courses: Vec<&'a Course>, driven: bool, deviations: [f64; OUTPUTS]) -> Self {
-        let of = |(index, course): (usize, &&Course)| (0..course.windows.len()).map(move |window| (index, window));
+    pub fn new(courses: Vec<&'a WindowedRecord>, driven: bool, deviations: [f64; OUTPUTS]) -> Self {
+        let of =
+            |(index, course): (usize, &&WindowedRecord)| (0..course.windows.len()).map(move |window| (index, window));
         Self { places: courses.iter().enumerate().flat_map(of).collect(), courses, driven, deviations }
     }
 
@@ -56,10 +57,10 @@ impl Squares for Windows<'_> {
     }
 
     /// Row by row in one column.
-    fn residuals(&self, group: usize, at: &[f64]) -> Vec<Column> {
+    fn residuals(&self, group: usize, at: &[f64]) -> Vec<ResidualColumn> {
         let (index, window) = self.places[group];
         let course = self.courses[index];
-        let planar = Coefficients::from_array(std::array::from_fn(|i| at[i]));
+        let planar = PlanarCoefficients::from_array(std::array::from_fn(|i| at[i]));
         let yaw = Yaw::from_array(std::array::from_fn(|i| at[COEFFICIENTS + i]));
         let [first, last] = course.windows[window];
         let found = course.replay(&planar, &yaw, [first, last], self.driven);
@@ -75,7 +76,7 @@ impl Squares for Windows<'_> {
     }
 
     /// Forward differences, backward ones at an upper bound; zero by what is fixed.
-    fn derivatives(&self, group: usize, at: &[f64]) -> (Vec<Column>, Vec<Vec<Column>>) {
+    fn derivatives(&self, group: usize, at: &[f64]) -> (Vec<ResidualColumn>, Vec<Vec<ResidualColumn>>) {
         let here = self.residuals(group, at);
         let by = |unknown: usize| {
             if self.driven && unknown < COEFFICIENTS {

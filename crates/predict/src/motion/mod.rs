@@ -8,13 +8,13 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | the equations and their coefficients | [`Coefficients`] |
+//! | the equations and their coefficients | [`PlanarCoefficients`] |
 //! | coefficients with length, speed and covariance | [`Planar`] |
 //! | fitting them to records | [`fit()`] |
 //! | a yaw response with speed and drift | [`PlanarShip`] |
 //! | the yaw equation and its coefficients | [`Yaw`] |
 //! | surge, sway and yaw fitted to records | [`fit_hull`] |
-//! | a hull of three degrees of freedom | [`Hull`] |
+//! | a hull of three degrees of freedom | [`IdentifiedHull`] |
 //! | the path over ground | [`track`] |
 //! | advance, transfer, tactical diameter | [`turning_circle`] |
 //! | a current that two rounds show | [`current`](current()) |
@@ -25,7 +25,6 @@
 mod circle;
 mod coefficients;
 mod course;
-mod covariance;
 mod current;
 mod error;
 mod fit;
@@ -42,14 +41,14 @@ mod search;
 mod tests;
 mod yaw;
 
-pub use circle::{Turn, TurningCircle, track, turning_circle};
-pub use coefficients::{COEFFICIENTS, Coefficients, SYMBOLS};
+pub use circle::{Turn, TurningCircleFigures, track, turning_circle};
+pub use coefficients::{COEFFICIENTS, PlanarCoefficients, SYMBOLS};
 pub use current::{Current, current};
 pub use error::MotionError;
 pub use fit::fit;
-pub use hull::{HULL_COEFFICIENTS, Hull, HullRecord, Moment, Spread};
+pub use hull::{HULL_COEFFICIENTS, HullRecord, IdentifiedHull, RandomYawMoment, Spread};
 pub use hull_fit::fit_hull;
-pub use planar::{Planar, RecordFit, Residual};
+pub use planar::{MotionRecordFit, Planar, Residual};
 pub use planar_ship::PlanarShip;
-pub use record::Output;
+pub use record::MotionOutput;
 pub use yaw::{YAW_COEFFICIENTS, YAW_SYMBOLS, Yaw};

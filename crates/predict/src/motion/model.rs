@@ -1,6 +1,6 @@
 //! The planar equations stepped through a given yaw rate and rudder, in units of length and approach speed.
 
-use super::coefficients::Coefficients;
+use super::coefficients::PlanarCoefficients;
 
 /// Longest step in units of L/U₀; a ship loses its drift in about one.
 pub(crate) const LARGEST_STEP: f64 = 0.05;
@@ -27,7 +27,7 @@ pub(crate) struct Drive<'a> {
 /// Midpoint rule with yaw rate and rudder straight between the rows; steps end at the rows and are no longer than
 /// [`LARGEST_STEP`].
 pub(crate) fn velocities(
-    coefficients: &Coefficients,
+    coefficients: &PlanarCoefficients,
     [length, speed]: [f64; 2],
     drive: Drive,
     start: [f64; 2],

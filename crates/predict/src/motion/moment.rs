@@ -1,7 +1,7 @@
 //! What is random in yaw.
 
-use super::course::Course;
-use super::hull::Moment;
+use super::course::WindowedRecord;
+use super::hull::RandomYawMoment;
 use super::record::smoothed;
 use super::yaw::Yaw;
 
@@ -19,7 +19,7 @@ const STEP: f64 = 0.1;
 /// square; the correlation time is the lag at which their autocorrelation, taken over all records about zero, first
 /// falls to 1/e. What is quicker than the window is not seen, and noise of the readings is taken for moment: with noisy
 /// yaw rates the deviation is too large and the time too short.
-pub(crate) fn moment(courses: &[Course], yaw: &Yaw) -> Moment {
+pub(crate) fn moment(courses: &[WindowedRecord], yaw: &Yaw) -> RandomYawMoment {
     let left: Vec<Vec<f64>> = courses.iter().map(|course| readings(course, yaw)).collect();
     let (square, count) = left.iter().flatten().fold((0.0, 0), |(sum, n), x| (sum + x * x, n + 1));
     let variance = square / f64::from(count.max(1));
@@ -41,11 +41,11 @@ pub(crate) fn moment(courses: &[Course], yaw: &Yaw) -> Moment {
         (before, lags) = (now, lags + 1.0);
     }
     let correlation_time = if variance > 0.0 { lags * STEP } else { 0.0 };
-    Moment { deviation: variance.sqrt(), correlation_time }
+    RandomYawMoment { deviation: variance.sqrt(), correlation_time }
 }
 
 /// The moment as rudder angle, every tenth of L/U₀.
-fn readings(course: &Course, yaw: &Yaw) -> Vec<f64> {
+fn readings(course: &WindowedRecord, yaw: &Yaw) -> Vec<f64> {
     let [_, rate, surge, sway] = &course.states;
     let of = |row: usize, disturbance: f64| yaw.rate(surge[row], sway[row], rate[row], course.rudder[row], disturbance);
     let [_, read, ..] = &course.readings;

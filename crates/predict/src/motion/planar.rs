@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::coefficients::{COEFFICIENTS, Coefficients};
+use super::coefficients::{COEFFICIENTS, PlanarCoefficients};
 use super::error::MotionError;
 use super::model::{Drive, velocities};
-use super::record::Output;
+use super::record::MotionOutput;
 
 /// Speed and drift of one ship: coefficients, length, approach speed, and what the fit tells about them.
 ///
@@ -14,7 +14,7 @@ use super::record::Output;
 #[serde(deny_unknown_fields)]
 pub struct Planar {
     /// The coefficients of the equations, dimensionless.
-    pub coefficients: Coefficients,
+    pub coefficients: PlanarCoefficients,
     /// Length of the ship L, m.
     pub length: f64,
     /// Speed of the straight approach U₀, m/s.
@@ -23,13 +23,13 @@ pub struct Planar {
     /// lies at the end of what its sign allows.
     pub covariance: [[f64; COEFFICIENTS]; COEFFICIENTS],
     /// The records of the fit, in their order; none where the coefficients were given.
-    pub records: Vec<RecordFit>,
+    pub records: Vec<MotionRecordFit>,
 }
 
 /// What a fit tells about one record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct RecordFit {
+pub struct MotionRecordFit {
     /// Name of the record.
     pub name: String,
     /// Approach speed U₀ of this record, m/s.
@@ -47,10 +47,10 @@ pub struct RecordFit {
 #[serde(deny_unknown_fields)]
 pub struct Residual {
     /// What was fitted.
-    pub output: Output,
+    pub output: MotionOutput,
     /// Readings; of a position, those of north and east together.
     pub readings: usize,
-    /// Root of their mean square, in the [`unit`](Output::unit) of the output.
+    /// Root of their mean square, in the [`unit`](MotionOutput::unit) of the output.
     pub rms: f64,
 }
 
@@ -58,9 +58,9 @@ impl Planar {
     /// A ship of length `length` (m) and approach speed `approach_speed` (m/s) with known coefficients.
     ///
     /// Fails with [`MotionError::NotPositive`].
-    pub fn new(coefficients: Coefficients, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
+    pub fn new(coefficients: PlanarCoefficients, length: f64, approach_speed: f64) -> Result<Self, MotionError> {
         let covariance = [[0.0; COEFFICIENTS]; COEFFICIENTS];
-        let coefficients = Coefficients::from_array(coefficients.to_array());
+        let coefficients = PlanarCoefficients::from_array(coefficients.to_array());
         Self { coefficients, length, approach_speed, covariance, records: Vec::new() }.scaled_to(length, approach_speed)
     }
 
@@ -91,7 +91,7 @@ impl Planar {
         let found = values.iter().filter(|value| value.is_finite()).count();
         match <[f64; COEFFICIENTS]>::try_from(values) {
             Ok(values) if found == COEFFICIENTS => {
-                Ok(Self { coefficients: Coefficients::from_array(values), ..self.clone() })
+                Ok(Self { coefficients: PlanarCoefficients::from_array(values), ..self.clone() })
             }
             _ => Err(MotionError::Coefficients { needed: COEFFICIENTS, found }),
         }
@@ -120,14 +120,14 @@ impl Planar {
         velocities(&self.coefficients, [self.length, self.approach_speed], drive, start)
     }
 
-    /// Residual rms of one kind of output over all records that have it, in the [`unit`](Output::unit) of the output.
-    pub fn rms(&self, output: Output) -> Option<f64> {
+    /// Residual rms of one kind of output over all records that have it, in the [`unit`](MotionOutput::unit) of the output.
+    pub fn rms(&self, output: MotionOutput) -> Option<f64> {
         pooled(&self.records, output)
     }
 }
 
 /// Root mean square of one kind of residual over records.
-pub(crate) fn pooled(records: &[RecordFit], output: Output) -> Option<f64> {
+pub(crate) fn pooled(records: &[MotionRecordFit], output: MotionOutput) -> Option<f64> {
     let own = records.iter().flat_map(|record| &record.residuals).filter(|own| own.output == output);
     let (square, readings) = own.fold((0.0, 0), |(square, readings), own| {
         (square + own.rms * own.rms * own.readings as f64, readings + own.readings)

@@ -1,7 +1,7 @@
 //! One record as the fit sees it: what turned the ship, what is to be explained, and how fast the ship approached.
 
+use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
-use trial::zigzag::median::upper_median;
 use trial::{Channel, Trial};
 
 use super::error::MotionError;
@@ -9,7 +9,7 @@ use super::error::MotionError;
 /// A kind of output that the equations are fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub enum Output {
+pub enum MotionOutput {
     /// Surge velocity.
     Surge,
     /// Sway velocity.
@@ -20,15 +20,16 @@ pub enum Output {
     Position,
 }
 
-impl Output {
+impl MotionOutput {
     /// All kinds.
-    pub const ALL: [Output; 4] = [Output::Surge, Output::Sway, Output::Speed, Output::Position];
+    pub const ALL: [MotionOutput; 4] =
+        [MotionOutput::Surge, MotionOutput::Sway, MotionOutput::Speed, MotionOutput::Position];
 
     /// Unit of its residuals.
     pub fn unit(self) -> &'static str {
         match self {
-            Output::Surge | Output::Sway | Output::Speed => "m/s",
-            Output::Position => "m",
+            MotionOutput::Surge | MotionOutput::Sway | MotionOutput::Speed => "m/s",
+            MotionOutput::Position => "m",
         }
     }
 }
@@ -62,7 +63,7 @@ const CIRCLE: f64 = std::f64::consts::TAU;
 
 /// The approach speed and how surely it is known, m/s.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Approach {
+pub(crate) struct ApproachSpeed {
     /// From which the fit begins.
     pub speed: f64,
     pub deviation: f64,
@@ -72,7 +73,7 @@ pub(crate) struct Approach {
 
 /// A record ready to be fitted.
 #[derive(Debug, Clone)]
-pub(crate) struct Record<'a> {
+pub(crate) struct MotionRecord<'a> {
     pub name: &'a str,
     pub time: &'a [f64],
     pub rudder: &'a [f64],
@@ -81,9 +82,9 @@ pub(crate) struct Record<'a> {
     /// rad/s, without gaps.
     pub yaw_rate: Vec<f64>,
     /// Columns of the outputs; one column each, two of a position.
-    pub outputs: Vec<(Output, Vec<&'a [f64]>)>,
+    pub outputs: Vec<(MotionOutput, Vec<&'a [f64]>)>,
     /// What is known of the approach speed before the fit.
-    pub approach: Approach,
+    pub approach: ApproachSpeed,
     /// Surge and sway, m/s, from which the fit begins.
     pub start: [f64; 2],
     /// Whether the record tells a current.
@@ -177,7 +178,7 @@ fn way_made(time: &[f64], north: &[f64], east: &[f64]) -> Option<[f64; 2]> {
     Some([north.hypot(east), a.max(b)])
 }
 
-impl<'a> Record<'a> {
+impl<'a> MotionRecord<'a> {
     /// `None` for a record without speed and position.
     ///
     /// Outputs are surge and sway where the record has them, the speed where it has no surge, positions where it lacks
@@ -186,11 +187,11 @@ impl<'a> Record<'a> {
         let has = |channel| trial.channel(channel).filter(|values| values.iter().any(|value| value.is_finite()));
         let (surge, sway, speed) = (has(Channel::Surge), has(Channel::Sway), has(Channel::Speed));
         let position = has(Channel::North).zip(has(Channel::East)).filter(|_| surge.is_none() || sway.is_none());
-        let mut outputs: Vec<(Output, Vec<&[f64]>)> = Vec::new();
-        outputs.extend(surge.map(|values| (Output::Surge, vec![values])));
-        outputs.extend(sway.map(|values| (Output::Sway, vec![values])));
-        outputs.extend(speed.filter(|_| surge.is_none()).map(|values| (Output::Speed, vec![values])));
-        outputs.extend(position.map(|(north, east)| (Output::Position, vec![north, east])));
+        let mut outputs: Vec<(MotionOutput, Vec<&[f64]>)> = Vec::new();
+        outputs.extend(surge.map(|values| (MotionOutput::Surge, vec![values])));
+        outputs.extend(sway.map(|values| (MotionOutput::Sway, vec![values])));
+        outputs.extend(speed.filter(|_| surge.is_none()).map(|values| (MotionOutput::Speed, vec![values])));
+        outputs.extend(position.map(|(north, east)| (MotionOutput::Position, vec![north, east])));
         if surge.is_none() && speed.is_none() && position.is_none() {
             return Ok(None);
         }
@@ -219,7 +220,7 @@ impl<'a> Record<'a> {
             return Err(MotionError::TooCoarse { record: trial.name().to_owned(), period, longest });
         }
         let deviation = deviation.max(SUREST * guess);
-        let approach = Approach { speed: guess, deviation, is_start: known.is_none() };
+        let approach = ApproachSpeed { speed: guess, deviation, is_start: known.is_none() };
         let yaw_rate = match has(Channel::YawRate) {
             Some(rate) => filled(time, rate),
             None => smoothed(time, &heading, WINDOW * length / guess).1,

@@ -3,14 +3,14 @@
 
 use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
-use super::covariance::newey_west;
 use super::error::MotionError;
+use estimation::covariance::newey_west;
 
 /// One column of residuals, zero where nothing was read.
-pub(crate) type Column = Vec<f64>;
+pub(crate) type ResidualColumn = Vec<f64>;
 
 /// Sum of squares about a point: normal matrix JᵀJ, gradient Jᵀr and rᵀr.
-pub(crate) struct Local {
+pub(crate) struct NormalEquations {
     pub normal: DMatrix<f64>,
     pub gradient: DVector<f64>,
     pub square: f64,
@@ -28,10 +28,10 @@ pub(crate) trait Squares {
     fn groups(&self) -> usize;
 
     /// Residuals of a group over their deviations, column by column; not finite where the model has no answer.
-    fn residuals(&self, group: usize, at: &[f64]) -> Vec<Column>;
+    fn residuals(&self, group: usize, at: &[f64]) -> Vec<ResidualColumn>;
 
     /// Residuals of a group and their derivatives by its unknowns.
-    fn derivatives(&self, group: usize, at: &[f64]) -> (Vec<Column>, Vec<Vec<Column>>);
+    fn derivatives(&self, group: usize, at: &[f64]) -> (Vec<ResidualColumn>, Vec<Vec<ResidualColumn>>);
 
     /// The unknown of the whole problem behind one of a group.
     fn global(&self, group: usize, unknown: usize) -> usize;
@@ -46,11 +46,11 @@ pub(crate) trait Squares {
     }
 
     /// The same with its derivatives.
-    fn local(&self, at: &DVector<f64>) -> Local {
+    fn local(&self, at: &DVector<f64>) -> NormalEquations {
         let mut normal = DMatrix::zeros(self.unknowns(), self.unknowns());
         let mut gradient = DVector::zeros(self.unknowns());
         let mut square = 0.0;
-        let dot = |x: &[Column], y: &[Column]| -> f64 {
+        let dot = |x: &[ResidualColumn], y: &[ResidualColumn]| -> f64 {
             x.iter().zip(y).map(|(x, y)| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>()).sum()
         };
         for group in 0..self.groups() {
@@ -68,7 +68,7 @@ pub(crate) trait Squares {
                 }
             }
         }
-        Local { normal, gradient, square }
+        NormalEquations { normal, gradient, square }
     }
 
     /// Sum of the long-run covariances of the scores of all groups, of the unknowns that are wanted.
@@ -77,10 +77,11 @@ pub(crate) trait Squares {
         for group in 0..self.groups() {
             let (residuals, slopes) = self.derivatives(group, at.as_slice());
             let rows = residuals[0].len() / Self::WIDTH;
-            let score = |slope: &Vec<Column>| -> Vec<f64> {
+            let score = |slope: &Vec<ResidualColumn>| -> Vec<f64> {
                 let of_row = |row: usize| -> f64 {
                     let own = row * Self::WIDTH..(row + 1) * Self::WIDTH;
-                    let product = |(r, s): (&Column, &Column)| -> f64 { own.clone().map(|k| r[k] * s[k]).sum() };
+                    let product =
+                        |(r, s): (&ResidualColumn, &ResidualColumn)| -> f64 { own.clone().map(|k| r[k] * s[k]).sum() };
                     residuals.iter().zip(slope).map(product).sum()
                 };
                 (0..rows).map(of_row).collect()
@@ -88,7 +89,7 @@ pub(crate) trait Squares {
             let places: Vec<usize> =
                 (0..slopes.len()).map(|i| self.global(group, i)).filter(|place| is_wanted(*place)).collect();
             let own = (0..slopes.len()).filter(|&i| is_wanted(self.global(group, i)));
-            let long_run = newey_west(&own.map(|i| score(&slopes[i])).collect::<Vec<_>>());
+            let long_run = newey_west(&[own.map(|i| score(&slopes[i])).collect::<Vec<_>>()]);
             for (i, &row) in places.iter().enumerate() {
                 for (j, &column) in places.iter().enumerate() {
                     middle[(row, column)] += long_run[(i, j)];
@@ -171,7 +172,7 @@ pub(crate) fn minimise(problem: &impl Squares, from: DVector<f64>) -> Result<DVe
     let mut at = from;
     let (mut damping, mut slow) = (1e-3, 0);
     for iteration in 0..MOST_ITERATIONS {
-        let Local { normal, gradient, square } = problem.local(&at);
+        let NormalEquations { normal, gradient, square } = problem.local(&at);
         if !square.is_finite() {
             return Err(iteration);
         }

@@ -1,5 +1,6 @@
 //! What kinds of figure share: records, areas, lines of reference, marks that stand side by side.
 
+use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
 
 use crate::clip::Rect;
@@ -52,9 +53,7 @@ pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 
 
 /// The middle one of the finite values, the upper of two.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
+    upper_median(&mut values.filter(|v| v.is_finite()).collect::<Vec<f64>>())
 }
 
 /// Places with those that are nearer to each other than `gap` moved aside, as far as they need about their middle:

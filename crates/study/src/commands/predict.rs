@@ -8,7 +8,7 @@ use predict::turn::{self, Current};
 use report::Theme;
 use trial::{Sidecar, Trial};
 
-use crate::documents::{self, read_json};
+use crate::documents;
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, Told};
@@ -19,7 +19,7 @@ use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 
 /// What other programs read.
-pub const PREDICT: &str = "predict.json";
+const PREDICT: &str = "predict.json";
 
 /// The form of MSC/Circ.1053.
 const FORM: &str = "trial-form.md";
@@ -67,36 +67,36 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(asked, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let path = folder.path().join(PREDICT);
-    folder.keep(PREDICT, documents::text(&predicted).on("describe", &path)?)?;
-    show(&folder, folder.path(), &theme, common, &warnings)
+    let text = documents::text(&predicted).on("describe", &path)?;
+    folder.keep(PREDICT, text.as_str())?;
+    show((&predicted, &text), &folder, &theme, common, &warnings)
 }
 
-/// Draws a prediction from the `predict.json` of a folder, into `into`, and tells what it says.
+/// Draws a prediction into a folder, and tells what it says.
 ///
-/// Fails when the file is missing or was not written by this program.
-pub fn show(
+/// Fails when a file cannot be written.
+fn show(
+    (predicted, text): (&PredictDocument, &str),
     into: &ResultFolder,
-    from: &Path,
     theme: &Theme,
     common: &Common,
     warnings: &[String],
 ) -> Result<(), Failure> {
-    let (predicted, text): (PredictDocument, String) = read_json(&from.join(PREDICT), "predict")?;
-    for (stem, table) in predict_curves::curves(&predicted) {
+    for (stem, table) in predict_curves::curves(predicted) {
         into.write(&format!("{stem}.csv"), table)?;
     }
-    write_page(into, &predict_page::page(&predicted), theme)?;
+    write_page(into, &predict_page::page(predicted), theme)?;
     let mut notes = format!("\nresults: {}", into.path().join(PREDICT).display());
     if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
         into.write(FORM, predict_form::page(form, remarks).to_markdown())?;
         notes += &format!("\nform:    {}", into.path().join(FORM).display());
     }
-    let words = [predict_page::words(&predicted), predict_page::rest(&predicted)];
+    let words = [predict_page::words(predicted), predict_page::rest(predicted)];
     let told = Told {
         words: words.each_ref().map(String::as_str),
-        table: &predict_tables::figures(&predicted),
+        table: &predict_tables::figures(predicted),
         notes: &notes,
-        document: &text,
+        document: text,
     };
     screen::tell(common, &told, warnings)
 }

@@ -8,7 +8,6 @@ use campaign::folder::ResultFolder;
 use campaign::store::{self, Stored};
 use scenario::failure::Failure;
 
-use super::predict::{self, PREDICT};
 use super::{fit, trace};
 use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
@@ -16,20 +15,20 @@ use crate::options::{Common, StudyStyle};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
-/// Makes tables, figures and the pages of a finished study, a fit, a trace or a prediction where it is stored, or in
-/// `--out`; with `open` shows the page in a browser.
+/// Makes tables, figures and the pages of a finished study, a fit or a trace where it is stored, or in `--out`; with
+/// `open` shows the page in a browser, which is all that can be done for a prediction.
 pub fn run(stored: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
     let folder = common.out.as_deref().unwrap_or(stored);
-    let theme = || style.style.theme();
     let held = || ResultFolder::hold(folder);
-    let has = |name: &str| stored.join(name).is_file();
-    match () {
-        () if has(TRACE) => trace::show(&held()?, stored, &theme()?, common, &[])?,
-        () if has(FIT) => fit::show(&held()?, stored, &theme()?, common)?,
-        () if has(PREDICT) => predict::show(&held()?, stored, &theme()?, common, &[])?,
-        () => rebuild(stored, style, common)?,
+    let is_page = stored.join("predict.json").is_file();
+    if stored.join(TRACE).is_file() {
+        trace::show(&held()?, stored, &style.style.theme()?, common, &[])?;
+    } else if stored.join(FIT).is_file() {
+        fit::show(&held()?, stored, &style.style.theme()?, common)?;
+    } else if !(open && is_page) {
+        rebuild(stored, style, common)?;
     }
-    if open { show(&folder.join(BROWSER)) } else { Ok(()) }
+    if open { show(&(if is_page { stored } else { folder }).join(BROWSER)) } else { Ok(()) }
 }
 
 fn rebuild(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {

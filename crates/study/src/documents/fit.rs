@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use campaign::answer::MethodEntry;
-use predict::KnownShip;
+use predict::IdentifiedShip;
 use report::Curve;
 use report::figures::{Replays, ZigzagTrial};
 use serde::{Deserialize, Serialize};
@@ -85,7 +85,7 @@ pub struct FitDocument {
     pub zigzag: Option<ZigZagEntry>,
     /// What every method with a covariance knows of the ship, for `study predict`; SI units and radians.
     #[serde(default)]
-    pub ships: BTreeMap<String, KnownShip>,
+    pub ships: BTreeMap<String, IdentifiedShip>,
     /// Where the records are of several scales: which terms scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<ScalesEntry>,

@@ -2,7 +2,7 @@
 
 use ::trace::Document;
 use ::trace::document::BeforeAfter;
-use predict::KnownShip;
+use predict::IdentifiedShip;
 use scenario::name::slug;
 use serde::{Deserialize, Serialize};
 use ship::Particulars;
@@ -24,7 +24,7 @@ pub struct TraceDocument {
     /// The yaw moment that the base lacks on every fitted record.
     pub missing_moment: Vec<MissingMomentEntry>,
     /// What is known of the ship, for `study predict`; SI units and radians.
-    pub ship: KnownShip,
+    pub ship: IdentifiedShip,
     /// How records of several scales were brought to one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<String>,

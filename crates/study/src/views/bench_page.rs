@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use bench::Results;
-use bench::board::FEWEST;
-use bench::cases::{Answer, Case};
+use campaign::benchmark::Results;
+use campaign::benchmark::board::FEWEST;
+use campaign::benchmark::cases::{Answer, Case};
 use report::Page;
 
 use super::bench_figures::{capital, figures};

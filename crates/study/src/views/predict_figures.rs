@@ -1,11 +1,11 @@
 //! Figures of a prediction: headings with bands, tracks, the diagram of steady turns, and figures of merit against the
 //! limits of IMO.
 
-use predict::imo::Criterion;
-use predict::interval::Interval;
+use predict::imo::PredictedCriterion;
+use predict::interval::PredictionInterval;
 use predict::kind::Pattern;
 use predict::prediction::Bands;
-use predict::replay::Replayed;
+use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, RowItem, RowKind, Rows, RowsColumn, Ruler, Stack};
 use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
@@ -94,7 +94,7 @@ fn bands(title: String, of: &Bands, recorded: Option<Curve>, rudder_deg: Curve) 
     Panels { title: Some(title), cut, ..Panels::over_time(rows) }
 }
 
-fn replay(replayed: &Replayed) -> Panels {
+fn replay(replayed: &RecordReplay) -> Panels {
     let recorded = Curve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
     let rudder = Curve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
     bands(format!("{}, predicted", replayed.name), &replayed.heading, Some(recorded), rudder)
@@ -139,7 +139,7 @@ fn intervals(title: &str, unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> Rows
     }
 }
 
-fn interval(of: &Interval, extrapolated: bool) -> Vec<RowItem> {
+fn interval(of: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
     let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
     let name = if extrapolated { "median, extrapolated" } else { "median" };
     vec![
@@ -149,7 +149,7 @@ fn interval(of: &Interval, extrapolated: bool) -> Vec<RowItem> {
     ]
 }
 
-fn limit(criterion: &Criterion) -> (String, Vec<RowItem>) {
+fn limit(criterion: &PredictedCriterion) -> (String, Vec<RowItem>) {
     let mut items = interval(&criterion.interval(), criterion.extrapolated);
     items.insert(2, RowItem::new("IMO limit", RowKind::Limit(criterion.limit)));
     (criterion.criterion.clone(), items)

@@ -1,7 +1,7 @@
 //! The page of a prediction: words, tables and figures.
 
 use predict::kind::Pattern;
-use predict::replay::Replayed;
+use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
 use report::Page;
 use report::markdown::text;
@@ -66,7 +66,7 @@ pub fn rest(document: &PredictDocument) -> String {
 }
 
 /// How near a record is to its replay.
-fn coverage(replayed: &Replayed) -> String {
+fn coverage(replayed: &RecordReplay) -> String {
     let mut words = format!(
         "{} % of the headings are inside the 90 % band, rms {}°",
         fixed(100.0 * replayed.band_coverage_90, 0),

@@ -1,7 +1,7 @@
 //! Tables of predictions.
 
 use predict::correction::Corrected;
-use predict::interval::Interval;
+use predict::interval::PredictionInterval;
 use predict::{PredictDocument, Prediction};
 use report::number::{MISSING, fixed, significant, with_uncertainty};
 use report::{Column, Table};
@@ -28,7 +28,7 @@ pub fn bracket(ends: [f64; 2], decimals: usize) -> String {
 }
 
 /// Median and both intervals, with as many decimals as the width asks for.
-fn cells(interval: &Interval) -> [String; 3] {
+fn cells(interval: &PredictionInterval) -> [String; 3] {
     let decimals = interval.decimals();
     let [half, most] = [interval.ci50, interval.ci90].map(|ends| bracket(ends, decimals));
     [fixed(interval.median, decimals), half, most]
@@ -46,7 +46,7 @@ pub fn figures(document: &PredictDocument) -> Table {
         Column::left("mostly from"),
         Column::left("remark"),
     ]);
-    let mut push = |manoeuvre: &str, name: &str, interval: &Interval, source: String, remark: String| {
+    let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {
         let ((name, unit), [median, half, most]) = (words(name), cells(interval));
         table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
     };
@@ -140,7 +140,7 @@ mod tests {
         assert_eq!(words("steady_rate_deg_s"), (String::from("steady rate"), "deg/s"));
         assert_eq!(words("advance_lengths"), (String::from("advance"), "L"));
         assert_eq!(words("time_to_90_s"), (String::from("time to 90"), "s"));
-        let interval = Interval { median: 6.35, ci50: [6.3, 6.4], ci90: [6.2, 6.5] };
+        let interval = PredictionInterval { median: 6.35, ci50: [6.3, 6.4], ci90: [6.2, 6.5] };
         assert_eq!(bracket(interval.ci90, interval.decimals()), "[6.20, 6.50]");
     }
 }

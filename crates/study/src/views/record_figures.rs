@@ -1,7 +1,7 @@
 //! Figures of records that `study fit`, `study trace` and `study predict` have in common: a record with models of it
 //! over time, the phase plane, and the diagram of steady turns.
 
-use predict::known::Seen;
+use predict::known::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::figures::{Division, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
@@ -21,7 +21,7 @@ pub fn degrees(values: &[f64]) -> Vec<f64> {
 pub struct ModelOverTime {
     /// Whose model.
     pub origin: Origin,
-    /// Replayed heading.
+    /// RecordReplay heading.
     pub heading: Curve,
     /// Recorded minus replayed heading.
     pub residual: Curve,
@@ -101,7 +101,7 @@ const CURVES: usize = 40;
 /// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test: the branch on which a
 /// ship that is unstable on a straight course cannot stay dashed, the ships that may be meant just as well pale, over
 /// the field in which there are records.
-pub fn steady_turns(curves: &[SteadyCurve], seen: Seen) -> Panels {
+pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
         let place = |row: usize| match keep(row) {
             true => (to_deg(of.rudder[row]), to_deg(of.yaw_rate[row])),

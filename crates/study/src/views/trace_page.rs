@@ -1,7 +1,7 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
 use ::trace::document::{Outcome, ParameterEntry};
-use predict::known::Seen;
+use predict::known::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::number::{fixed, significant};
 use report::{Column, Page, PageFigure, Table};
@@ -91,7 +91,7 @@ const CANDIDATES: &str = "Visibility is the expected square of the size of an ef
                           candidates: what is small here cannot be seen in these records.";
 
 /// `report.md` with its figures; `turns` are the steady turns of the model.
-pub fn page(document: &TraceDocument, curves: &Curves, turns: Option<&(Vec<SteadyCurve>, Seen)>) -> Page {
+pub fn page(document: &TraceDocument, curves: &Curves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
     let trace = &document.trace;
     let mut page = Page::titled(format!("Trace of {}", document.title()));
     let table = |page: &mut Page, title: &str, table: Table, words: &str| {

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use predict::correction::{self, Correction};
 use predict::document::ModelWeight;
-use predict::form::{self, Record};
+use predict::form::{self, FormRecord};
 use predict::kind::Kind;
 use predict::known::is_same_length;
-use predict::replay::Replayed;
+use predict::replay::RecordReplay;
 use predict::turn::{self, Current};
-use predict::{KnownShip, Mixture, PredictDocument, PredictError, Prediction, imo};
+use predict::{IdentifiedShip, PredictDocument, PredictError, Prediction, ShipMixture, imo};
 use report::number::fixed;
 use scenario::failure::Failure;
 use scenario::name;
@@ -31,16 +31,17 @@ const MODEL: file::Kind = file::Kind { name: "a model", largest: 1 << 26 };
 /// What is known of a ship, and from where.
 pub struct Model {
     file: String,
-    known: KnownShip,
+    known: IdentifiedShip,
     /// How it was identified.
     method: String,
 }
 
 /// The ships of several models at a scale.
-fn mixture_of(models: &[Model], particulars: Option<Particulars>) -> Result<Mixture, PredictError> {
-    let of =
-        |model: &Model| -> Result<(KnownShip, f64), PredictError> { Ok((at_scale(&model.known, particulars)?, 1.0)) };
-    Mixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
+fn mixture_of(models: &[Model], particulars: Option<Particulars>) -> Result<ShipMixture, PredictError> {
+    let of = |model: &Model| -> Result<(IdentifiedShip, f64), PredictError> {
+        Ok((at_scale(&model.known, particulars)?, 1.0))
+    };
+    ShipMixture::new(models.iter().map(of).collect::<Result<_, _>>()?)
 }
 
 impl Model {
@@ -97,7 +98,7 @@ impl Model {
                 )));
             }
         };
-        let known: KnownShip = serde_json::from_value(known)
+        let known: IdentifiedShip = serde_json::from_value(known)
             .map_err(|error| Failure::input(format!("{shown}: what is known of the ship cannot be read: {error}")))?;
         if known.leans_on_sway() {
             warnings.push(format!(
@@ -199,8 +200,8 @@ pub fn predict(asked: Asked, quiet: bool, warnings: &mut Vec<String>) -> Result<
     busy.finish_and_clear();
     let particulars = mixture.particulars();
     let files = |models: &[Model]| -> Vec<String> { models.iter().map(|model| model.file.clone()).collect() };
-    let held: Vec<Record> = (records.iter().zip(&corrections))
-        .map(|((trial, current), correction)| Record { trial, correction: correction.as_ref(), current: *current })
+    let held: Vec<FormRecord> = (records.iter().zip(&corrections))
+        .map(|((trial, current), correction)| FormRecord { trial, correction: correction.as_ref(), current: *current })
         .collect();
     let form = form.then(|| form::fill(&manoeuvres, particulars, &files(models).join(", "), &held, declared));
     let (form, form_remarks) = form.map(|form| (form.entries, form.remarks)).unzip();
@@ -248,7 +249,7 @@ fn held_against(
     [full, ballast]: [&[Model]; 2],
     (asked, draws): (Option<Particulars>, usize),
     warnings: &mut Vec<String>,
-) -> Result<(Replayed, Option<Correction>), Failure> {
+) -> Result<(RecordReplay, Option<Correction>), Failure> {
     // A speed that is not given is that of Froude, not that of a record which loses speed from its first rows on.
     let scale = asked.filter(|asked| is_of(record, asked.length)).or_else(|| record.particulars());
     let scaled = |models: &[Model]| {
@@ -290,11 +291,11 @@ fn held_against(
 }
 
 /// A ship at the scale that was asked for; one whose scale is not known takes it as its own.
-fn at_scale(known: &KnownShip, asked: Option<Particulars>) -> Result<KnownShip, PredictError> {
+fn at_scale(known: &IdentifiedShip, asked: Option<Particulars>) -> Result<IdentifiedShip, PredictError> {
     let Some(Particulars { length, speed }) = asked else { return Ok(known.clone()) };
     let speed = Some(speed).filter(|speed| speed.is_finite());
     match (known.length_m, speed) {
-        (None, Some(_)) => Ok(KnownShip { length_m: Some(length), speed_m_s: speed, ..known.clone() }),
+        (None, Some(_)) => Ok(IdentifiedShip { length_m: Some(length), speed_m_s: speed, ..known.clone() }),
         // The speed of a trial is read off its beginning and never quite that of another.
         (Some(own), _) if is_same_length(own, length) => Ok(known.clone()),
         _ => known.scaled_to(length, speed),

@@ -1,9 +1,9 @@
 //! The steady turns of a traced model, as the diagram of a spiral test shows them.
 
 use predict::kind::Pattern;
-use predict::known::Seen;
+use predict::known::ValidityRange;
 use predict::steady::SteadyCurve;
-use predict::{Kind, KnownShip, Mixture};
+use predict::{IdentifiedShip, Kind, ShipMixture};
 use ship::angle::from_deg;
 use simulate::Side;
 
@@ -16,14 +16,14 @@ const RUDDER_DEG: [f64; 2] = [10.0, 35.0];
 
 /// Steady turns of the responses that are known of a ship, in a calm, the most probable one first, and the range in
 /// which the records show her; `None` where no steady turn is found.
-pub fn of_ship(known: &KnownShip) -> Option<(Vec<SteadyCurve>, Seen)> {
+pub fn of_ship(known: &IdentifiedShip) -> Option<(Vec<SteadyCurve>, ValidityRange)> {
     // Those of the traced response, whatever a hull beside it would do.
-    let ship = KnownShip { hull: None, ..known.in_calm().ok()? };
+    let ship = IdentifiedShip { hull: None, ..known.in_calm().ok()? };
     let seen = ship.seen;
     let [least, most] = RUDDER_DEG.map(from_deg);
     let kind =
         Kind { pattern: Pattern::Spiral, rudder: (BEYOND * seen.rudder_rad).clamp(least, most), side: Side::Starboard };
-    let curves = Mixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves;
+    let curves = ShipMixture::new(vec![(ship, 1.0)]).ok()?.predict(&kind, DRAWS, false).ok()?.curves;
     let has_turns = curves.first().is_some_and(|curve| curve.rudder.len() > 2);
     has_turns.then_some((curves, seen))
 }

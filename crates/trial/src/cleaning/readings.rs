@@ -4,7 +4,7 @@
 use super::at;
 use crate::channel::Channel;
 use crate::record::{Columns, RejectedReading};
-use crate::zigzag::median::upper_median;
+use estimation::statistics::upper_median;
 
 /// Least height of a spike or a jump, rad: 2°, more than any digits and waves make of two readings.
 const LEAST: f64 = 0.035;

@@ -2,7 +2,7 @@
 //! only as far as the caller says.
 
 use super::signals::Signals;
-use crate::zigzag::median::median;
+use estimation::statistics::median;
 
 /// Most rows that a middle value is taken of: more make it no better, and the search slower.
 const ENOUGH: usize = 64;

@@ -4,7 +4,7 @@
 use std::ops::RangeInclusive;
 
 use super::course::{middle, thinned};
-use crate::zigzag::median::median;
+use estimation::statistics::median;
 
 /// Narrowest band about a level in which the rudder rests, rad: orders and feedback agree to about half a degree.
 const NARROWEST_BAND: f64 = 0.5_f64.to_radians();

@@ -4,7 +4,7 @@
 use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
 use super::rest::Hold;
-use crate::zigzag::median::median;
+use estimation::statistics::median;
 
 /// Fewest holds of a way from side to side, and of a part of a way that leads up to it or goes on.
 const FEWEST: usize = 5;

@@ -6,7 +6,7 @@ use super::course::middle;
 use super::kind::Kind;
 use super::pattern::{Pattern, Prepared};
 use super::rest::Hold;
-use crate::zigzag::median::median;
+use estimation::statistics::median;
 
 /// Largest ratio of the rudder angles to both sides.
 const SIDES: f64 = 1.6;

@@ -12,7 +12,7 @@ use super::source::Series;
 use crate::channel::{Channel, Unit};
 use crate::record::Columns;
 use crate::words::counted;
-use crate::zigzag::median::upper_median;
+use estimation::statistics::upper_median;
 
 /// Longest way between two readings over which a channel runs straight, in its usual intervals.
 const LONGEST_WAY: f64 = 3.0;

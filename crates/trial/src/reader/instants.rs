@@ -1,6 +1,6 @@
 //! Instants of rows whose stamps are coarser than their rows: ten rows with one second each.
 
-use crate::zigzag::median::upper_median;
+use estimation::statistics::upper_median;
 
 /// Spreads rows that share a stamp evenly over the time to the next one; the typical number of rows with one stamp
 /// where there is more than one.

@@ -10,7 +10,7 @@ use crate::channel::{Channel, Unit};
 use crate::clock::Clock;
 use crate::plausibility::{MEAN_RATE_DEG_S, changes, mean_rate, range, reversals};
 use crate::words::shortened;
-use crate::zigzag::median::upper_median;
+use estimation::statistics::upper_median;
 
 /// Largest angle of a rudder in radians: 45°. In degrees a rudder of a manoeuvre goes further.
 const RUDDER_RAD: f64 = 0.8;

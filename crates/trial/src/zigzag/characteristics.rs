@@ -8,11 +8,11 @@ use super::findings::{BaseCourse, BaseCourseSource, Execute, Overshoot, Pair, Si
 use super::heading::Heading;
 use super::holds::{self, Hold};
 use super::local::Local;
-use super::median::median;
 use crate::channel::Channel;
 use crate::plausibility::range;
 use crate::quantity::Quantity;
 use crate::record::Trial;
+use estimation::statistics::median;
 
 /// A first execute starts from at most this share of the largest yaw rate; at a reversal it is 0.7 or more.
 const STRAIGHT_RATE: f64 = 0.4;

@@ -3,8 +3,8 @@
 //! the first execute of a trial is not decided here: that takes the heading.
 
 use super::holds::{Hold, LAID};
-use super::median::median;
 use crate::quantity::Quantity;
+use estimation::statistics::median;
 
 /// A movement of the rudder into a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]

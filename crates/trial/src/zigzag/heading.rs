@@ -2,8 +2,8 @@
 //! slopes, peaks and crossings with their uncertainty. It knows nothing of rudders or executes.
 
 use super::local::Cubic;
-use super::median::median;
 use crate::quantity::Quantity;
+use estimation::statistics::median;
 
 /// Half-width of the residual window that the noise is estimated with, in periods of the manoeuvre.
 const NOISE_WINDOW: f64 = 0.02;

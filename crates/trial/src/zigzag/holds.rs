@@ -4,7 +4,7 @@
 use ship::angle::{from_deg, to_deg};
 
 use super::findings::ZigZagError;
-use super::median::median;
+use estimation::statistics::median;
 
 /// Share of the level of a side above which the rudder counts as laid to that side. High, because the manual steering
 /// before a first execute can use more than half the rudder of the trial.

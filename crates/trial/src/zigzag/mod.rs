@@ -13,7 +13,6 @@ mod findings;
 mod heading;
 pub mod holds;
 mod local;
-pub mod median;
 mod phase_plane;
 pub mod points;
 #[cfg(test)]

@@ -6,8 +6,8 @@
 
 use super::heading::noise_sd;
 use super::local::{Cubic, Parabola};
-use super::median::median;
 use crate::quantity::Quantity;
+use estimation::statistics::median;
 
 /// Extrema below this share of the largest |heading| are ripples or the remains of the start.
 pub const SMALLEST_EXTREMUM: f64 = 0.35;

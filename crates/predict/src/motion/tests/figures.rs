@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 
 use approx::assert_relative_eq;
 
-use crate::motion::{Turn, TurningCircle, track, turning_circle};
+use crate::motion::{Turn, TurningCircleFigures, track, turning_circle};
 
 const SURGE: f64 = 5.0;
 const SWAY: f64 = -1.2;
 const RATE: f64 = 0.02;
 
 /// A ship that turns with constant velocities from the first row on, to starboard or port, on any course.
-fn circle(side: f64, course: f64, turned: f64) -> TurningCircle {
+fn circle(side: f64, course: f64, turned: f64) -> TurningCircleFigures {
     let rows = 4000;
     let time: Vec<f64> = (0..=rows).map(|row| f64::from(row) * turned / RATE / f64::from(rows)).collect();
     let heading: Vec<f64> = time.iter().map(|t| course + side * RATE * t).collect();
@@ -45,7 +45,7 @@ fn what_is_not_reached_is_none() {
     assert!(quarter.advance.is_some() && quarter.transfer.is_some());
     assert_eq!((quarter.tactical_diameter, quarter.drift_angle), (None, None));
     let begun = circle(-1.0, 0.0, 1.0);
-    assert_eq!(begun, TurningCircle::default());
+    assert_eq!(begun, TurningCircleFigures::default());
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn a_series_that_is_no_turn_has_no_figures() {
         let turn = Turn { time: &time, heading, track: &path, surge: &time, sway: &time, yaw_rate: &time };
         turning_circle(&turn, execute)
     };
-    let none = TurningCircle::default();
+    let none = TurningCircleFigures::default();
     assert_eq!(of(&two, 0.0), none);
     assert_eq!(of(&[0.0, f64::NAN, 3.0], 0.0), none);
     assert_eq!(of(&time, 9.0), none);

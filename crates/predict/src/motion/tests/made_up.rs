@@ -11,14 +11,16 @@ use ship::{Dynamics, FirstOrder, Particulars, Polyline, Response, ResponseModel}
 use std::sync::Arc;
 use trial::{Channel, Columns, Origin, Trial};
 
-use crate::motion::{COEFFICIENTS, Coefficients, MotionError, Output, Planar, PlanarShip, SYMBOLS, fit, track};
+use crate::motion::{
+    COEFFICIENTS, MotionError, MotionOutput, Planar, PlanarCoefficients, PlanarShip, SYMBOLS, fit, track,
+};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
 const TRUTH: [f64; COEFFICIENTS] = [0.066, 1.5, 0.11, 0.2, 0.36, 2.5, 0.42, 0.14];
 
 fn planar() -> Planar {
-    Planar::new(Coefficients::from_array(TRUTH), LENGTH, SPEED).expect("a ship")
+    Planar::new(PlanarCoefficients::from_array(TRUTH), LENGTH, SPEED).expect("a ship")
 }
 
 fn ship() -> PlanarShip {
@@ -123,9 +125,9 @@ fn assert_found(planar: &Planar, most: f64) {
 fn surge_and_sway_give_the_coefficients_back() {
     let planar = fit(&zig_zags(1.0), LENGTH).expect("a fit");
     assert_found(&planar, 0.1);
-    assert_relative_eq!(planar.rms(Output::Surge).expect("surge"), NOISE[2], max_relative = 0.05);
-    assert_relative_eq!(planar.rms(Output::Sway).expect("sway"), NOISE[2], max_relative = 0.05);
-    assert_eq!((planar.rms(Output::Speed), planar.rms(Output::Position)), (None, None));
+    assert_relative_eq!(planar.rms(MotionOutput::Surge).expect("surge"), NOISE[2], max_relative = 0.05);
+    assert_relative_eq!(planar.rms(MotionOutput::Sway).expect("sway"), NOISE[2], max_relative = 0.05);
+    assert_eq!((planar.rms(MotionOutput::Speed), planar.rms(MotionOutput::Position)), (None, None));
     assert_eq!(planar.records.len(), 3);
     let text = serde_json::to_string(&planar).expect("text");
     assert_eq!(serde_json::from_str::<Planar>(&text).expect("the same"), planar);
@@ -137,7 +139,7 @@ fn speed_alone_beside_positions_is_enough() {
         zig_zags(1.0).iter().map(|t| t.clone().without(&[Channel::Surge, Channel::Sway])).collect();
     let planar = fit(&trials, LENGTH).expect("a fit");
     assert_found(&planar, 0.3);
-    assert!(planar.rms(Output::Speed).is_some() && planar.rms(Output::Position).is_some());
+    assert!(planar.rms(MotionOutput::Speed).is_some() && planar.rms(MotionOutput::Position).is_some());
     assert!(planar.records.iter().all(|record| record.current.is_none()));
 }
 
@@ -155,7 +157,7 @@ fn positions_alone_are_enough_with_and_without_a_current() {
             let found = found.current.expect("a current");
             assert!((0..2).all(|axis| (found[axis] - current[axis]).abs() < 2e-3), "{found:?}");
         }
-        assert_relative_eq!(planar.rms(Output::Position).expect("positions"), NOISE[3], max_relative = 0.1);
+        assert_relative_eq!(planar.rms(MotionOutput::Position).expect("positions"), NOISE[3], max_relative = 0.1);
     }
 }
 

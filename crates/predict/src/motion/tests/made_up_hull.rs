@@ -11,16 +11,18 @@ use ship::{Dynamics, Input};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::steered::{Helm, steer};
-use crate::motion::{Coefficients, HULL_COEFFICIENTS, Hull, MotionError, Planar, Spread, Yaw, fit_hull};
+use crate::motion::{
+    HULL_COEFFICIENTS, IdentifiedHull, MotionError, Planar, PlanarCoefficients, Spread, Yaw, fit_hull,
+};
 
 const LENGTH: f64 = 7.0;
 const SPEED: f64 = 1.2;
 const PLANAR: [f64; 8] = [0.066, 1.5, 0.11, 0.2, 0.36, 2.5, 0.42, 0.14];
 const YAW: [f64; 6] = [1.6, 2.5, -4.0, 0.4, 0.55, 0.01];
 
-fn hull() -> Hull {
-    let planar = Planar::new(Coefficients::from_array(PLANAR), LENGTH, SPEED).expect("a ship");
-    Hull::new(planar, Yaw::from_array(YAW))
+fn hull() -> IdentifiedHull {
+    let planar = Planar::new(PlanarCoefficients::from_array(PLANAR), LENGTH, SPEED).expect("a ship");
+    IdentifiedHull::new(planar, Yaw::from_array(YAW))
 }
 
 /// A zig-zag at 8 Hz with noise in all channels (rad, rad/s, m/s, m/s).
@@ -64,7 +66,7 @@ fn zig_zags_give_all_coefficients_back() {
     let found = fit_hull(&zig_zags(), LENGTH).expect("a fit");
     assert_eq!((found.spread, found.records.len()), (Spread::Records, 4));
     let truth = hull().coefficients();
-    for (i, symbol) in Hull::symbols().iter().enumerate() {
+    for (i, symbol) in IdentifiedHull::symbols().iter().enumerate() {
         let (value, deviation) = (found.coefficients()[i], found.deviations()[i]);
         println!("{symbol} {value:.4} ± {deviation:.4}, made with {}", truth[i]);
         assert!((value - truth[i]).abs() < 0.05 * truth[i].abs().max(0.05), "{symbol}: {value} {}", truth[i]);
@@ -74,7 +76,7 @@ fn zig_zags_give_all_coefficients_back() {
     println!("{:?} {:?}", found.moment, found.records);
     assert!(found.moment.deviation < from_deg(0.5), "{:?}", found.moment);
     let text = serde_json::to_string(&found).expect("text");
-    assert_eq!(serde_json::from_str::<Hull>(&text).expect("the same"), found);
+    assert_eq!(serde_json::from_str::<IdentifiedHull>(&text).expect("the same"), found);
 }
 
 #[test]
@@ -82,7 +84,9 @@ fn few_records_and_no_yaw_rate_are_enough() {
     let trials: Vec<Trial> = zig_zags()[1..3].iter().map(|trial| trial.clone().without(&[Channel::YawRate])).collect();
     let found = fit_hull(&trials, LENGTH).expect("a fit");
     assert_eq!(found.spread, Spread::Scores);
-    for ((value, truth), symbol) in found.coefficients().iter().zip(hull().coefficients()).zip(Hull::symbols()) {
+    for ((value, truth), symbol) in
+        found.coefficients().iter().zip(hull().coefficients()).zip(IdentifiedHull::symbols())
+    {
         assert!((value - truth).abs() < 0.25 * truth.abs().max(0.05), "{symbol}: {value} {truth}");
     }
     assert!(found.deviations().iter().all(|deviation| *deviation > 0.0), "{:?}", found.deviations());
@@ -111,7 +115,7 @@ fn a_hull_at_the_same_froude_number_moves_alike() {
     let (model, time) = (hull(), f64::sqrt(ratio));
     let ship = model.scaled_to(320.0, SPEED * time).expect("a ship");
     let state = [0.3, 0.05, 0.9, -0.2];
-    let of = |hull: &Hull, state: [f64; 4]| {
+    let of = |hull: &IdentifiedHull, state: [f64; 4]| {
         let mut rate = [0.0; 4];
         hull.rates(0.0, &state, &Input { rudder: 0.3, disturbance: 0.02, ..Input::default() }, &mut rate);
         rate
@@ -122,7 +126,8 @@ fn a_hull_at_the_same_froude_number_moves_alike() {
         assert_relative_eq!(*small, large, max_relative = 1e-12);
     }
     assert_relative_eq!(ship.largest_step(), model.largest_step() * time, max_relative = 1e-12);
-    let random = Hull { moment: crate::motion::Moment { deviation: 0.01, correlation_time: 2.0 }, ..model };
+    let random =
+        IdentifiedHull { moment: crate::motion::RandomYawMoment { deviation: 0.01, correlation_time: 2.0 }, ..model };
     let random = random.scaled_to(320.0, SPEED * time).expect("a ship").moment;
     assert_relative_eq!(random.correlation_time, 2.0 * time, max_relative = 1e-12);
 }

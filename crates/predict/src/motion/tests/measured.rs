@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use trial::{Channel, Columns, Origin, Trial};
 
-use crate::motion::{Output, Planar, SYMBOLS, Turn, TurningCircle, fit, track, turning_circle};
+use crate::motion::{MotionOutput, Planar, SYMBOLS, Turn, TurningCircleFigures, fit, track, turning_circle};
 
 /// `None` (and one line) where the data are not there.
 pub(super) fn measured(file: &str) -> Option<Trial> {
@@ -60,7 +60,7 @@ fn zig_zags_of_hsva_tell_those_left_out() {
     let planar = fit(&trials, LENGTH).expect("a fit");
     assert!((planar.approach_speed - 1.177).abs() < 2e-3, "{}", planar.approach_speed);
     // Measured: 0.0044 and 0.0038 m/s, that is 0.4 and 0.3 % of the approach speed.
-    for output in [Output::Surge, Output::Sway] {
+    for output in [MotionOutput::Surge, MotionOutput::Sway] {
         let rms = planar.rms(output).expect("an output");
         println!("fitted {output:?}: {rms:.4} m/s");
         assert!(rms < 0.005, "{output:?}: {rms}");
@@ -83,7 +83,7 @@ fn zig_zags_of_hsva_tell_those_left_out() {
 
 /// Figures of MARIN's circle from its positions, from its velocities, and as the equations tell them of its yaw rate
 /// and rudder.
-fn circle(planar: &Planar) -> Option<[TurningCircle; 3]> {
+fn circle(planar: &Planar) -> Option<[TurningCircleFigures; 3]> {
     let circle = measured("kvlcc2_marin/turning_35.csv")?;
     // Up to the end of the turn.
     let rows = circle.time().partition_point(|time| *time < 1513.0);
@@ -108,8 +108,8 @@ fn circle(planar: &Planar) -> Option<[TurningCircle; 3]> {
 }
 
 /// Errors of advance, transfer and tactical diameter against the measured positions.
-fn errors(measured: &TurningCircle, told: &TurningCircle) -> [f64; 3] {
-    let of = |figure: fn(&TurningCircle) -> Option<f64>| {
+fn errors(measured: &TurningCircleFigures, told: &TurningCircleFigures) -> [f64; 3] {
+    let of = |figure: fn(&TurningCircleFigures) -> Option<f64>| {
         figure(told).expect("a figure") / figure(measured).expect("a figure") - 1.0
     };
     [of(|c| c.advance), of(|c| c.transfer), of(|c| c.tactical_diameter)]
@@ -139,7 +139,7 @@ fn positions_of_the_zig_zags_tell_the_circle_as_well() {
     let trials: Vec<Trial> =
         trials.into_iter().map(|trial| trial.without(&[Channel::Surge, Channel::Sway, Channel::Speed])).collect();
     let planar = fit(&trials, LENGTH).expect("a fit");
-    let rms = planar.rms(Output::Position).expect("positions");
+    let rms = planar.rms(MotionOutput::Position).expect("positions");
     println!("{:?} ± {:?}\npositions {rms:.4} m", planar.coefficients, planar.deviations());
     assert!(rms < 0.05, "{rms}");
     let Some([measured, _, told]) = circle(&planar) else { return };

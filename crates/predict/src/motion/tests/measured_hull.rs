@@ -5,7 +5,7 @@ use trial::{Channel, Trial};
 
 use super::measured::measured;
 use super::steered::{Helm, overshoots, steer};
-use crate::motion::{Hull, Spread, Turn, TurningCircle, fit_hull, track, turning_circle};
+use crate::motion::{IdentifiedHull, Spread, Turn, TurningCircleFigures, fit_hull, track, turning_circle};
 
 const ZIG_ZAGS: [&str; 8] = ["05_01", "10_05", "10_10_s", "15_05", "20_05", "20_10_s", "30_05", "35_05"];
 
@@ -18,7 +18,7 @@ fn rudder_rate() -> f64 {
     from_deg(2.34)
 }
 
-fn figures(hull: &Hull, angle: f64) -> TurningCircle {
+fn figures(hull: &IdentifiedHull, angle: f64) -> TurningCircleFigures {
     let rows = steer(hull, &Helm::Turn(from_deg(angle)), rudder_rate(), 1500.0);
     let time: Vec<f64> = rows.iter().map(|row| row.time).collect();
     let column = |i: usize| rows.iter().map(|row| row.state[i]).collect::<Vec<f64>>();
@@ -31,7 +31,7 @@ fn figures(hull: &Hull, angle: f64) -> TurningCircle {
 }
 
 /// Figures of MARIN's circle from its positions.
-fn circle_of(circle: &Trial) -> TurningCircle {
+fn circle_of(circle: &Trial) -> TurningCircleFigures {
     let rows = circle.time().partition_point(|time| *time < 1513.0);
     let read = |channel| &circle.channel(channel).expect("the channel")[..rows];
     let track: Vec<[f64; 2]> = read(Channel::North).iter().zip(read(Channel::East)).map(|(x, y)| [*x, *y]).collect();
@@ -41,7 +41,7 @@ fn circle_of(circle: &Trial) -> TurningCircle {
 }
 
 /// Overshoots of a steered zig-zag, degrees.
-fn steered(hull: &Hull, rudder: f64, change: f64) -> Vec<f64> {
+fn steered(hull: &IdentifiedHull, rudder: f64, change: f64) -> Vec<f64> {
     let rows = steer(hull, &Helm::ZigZag(from_deg(rudder), from_deg(change)), rudder_rate(), 1200.0);
     overshoots(&rows, from_deg(change)).into_iter().map(to_deg).collect()
 }
@@ -58,7 +58,9 @@ fn a_hull_fitted_to_zig_zags_foretells_trials_of_another_model() {
     let model = fit_hull(&trials, 7.0).expect("a fit");
     println!("fitted in {:.2} s", begun.elapsed().as_secs_f64());
     assert_eq!(model.spread, Spread::Records);
-    for ((symbol, value), deviation) in Hull::symbols().iter().zip(model.coefficients()).zip(model.deviations()) {
+    for ((symbol, value), deviation) in
+        IdentifiedHull::symbols().iter().zip(model.coefficients()).zip(model.deviations())
+    {
         println!("{symbol} {value:.4} ± {deviation:.4}");
         assert!(*symbol == "N_0" || deviation < 0.3 * value.abs(), "{symbol}: {value} ± {deviation}");
     }
@@ -76,7 +78,7 @@ fn a_hull_fitted_to_zig_zags_foretells_trials_of_another_model() {
         let side = positions.drift_angle.map_or(1.0, f64::signum);
         let found = figures(&ship, side * 35.0);
         println!("measured {positions:.3?}\nforetold {found:.3?}");
-        let error = |of: fn(&TurningCircle) -> Option<f64>| {
+        let error = |of: fn(&TurningCircleFigures) -> Option<f64>| {
             of(&found).expect("a figure") / of(&positions).expect("a figure") - 1.0
         };
         let [advance, tactical] = [error(|c| c.advance), error(|c| c.tactical_diameter)];

@@ -3,7 +3,7 @@
 use ship::integrate::RungeKutta4;
 use ship::{Dynamics, Input};
 
-use crate::motion::Hull;
+use crate::motion::IdentifiedHull;
 
 /// How the rudder is moved.
 pub(super) enum Helm {
@@ -24,7 +24,7 @@ pub(super) struct Row {
 }
 
 /// A straight approach, then the helm, with the rudder moved at `rate` (rad/s), for `duration` seconds.
-pub(super) fn steer(hull: &Hull, helm: &Helm, rate: f64, duration: f64) -> Vec<Row> {
+pub(super) fn steer(hull: &IdentifiedHull, helm: &Helm, rate: f64, duration: f64) -> Vec<Row> {
     let mut state = [0.0; 4];
     hull.approach(0.0, 0.0, &mut state);
     let mut solver = RungeKutta4::new(4);

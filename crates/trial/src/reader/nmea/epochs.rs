@@ -7,7 +7,7 @@ use super::sentence::{Kind, Slot};
 use crate::clock::{Clock, DAY, Stamp, Stamps};
 use crate::reader::error::Problem;
 use crate::words::counted;
-use crate::zigzag::median::upper_median;
+use estimation::statistics::upper_median;
 
 /// An epoch longer than the usual one by this factor is a gap.
 const GAP: f64 = 1.5;

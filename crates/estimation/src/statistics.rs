@@ -1,9 +1,9 @@
-//! The middle of a few values.
+//! The middle and the quantiles of a few values.
 
 /// Median; the mean of the two middle values where their number is even, so that a mirrored set has the mirrored
 /// median. Found in linear time.
 ///
-/// `None` for an empty set. The values are reordered and must be finite.
+/// `None` for an empty set. The values are reordered and must not be NaN.
 pub fn median(values: &mut [f64]) -> Option<f64> {
     let even = values.len().is_multiple_of(2);
     let middle = values.len() / 2;
@@ -20,6 +20,19 @@ pub fn upper_median(values: &mut [f64]) -> Option<f64> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+/// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of which some may be
+/// infinite. NaN of nothing.
+///
+/// `sorted` ascends; `share` is from 0 to 1.
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let place = share * last as f64;
+    let below = place.floor() as usize;
+    let (low, high) = (sorted[below], sorted[(below + 1).min(last)]);
+    let part = place - below as f64;
+    if part == 0.0 || low == high { low } else { low + part * (high - low) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,5 +43,15 @@ mod tests {
         assert_eq!(median(&mut [-3.0, -1.0, -2.0, -7.0]), Some(-2.5));
         assert_eq!(median(&mut []), None);
         assert_eq!([upper_median(&mut [3.0, 1.0, 2.0, 7.0]), upper_median(&mut [])], [Some(3.0), None]);
+    }
+
+    #[test]
+    fn quantiles_are_those_of_the_numbers() {
+        let five = [0.0, 1.0, 2.0, 3.0, 4.0];
+        assert_eq!([0.0, 0.25, 0.5, 1.0].map(|share| quantile(&five, share)), [0.0, 1.0, 2.0, 4.0]);
+        assert!((quantile(&five, 0.05) - 0.2).abs() < 1e-12);
+        assert_eq!(quantile(&[1.0, f64::INFINITY], 0.0), 1.0);
+        assert_eq!(quantile(&[f64::INFINITY; 2], 0.5), f64::INFINITY);
+        assert!(quantile(&[], 0.5).is_nan());
     }
 }

@@ -1,6 +1,7 @@
 //! Quantiles of scores among which some are infinite, and their intervals by drawing clusters with replacement (Efron
 //! 1979; Field and Welsh 2007 for clusters).
 
+use estimation::statistics::quantile;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
@@ -33,17 +34,6 @@ impl Figure {
         let ci95 = (clusters >= FEWEST && !resampled.is_empty()).then(|| [finite(end(0.025)), finite(end(0.975))]);
         Self { value: finite(value), ci95 }
     }
-}
-
-/// Quantile by linear interpolation between order statistics (Hyndman and Fan 1996, type 7), of which some may be
-/// infinite. NaN of nothing.
-pub fn quantile(sorted: &[f64], p: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
-    let place = p * last as f64;
-    let below = place.floor() as usize;
-    let (low, high) = (sorted[below], sorted[(below + 1).min(last)]);
-    let share = place - below as f64;
-    if share == 0.0 || low == high { low } else { low + share * (high - low) }
 }
 
 /// The median and the 90 % point of some scores.
@@ -111,7 +101,6 @@ mod tests {
         assert_eq!(middle_and_high(vec![1.0, WORST, 2.0, 3.0]), [2.5, WORST]);
         assert_eq!(middle_and_high(vec![1.0, WORST]), [WORST, WORST]);
         assert_eq!(middle_and_high(vec![WORST; 4]), [WORST, WORST]);
-        assert!(quantile(&[], 0.5).is_nan());
     }
 
     #[test]
