@@ -10,7 +10,6 @@ use crate::figure::Figure;
 use crate::layout::{Grid, NAMES, Sheet, Side, wrap};
 use crate::legend::{Entry, Sample};
 use crate::number::significant;
-use crate::paint::Paint;
 use crate::palette::{HEADING, INK, Look, PAPER, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
@@ -81,8 +80,7 @@ impl RowItem {
 
     fn sample(&self, theme: &Theme) -> Sample {
         match &self.kind {
-            RowKind::Mark(look, ..) => Sample::Marker(*look),
-            RowKind::Bar(look, _) | RowKind::Violin(look, ..) => Sample::Line(bar_stroke(look.colour, theme)),
+            RowKind::Mark(look, ..) | RowKind::Bar(look, _) | RowKind::Violin(look, ..) => Sample::Marker(*look),
             RowKind::Thin(_) => Sample::Line(Stroke::solid(HEADING, theme.line)),
             RowKind::Thick(_) => Sample::Line(thick_stroke(theme)),
             RowKind::Limit(_) => Sample::Upright(Stroke::solid(INK, 1.5 * theme.line)),
@@ -138,8 +136,9 @@ pub struct Rows {
     pub note: Option<String>,
 }
 
-fn bar_stroke(colour: Paint, theme: &Theme) -> Stroke {
-    Stroke { opacity: if colour == RECORD { 0.45 } else { 1.0 }, ..Stroke::solid(colour, 0.9 * theme.tick_font) }
+fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
+    let opacity = if look.hollow || look.colour == RECORD { 0.45 } else { 1.0 };
+    Stroke { opacity, ..Stroke::solid(look.colour, 0.9 * theme.tick_font) }
 }
 
 /// Pale, so that the marks on it can be seen, and higher than a mark, so that a narrow one is seen too.
@@ -219,6 +218,8 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (column, pitch): (&Rows
         panel.vertical(scene, Layer::Data, *value, pen.stroke(theme));
     }
     let mut beyond = false;
+    let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..));
+    let is_estimated = column.rows.iter().flatten().all(is_estimate);
     for (row, items) in column.rows.iter().enumerate() {
         let Some(middle) = panel.up(row as f64) else { continue };
         let stacked = items.iter().filter(|item| item.is_stacked()).count();
@@ -231,7 +232,7 @@ fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (column, pitch): (&Rows
             line += if item.is_stacked() { 1.0 } else { 0.0 };
             beyond |= draw_item(panel, scene, theme, (item, middle + aside, pitch), stacked < 2);
         }
-        if !items.iter().any(RowItem::is_value) {
+        if is_estimated && !items.iter().any(RowItem::is_value) {
             let text = Text::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
             let place = (panel.rect.x + panel.rect.w / 2.0, middle + text.centring());
             scene.text_on_ground(Layer::Note, place, text);
@@ -276,13 +277,7 @@ fn draw_item(
         }
         RowKind::Thin(ends) => panel.bar(scene, y, *ends, Stroke::solid(HEADING, theme.line), head),
         RowKind::Thick(ends) => panel.bar(scene, y, *ends, thick_stroke(theme), head),
-        RowKind::Bar(look, value) => {
-            let beyond = panel.bar(scene, y, [0.0, *value], bar_stroke(look.colour, theme), head);
-            if look.hollow {
-                panel.bar(scene, y, [0.0, *value], Stroke::solid(PAPER, 0.6 * theme.tick_font), head);
-            }
-            beyond
-        }
+        RowKind::Bar(look, value) => panel.bar(scene, y, [0.0, *value], bar_stroke(look, theme), head),
         RowKind::Limit(value) => {
             if let Some(x) = panel.across(*value).filter(|x| panel.rect.contains((*x, y))) {
                 let half = 0.42 * pitch;

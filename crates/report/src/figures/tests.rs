@@ -139,8 +139,10 @@ fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
         let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
         if number % 2 == 0 { marks.joined(Pen::of(&origin)) } else { marks.apart() }
     };
-    let aside =
-        Stack::over(ruler("noise [°]"), vec![(row(Division::Factors), methods().enumerate().map(named).collect())]);
+    let aside = Stack::over(
+        ruler("noise [°]"),
+        vec![(PanelRow { height: 0.3, ..row(Division::Factors) }, methods().enumerate().map(named).collect())],
+    );
     let ships = LayerKind::Ships(INK, vec![wild, 10.0]);
     let track = vec![
         Layer::line("drawn ships", wave(n, wild, 300.0), Pen::pale()).within(0.35),
