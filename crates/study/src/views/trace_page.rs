@@ -106,8 +106,8 @@ pub fn page(document: &TraceDocument, curves: &Curves, turns: Option<&(Vec<Stead
     let (fitted, judged) = document.errors();
     if !judged.is_empty() {
         table(&mut page, "Records that were not fitted", tables::errors(&judged), JUDGED);
-        page.figures(of_held_out);
         page.figures(figures::held_out(document));
+        page.figures(of_held_out);
     }
     page.part("Evidence");
     page.figures([figures::evidence(document)]);
