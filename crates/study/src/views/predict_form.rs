@@ -50,7 +50,7 @@ pub fn page(entries: &[FormEntry], remarks: &[String]) -> Page {
         if !section.is_empty() {
             page.part(text(&capital(section)));
         }
-        let mut table = Table::new(["entry", "value", "unit", "source"].map(Column::left));
+        let mut table = Table::headed("entry | value | unit | source");
         for entry in entries.iter().filter(|entry| entry.section == section) {
             table.push([entry.field.clone(), filled(entry), unit(entry).to_owned(), entry.source.clone()]);
         }

@@ -4,7 +4,7 @@ use ::trace::document::{Outcome, ParameterEntry};
 use predict::known::ValidityRange;
 use predict::steady::SteadyCurve;
 use report::number::{fixed, significant};
-use report::{Column, Page, PageFigure, Table};
+use report::{Page, PageFigure, Table};
 use ship::Shown;
 
 use super::record_figures::steady_turns;
@@ -182,7 +182,7 @@ fn model(document: &TraceDocument) -> String {
 
 /// What these records cannot tell: effects from each other, and effects at all.
 fn aliases(document: &TraceDocument) -> Table {
-    let mut table = Table::new([Column::left("effect"), Column::left("these records cannot tell it from")]);
+    let mut table = Table::headed("effect | these records cannot tell it from");
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
         table.push([tables::term(&effect.id, &effect.form, effect.only.as_ref()), effect.alias_forms.join(", ")]);
     }
