@@ -8,18 +8,19 @@ use predict::turn::{self, Current};
 use report::Theme;
 use trial::{Sidecar, Trial};
 
-use crate::documents;
+use crate::documents::fit::CURVES;
+use crate::documents::{self, read_json};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
 use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
-use crate::work::predict::{Asked, Model, asked_scale, manoeuvres, predict};
+use crate::work::predict::{Model, PredictInput, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 
 /// What other programs read.
-const PREDICT: &str = "predict.json";
+pub const PREDICT: &str = "predict.json";
 
 /// The form of MSC/Circ.1053.
 const FORM: &str = "trial-form.md";
@@ -51,37 +52,29 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         _ => None,
     };
     let file = columns.map(|path| path.display().to_string());
-    let declared = file.as_deref().zip(declared.as_ref().map(Sidecar::conditions));
-    let asked = Asked {
-        models: &models,
-        ballast: &ballast,
-        records,
-        current,
-        manoeuvres: manoeuvres(request),
-        draws: request.draws as usize,
-        calm: request.calm,
-        scale: asked_scale(&request.reading),
-        form: request.form,
-        declared,
-    };
-    let predicted = predict(asked, common.quiet, &mut warnings)?;
+    let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
+    let input = PredictInput { models: &models, ballast: &ballast, records, current, declared };
+    let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let path = folder.path().join(PREDICT);
-    let text = documents::text(&predicted).on("describe", &path)?;
-    folder.keep(PREDICT, text.as_str())?;
-    show((&predicted, &text), &folder, &theme, common, &warnings)
+    folder.keep(PREDICT, documents::text(&predicted).on("describe", &path)?)?;
+    let curves = serde_json::to_string(&predicted.curves()).on("describe", &folder.path().join(CURVES))?;
+    folder.write(CURVES, curves)?;
+    show(&folder, folder.path(), &theme, common, &warnings)
 }
 
-/// Draws a prediction into a folder, and tells what it says.
+/// Draws a prediction from the `predict.json` and the curves of a folder, into `into`, and tells what it says.
 ///
-/// Fails when a file cannot be written.
-fn show(
-    (predicted, text): (&PredictDocument, &str),
+/// Fails when a file is missing or was not written by this program.
+pub fn show(
     into: &ResultFolder,
+    from: &Path,
     theme: &Theme,
     common: &Common,
     warnings: &[String],
 ) -> Result<(), Failure> {
+    let (document, text): (PredictDocument, String) = read_json(&from.join(PREDICT), "predict")?;
+    let predicted = &document.with_curves(read_json(&from.join(CURVES), "predict")?.0);
     for (stem, table) in predict_curves::curves(predicted) {
         into.write(&format!("{stem}.csv"), table)?;
     }
@@ -96,7 +89,7 @@ fn show(
         words: words.each_ref().map(String::as_str),
         table: &predict_tables::figures(predicted),
         notes: &notes,
-        document: text,
+        document: &text,
     };
     screen::tell(common, &told, warnings)
 }

@@ -1,37 +1,54 @@
 //! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace or a prediction, from what is stored
 //! and nothing else.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use campaign::folder::ResultFolder;
 use campaign::store::{self, Stored};
+use clap::Args;
 use scenario::failure::Failure;
 
+use super::predict::{self, PREDICT};
 use super::{fit, trace};
 use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
-use crate::options::{Common, StudyStyle};
+use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
 use crate::views::publish::publish;
 
-/// Makes tables, figures and the pages of a finished study, a fit or a trace where it is stored, or in `--out`; with
-/// `open` shows the page in a browser, which is all that can be done for a prediction.
-pub fn run(stored: &Path, open: bool, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
-    let folder = common.out.as_deref().unwrap_or(stored);
-    let held = || ResultFolder::hold(folder);
-    let is_page = stored.join("predict.json").is_file();
-    if stored.join(TRACE).is_file() {
-        trace::show(&held()?, stored, &style.style.theme()?, common, &[])?;
-    } else if stored.join(FIT).is_file() {
-        fit::show(&held()?, stored, &style.style.theme()?, common)?;
-    } else if !(open && is_page) {
-        rebuild(stored, style, common)?;
-    }
-    if open { show(&(if is_page { stored } else { folder }).join(BROWSER)) } else { Ok(()) }
+/// What `study report` is asked to do.
+#[derive(Debug, Clone, Args)]
+pub struct ReportRequest {
+    /// Folder of a finished study, a fit, a trace or a prediction
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+    /// Show report.html in a browser
+    #[arg(long)]
+    pub open: bool,
+    /// How figures are drawn, and which
+    #[command(flatten)]
+    pub style: StudyFigureOptions,
 }
 
-fn rebuild(rows: &Path, style: &StudyStyle, common: &Common) -> Result<(), Failure> {
+/// Makes tables, figures and the pages of a finished study, a fit, a trace or a prediction where it is stored, or in
+/// `--out`; with `open` shows the page in a browser.
+pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
+    let ReportRequest { folder: stored, open, style } = request;
+    let folder = common.out.as_deref().unwrap_or(stored);
+    let held = || ResultFolder::hold(folder);
+    let theme = || style.style.theme();
+    let has = |name: &str| stored.join(name).is_file();
+    match () {
+        () if has(TRACE) => trace::show(&held()?, stored, &theme()?, common, &[])?,
+        () if has(FIT) => fit::show(&held()?, stored, &theme()?, common)?,
+        () if has(PREDICT) => predict::show(&held()?, stored, &theme()?, common, &[])?,
+        () => rebuild(stored, style, common)?,
+    }
+    if *open { show(&folder.join(BROWSER)) } else { Ok(()) }
+}
+
+fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(), Failure> {
     let theme = style.style.theme()?;
     let is_same =
         |out: &Path| out.canonicalize().ok().zip(rows.canonicalize().ok()).is_some_and(|(out, rows)| out == rows);
