@@ -46,7 +46,7 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
 fn drawing() -> Figure {
     let trial = record(&first_order_zig_zag(ROWS));
     let zigzag = ZigZag::of(&trial).expect("a zig-zag");
-    report::figures::zigzag_trial(&zigzag_figure(&trial, &zigzag), &Theme::screen())
+    report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw(&Theme::screen())
 }
 
 /// Trials, scenarios and figures.

@@ -54,11 +54,11 @@ pub fn fit(
         let mut warnings = Vec::new();
         warn_of_repetition(&records, &others, &mut warnings);
         let done = work::fit::fit(&records, &others, &methods, true, &mut warnings)?;
-        for entry in &done.file.methods {
+        for entry in &done.document.methods {
             warnings.extend(entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)));
         }
         Ok(PyFit {
-            text: document::text(&done.file).map_err(Failure::work)?,
+            text: document::text(&done.document).map_err(Failure::work)?,
             warnings,
             trials: [done.together.trials, done.together.others].concat(),
             answers: done.answers.into_iter().map(|(entry, estimate)| (entry.method, estimate)).collect(),

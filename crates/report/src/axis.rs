@@ -77,6 +77,7 @@ impl Axis {
         let zero = values.clone().into_iter().any(|v| v == 0.0);
         let positive = range(values.into_iter().filter(|v| *v > 0.0));
         let (lo, hi) = positive.unwrap_or((0.1, 10.0));
+        let (lo, hi) = (lo.clamp(LARGEST.recip(), LARGEST), hi.clamp(LARGEST.recip(), LARGEST));
         let pad = ((hi / lo).log10() * 0.06).max(0.05);
         let widen = 10f64.powf(pad);
         Self { lo: lo / widen, hi: hi * widen, scale: Scale::Log { zero }, step: None }

@@ -1,8 +1,8 @@
 //! What a style changes in a finished drawing besides sizes: one colour for another, and the ends of axes.
 
 use crate::axis::Axis;
-use crate::colour::Colour;
 use crate::markup::is_markup;
+use crate::paint::Paint;
 
 /// Most colours that can be changed.
 pub(crate) const COLOURS: usize = 16;
@@ -10,20 +10,20 @@ pub(crate) const COLOURS: usize = 16;
 /// Colours in the place of others, and ends of axes by their titles.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Changes {
-    pub colours: [Option<(Colour, Colour)>; COLOURS],
+    pub colours: [Option<(Paint, Paint)>; COLOURS],
     pub limits: &'static [(String, [f64; 2])],
 }
 
 /// Reads `#0072B2`.
-pub(crate) fn colour(text: &str) -> Option<Colour> {
+pub(crate) fn colour(text: &str) -> Option<Paint> {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
     let part = |at: usize| u8::from_str_radix(&digits[at..at + 2], 16).ok();
-    Some(Colour(part(0)?, part(2)?, part(4)?))
+    Some(Paint(part(0)?, part(2)?, part(4)?))
 }
 
 impl Changes {
     /// The colour in whose place this one stands.
-    pub(crate) fn of(&self, own: Colour) -> Colour {
+    pub(crate) fn of(&self, own: Paint) -> Paint {
         self.colours.iter().flatten().find(|(old, _)| *old == own).map_or(own, |(_, new)| *new)
     }
 

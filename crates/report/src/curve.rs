@@ -20,6 +20,12 @@ pub struct Curve {
 /// Pairs that are kept of every run of a curve with more: first, lowest, highest, last, and a gap.
 const KEPT_OF_RUN: usize = 5;
 
+/// 95 % quantile of χ² with two degrees of freedom.
+const CHI_SQUARED: f64 = 5.991_464_547;
+
+/// Corners of a drawn ellipse.
+const CORNERS: usize = 96;
+
 impl Curve {
     /// Most pairs of a curve.
     pub const MOST_PAIRS: usize = 4000;
@@ -51,6 +57,24 @@ impl Curve {
             thin.y.extend(kept.iter().map(|&row| self.y[row]));
         }
         thin
+    }
+
+    /// The 95 % contour of a normal distribution in two dimensions, closed; empty when the covariance is none.
+    pub fn contour95((x, y): (f64, f64), [[a, b], [_, c]]: [[f64; 2]; 2]) -> Self {
+        // Cholesky: a point of the unit circle goes to L times it.
+        let l11 = a.sqrt();
+        let l21 = b / l11;
+        let l22 = (c - l21 * l21).max(0.0).sqrt();
+        if !(l11 > 0.0 && l21.is_finite() && l22.is_finite()) {
+            return Self::default();
+        }
+        let corner = |k: usize| {
+            let angle = 2.0 * std::f64::consts::PI * k as f64 / CORNERS as f64;
+            let (u, v) = (CHI_SQUARED.sqrt() * angle.cos(), CHI_SQUARED.sqrt() * angle.sin());
+            (x + l11 * u, y + l21 * u + l22 * v)
+        };
+        let (x, y) = (0..=CORNERS).map(corner).unzip();
+        Self { x, y }
     }
 
     /// The pairs, gaps included.

@@ -1,7 +1,7 @@
 //! Dimension lines as on a technical drawing: a line with an arrow at either end and the quantity beside it.
 
 use crate::clip::Place;
-use crate::colour::Colour;
+use crate::paint::Paint;
 use crate::palette::DIMENSION;
 use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
@@ -21,7 +21,7 @@ impl Dimensions<'_> {
     }
 
     /// An arrow head with its tip at `tip`, pointing along the unit vector `(dx, dy)`.
-    pub(crate) fn head(scene: &mut Scene, (x, y): Place, (dx, dy): Place, size: f64, colour: Colour) {
+    pub(crate) fn head(scene: &mut Scene, (x, y): Place, (dx, dy): Place, size: f64, colour: Paint) {
         let (bx, by) = (x - size * dx, y - size * dy);
         let half = 0.36 * size;
         scene.fill(

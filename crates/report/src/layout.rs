@@ -13,6 +13,9 @@ use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::svg;
 use crate::theme::Theme;
 
+/// Largest share of the page for the names of rows; longer ones are broken into lines.
+pub(crate) const NAMES: f64 = 0.42;
+
 /// Line spacing, in font sizes.
 const LEADING: f64 = 1.35;
 
@@ -137,7 +140,11 @@ impl Sheet {
     /// Margin that the labels and titles of the rows need, points.
     pub(crate) fn left_margin(&self, grid: &Grid) -> f64 {
         let theme = &self.theme;
-        let widths = grid.rows.iter().map(|(side, height)| label_width(&self.row_ticks(side, *height), theme));
+        let lines = |label: &str| wrap(label, theme.tick_font, false, NAMES * theme.width);
+        let width =
+            |label: &str| lines(label).iter().map(|line| text_width(line, theme.tick_font, false)).fold(0.0, f64::max);
+        let ticks = grid.rows.iter().flat_map(|(side, height)| self.row_ticks(side, *height).major);
+        let widths = ticks.map(|(_, label)| width(&label));
         let lines = grid.rows.iter().map(|(side, height)| self.row_title(side, *height).len()).max().unwrap_or(0);
         let lines = lines.max(usize::from(grid.shared_title.is_some()));
         let titles = if lines == 0 { 0.0 } else { (lines as f64 * 1.2 + 0.5) * theme.label_font };
@@ -176,10 +183,11 @@ impl Sheet {
         self.y = y;
     }
 
-    /// Draws a grid into a strip of the page: its left edge and its width, points.
+    /// Draws a grid into a strip of the page: its left edge and its width, points. The left margin of the grid is the
+    /// least one.
     pub(crate) fn grid_within(&mut self, grid: Grid, (left, width): (f64, f64)) -> Vec<Panel> {
         let page = self.theme;
-        let margin = self.left_margin(&grid);
+        let margin = self.left_margin(&grid).max(grid.left.unwrap_or(0.0));
         // The strip is laid out like a page that ends where it ends.
         self.theme.width = left + width;
         self.edge = left;
@@ -242,16 +250,6 @@ impl Sheet {
         panels
     }
 
-    /// Panels with one vertical axis, side by side; above each other when the figure is narrow.
-    pub(crate) fn side_by_side(&mut self, columns: impl IntoIterator<Item = Side>, row: (Side, f64)) -> Vec<Panel> {
-        let columns = columns.into_iter();
-        if self.theme.is_narrow() {
-            columns.flat_map(|column| self.grid(Grid::stack(column, vec![row.clone()]))).collect()
-        } else {
-            self.grid(Grid::new(columns.collect(), vec![row]))
-        }
-    }
-
     fn frame(&mut self, rect: &Rect, x: &Ticks, y: &Ticks) {
         let stroke = Stroke::solid(INK, self.theme.thin);
         let grid = Stroke::solid(GRID, 0.8 * self.theme.thin);
@@ -307,9 +305,12 @@ impl Sheet {
         let theme = self.theme;
         let end = rect.x - self.tick_length() - 0.3 * theme.tick_font;
         for (f, label) in &ticks.major {
-            let text = Text::new(label.as_str(), theme.tick_font).anchor(Anchor::End);
-            let y = rect.bottom() - f * rect.h + text.centring();
-            self.scene.text(Layer::Frame, (end, y), text);
+            let lines = wrap(label, theme.tick_font, false, NAMES * theme.width);
+            for (index, line) in lines.iter().enumerate() {
+                let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End);
+                let down = (index as f64 - 0.5 * (lines.len() - 1) as f64) * 1.15 * theme.tick_font;
+                self.scene.text(Layer::Frame, (end, rect.bottom() - f * rect.h + down + text.centring()), text);
+            }
         }
         self.vertical_title(self.row_title(side, rect.h), rect.y + rect.h / 2.0);
     }

@@ -1,7 +1,7 @@
 //! The key of a figure: samples with their names in aligned columns, always outside the data.
 
 use crate::clip::Place;
-use crate::colour::Colour;
+use crate::paint::Paint;
 use crate::palette::{Look, Origin};
 use crate::scene::{Ink, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
@@ -11,13 +11,13 @@ use crate::theme::Theme;
 pub(crate) enum Sample {
     Nothing,
     Line(Stroke),
-    Dots(Colour),
+    Dots(Paint),
     Marker(Look),
     LineAndMarker(Stroke, Look),
     /// A short line from bottom to top.
     Upright(Stroke),
     /// A ship seen from above.
-    Hull(Colour),
+    Hull(Paint),
 }
 
 /// A sample and its name.

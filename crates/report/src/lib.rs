@@ -5,31 +5,29 @@
 //!
 //! | to learn about | read |
 //! |---|---|
-//! | one drawing function and its data per kind of figure | [`figures`] |
+//! | the kinds of figure | [`figures`] |
 //! | sizes for screen and print | [`theme`] |
 //! | which method has which colour, marker and dash | [`palette`] |
 //! | SVG and PNG files | [`figure`] |
 //! | tables for terminal, Markdown, CSV and LaTeX | [`table`] |
+//! | a page of words, tables and figures | [`page`] |
 //! | a page for a browser, of the Markdown of a report and its figures | [`html`] |
 //! | values with uncertainty, intervals, missing values | [`number`] |
 //! | text of others on its way into a page or a file | [`markdown`], [`printable`] |
 //!
 //! ```
+//! use kempf_report::figures::{Layer, LayerKind, PanelRow, Panels, Plot, Ruler};
 //! use kempf_report::{Curve, Theme};
-//! use kempf_report::figures::{RecordFit, record_fit};
 //!
-//! let record = RecordFit {
-//!     heading: Curve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]),
-//!     rudder: Curve::new([0.0, 1.0, 2.0], [0.0, 5.0, 10.0]),
-//!     ..RecordFit::default()
-//! };
-//! let figure = record_fit(&record, &Theme::screen());
+//! let heading = Curve::new([0.0, 1.0, 2.0], [0.0, 0.5, 2.0]);
+//! let layers = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
+//! let figure = Plot::from(Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.3), layers)]));
+//! let figure = figure.draw(&Theme::screen());
 //! assert!(figure.svg().contains("heading"));
 //! ```
 //!
 //! A figure never fails for its data: an undefined number is left out, and a figure without any data is an empty frame.
 
-pub mod colour;
 pub mod curve;
 pub mod error;
 pub mod figure;
@@ -37,6 +35,8 @@ pub mod figures;
 pub mod html;
 pub mod markdown;
 pub mod number;
+pub mod page;
+pub mod paint;
 pub mod palette;
 pub mod printable;
 pub mod style;
@@ -60,6 +60,7 @@ pub use curve::Curve;
 pub use error::ReportError;
 pub use figure::Figure;
 pub use markup::symbol;
+pub use page::{Page, PageFigure};
 pub use palette::Origin;
 pub use style::Style;
 pub use table::{Alignment, Column, Table};

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::colour::Colour;
+use crate::paint::Paint;
 
 /// Whom a curve or a value comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -91,23 +91,23 @@ pub const SHORT_DASH: Dash = &[3.0, 1.6];
 const LONG_SHORT: Dash = &[12.0, 2.0, 3.0, 2.0];
 
 /// Text, frames and the truth.
-pub const INK: Colour = Colour(0x11, 0x11, 0x11);
+pub const INK: Paint = Paint(0x11, 0x11, 0x11);
 /// The record.
-pub const RECORD: Colour = Colour(0x77, 0x77, 0x77);
+pub const RECORD: Paint = Paint(0x77, 0x77, 0x77);
 /// What a figure shows and is not about.
-pub const QUIET: Colour = Colour(0xB0, 0xB0, 0xB0);
+pub const QUIET: Paint = Paint(0xB0, 0xB0, 0xB0);
 /// Grid lines.
-pub const GRID: Colour = Colour(0xE2, 0xE2, 0xE2);
+pub const GRID: Paint = Paint(0xE2, 0xE2, 0xE2);
 /// Background.
-pub const PAPER: Colour = Colour(0xFF, 0xFF, 0xFF);
+pub const PAPER: Paint = Paint(0xFF, 0xFF, 0xFF);
 /// The heading in a figure without methods.
-pub const HEADING: Colour = Colour(0x00, 0x72, 0xB2);
+pub const HEADING: Paint = Paint(0x00, 0x72, 0xB2);
 /// The rudder.
-pub const RUDDER: Colour = Colour(0xD5, 0x5E, 0x00);
+pub const RUDDER: Paint = Paint(0xD5, 0x5E, 0x00);
 /// A model before something was added to it.
-pub const BEFORE: Colour = Colour(0x88, 0x22, 0x55);
+pub const BEFORE: Paint = Paint(0x88, 0x22, 0x55);
 /// Dimension lines and their numbers.
-pub const DIMENSION: Colour = Colour(0x00, 0x7A, 0x5A);
+pub const DIMENSION: Paint = Paint(0x00, 0x7A, 0x5A);
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -134,7 +134,7 @@ pub enum Marker {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Colour of line and marker.
-    pub colour: Colour,
+    pub colour: Paint,
     /// Shape at the data points.
     pub marker: Marker,
     /// Pattern of the line.
@@ -144,20 +144,20 @@ pub struct Look {
 }
 
 impl Look {
-    const fn new(colour: Colour, marker: Marker, dash: Dash) -> Self {
+    const fn new(colour: Paint, marker: Marker, dash: Dash) -> Self {
         Self { colour, marker, dash, hollow: false }
     }
 }
 
 const METHODS: [(&str, Look); 8] = [
-    ("fourier-published", Look::new(Colour(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
-    ("fourier-projected", Look::new(Colour(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
-    ("characteristic-points", Look::new(Colour(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
-    ("least-squares", Look::new(Colour(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
-    ("integral-least-squares", Look::new(Colour(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
-    ("output-error", Look::new(Colour(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
-    ("srivc", Look::new(Colour(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
-    ("maximum-likelihood", Look::new(Colour(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
+    ("fourier-published", Look::new(Paint(0xE6, 0x9F, 0x00), Marker::Up, DASHED)),
+    ("fourier-projected", Look::new(Paint(0xD5, 0x5E, 0x00), Marker::Down, DASH_DOT)),
+    ("characteristic-points", Look::new(Paint(0xCC, 0x79, 0xA7), Marker::Diamond, DOTTED)),
+    ("least-squares", Look::new(Paint(0x56, 0xB4, 0xE9), Marker::Square, LONG_DASH)),
+    ("integral-least-squares", Look::new(Paint(0x00, 0x72, 0xB2), Marker::Plus, SHORT_DASH)),
+    ("output-error", Look::new(Paint(0x00, 0x9E, 0x73), Marker::Circle, SOLID)),
+    ("srivc", Look::new(Paint(0x88, 0x22, 0x55), Marker::Cross, DASH_DOT_DOT)),
+    ("maximum-likelihood", Look::new(Paint(0x33, 0x22, 0x88), Marker::Star, LONG_SHORT)),
 ];
 
 /// The ids that have a look of their own, in the order figures list them.
@@ -184,7 +184,7 @@ fn variant_look(method: &str, number: usize) -> Look {
 
 /// Series differ in shade, shape and dash, so that they never look like a method.
 fn series_look(number: usize) -> Look {
-    const SHADES: [Colour; 3] = [INK, Colour(0x5A, 0x5A, 0x5A), Colour(0x96, 0x96, 0x96)];
+    const SHADES: [Paint; 3] = [INK, Paint(0x5A, 0x5A, 0x5A), Paint(0x96, 0x96, 0x96)];
     const MARKERS: [Marker; 5] = [Marker::Circle, Marker::Square, Marker::Diamond, Marker::Up, Marker::Down];
     const DASHES: [Dash; 4] = [SOLID, SHORT_DASH, DOTTED, DASH_DOT];
     Look {

@@ -3,8 +3,8 @@
 
 use crate::axis::Axis;
 use crate::clip::{self, Place, Rect};
-use crate::colour::Colour;
 use crate::dimension::Dimensions;
+use crate::paint::Paint;
 use crate::palette::Look;
 use crate::scene::{Layer, Scene, Stroke};
 
@@ -53,7 +53,7 @@ impl Panel {
         scene: &mut Scene,
         pairs: impl IntoIterator<Item = (f64, f64)>,
         radius: f64,
-        colour: Colour,
+        colour: Paint,
     ) {
         let mut last: Option<Place> = None;
         for place in pairs.into_iter().filter_map(|pair| self.inside(pair)) {

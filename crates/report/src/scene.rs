@@ -2,14 +2,14 @@
 //! between is what lets a frame be drawn after the data it encloses, and what keeps undefined coordinates out.
 
 use crate::clip::{Place, Rect};
-use crate::colour::Colour;
 use crate::fonts;
+use crate::paint::Paint;
 use crate::palette::{Dash, INK, Look, Marker, PAPER, SOLID};
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Stroke {
-    pub colour: Colour,
+    pub colour: Paint,
     pub opacity: f64,
     /// Points.
     pub width: f64,
@@ -18,7 +18,7 @@ pub(crate) struct Stroke {
 }
 
 impl Stroke {
-    pub(crate) fn solid(colour: Colour, width: f64) -> Self {
+    pub(crate) fn solid(colour: Paint, width: f64) -> Self {
         Self { colour, opacity: 1.0, width, dash: SOLID }
     }
 
@@ -40,7 +40,7 @@ pub(crate) enum Anchor {
 pub(crate) struct Text {
     pub text: String,
     pub size: f64,
-    pub colour: Colour,
+    pub colour: Paint,
     pub bold: bool,
     pub anchor: Anchor,
     /// Turned a quarter to the left, as the title of a vertical axis.
@@ -56,7 +56,7 @@ impl Text {
         Self { anchor, ..self }
     }
 
-    pub(crate) fn colour(self, colour: Colour) -> Self {
+    pub(crate) fn colour(self, colour: Paint) -> Self {
         Self { colour, ..self }
     }
 
@@ -94,15 +94,15 @@ pub(crate) enum Layer {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Shape {
     Line { points: Vec<Place>, stroke: Stroke },
-    Fill { points: Vec<Place>, colour: Colour, opacity: f64 },
-    Disc { centre: Place, radius: f64, colour: Colour, opacity: f64 },
+    Fill { points: Vec<Place>, colour: Paint, opacity: f64 },
+    Disc { centre: Place, radius: f64, colour: Paint, opacity: f64 },
     Text { place: Place, text: Text },
 }
 
 /// What tells the shapes of one curve from those of another: the colour, and of a line its dash.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ink {
-    pub colour: Colour,
+    pub colour: Paint,
     pub dash: Option<Dash>,
 }
 
@@ -112,7 +112,7 @@ impl Ink {
     }
 
     /// Of what is no line.
-    pub(crate) fn of(colour: Colour) -> Self {
+    pub(crate) fn of(colour: Paint) -> Self {
         Self { colour, dash: None }
     }
 }
@@ -190,14 +190,14 @@ impl Scene {
         }
     }
 
-    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: Colour, opacity: f64) {
+    pub(crate) fn fill(&mut self, layer: Layer, points: impl Into<Vec<Place>>, colour: Paint, opacity: f64) {
         let points = points.into();
         if points.len() > 2 && finite(&points) {
             self.shapes.push((layer, Ink::of(colour), Shape::Fill { points, colour, opacity }));
         }
     }
 
-    pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: Colour, opacity: f64) {
+    pub(crate) fn disc(&mut self, layer: Layer, centre: Place, radius: f64, colour: Paint, opacity: f64) {
         if finite(&[centre]) {
             self.shapes.push((layer, Ink::of(colour), Shape::Disc { centre, radius, colour, opacity }));
         }
@@ -219,7 +219,7 @@ impl Scene {
     }
 
     /// A ship seen from above, `length` points long, its bow along the unit vector `(dx, dy)`.
-    pub(crate) fn hull(&mut self, layer: Layer, (x, y): Place, (dx, dy): Place, length: f64, colour: Colour) {
+    pub(crate) fn hull(&mut self, layer: Layer, (x, y): Place, (dx, dy): Place, length: f64, colour: Paint) {
         let outline = |half: f64, beam: f64| -> Vec<Place> {
             let corner = |(forward, side): &(f64, f64)| {
                 let (forward, side) = (half * forward, beam * half * side);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::changes::{COLOURS, Changes, colour};
-use crate::colour::Colour;
+use crate::paint::Paint;
 use crate::palette::{BEFORE, DIMENSION, GRID, HEADING, INK, Origin, PAPER, RECORD, RUDDER, method_ids};
 use crate::theme::Theme;
 
@@ -90,7 +90,7 @@ pub enum StyleError {
 }
 
 /// Everything that has a colour of its own.
-fn coloured() -> impl Iterator<Item = (&'static str, Colour)> {
+fn coloured() -> impl Iterator<Item = (&'static str, Paint)> {
     let parts = [
         ("ink", INK),
         ("paper", PAPER),
@@ -132,8 +132,8 @@ impl Style {
         })
     }
 
-    fn colours(&self) -> Result<[Option<(Colour, Colour)>; COLOURS], StyleError> {
-        let mut found: Vec<(&str, Colour, Colour)> = Vec::new();
+    fn colours(&self) -> Result<[Option<(Paint, Paint)>; COLOURS], StyleError> {
+        let mut found: Vec<(&str, Paint, Paint)> = Vec::new();
         for (name, text) in &self.colours {
             let Some((_, old)) = coloured().find(|(known, _)| known == name) else {
                 let known: Vec<&str> = coloured().map(|(known, _)| known).collect();
@@ -170,17 +170,16 @@ impl Style {
 mod tests {
     use super::*;
     use crate::curve::Curve;
-    use crate::figures::{RecordFit, record_fit};
+    use crate::figures::{Layer, PanelRow, Panels, Pen, Plot, Ruler};
 
     fn drawn(style: &Style) -> String {
-        let curve = |y: [f64; 3]| Curve::new(vec![0.0, 50.0, 100.0], y.to_vec());
-        let data = RecordFit {
-            heading: curve([0.0, 3.0, -2.0]),
-            rudder: curve([0.0, 10.0, -10.0]),
-            title: Some(String::from("\"#D55E00\"")),
-            ..RecordFit::default()
-        };
-        record_fit(&data, &style.on(Theme::screen()).unwrap()).svg().to_owned()
+        let line = |y: [f64; 3], colour| Layer::line("", Curve::new([0.0, 50.0, 100.0], y), Pen::new(colour));
+        let rows = vec![
+            (PanelRow::new(Ruler::heading(), 0.28), vec![line([0.0, 3.0, -2.0], HEADING)]),
+            (PanelRow::new(Ruler::rudder(), 0.13), vec![line([0.0, 10.0, -10.0], RUDDER)]),
+        ];
+        let data = Panels { title: Some(String::from("\"#D55E00\"")), ..Panels::over_time(rows) };
+        Plot::from(data).draw(&style.on(Theme::screen()).unwrap()).svg().to_owned()
     }
 
     #[test]

@@ -7,9 +7,9 @@ use std::fmt::Write as _;
 use crate::axis::Axis;
 use crate::changes::Changes;
 use crate::clip::{Place, Rect};
-use crate::colour::Colour;
 use crate::fonts::FAMILY_WITH_FALLBACK;
 use crate::markup::{is_markup, runs};
+use crate::paint::Paint;
 use crate::palette::PAPER;
 use crate::printable::is_printable;
 use crate::scene::{Anchor, Scene, Shape, Stroke, Text};
@@ -75,8 +75,8 @@ impl Elements<'_> {
         }
     }
 
-    fn colour(&self, colour: Colour) -> String {
-        let Colour(red, green, blue) = self.changes.of(colour);
+    fn colour(&self, colour: Paint) -> String {
+        let Paint(red, green, blue) = self.changes.of(colour);
         format!("#{red:02X}{green:02X}{blue:02X}")
     }
 
@@ -119,7 +119,7 @@ impl Elements<'_> {
         self.path(style, &data, stroke.opacity < 1.0);
     }
 
-    fn polygon(&mut self, points: &[Place], colour: Colour, opacity: f64) {
+    fn polygon(&mut self, points: &[Place], colour: Paint, opacity: f64) {
         let corners: Vec<String> = points.iter().map(|(x, y)| format!("{},{}", units(*x), units(*y))).collect();
         let (colour, faint) = (self.colour(colour), opacity_of("fill", opacity));
         self.put(&format!("<polygon fill=\"{colour}\"{faint} points=\"{}\"/>\n", corners.join(" ")));

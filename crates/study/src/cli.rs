@@ -66,7 +66,8 @@ enum Command {
     Check(With<check::CheckRequest>),
     /// List what scenario files can name
     List(With<list::ListRequest>),
-    /// Rebuild tables and plots of a study or a trace from what is stored; nothing is simulated or fitted
+    /// Rebuild tables and plots of a study, a fit, a trace or a prediction from what is stored; nothing is simulated or
+    /// fitted
     Report(With<report::ReportRequest>),
     /// Write one page over all published studies of a folder
     Overview(With<overview::OverviewRequest>),

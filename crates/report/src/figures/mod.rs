@@ -1,52 +1,88 @@
-//! One file per kind of figure: the data it shows, as plain numbers in display units, and the function that draws it.
-//! What they share is in `shared`.
+//! Few kinds of figure: panels of layers, named rows, maps of cells, and the zig-zag with its dimension lines. A figure
+//! is a specification, plain data in display units; [`Plot::draw`] draws it.
 
-mod amplitude;
-mod confusion;
-mod dots;
-mod error_curves;
-mod evidence;
-mod heat_map;
-mod index_plane;
-mod intervals;
-mod over_time;
+mod aside;
+mod cells;
+mod equal;
+mod layers;
 mod panels;
-mod planes;
-mod replays;
+mod reach;
 mod rows;
-mod scatter;
 mod shared;
-mod track;
-mod violins;
+mod stored;
 mod zigzag_trial;
 
-pub use amplitude::{Amplitude, AmplitudePanel, AmplitudePoint, COLUMNS as AMPLITUDES, amplitude};
-pub use confusion::{Confusion, ConfusionCell, ConfusionRow, confusion};
-pub use dots::{Dot, DotColumn, DotPlot, dots};
-pub use error_curves::{AxisMark, ErrorCell, ErrorCurve, ErrorCurves, ErrorPoint, Scale, error_curves};
-pub use evidence::{Evidence, EvidenceRow, Fate, evidence};
-pub use heat_map::{HeatMap, HeatPanel, heat_map};
-pub use index_plane::{IndexAnswer, IndexPlane, index_plane};
-pub use intervals::{Intervals, MethodEstimate, PointEstimate, Reference, intervals};
-pub use over_time::{
-    CurveFit, Derivatives, Fit, FitBand, MotionCurves, PredictionBands, RecordFit, curve_fit, derivatives,
-    prediction_bands, record_fit,
-};
-pub use panels::{Division, Drawn, Layer, Layers, Panels, Pen, Ruler, Stack, panels};
-pub use planes::{PhaseCurve, PhasePlane, SteadyCurves, phase_plane, steady_curves};
-pub use replays::{Replay, Replays, replays};
-pub use rows::{OvershootRow, Overshoots, RowPart, Rows, overshoots, rows};
-pub use scatter::{Ellipse, KtPanel, KtScatter, scatter};
+pub use cells::{Cells, MapCell, Outline, Shades};
+pub use panels::{AxisMark, Division, Layer, LayerKind, LayeredPanel, Marks, PanelRow, Panels, Pen, Ruler, Stack};
+pub use reach::Reach;
+pub use rows::{RowItem, RowKind, Rows, RowsColumn};
 pub use shared::Reference95;
-pub use track::{Track, track};
-pub use violins::{Violin, ViolinPanel, Violins, violins};
-pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial, zigzag_trial};
+pub use stored::{
+    CurveFit, Derivatives, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replay, Replays,
+};
+pub use zigzag_trial::{Mark, Overshoot, Span, ZigzagTrial};
 
-#[cfg(test)]
-mod indices_tests;
-#[cfg(test)]
-mod prediction_tests;
-#[cfg(test)]
-mod study_tests;
+use crate::figure::Figure;
+use crate::theme::Theme;
+
+/// A figure to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Plot {
+    /// Layers over numeric axes.
+    Panels(Panels),
+    /// Named rows.
+    Rows(Rows),
+    /// A map.
+    Cells(Cells),
+    /// A zig-zag trial with its characteristic quantities.
+    ZigZag(ZigzagTrial),
+}
+
+impl Plot {
+    /// Draws it.
+    pub fn draw(&self, theme: &Theme) -> Figure {
+        match self {
+            Self::Panels(data) => layers::panels(data, theme),
+            Self::Rows(data) => rows::rows(data, theme),
+            Self::Cells(data) => cells::cells(data, theme),
+            Self::ZigZag(data) => zigzag_trial::zigzag_trial(data, theme),
+        }
+    }
+
+    /// The title above it.
+    pub fn title_mut(&mut self) -> &mut Option<String> {
+        match self {
+            Self::Panels(data) => &mut data.title,
+            Self::Rows(data) => &mut data.title,
+            Self::Cells(data) => &mut data.title,
+            Self::ZigZag(data) => &mut data.title,
+        }
+    }
+}
+
+impl From<Panels> for Plot {
+    fn from(data: Panels) -> Self {
+        Self::Panels(data)
+    }
+}
+
+impl From<Rows> for Plot {
+    fn from(data: Rows) -> Self {
+        Self::Rows(data)
+    }
+}
+
+impl From<Cells> for Plot {
+    fn from(data: Cells) -> Self {
+        Self::Cells(data)
+    }
+}
+
+impl From<ZigzagTrial> for Plot {
+    fn from(data: ZigzagTrial) -> Self {
+        Self::ZigZag(data)
+    }
+}
+
 #[cfg(test)]
 mod tests;

@@ -1,258 +1,352 @@
-//! Named rows below each other over one axis, their names left of the frame and broken where they are long: intervals,
-//! bars from zero, marks and limits.
+//! Named rows below each other over one or several axes: marks with intervals, bars from zero, limits, distributions.
 
-use serde::{Deserialize, Serialize};
-
-use super::shared::widened;
-use crate::axis::{self, Axis};
+use super::panels::{Pen, Ruler};
+use super::reach::{Extents, INTERVALS};
+use super::shared::{Reference95, zero_upright};
+use crate::axis::Axis;
+use crate::clip::{Place, Rect};
+use crate::dimension::Dimensions;
 use crate::figure::Figure;
-use crate::layout::{Grid, Sheet, Side, wrap};
+use crate::layout::{Grid, NAMES, Sheet, Side, wrap};
 use crate::legend::{Entry, Sample};
-use crate::palette::{BEFORE, HEADING, INK, Look, Marker, RECORD, SOLID};
+use crate::number::significant;
+use crate::palette::{HEADING, INK, Look, PAPER, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Anchor, Layer, Scene, Stroke, Text};
 use crate::theme::Theme;
-use crate::ticks::Steps;
 
-/// What one part of all rows is.
+/// What stands in a row.
 #[derive(Debug, Clone, PartialEq)]
-pub enum RowPart {
-    /// Thin intervals.
-    Thin(Vec<Option<[f64; 2]>>),
-    /// Thick intervals.
-    Thick(Vec<Option<[f64; 2]>>),
-    /// Bars from zero.
-    Bars(Vec<Option<f64>>),
-    /// Marks, this share of a row below its middle.
-    Marks(Look, f64, Vec<Option<f64>>),
-    /// Lines from the bottom to the top of a row.
-    Limits(Vec<Option<f64>>),
+pub enum RowKind {
+    /// A mark at a value, and its interval as a bar with caps. A value without bound is an arrow at the edge.
+    Mark(Look, f64, Option<[f64; 2]>),
+    /// A thin interval.
+    Thin([f64; 2]),
+    /// A thick interval.
+    Thick([f64; 2]),
+    /// A bar from zero.
+    Bar(Look, f64),
+    /// A line from the bottom to the top of the row.
+    Limit(f64),
+    /// A distribution: value and density, ascending; its quantiles 2.5, 25, 50, 75 and 97.5 %.
+    Violin(Look, Vec<(f64, f64)>, [f64; 5]),
 }
 
-/// Rows with their parts.
+/// One thing in a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowItem {
+    /// Its name in the key; items of one name are told once.
+    pub name: Option<String>,
+    /// What it is.
+    pub kind: RowKind,
+    /// Share of the pitch of the rows by which it stands below the middle of its row; `None`: marks of one row stand
+    /// below each other.
+    pub aside: Option<f64>,
+    /// Whether it may be cut where it leaves the range of everything else by more than that range.
+    pub soft: bool,
+    /// A number written at the right end of the row.
+    pub text: Option<String>,
+}
+
+impl RowItem {
+    /// Something in the middle of its row that sets the axis.
+    pub fn new(name: impl Into<String>, kind: RowKind) -> Self {
+        let name = Some(name.into()).filter(|name| !name.is_empty());
+        Self { name, kind, aside: Some(0.0), soft: false, text: None }
+    }
+
+    /// A mark that stands below those before it in its row.
+    pub fn below(name: impl Into<String>, look: Look, value: f64, interval: Option<[f64; 2]>) -> Self {
+        Self { aside: None, ..Self::new(name, RowKind::Mark(look, value, interval)) }
+    }
+
+    /// The same, cut where it runs far off.
+    pub fn softly(self) -> Self {
+        Self { soft: true, ..self }
+    }
+
+    /// Whether it stands for a value, and not only for an interval of one.
+    fn is_value(&self) -> bool {
+        match self.kind {
+            RowKind::Mark(_, value, _) | RowKind::Bar(_, value) => !value.is_nan(),
+            RowKind::Limit(_) | RowKind::Thin(_) | RowKind::Thick(_) => false,
+            RowKind::Violin(..) => true,
+        }
+    }
+
+    fn is_stacked(&self) -> bool {
+        self.aside.is_none()
+    }
+
+    fn sample(&self, theme: &Theme) -> Sample {
+        match &self.kind {
+            RowKind::Mark(look, ..) | RowKind::Bar(look, _) | RowKind::Violin(look, ..) => Sample::Marker(*look),
+            RowKind::Thin(_) => Sample::Line(Stroke::solid(HEADING, theme.line)),
+            RowKind::Thick(_) => Sample::Line(thick_stroke(theme)),
+            RowKind::Limit(_) => Sample::Upright(Stroke::solid(INK, 1.5 * theme.line)),
+        }
+    }
+
+    /// Enters its values into the extents of an axis.
+    fn enter(&self, data: &mut Extents) {
+        let ends: Vec<f64> = match &self.kind {
+            RowKind::Mark(_, value, interval) => {
+                data.soft.extend(interval.iter().flatten().map(|end| (*end, INTERVALS)));
+                vec![*value]
+            }
+            RowKind::Thin(ends) | RowKind::Thick(ends) => ends.to_vec(),
+            RowKind::Bar(_, value) => vec![0.0, *value],
+            RowKind::Limit(value) => vec![*value],
+            RowKind::Violin(_, _, quantiles) => vec![quantiles[0], quantiles[4]],
+        };
+        match self.soft {
+            true => data.soft.extend(ends.into_iter().map(|end| (end, INTERVALS))),
+            false => data.add(ends),
+        }
+    }
+}
+
+/// All rows over one axis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RowsColumn {
+    /// The axis.
+    pub x: Ruler,
+    /// What stands in every row.
+    pub rows: Vec<Vec<RowItem>>,
+    /// Whether the axis holds zero, with a line there.
+    pub zero: bool,
+    /// Share of the axis that is left free at its right end, for numbers.
+    pub room: f64,
+    /// A value to compare with.
+    pub reference: Option<Reference95>,
+    /// Values that all rows are held against, with their names in the key.
+    pub lines: Vec<(String, Pen, f64)>,
+}
+
+/// What [`super::Plot::Rows`] draws.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rows {
     /// Title above the figure.
     pub title: Option<String>,
-    /// Title of the axis with unit.
-    pub x_title: String,
-    /// Names from top to bottom, and whether they are grey.
-    pub names: Vec<(String, bool)>,
-    /// Name in the key and values of every part, the first at the bottom; and whether it may be cut where it leaves the
-    /// range of everything else by more than that range.
-    pub parts: Vec<(&'static str, RowPart, bool)>,
+    /// Names from top to bottom.
+    pub names: Vec<String>,
+    /// The columns, side by side.
+    pub columns: Vec<RowsColumn>,
+    /// A remark under the figure.
+    pub note: Option<String>,
 }
 
-impl RowPart {
-    /// All ends of a row.
-    fn values(&self, row: usize) -> [Option<f64>; 2] {
-        match self {
-            Self::Thin(own) | Self::Thick(own) => {
-                own.get(row).copied().flatten().map_or([None; 2], |ends| ends.map(Some))
-            }
-            Self::Bars(own) | Self::Limits(own) | Self::Marks(_, _, own) => [own.get(row).copied().flatten(), None],
-        }
-    }
-
-    fn stroke(&self, theme: &Theme) -> Stroke {
-        match self {
-            Self::Thin(_) | Self::Marks(..) => Stroke::solid(HEADING, theme.line),
-            // Pale, so that the marks on it can be seen, and higher than a mark, so that a narrow one is seen too.
-            Self::Thick(_) => Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 2.9 * theme.marker) },
-            Self::Bars(_) => Stroke { opacity: 0.45, ..Stroke::solid(RECORD, 0.75 * theme.tick_font) },
-            Self::Limits(_) => Stroke::solid(INK, 1.6 * theme.line),
-        }
-    }
-
-    fn sample(&self, theme: &Theme) -> Sample {
-        match self {
-            Self::Marks(look, ..) => Sample::Marker(*look),
-            Self::Limits(_) => Sample::Upright(self.stroke(theme)),
-            _ => Sample::Line(self.stroke(theme)),
-        }
-    }
-
-    /// Draws the part of a row about its height; tells whether something lies beyond the axis.
-    fn draw(&self, scene: &mut Scene, theme: &Theme, panel: &Panel, (row, y, pitch): (usize, f64, f64)) -> bool {
-        let stroke = self.stroke(theme);
-        let head = 0.6 * theme.small_font;
-        match (self, self.values(row)) {
-            (Self::Thin(_) | Self::Thick(_), [Some(low), Some(high)]) => panel.bar(scene, y, [low, high], stroke, head),
-            (Self::Bars(_), [Some(value), _]) => panel.bar(scene, y, [0.0, value], stroke, head),
-            (Self::Limits(_), [Some(limit), _]) => {
-                if let Some(x) = panel.across(limit).filter(|x| panel.rect.contains((*x, y))) {
-                    let half = 0.42 * pitch;
-                    scene.line(Layer::Data, [(x, y - half), (x, y + half)], stroke);
-                }
-                false
-            }
-            (Self::Marks(look, aside, _), [Some(value), _]) if value.is_finite() => {
-                let y = y + aside * pitch;
-                match panel.across(value).map(|x| (x, y)) {
-                    Some(place) if panel.rect.contains(place) => scene.marker(Layer::Data, place, theme.marker, look),
-                    _ => return panel.bar(scene, y, [value; 2], Stroke { colour: look.colour, ..stroke }, head),
-                }
-                false
-            }
-            _ => false,
-        }
-    }
+fn bar_stroke(look: &Look, theme: &Theme) -> Stroke {
+    let opacity = if look.hollow || look.colour == RECORD { 0.45 } else { 1.0 };
+    Stroke { opacity, ..Stroke::solid(look.colour, 0.9 * theme.tick_font) }
 }
 
-/// Largest share of the page for the names of the rows.
-const NAMES: f64 = 0.42;
+/// Pale, so that the marks on it can be seen, and higher than a mark, so that a narrow one is seen too.
+fn thick_stroke(theme: &Theme) -> Stroke {
+    Stroke { opacity: 0.55, ..Stroke::solid(HEADING, 2.9 * theme.marker) }
+}
 
-/// Draws the rows below each other.
-pub fn rows(data: &Rows, theme: &Theme) -> Figure {
+/// Draws the columns side by side, or above each other when the figure is narrow. What reaches beyond an axis is cut
+/// and marked.
+pub(super) fn rows(data: &Rows, theme: &Theme) -> Figure {
     let mut sheet = Sheet::new(theme, data.title.as_deref());
-    let is_there = |part: &RowPart| (0..data.names.len()).any(|row| part.values(row)[0].is_some());
-    let shown = data.parts.iter().filter(|(_, part, _)| is_there(part));
-    sheet.legend(&shown.map(|(name, part, _)| Entry::new(part.sample(theme), *name)).collect::<Vec<_>>());
-    let names: Vec<Vec<String>> =
-        data.names.iter().map(|(name, _)| wrap(name, theme.tick_font, false, NAMES * theme.width)).collect();
-    let lines = names.iter().map(Vec::len).max().unwrap_or(1).max(1);
-    let pitch = (0.95 + 1.15 * lines as f64) * theme.tick_font;
-    let widest = names.iter().flatten().map(|name| Text::new(name.as_str(), theme.tick_font).width());
-    let side = Side::new(Axis::names(vec![String::new(); names.len()]), "");
-    let row = (side, (names.len().max(1) as f64 + 0.2) * pitch);
-    let mut grid = Grid::stack(Side::new(axis(data), data.x_title.clone()), vec![row]);
-    grid.left = Some(sheet.left_margin(&grid) + widest.fold(0.0, f64::max));
+    sheet.legend(&entries(data, theme));
+    let items = || data.columns.iter().flat_map(|column| &column.rows);
+    let lines = data.names.iter().map(|name| wrap(name, theme.tick_font, false, NAMES * theme.width).len());
+    let stacked = items().map(|row| row.iter().filter(|item| item.is_stacked()).count()).max().unwrap_or(0);
+    let is_wide = items().flatten().any(|item| matches!(item.kind, RowKind::Violin(..)));
+    let heights = [0.95 + 1.15 * lines.max().unwrap_or(1).max(1) as f64, 0.62 * stacked as f64 + 1.1];
+    let pitch = heights[0].max(heights[1]).max(if is_wide { 2.6 } else { 0.0 }) * theme.tick_font;
+    let height = (data.names.len().max(1) as f64 + 0.2) * pitch;
+    let row = (Side::new(Axis::names(data.names.clone()), ""), height);
+    let sides = data.columns.iter().map(|column| Side::new(axis(column), column.x.title.clone()));
+    let panels = match theme.is_narrow() {
+        true => sides.flat_map(|side| sheet.grid(Grid::stack(side, vec![row.clone()]))).collect(),
+        false => sheet.grid(Grid::new(sides.collect(), vec![row])),
+    };
     let mut beyond = false;
-    for panel in &sheet.grid(grid) {
-        for (row, lines) in names.iter().enumerate() {
-            let Some(y) = panel.up(row as f64) else { continue };
-            label(&mut sheet.scene, theme, panel, y, lines, data.names[row].1);
-            for (_, part, _) in &data.parts {
-                beyond |= part.draw(&mut sheet.scene, theme, panel, (row, y, pitch));
-            }
-            let is_finite = |part: &RowPart| part.values(row)[0].is_some_and(f64::is_finite);
-            if !data
-                .parts
-                .iter()
-                .any(|(_, part, _)| !matches!(part, RowPart::Thin(_) | RowPart::Thick(_)) && is_finite(part))
-            {
-                let text = Text::new("no value", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
-                let place = (panel.rect.x + panel.rect.w / 2.0, y + text.centring());
-                sheet.scene.text_on_ground(Layer::Note, place, text);
-            }
-        }
+    for (panel, column) in panels.iter().zip(&data.columns) {
+        beyond |= draw(panel, &mut sheet.scene, theme, (column, pitch));
     }
-    if beyond {
-        sheet.note("Arrows: beyond the axis.");
+    let arrows = beyond.then_some("Arrows: beyond the axis.");
+    let note: Vec<&str> = data.note.as_deref().into_iter().chain(arrows).collect();
+    if !note.is_empty() {
+        sheet.note(&note.join(" "));
     }
     sheet.finish()
 }
 
-/// Writes the name of a row left of the frame.
-fn label(scene: &mut Scene, theme: &Theme, panel: &Panel, y: f64, lines: &[String], is_grey: bool) {
-    let right = panel.rect.x - 0.62 * theme.tick_font;
-    let colour = if is_grey { RECORD } else { INK };
-    for (index, line) in lines.iter().enumerate() {
-        let text = Text::new(line.as_str(), theme.tick_font).anchor(Anchor::End).colour(colour);
-        let down = (index as f64 - (lines.len() - 1) as f64 / 2.0) * 1.15 * theme.tick_font;
-        scene.text(Layer::Frame, (right, y + down + text.centring()), text);
+fn entries(data: &Rows, theme: &Theme) -> Vec<Entry> {
+    let lines = data.columns.iter().flat_map(|column| &column.lines);
+    let lines = lines.map(|(name, pen, _)| Entry::new(Sample::Line(pen.stroke(theme)), name.clone()));
+    let items = data.columns.iter().flat_map(|column| &column.rows).flatten();
+    let items = items.filter_map(|item| Some(Entry::new(item.sample(theme), item.name.clone()?)));
+    let mut entries: Vec<Entry> = Vec::new();
+    for entry in lines.chain(items) {
+        if entries.iter().all(|known| known.label != entry.label) {
+            entries.push(entry);
+        }
     }
+    entries
 }
 
-/// Covers zero and everything that is not cut, and the rest as far as there is room.
-fn axis(data: &Rows) -> Axis {
-    let ends = |may_be_cut: bool| {
-        let parts = data.parts.iter().filter(move |(_, _, own)| *own == may_be_cut);
-        parts.flat_map(|(_, part, _)| (0..data.names.len()).flat_map(|row| part.values(row))).flatten()
-    };
-    let (lo, hi) = axis::range(ends(false).chain([0.0])).unwrap_or((0.0, 0.0));
-    let room = if hi > lo { hi - lo } else { f64::INFINITY };
-    let ((lo, hi), _) = widened((lo, hi), ends(true).filter(|end| end.is_finite()), room);
-    if lo == hi {
-        return Axis::linear(0.0, 1.0, Steps::Decimal);
+fn axis(column: &RowsColumn) -> Axis {
+    let mut data = Extents::default();
+    column.rows.iter().flatten().for_each(|item| item.enter(&mut data));
+    data.fixed.extend(column.lines.iter().map(|(.., value)| *value));
+    data.fixed.extend(column.reference.iter().flat_map(|own| [own.value, own.band[0], own.band[1]]));
+    let (axis, _) = column.x.axis(&data, 0.06);
+    if !column.zero {
+        return axis;
     }
     // The axis ends at zero where everything lies on one side of it.
+    let (lo, hi) = data.ends(column.x.reach).0.map_or((0.0, 1.0), |(lo, hi)| (lo.min(0.0), hi.max(0.0)));
     let pad = 0.05 * (hi - lo);
-    Axis::linear(if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi }, Steps::Decimal)
+    let (lo, hi) = (if lo < 0.0 { lo - pad } else { lo }, if hi > 0.0 { hi + pad } else { hi });
+    Axis::linear(lo, if lo == hi { 1.0 } else { hi + column.room * (hi - lo) }, crate::ticks::Steps::Decimal)
 }
 
-/// One predicted quantity; all numbers in the unit of the figure.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct OvershootRow {
-    /// Name of the quantity, such as "20/20 first overshoot".
-    pub label: String,
-    /// Median of the drawn ships.
-    pub median: f64,
-    /// The interval that holds half of them.
-    pub ci50: [f64; 2],
-    /// The interval that holds nine tenths of them.
-    pub ci90: [f64; 2],
-    /// What was measured.
-    pub measured: Option<f64>,
-    /// The largest value that the IMO standard allows.
-    pub limit: Option<f64>,
-    /// Whether the manoeuvre goes beyond what the records hold.
-    pub extrapolated: bool,
+/// Draws the rows of a column; tells whether something lies beyond its axis.
+fn draw(panel: &Panel, scene: &mut Scene, theme: &Theme, (column, pitch): (&RowsColumn, f64)) -> bool {
+    if column.zero {
+        zero_upright(panel, scene, theme);
+    }
+    if let Some(reference) = &column.reference {
+        reference.vertical(panel, scene, theme);
+    }
+    for (_, pen, value) in &column.lines {
+        panel.vertical(scene, Layer::Data, *value, pen.stroke(theme));
+    }
+    let mut beyond = false;
+    let is_estimate = |item: &RowItem| matches!(item.kind, RowKind::Mark(..) | RowKind::Violin(..));
+    let is_estimated = column.rows.iter().flatten().all(is_estimate);
+    for (row, items) in column.rows.iter().enumerate() {
+        let Some(middle) = panel.up(row as f64) else { continue };
+        let stacked = items.iter().filter(|item| item.is_stacked()).count();
+        let mut line = 0.0;
+        for item in items {
+            let aside = match item.aside {
+                Some(share) => share * pitch,
+                None => (line - 0.5 * (stacked - 1) as f64) * 0.62 * theme.tick_font,
+            };
+            line += if item.is_stacked() { 1.0 } else { 0.0 };
+            beyond |= draw_item(panel, scene, theme, (item, middle + aside, pitch), stacked < 2);
+        }
+        if is_estimated && !items.iter().any(RowItem::is_value) {
+            let text = Text::new("no estimate", theme.small_font).anchor(Anchor::Middle).colour(RECORD);
+            let place = (panel.rect.x + panel.rect.w / 2.0, middle + text.centring());
+            scene.text_on_ground(Layer::Note, place, text);
+        }
+        // A line between rows with several marks keeps them together.
+        if let Some(above) = panel.up(row as f64 - 1.0).filter(|_| row > 0 && stacked > 1) {
+            let (y, stroke) =
+                (0.5 * (above + middle), Stroke { opacity: 0.35, ..Stroke::solid(INK, 0.6 * theme.thin) });
+            scene.line(Layer::Grid, [(panel.rect.x, y), (panel.rect.right(), y)], stroke);
+        }
+    }
+    beyond
 }
 
-/// What [`overshoots`] draws.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Overshoots {
-    /// Title above the figure.
-    pub title: Option<String>,
-    /// Unit of every number, such as "°" or "L".
-    pub unit: String,
-    /// The rows from top to bottom.
-    pub rows: Vec<OvershootRow>,
+/// Draws an item at its height; tells whether it lies beyond the axis.
+fn draw_item(
+    panel: &Panel,
+    scene: &mut Scene,
+    theme: &Theme,
+    (item, y, pitch): (&RowItem, f64, f64),
+    is_alone: bool,
+) -> bool {
+    let head = 0.6 * theme.small_font;
+    if let Some(words) = &item.text {
+        let text = Text::new(words.as_str(), theme.small_font).anchor(Anchor::End);
+        let place = (panel.rect.right() - 0.4 * theme.small_font, y + text.centring());
+        scene.text_on_ground(Layer::Note, place, text);
+    }
+    match &item.kind {
+        RowKind::Mark(look, value, interval) => {
+            let stroke = Stroke::solid(look.colour, theme.line);
+            let mut beyond = false;
+            if let Some(ends) = interval {
+                let cap = 0.9 * theme.marker;
+                let inside = |x: &f64| panel.rect.contains((*x, y));
+                for x in ends.iter().filter_map(|end| panel.across(*end)).filter(inside).filter(|_| is_alone) {
+                    scene.line(Layer::Data, [(x, y - cap), (x, y + cap)], stroke);
+                }
+                beyond = panel.bar(scene, y, *ends, stroke, head);
+            }
+            mark(panel, scene, theme, (look, *value, y), is_alone) || beyond
+        }
+        RowKind::Thin(ends) => panel.bar(scene, y, *ends, Stroke::solid(HEADING, theme.line), head),
+        RowKind::Thick(ends) => panel.bar(scene, y, *ends, thick_stroke(theme), head),
+        RowKind::Bar(look, value) => panel.bar(scene, y, [0.0, *value], bar_stroke(look, theme), head),
+        RowKind::Limit(value) => {
+            if let Some(x) = panel.across(*value).filter(|x| panel.rect.contains((*x, y))) {
+                let half = 0.42 * pitch;
+                scene.line(Layer::Data, [(x, y - half), (x, y + half)], Stroke::solid(INK, 1.5 * theme.line));
+            }
+            false
+        }
+        RowKind::Violin(look, density, quantiles) => {
+            violin(panel, scene, theme, (look, density, quantiles), (y, pitch))
+        }
+    }
 }
 
-/// Draws predicted quantities of manoeuvres as intervals, against what was measured and what is allowed.
-pub fn overshoots(data: &Overshoots, theme: &Theme) -> Figure {
-    self::rows(&data.named(), theme)
+/// A mark, or an arrow with its number where it lies beyond the axis; tells whether it does.
+fn mark(panel: &Panel, scene: &mut Scene, theme: &Theme, (look, value, y): (&Look, f64, f64), is_alone: bool) -> bool {
+    let Rect { x: left, .. } = panel.rect;
+    let x = panel.across(value.clamp(-f64::MAX, f64::MAX)).filter(|x| !x.is_nan());
+    let Some(x) = x else { return false };
+    if panel.rect.contains((x, y)) {
+        scene.marker(Layer::Data, (x, y), theme.marker, look);
+        return false;
+    }
+    let (edge, direction) = if x > left { (panel.rect.right(), 1.0) } else { (left, -1.0) };
+    let size = 0.65 * theme.small_font;
+    let tip = edge - direction * 0.2 * theme.small_font;
+    Dimensions::head(scene, (tip, y), (direction, 0.0), size, look.colour);
+    if is_alone && value.abs() < f64::MAX {
+        let label = Text::new(significant(value, 3), theme.small_font);
+        let place = (tip - direction * 1.3 * size, y + label.centring());
+        let anchor = if direction > 0.0 { Anchor::End } else { Anchor::Start };
+        scene.text_on_ground(Layer::Note, place, label.anchor(anchor));
+    }
+    true
 }
 
-impl Overshoots {
-    fn named(&self) -> Rows {
-        let rows = &self.rows;
-        let of = |of: &dyn Fn(&OvershootRow) -> Option<f64>| rows.iter().map(of).collect::<Vec<_>>();
-        let median = |hollow: bool| {
-            let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow };
-            RowPart::Marks(look, 0.0, of(&|row| Some(row.median).filter(|_| row.extrapolated == hollow)))
+/// Half the height of a violin, as a share of its row.
+const HALF: f64 = 0.42;
+
+/// Density, box of the quartiles, whiskers and median; tells whether it reaches beyond the axis.
+fn violin(
+    panel: &Panel,
+    scene: &mut Scene,
+    theme: &Theme,
+    (look, density, q): (&Look, &[(f64, f64)], &[f64; 5]),
+    (y, pitch): (f64, f64),
+) -> bool {
+    let rect = panel.rect;
+    let places: Option<Vec<f64>> = q.iter().map(|value| panel.across(*value)).collect();
+    let Some(places) = places else { return false };
+    let inside = |x: f64| x.clamp(rect.x, rect.right());
+    let highest = density.iter().map(|(_, height)| *height).fold(0.0, f64::max);
+    let edge = |side: f64| -> Vec<Place> {
+        let place = |&(value, height): &(f64, f64)| {
+            let x = panel.across(value).filter(|x| *x >= rect.x && *x <= rect.right())?;
+            Some((x, y + side * HALF * pitch * height / highest))
         };
-        let measured = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" [{}]", self.unit) };
-        Rows {
-            title: self.title.clone(),
-            x_title: format!("predicted value{unit}"),
-            names: rows.iter().map(|row| (row.label.clone(), row.extrapolated)).collect(),
-            parts: vec![
-                ("90 %", RowPart::Thin(rows.iter().map(|row| Some(row.ci90)).collect()), true),
-                ("50 % of the drawn ships", RowPart::Thick(rows.iter().map(|row| Some(row.ci50)).collect()), false),
-                ("IMO limit", RowPart::Limits(of(&|row| row.limit)), false),
-                ("median", median(false), false),
-                ("extrapolated (name in grey)", median(true), false),
-                // Under the bar, so that it does not hide a median nearby.
-                ("measured", RowPart::Marks(measured, 0.34, of(&|row| row.measured)), false),
-            ],
-        }
+        density.iter().filter_map(place).collect()
+    };
+    if highest > 0.0 {
+        let outline = [edge(-1.0), edge(1.0).into_iter().rev().collect()].concat();
+        scene.fill(Layer::Data, outline, look.colour, 0.28);
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn row(median: f64, half: f64) -> OvershootRow {
-        OvershootRow {
-            median,
-            ci50: [median - 0.4 * half, median + 0.4 * half],
-            ci90: [median - half, median + half],
-            ..OvershootRow::default()
-        }
+    let beyond = panel.bar(scene, y, [q[0], q[4]], Stroke::solid(look.colour, theme.line), 0.6 * theme.small_font);
+    let (left, right, half) = (inside(places[1]), inside(places[3]), 0.13 * pitch);
+    let corners = [(left, y - half), (right, y - half), (right, y + half), (left, y + half)];
+    scene.fill(Layer::Data, corners, look.colour, 0.85);
+    if rect.contains((places[2], y)) {
+        scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker + 0.4 * theme.thin, INK, 1.0);
+        scene.disc(Layer::Data, (places[2], y), 0.55 * theme.marker, PAPER, 1.0);
     }
-
-    #[test]
-    fn the_axis_begins_at_zero_where_nothing_is_negative() {
-        let of = |rows: Vec<OvershootRow>| axis(&Overshoots { rows, ..Overshoots::default() }.named());
-        assert_eq!(of(vec![row(10.0, 2.0), row(20.0, 3.0)]).fraction(0.0), Some(0.0));
-        assert!(of(vec![row(10.0, 12.0)]).fraction(-2.0).is_some_and(|f| f > 0.0));
-        // An interval that runs far off is cut.
-        let wide = of(vec![row(10.0, 5.0), OvershootRow { ci90: [8.0, 1e6], ..row(20.0, 3.0) }]);
-        assert!(wide.fraction(20.0).is_some_and(|f| f > 0.4));
-    }
+    beyond
 }

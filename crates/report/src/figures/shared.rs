@@ -1,55 +1,47 @@
-//! What figures share: axis titles, axes that cover a set of curves, records and lines of reference.
+//! What kinds of figure share: records, areas, lines of reference, marks that stand side by side.
 
 use estimation::statistics::upper_median;
 use serde::{Deserialize, Serialize};
 
-use crate::axis::{self, Axis};
 use crate::clip::Rect;
-use crate::colour::Colour;
 use crate::curve::Curve;
-use crate::layout::Side;
-use crate::legend::{Entry, Sample};
-use crate::markup::symbol;
-use crate::palette::{HEADING, INK, Origin, RECORD};
+use crate::legend::Sample;
+use crate::paint::Paint;
+use crate::palette::{INK, RECORD};
 use crate::panel::Panel;
 use crate::scene::{Layer, Scene, Stroke};
 use crate::theme::Theme;
-use crate::ticks::Steps;
 
 /// Free space above and below the data, as a share of its range.
 pub(super) const PAD: f64 = 0.08;
 
-pub(super) fn heading_title() -> String {
-    format!("heading {} [°]", symbol("ψ"))
-}
-
-pub(super) fn rudder_title() -> String {
-    format!("rudder {} [°]", symbol("δ"))
-}
-
-/// The time axis of everything in `curves`, without free space at the ends.
-pub(super) fn time_side<'a>(curves: impl IntoIterator<Item = &'a Curve>) -> Side {
-    let axis = Axis::covering(curves.into_iter().flat_map(|c| c.finite().map(|(x, _)| x)), 0.0, Steps::Time);
-    Side::new(axis, format!("time {} [s]", symbol("t")))
-}
+/// Free space left and right of lines.
+pub(super) const ACROSS_PAD: f64 = 0.02;
 
 /// More points than this in a panel run into each other and are drawn as a line.
 const DENSE: usize = 400;
 
+/// The line of a dense record.
+fn dense(heading: &Curve, theme: &Theme) -> Option<Stroke> {
+    let stroke = Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) };
+    (heading.finite().count() > DENSE).then_some(stroke)
+}
+
 /// A recorded heading: dots, or a wide line under the fits where the record is dense.
 pub(super) fn record(panel: &Panel, scene: &mut Scene, theme: &Theme, heading: &Curve, size: f64) {
-    if heading.finite().count() > DENSE {
-        panel.line(scene, heading.pairs(), Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) });
-    } else {
-        panel.dots(scene, heading.finite(), size, RECORD);
+    match dense(heading, theme) {
+        Some(stroke) => panel.line(scene, heading.pairs(), stroke),
+        None => panel.dots(scene, heading.finite(), size, RECORD),
     }
 }
 
-/// How dense the area of a band is.
-pub(super) const OPACITY: f64 = 0.2;
+/// How [`record`] looks in a legend.
+pub(super) fn record_sample(theme: &Theme, heading: &Curve) -> Sample {
+    dense(heading, theme).map_or(Sample::Dots(RECORD), Sample::Line)
+}
 
 /// The area between two curves, as far as it lies in the frame.
-pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Colour, opacity: f64) {
+pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 2], colour: Paint, opacity: f64) {
     let Rect { x, y, .. } = panel.rect;
     let inside = |(across, up): (f64, f64)| (across.clamp(x, panel.rect.right()), up.clamp(y, panel.rect.bottom()));
     let edge = |curve: &Curve| -> Vec<(f64, f64)> {
@@ -59,49 +51,25 @@ pub(super) fn shaded(panel: &Panel, scene: &mut Scene, [lower, upper]: [&Curve; 
     scene.fill(Layer::Grid, outline.collect::<Vec<_>>(), colour, opacity);
 }
 
-/// How an area looks in a legend.
-pub(super) fn area_entry(label: &str, colour: Colour, opacity: f64, theme: &Theme) -> Entry {
-    let stroke = Stroke { opacity, ..Stroke::solid(colour, 0.8 * theme.small_font) };
-    Entry::new(Sample::Line(stroke), label)
-}
-
-/// One of the ships that were drawn at random, pale because there are many.
-pub(super) fn drawn_stroke(theme: &Theme) -> Stroke {
-    Stroke { opacity: 0.35, ..Stroke::solid(HEADING, theme.thin) }
-}
-
-/// The range `lo..=hi`, widened for the `rest` by no more than `room` on either side; and whether some of the rest
-/// lies beyond.
-pub(super) fn widened((lo, hi): (f64, f64), rest: impl Iterator<Item = f64>, room: f64) -> ((f64, f64), bool) {
-    let (least, most) = axis::range(rest).unwrap_or((lo, hi));
-    let ends = (least.clamp(lo - room, lo), most.clamp(hi, hi + room));
-    (ends, least < ends.0 || most > ends.1)
-}
-
-/// How [`record`] looks in a legend.
-pub(super) fn record_entry(label: &str, theme: &Theme, heading: &Curve) -> Entry {
-    let sample = if heading.finite().count() > DENSE {
-        Sample::Line(Stroke { opacity: 0.55, ..Stroke::solid(RECORD, 2.2 * theme.line) })
-    } else {
-        Sample::Dots(RECORD)
-    };
-    Entry::new(sample, label)
-}
-
-/// Everyone who appears, in the order of appearance.
-pub(super) fn distinct<'a>(origins: impl Iterator<Item = &'a Origin>) -> Vec<&'a Origin> {
-    let mut found: Vec<&Origin> = Vec::new();
-    for origin in origins {
-        if !found.contains(&origin) {
-            found.push(origin);
-        }
-    }
-    found
-}
-
 /// The middle one of the finite values, the upper of two.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     upper_median(&mut values.filter(|v| v.is_finite()).collect::<Vec<f64>>())
+}
+
+/// Places with those that are nearer to each other than `gap` moved aside, as far as they need about their middle:
+/// zig-zags of one rudder angle would hide each other.
+pub(super) fn asides(places: &[Option<f64>], gap: f64) -> Vec<Option<f64>> {
+    let mut order: Vec<(usize, f64)> =
+        places.iter().enumerate().filter_map(|(k, place)| Some((k, (*place)?))).collect();
+    order.sort_by(|one, other| one.1.total_cmp(&other.1));
+    let mut moved = places.to_vec();
+    for group in order.chunk_by(|one, other| other.1 - one.1 < gap) {
+        let middle = group.iter().map(|(_, place)| place).sum::<f64>() / group.len() as f64;
+        for (rank, (k, _)) in group.iter().enumerate().filter(|_| group.len() > 1) {
+            moved[*k] = Some(middle + (rank as f64 - 0.5 * (group.len() - 1) as f64) * gap);
+        }
+    }
+    moved
 }
 
 /// A value that results are held against, such as the 95 % an interval promises, with the band in which chance leaves
@@ -115,6 +83,11 @@ pub struct Reference95 {
 }
 
 impl Reference95 {
+    /// A value without a band.
+    pub fn line(value: f64) -> Self {
+        Self { value, band: [value; 2] }
+    }
+
     fn stroke(theme: &Theme) -> Stroke {
         Stroke::solid(INK, 0.8 * theme.line)
     }
@@ -150,4 +123,17 @@ pub(super) fn zero_upright(panel: &Panel, scene: &mut Scene, theme: &Theme) {
 /// The line a residual scatters about.
 pub(super) fn zero_line(panel: &Panel, scene: &mut Scene, theme: &Theme) {
     panel.horizontal(scene, Layer::Grid, 0.0, Stroke { opacity: 0.55, ..Stroke::solid(INK, theme.thin) });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_of_one_rudder_stand_side_by_side() {
+        let of = |places: &[f64]| asides(&places.iter().map(|x| Some(*x)).collect::<Vec<_>>(), 4.0);
+        assert_eq!(of(&[10.0, 50.0, 10.2]), [Some(8.1), Some(50.0), Some(12.1)]);
+        assert_eq!(of(&[1.0, 9.0]), [Some(1.0), Some(9.0)]);
+        assert_eq!(asides(&[None], 4.0), [None]);
+    }
 }

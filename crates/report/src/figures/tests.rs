@@ -1,117 +1,234 @@
-//! Every kind of figure with ordinary, empty and damaged data: labels are there, coordinates are numbers, strokes are
-//! scaled, the same data give the same bytes.
+//! Every kind of figure with ordinary, empty, wild and damaged data: labels are there, coordinates are numbers, strokes
+//! can be seen, what is cut is said, the same data give the same bytes.
 
 use super::*;
 use crate::curve::Curve;
-use crate::palette::{self, Origin};
+use crate::palette::{self, DASHED, INK, Look, Origin};
 use crate::svg::UNITS;
 use crate::{Figure, Theme};
 
-/// A sine of `n` points; every `gap`-th is undefined.
-fn wave(n: usize, gap: usize) -> Curve {
-    let x: Vec<f64> = (0..n).map(|i| i as f64 * 0.5).collect();
-    let y = x.iter().enumerate().map(|(i, x)| if gap > 0 && i % gap == 1 { f64::NAN } else { 25.0 * (x / 20.0).sin() });
+/// A sine of `n` points, `wild` among them.
+fn wave(n: usize, wild: f64, size: f64) -> Curve {
+    let x: Vec<f64> = (0..n).map(|k| 0.5 * k as f64).collect();
+    let y = x.iter().enumerate().map(|(k, x)| if k == 1 { wild } else { size * (x / 20.0).sin() });
     Curve { y: y.collect(), x }
 }
 
-fn methods() -> impl Iterator<Item = String> {
-    palette::method_ids().map(String::from)
+fn methods() -> impl Iterator<Item = Origin> {
+    palette::method_ids().map(|id| Origin::Method(id.to_owned()))
 }
 
-/// All figures from curves of `n` points with gaps.
-fn all(n: usize, gap: usize, theme: &Theme) -> Vec<(&'static str, Figure)> {
-    let curve = wave(n, gap);
+fn zigzag(n: usize, wild: f64) -> ZigzagTrial {
+    let curve = wave(n, wild, 25.0);
     let mark = |t_s: f64| Mark { t_s, heading_deg: 25.0 * (t_s / 20.0).sin() };
-    let has_data = n > 0;
-    let undefined = if gap > 0 { f64::NAN } else { 1.5 };
-    let zigzag = ZigzagTrial {
+    let some = |count: usize| if n > 0 { count } else { 0 };
+    let overshoots = [
+        Overshoot { execute: mark(10.0), extremum: mark(31.0), angle_deg: 13.0 },
+        Overshoot { execute: mark(wild), extremum: mark(92.0), angle_deg: wild },
+    ];
+    let spans = [Span { from_s: 10.0, to_s: 31.0 }, Span { from_s: 80.0, to_s: wild }];
+    ZigzagTrial {
         title: Some("a < b".into()),
         heading: curve.clone(),
-        heading_as_points: gap > 0,
+        heading_as_points: n > 100,
         rudder: curve.clone(),
-        truth: has_data.then(|| curve.clone()),
-        executes: if has_data { vec![mark(10.0), mark(90.0), mark(undefined)] } else { vec![] },
-        overshoots: if has_data {
-            vec![
-                Overshoot { execute: mark(10.0), extremum: mark(31.0), angle_deg: 13.0 },
-                Overshoot { execute: mark(undefined), extremum: mark(92.0), angle_deg: undefined },
-            ]
-        } else {
-            vec![]
-        },
-        initial_turning: has_data.then_some(Span { from_s: 0.0, to_s: 10.0 }),
-        check_yaw: if has_data {
-            vec![Span { from_s: 10.0, to_s: 31.0 }, Span { from_s: 80.0, to_s: undefined }]
-        } else {
-            vec![]
-        },
-        period: has_data.then_some(Span { from_s: 10.0, to_s: 95.0 }),
-    };
+        truth: (n > 0).then_some(curve),
+        executes: [mark(10.0), mark(90.0), mark(wild)][..some(3)].to_vec(),
+        overshoots: overshoots[..some(2)].to_vec(),
+        initial_turning: (n > 0).then_some(Span { from_s: 0.0, to_s: 10.0 }),
+        check_yaw: spans[..some(2)].to_vec(),
+        period: (n > 0).then_some(Span { from_s: 10.0, to_s: 95.0 }),
+    }
+}
+
+/// What a study stores of a first trial.
+fn stored(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
+    let curve = wave(n, wild, 25.0);
     let fit = CurveFit {
         measured: curve.clone(),
         fitted: curve.clone(),
-        fitted_name: "Fourier series".into(),
         residual: curve.clone(),
-        r_squared: Some(undefined),
+        r_squared: Some(wild),
         fundamental_rad_s: Some(0.05),
         ..CurveFit::default()
     };
-    let motion = |origin| MotionCurves {
-        origin,
+    let motion = MotionCurves {
+        origin: Origin::Truth,
         name: None,
         heading: curve.clone(),
         yaw_rate: curve.clone(),
         yaw_acceleration: curve.clone(),
     };
-    let replay = |method| Replay {
-        origin: Origin::Method(method),
-        heading: curve.clone(),
-        residual: curve.clone(),
-        rms_deg: Some(undefined),
-    };
-    let point =
-        |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01 + 0.0 * undefined]) });
-    let estimate = |(i, method)| MethodEstimate {
-        origin: Origin::Method(method),
-        k_per_s: point(0.1 + 0.3 * (i / 6) as f64),
+    let replay = |origin| Replay { origin, heading: curve.clone(), residual: curve.clone(), rms_deg: Some(wild) };
+    let point = |value: f64| Some(PointEstimate { value, interval: Some([value - 0.01, value + 0.01 * wild]) });
+    let estimate = |(number, origin)| MethodEstimate {
+        origin,
+        k_per_s: point(if number == 7 { 0.4 } else { 0.1 + 0.001 * number as f64 }),
         t_s: None,
     };
-    let error = |x: f64| ErrorPoint::new(x, undefined * x, Some([-1.0, 2.0 * x]));
-    let cell = |row| ErrorCell {
-        row,
-        column: 0,
-        curves: methods()
-            .map(Origin::Method)
-            .chain([Origin::Bound])
-            .map(|origin| ErrorCurve::new(origin, (0..n.min(5)).map(|i| error(i as f64)).collect()))
+    let count = n.min(8);
+    let truth = Some(Reference { k_per_s: 0.1, t_s: 16.0 });
+    let intervals = Intervals {
+        estimates: methods().enumerate().take(count).map(estimate).collect(),
+        truth,
+        ..Intervals::default()
+    };
+    let replays = methods().take(count).map(replay).collect();
+    vec![
+        ("zigzag", zigzag(n, wild).into()),
+        ("curve fit", fit.panels().into()),
+        ("derivatives", Derivatives { title: None, curves: vec![motion] }.panels().into()),
+        ("replays", Replays { record: curve.clone(), replays, ..Replays::default() }.panels().into()),
+        ("intervals", intervals.rows().into()),
+    ]
+}
+
+/// Panels of every layer, small multiples, and a figure whose names stand aside.
+fn panels(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
+    let look = Origin::After.look();
+    let points =
+        |size: f64| (0..n).map(|k| (k as f64, if k == 1 { wild } else { size }, Some([0.5 * size, wild]))).collect();
+    let layers = || {
+        vec![
+            Layer::band("95 % band", [wave(n, wild, 0.8), wave(n, 0.1, 1.2)], look.colour, 0.2),
+            Layer::new("record", wave(n, 0.2, 1.0), LayerKind::Record),
+            Layer::new("rows", wave(n, wild, 1.05), LayerKind::Dots(look.colour)),
+            Layer::line("line", wave(n, wild, 1.0), Pen { dash: DASHED, ..Pen::of(&Origin::Before) }).within(0.5),
+            Layer::marks("shares", look, points(0.7)),
+        ]
+    };
+    let row = |division| PanelRow {
+        levels: vec![-0.1, 0.1],
+        reference: Some(Reference95 { value: 0.5, band: [0.4, 0.6] }),
+        ..PanelRow::zeroed(Ruler::new("moment [° rudder]", division), 0.2)
+    };
+    let stack = |division, is_half| {
+        let mut stack = Stack::over(Ruler::new("yaw rate [°/s]", division), vec![(row(division), layers())]);
+        stack.panels[0].head = Some("explains 93 %".into());
+        let marks = vec![AxisMark { at: 0.5, label: "period".into() }];
+        Stack { marks, is_half, zero: true, ..stack }
+    };
+    let layered = Panels {
+        title: Some("a record".into()),
+        stacks: vec![
+            stack(Division::Time, false),
+            stack(Division::Decimal, true),
+            stack(Division::Factors, true),
+            stack(Division::Percent, true),
+        ],
+        said: vec!["R² = 1".into()],
+        cut: Some("Cut.".into()),
+        ..Panels::default()
+    };
+    let cloud = |(number, origin): (usize, Origin)| {
+        let count = if number == 6 { 0 } else { n };
+        let ellipse = Curve::contour95(
+            (0.1, 0.0),
+            [[0.1, 0.05], [0.05, 0.1]].map(|row| row.map(|v: f64| v * (1 + number) as f64)),
+        );
+        let layers = vec![
+            Layer::new("", wave(count, wild, 0.4), LayerKind::Cloud(origin.look().colour)),
+            Layer::line("", ellipse, Pen::new(origin.look().colour)),
+        ];
+        LayeredPanel { head: Some(origin.label().into()), layers }
+    };
+    let ruler = |title: &str| Ruler::decimal(title).about_zero(2.2);
+    let clouds = methods().enumerate().map(cloud).collect();
+    let clouds = Stack::multiples(3, ruler("error of K [%]"), PanelRow::zeroed(ruler("error of T [%]"), 0.24), clouds);
+    let named = |(number, origin): (usize, Origin)| {
+        let marks = Layer::marks(origin.label(), origin.look(), points(1.0 + number as f64));
+        if number % 2 == 0 { marks.joined(Pen::of(&origin)) } else { marks.apart() }
+    };
+    let aside = Stack::over(
+        ruler("noise [°]"),
+        vec![(PanelRow { height: 0.3, ..row(Division::Factors) }, methods().enumerate().map(named).collect())],
+    );
+    let ships = LayerKind::Ships(INK, vec![wild, 10.0]);
+    let track = vec![
+        Layer::line("drawn ships", wave(n, wild, 300.0), Pen::pale()).within(0.35),
+        Layer::line("most probable ship", wave(n, 3.0, 250.0), Pen::new(INK)),
+        Layer::new("its heading", wave(n.min(2), wild, 250.0), ships),
+    ];
+    let track = Stack::over(Ruler::decimal("east [m]"), vec![(PanelRow::new(Ruler::decimal("north [m]"), 0.7), track)]);
+    vec![
+        ("layers", layered.into()),
+        ("clouds", Panels::of(clouds).into()),
+        ("aside", Panels { names_aside: true, ..Panels::of(aside) }.into()),
+        ("track", Panels::of(Stack { equal: true, ..track }).into()),
+    ]
+}
+
+/// Rows of everything that stands in one, and maps of both kinds.
+fn rows_and_maps(n: usize, wild: f64) -> Vec<(&'static str, Plot)> {
+    let size = |k: usize| if k == 1 { wild } else { 0.1 * (1 + k) as f64 };
+    let items = |row: usize| {
+        let marks =
+            methods().map(|own| RowItem::below(own.label(), own.look(), size(row), Some([0.0, 2.0 * size(row)])));
+        let look = Look { hollow: row % 2 == 0, ..Origin::After.look() };
+        let others = [
+            RowItem::new("90 %", RowKind::Thin([size(row), 9.0])).softly(),
+            RowItem::new("50 %", RowKind::Thick([0.1, size(row)])),
+            RowItem { text: Some("0.9".into()), ..RowItem::new("bar", RowKind::Bar(look, size(row))) },
+            RowItem::new("limit", RowKind::Limit(size(row))),
+            RowItem::new(
+                "",
+                RowKind::Violin(
+                    look,
+                    vec![(0.1, 0.0), (size(row), 1.0), (0.5, wild.min(3.0))],
+                    [-size(row), -0.1, 0.0, 0.1, 0.2],
+                ),
+            ),
+        ];
+        marks.take(if row == 3 { 0 } else { 8 }).chain(others).collect::<Vec<RowItem>>()
+    };
+    let column = |x: Ruler, zero| RowsColumn {
+        x,
+        rows: (0..n.min(5)).map(items).collect(),
+        zero,
+        room: 0.2,
+        reference: Some(Reference95::line(1.0)),
+        lines: vec![("truth".into(), Pen::new(INK), 0.2)],
+    };
+    let names: Vec<String> =
+        (0..n.min(5)).map(|row| format!("orders at {row} °/s, a name of a row that is long")).collect();
+    let rows = Rows {
+        title: None,
+        names: names.clone(),
+        columns: vec![
+            column(Ruler::new("rms error [%]", Division::Factors), false),
+            column(Ruler::decimal("coverage [%]").within(4.0, Some(0.0)), true),
+        ],
+        note: Some("Rows: rates.".into()),
+    };
+    let cell = |x: usize, y: usize, empty: bool| MapCell {
+        value: (!empty).then(|| size(x + y)),
+        interval: Some([80.0, 95.0]),
+        outline: if x == y { Some(Outline::Right) } else { (x == y + 1).then_some(Outline::Alias) },
+    };
+    let map = |shades: Shades, count: usize| Cells {
+        title: Some("a map".into()),
+        titles: ["rudder step [°]".into(), "heading step [°]".into()],
+        columns: ["0", "0.1", "1"].map(str::to_owned).into(),
+        rows: names.clone(),
+        shades,
+        panels: (0..count)
+            .map(|panel| {
+                let row = |y: usize| (0..3).map(|x| cell(x, y, panel == 6)).collect();
+                (Some(format!("method {panel}")), (0..names.len()).map(row).collect())
+            })
             .collect(),
-    };
-    let errors = |x_scale| ErrorCurves {
-        x_title: "noise [°]".into(),
-        x_scale,
-        rows: vec!["error of K [%]".into()],
-        columns: vec!["zig-zag".into()],
-        cells: if has_data { vec![cell(0), cell(7)] } else { vec![] },
-        ..ErrorCurves::default()
-    };
-    let fits =
-        [Fit { origin: Origin::Truth, heading: curve.clone(), residual: curve.clone(), rms_deg: None, band: None }];
-    let record = RecordFit { heading: curve.clone(), rudder: curve.clone(), fits: fits.into(), title: None };
-    let (replays_of, estimates): (Vec<_>, Vec<_>) = if has_data {
-        (methods().map(replay).collect(), methods().enumerate().map(estimate).collect())
-    } else {
-        Default::default()
+        note: None,
     };
     vec![
-        ("zigzag", zigzag_trial(&zigzag, theme)),
-        ("curve_fit", curve_fit(&fit, theme)),
-        ("derivatives", derivatives(&Derivatives { title: None, curves: vec![motion(Origin::Truth)] }, theme)),
-        ("replays", replays(&Replays { record: curve.clone(), replays: replays_of, ..Replays::default() }, theme)),
-        ("intervals", intervals(&Intervals { estimates, ..Intervals::default() }, theme)),
-        ("errors log", error_curves(&errors(Scale::Log), theme)),
-        ("errors linear", error_curves(&errors(Scale::Linear), theme)),
-        ("record_fit", record_fit(&record, theme)),
+        ("rows", rows.into()),
+        ("map", map(Shades::Range(Division::Factors, "rms error of K [%]".into()), 8).into()),
+        ("shares", map(Shades::Shares, 1).into()),
     ]
+}
+
+fn all(n: usize, wild: f64, theme: &Theme) -> Vec<(&'static str, Figure)> {
+    let plots = [stored(n, wild), panels(n, wild), rows_and_maps(n, wild)].concat();
+    plots.into_iter().map(|(name, plot)| (name, plot.draw(theme))).collect()
 }
 
 /// Every number of an attribute in the document.
@@ -137,7 +254,7 @@ fn places(svg: &str) -> Vec<(i64, i64)> {
 }
 
 /// What every figure has to keep.
-pub(super) fn check(name: &str, figure: &Figure) {
+fn check(name: &str, figure: &Figure) {
     let svg = figure.svg();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}: undefined coordinate");
     let (width, height) = figure.size();
@@ -158,12 +275,22 @@ pub(super) fn check(name: &str, figure: &Figure) {
 #[test]
 fn figures_are_well_formed_whatever_the_data() {
     for theme in [Theme::screen(), Theme::paper(85.0, 300.0).unwrap(), Theme::paper(60.0, 300.0).unwrap()] {
-        for (n, gap) in [(200, 0), (200, 3), (2, 0), (1, 0), (0, 0), (3, 1), (20_000, 0)] {
-            for (name, figure) in all(n, gap, &theme) {
-                check(&format!("{name}, {n} points, gap {gap}, {} pt", theme.width), &figure);
+        for n in [0, 1, 2, 40, 1000] {
+            for wild in [0.3, 0.0, -0.3, 1e9, 1e300, f64::NAN, f64::INFINITY] {
+                for (name, figure) in all(n, wild, &theme) {
+                    check(&format!("{name}, {n} points, {wild} among them, {} pt", theme.width), &figure);
+                }
             }
         }
     }
+}
+
+#[test]
+fn nothing_is_nothing() {
+    let theme = Theme::screen();
+    check("panels", &Plot::from(Panels::default()).draw(&theme));
+    check("rows", &Plot::from(Rows::default()).draw(&theme));
+    check("zigzag", &Plot::from(ZigzagTrial::default()).draw(&theme));
 }
 
 #[test]
@@ -171,64 +298,135 @@ fn constant_and_undefined_curves_are_drawn() {
     let theme = Theme::screen();
     for y in [0.0, 5.0, f64::NAN, f64::INFINITY, 1e300, -1e-300] {
         let curve = Curve::new(vec![2.0; 4], vec![y; 4]);
-        let record = RecordFit { heading: curve.clone(), rudder: curve.clone(), ..RecordFit::default() };
-        check("constant", &record_fit(&record, &theme));
+        let layer = Layer::new("record", curve.clone(), LayerKind::Record);
+        check("constant", &Plot::from(Panels::over_time(vec![(PanelRow::default(), vec![layer])])).draw(&theme));
         let trial = ZigzagTrial { heading: curve.clone(), rudder: curve, ..ZigzagTrial::default() };
-        check("constant", &zigzag_trial(&trial, &theme));
+        check("constant", &Plot::from(trial).draw(&theme));
     }
 }
 
 #[test]
 fn same_data_same_bytes() {
     let theme = Theme::screen();
-    assert_eq!(all(200, 3, &theme), all(200, 3, &theme));
+    assert_eq!(all(200, 0.3, &theme), all(200, 0.3, &theme));
 }
 
 #[test]
 fn labels_carry_symbol_and_unit() {
-    let figures = all(200, 0, &Theme::screen());
+    let figures = all(200, 1.5, &Theme::screen());
     let svg = |name: &str| figures.iter().find(|(n, _)| *n == name).unwrap().1.svg();
     let italic = |s: &str| format!("<tspan font-style=\"italic\">{s}</tspan>");
-    assert!(svg("zigzag").contains(&format!("heading {} [°]", italic("ψ"))));
-    assert!(svg("zigzag").contains(&format!("rudder {} [°]", italic("δ"))));
-    assert!(svg("zigzag").contains(&format!("time {} [s]", italic("t"))));
-    assert!(svg("zigzag").contains(&format!("{}OS₁ = 13.0°", italic("ψ"))));
-    assert!(svg("zigzag").contains("a &lt; b") && svg("zigzag").contains("period 85.0 s"));
-    assert!(svg("curve_fit").contains("fundamental") && svg("curve_fit").contains("0.05000 rad/s"));
-    assert!(svg("derivatives").contains(" [°/s²]"));
-    assert!(svg("intervals").contains(&format!("{} [1/s]", italic("K"))));
-    assert!(svg("intervals").contains("no estimate"));
-    assert!(svg("intervals").contains("Arrows: beyond the axis."), "the last estimate, 0.4, lies beyond");
+    let symbols = [
+        ("zigzag", format!("heading {} [°]", italic("ψ"))),
+        ("zigzag", format!("rudder {} [°]", italic("δ"))),
+        ("zigzag", format!("time {} [s]", italic("t"))),
+        ("zigzag", format!("{}OS₁ = 13.0°", italic("ψ"))),
+        ("intervals", format!("{} [1/s]", italic("K"))),
+    ];
+    for (name, text) in symbols {
+        assert!(svg(name).contains(&text), "{text}");
+    }
+    for (name, text) in [
+        ("zigzag", "a &lt; b"),
+        ("zigzag", "period 85.0 s"),
+        ("curve fit", "0.05000 rad/s"),
+        ("derivatives", " [°/s²]"),
+        ("intervals", "no estimate"),
+        ("intervals", "Arrows: beyond the axis."),
+        ("clouds", "no estimate"),
+        ("map", "– is not defined."),
+        ("shares", "cannot be told from it"),
+        ("track", "drawn ships"),
+        ("aside", "maximum-likelihood"),
+    ] {
+        assert!(svg(name).contains(text), "{text} in {name}");
+    }
     for id in palette::method_ids() {
         assert!(svg("replays").contains(&format!("\n{id}, rms 1.5°\n")), "{id}");
-        assert!(svg("errors log").contains(&format!("\n{id}\n")), "{id}");
+        assert_eq!(svg("aside").matches(&format!("\n{id}\n")).count(), 1, "{id}");
+    }
+    for name in ["replays", "intervals", "clouds", "aside", "rows"] {
+        assert!(svg(name).contains("#009E73"), "output-error in {name}");
     }
 }
 
 #[test]
-fn a_replay_that_runs_off_is_cut_and_says_so() {
+fn what_runs_off_is_cut_and_says_so() {
     let replay = |method: &str, size: f64| Replay {
         origin: Origin::Method(method.into()),
-        heading: wave(200, 0),
-        residual: Curve { y: wave(200, 0).y.iter().map(|y| y * size).collect(), x: wave(200, 0).x },
+        heading: wave(200, 0.0, 25.0),
+        residual: wave(200, 0.0, 25.0 * size),
         rms_deg: Some(size),
     };
     let data = Replays {
-        record: wave(200, 0),
+        record: wave(200, 0.0, 25.0),
         replays: vec![replay("srivc", 0.01), replay("output-error", 0.02), replay("least-squares", 40.0)],
         ..Replays::default()
     };
-    let figure = replays(&data, &Theme::screen());
-    check("replays", &figure);
+    let svg = Plot::from(data.panels()).draw(&Theme::screen()).svg().to_owned();
     // 25 degrees times 40, reached at the top of the sine.
-    assert_eq!(figure.svg().matches("cut, reaches 1000°").count(), 1);
+    assert_eq!(svg.matches("cut, reaches 1000°").count(), 1);
+    let drawn = |layers: Vec<Layer>, cut: &str| {
+        let data =
+            Panels { cut: Some(cut.into()), ..Panels::over_time(vec![(PanelRow::new(Ruler::heading(), 0.2), layers)]) };
+        Plot::from(data).draw(&Theme::screen()).svg().to_owned()
+    };
+    let band = |high: f64| {
+        let line = |y: f64| Curve::new([0.0, 1.0, 2.0], [-y, y, 0.0]);
+        let band = Layer::band("90 %", [line(15.0), line(high)], INK, 0.2).within(1.0);
+        drawn(vec![band, Layer::line("ship", line(20.0), Pen::new(INK))], "It is cut.").contains("It is cut.")
+    };
+    assert!(band(1e4) && !band(25.0));
+    let mut wild = wave(400, 0.0, 1.0);
+    let dots = |curve: Curve| drawn(vec![Layer::new("rows", curve, LayerKind::Dots(INK))], "");
+    assert!(!dots(wild.clone()).contains("beyond a panel"));
+    wild.y[200] = 500.0;
+    assert!(dots(wild).contains("1 point lies beyond a panel"));
 }
 
 #[test]
-fn a_method_keeps_its_colour_in_every_figure() {
-    for (name, figure) in all(200, 0, &Theme::screen()) {
-        if ["replays", "intervals", "errors log"].contains(&name) {
-            assert!(figure.svg().contains("#009E73"), "output-error in {name}");
+fn what_sets_no_axis_is_an_arrow_at_its_edge() {
+    let marks = |name: &str, far: f64| {
+        let points = vec![(1.0, 0.1, None), (2.0, far, None)];
+        Layer::marks(name, Origin::After.look(), points).joined(Pen::new(INK))
+    };
+    let row = PanelRow::new(Ruler::new("rms error of T [%]", Division::Factors), 0.3);
+    let layers = vec![marks("output-error", 1.0), marks("least-squares", f64::INFINITY)];
+    let data = Panels::of(Stack::over(Ruler::decimal("noise [°]"), vec![(row, layers)]));
+    let svg = Plot::from(data).draw(&Theme::screen()).svg().to_owned();
+    assert!(!svg.contains("10⁶") && svg.contains(">\n1\n"), "the axis ends with what is worth something");
+    let far = |id: &str, k: f64| Layer::marks(id, Origin::Method(id.into()).look(), vec![(k, 160.0 * k, None)]);
+    let answers = vec![far("output-error", 0.1), far("srivc", 0.101), far("least-squares", 0.099), far("x", 9.0)];
+    let axis = |title: &str| Ruler::decimal(title).within(4.0, None);
+    let stack = Stack::over(axis("K [1/s]"), vec![(PanelRow::new(axis("T [s]"), 0.5), answers)]);
+    let figure = Plot::from(Panels { names_aside: true, ..Panels::of(stack) }).draw(&Theme::screen());
+    assert!(figure.svg().contains("Outside the axes: x (K = 9.00, T = 1440)."), "{}", figure.svg());
+}
+
+#[test]
+fn a_metre_is_as_long_on_both_axes_of_a_track() {
+    let turn = |east: f64, north: f64| {
+        let angles = || (0..100).map(|k| 0.1 * f64::from(k));
+        let x: Vec<f64> = angles().map(|a| east * (1.0 - a.cos())).collect();
+        Curve::new(x, angles().map(|a| north * a.sin()).collect::<Vec<_>>())
+    };
+    let still = Curve::new([1e9; 3], [-3.0; 3]);
+    for theme in [Theme::screen(), Theme::paper(85.0, 300.0).unwrap(), Theme::paper(60.0, 300.0).unwrap()] {
+        for curve in [turn(700.0, 800.0), turn(5.0, 900.0), turn(9e4, 1.0), turn(2e-3, 1e-3), still.clone()] {
+            let drawn = Layer::line("drawn ships", turn(1e3, 1e3), Pen::pale()).within(0.35);
+            let layers = vec![drawn, Layer::line("ship", curve.clone(), Pen::new(INK))];
+            let rows = vec![(PanelRow::new(Ruler::decimal("north [m]"), 0.7), layers)];
+            let stack = Stack { equal: true, ..Stack::over(Ruler::decimal("east [m]"), rows) };
+            let sheet = crate::layout::Sheet::new(&theme, None);
+            let (grid, width, _) = equal::fitted(&sheet, &stack);
+            let (across, (up, height)) = (&grid.columns[0].axis, &grid.rows[0]);
+            let point = |axis: &crate::axis::Axis, side: f64| side / axis.worth(1.0);
+            let ratio = point(across, width) / point(&up.axis, *height);
+            assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+            let is_inside =
+                |axis: &crate::axis::Axis, value: f64| axis.fraction(value).is_some_and(|f| (0.0..=1.0).contains(&f));
+            assert!(curve.finite().all(|(x, y)| is_inside(across, x) && is_inside(&up.axis, y)));
+            assert!(sheet.left_margin(&grid) + width < theme.width);
         }
     }
 }
@@ -236,17 +434,15 @@ fn a_method_keeps_its_colour_in_every_figure() {
 /// A run of days has thousands of executes; marks on top of each other once made a file that could not be drawn.
 #[test]
 fn a_zig_zag_of_very_many_executes_says_that_it_does_not_mark_them() {
-    let curve = wave(400, 0);
     let mark = |k: usize| Mark { t_s: 0.05 * k as f64, heading_deg: 10.0 };
     let trial = |count: usize| ZigzagTrial {
-        heading: curve.clone(),
-        rudder: curve.clone(),
+        heading: wave(400, 0.0, 25.0),
+        rudder: wave(400, 0.0, 25.0),
         executes: (0..count).map(mark).collect(),
         overshoots: (1..count).map(|k| Overshoot { execute: mark(k), extremum: mark(k), angle_deg: 2.0 }).collect(),
         ..ZigzagTrial::default()
     };
-    let theme = Theme::screen();
-    let [few, many] = [12, 3000].map(|count| zigzag_trial(&trial(count), &theme).svg().to_owned());
+    let [few, many] = [12, 3000].map(|count| Plot::from(trial(count)).draw(&Theme::screen()).svg().to_owned());
     assert!(few.contains("overshoot") && !few.contains("too many"));
     assert!(many.contains("3000 executes: too many to be marked"));
     assert!(many.len() < few.len());

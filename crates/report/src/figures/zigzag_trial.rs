@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shared::{heading_title, rudder_title, time_side};
+use super::panels::Ruler;
 use crate::axis::{self, Axis};
 use crate::clip::Rect;
 use crate::curve::Curve;
@@ -55,7 +55,7 @@ pub struct Overshoot {
     pub angle_deg: f64,
 }
 
-/// What [`zigzag_trial`] draws.
+/// What [`super::Plot::ZigZag`] draws.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ZigzagTrial {
     /// Title above the figure.
@@ -88,7 +88,7 @@ const EXTREMUM: Look = Look { colour: DIMENSION, marker: Marker::Circle, dash: S
 
 /// Draws a zig-zag trial: heading with its dimension lines above, rudder below. A trial of very many executes is drawn
 /// without its characteristic quantities, and a note says so.
-pub fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
+pub(super) fn zigzag_trial(data: &ZigzagTrial, theme: &Theme) -> Figure {
     if data.executes.len() > MOST_MARKED {
         let curves = ZigzagTrial {
             title: data.title.clone(),
@@ -109,8 +109,11 @@ fn with_note(data: &ZigzagTrial, note: Option<String>, theme: &Theme) -> Figure 
     let height = theme.tall(0.36);
     let curves = [&data.heading, &data.rudder].into_iter().chain(&data.truth);
     let rudder = Axis::covering(data.rudder.finite().map(|(_, y)| y), 0.12, Steps::Angle);
-    let rows = vec![(heading_side(data, height, theme), height), (Side::new(rudder, rudder_title()), theme.tall(0.13))];
-    let panels = sheet.grid(Grid::stack(time_side(curves), rows));
+    let rows =
+        vec![(heading_side(data, height, theme), height), (Side::new(rudder, Ruler::rudder().title), theme.tall(0.13))];
+    let times = curves.flat_map(|curve| curve.finite().map(|(t, _)| t));
+    let time = Side::new(Axis::covering(times, 0.0, Steps::Time), Ruler::time().title);
+    let panels = sheet.grid(Grid::stack(time, rows));
     let [upper, lower] = &panels[..] else { return sheet.finish() };
 
     for panel in &panels {
@@ -176,7 +179,7 @@ fn heading_side(data: &ZigzagTrial, height: f64, theme: &Theme) -> Side {
     let above = label + if data.period.is_some() { strip(theme) } else { 0.0 };
     let below = label + if has_times(data) { strip(theme) } else { 0.0 };
     let per_point = (hi - lo) / (height - above - below).max(0.3 * height);
-    Side::new(Axis::linear(lo - below * per_point, hi + above * per_point, Steps::Angle), heading_title())
+    Side::new(Axis::linear(lo - below * per_point, hi + above * per_point, Steps::Angle), Ruler::heading().title)
 }
 
 /// Draws overshoots, times and period. Returns the times in words when they did not fit at their lines.

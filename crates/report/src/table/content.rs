@@ -42,6 +42,28 @@ impl Column {
         Self { interval: true, ..Self::left("95 %") }
     }
 
+    /// Columns by their heads, parted by `|`: words; whole numbers behind `>`, numbers with decimals behind `.`, the
+    /// intervals of the column before behind `~`; a unit in brackets at the end.
+    pub fn all(heads: &str) -> Vec<Self> {
+        let column = |head: &str| {
+            let (mark, name) = match head.split_at_checked(1) {
+                Some((mark @ ("." | ">" | "~"), name)) => (mark, name),
+                _ => ("", head),
+            };
+            let (heading, unit) = match name.strip_suffix(']').and_then(|name| name.rsplit_once(" [")) {
+                Some((heading, unit)) => (heading, Some(unit.to_owned())),
+                None => (name, None),
+            };
+            let alignment = match mark {
+                "." => Alignment::Decimal,
+                ">" => Alignment::Right,
+                _ => Alignment::Left,
+            };
+            Self { heading: heading.to_owned(), unit, alignment, interval: mark == "~" }
+        };
+        heads.split('|').map(|head| column(head.trim())).collect()
+    }
+
     /// The same column with a unit.
     pub fn unit(self, unit: impl Into<String>) -> Self {
         Self { unit: Some(unit.into()), ..self }
@@ -78,6 +100,11 @@ impl Table {
     /// An empty table.
     pub fn new(columns: impl Into<Vec<Column>>) -> Self {
         Self { columns: columns.into(), ..Self::default() }
+    }
+
+    /// An empty table with the columns of [`Column::all`].
+    pub fn headed(heads: &str) -> Self {
+        Self::new(Column::all(heads))
     }
 
     /// The same table with a title.

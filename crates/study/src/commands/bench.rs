@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use campaign::benchmark::{Definition, Entry, Method, Results, Shelf};
 use campaign::folder::ResultFolder;
+use report::Theme;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
 
@@ -54,7 +55,7 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let default =
         || PathBuf::from("results").join(if request.definition.is_none() { "bench" } else { &definition.name });
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(default))?;
-    publish(&results, &folder, |folder| bench_figures::draw(&results, &theme, folder))?;
+    publish(&results, &folder, &theme)?;
 
     let notes: String = results.skipped.iter().map(|one| format!("skipped: {}\n", skipped(one))).collect();
     let notes = format!("\n{notes}report: {}", folder.path().join(REPORT).display());
@@ -104,17 +105,12 @@ fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
 }
 
 /// Writes everything; what an earlier run left and this one does not make goes away.
-fn publish(
-    results: &Results,
-    folder: &ResultFolder,
-    draw: impl FnOnce(&ResultFolder) -> Result<Vec<(String, String)>, Failure>,
-) -> Result<(), Failure> {
+fn publish(results: &Results, folder: &ResultFolder, theme: &Theme) -> Result<(), Failure> {
     let path = folder.path().join(BENCH);
     folder.keep(BENCH, results.json().on("describe", &path)?)?;
     folder.write(ROWS, bench_tables::rows(results).to_csv())?;
     folder.write(LEADERBOARD, bench_tables::leaderboard_numbers(results).to_csv())?;
     bench_figures::remove(folder)?;
-    let drawn = draw(folder)?;
     let pages = folder.inside(METHODS)?;
     for name in campaign::disk::names(pages.path()).on("list the folder", pages.path())? {
         let old = pages.path().join(&name);
@@ -123,7 +119,7 @@ fn publish(
         }
     }
     for method in &results.methods {
-        pages.write(&format!("{method}.md"), bench_page::of_method(results, method))?;
+        pages.write(&format!("{method}.md"), bench_page::of_method(results, method).to_markdown())?;
     }
-    write_page(folder, &bench_page::page(results, &drawn))
+    write_page(folder, &bench_page::page(results), theme)
 }

@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::reply;
 use crate::options::Common;
-use crate::views::drawings::HERO;
+use crate::views::study_figures::KEY_FIGURE;
 use campaign::disk;
 use campaign::files;
 use campaign::folder::ResultFolder;
@@ -98,7 +98,7 @@ fn study(folder: &Path) -> Result<Study, Failure> {
 
 /// File of the figure that a scenario names.
 fn figure(folder: &Path, stem: &str) -> Result<String, Failure> {
-    let files = [HERO, stem].map(|stem| format!("{stem}.png"));
+    let files = [KEY_FIGURE, stem].map(|stem| format!("{stem}.png"));
     if let Some(file) = files.into_iter().find(|file| folder.join(file).is_file()) {
         return Ok(file);
     }

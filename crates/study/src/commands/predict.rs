@@ -3,20 +3,24 @@
 
 use std::path::{Path, PathBuf};
 
+use predict::PredictDocument;
 use predict::turn::{self, Current};
+use report::Theme;
 use trial::{Sidecar, Trial};
 
+use crate::documents::fit::CURVES;
+use crate::documents::{self, read_json};
 use crate::options::{Common, PredictRequest};
 use crate::records::read_others;
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
-use crate::views::{document, predict_curves, predict_figures, predict_form, predict_page, predict_tables};
+use crate::views::{predict_curves, predict_form, predict_page, predict_tables};
 use crate::work::predict::{Model, PredictInput, predict};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 
 /// What other programs read.
-const PREDICT: &str = "predict.json";
+pub const PREDICT: &str = "predict.json";
 
 /// The form of MSC/Circ.1053.
 const FORM: &str = "trial-form.md";
@@ -53,27 +57,41 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
     let predicted = predict(request, input, common.quiet, &mut warnings)?;
     let folder = ResultFolder::hold(&common.out.clone().unwrap_or_else(|| default_folder(&request.models[0])))?;
     let path = folder.path().join(PREDICT);
-    let document = document::text(&predicted).on("describe", &path)?;
-    folder.keep(PREDICT, document.as_str())?;
-    let drawn = predict_figures::draw(&predicted, &theme, &folder)?;
-    for (stem, table) in predict_curves::curves(&predicted) {
-        folder.write(&format!("{stem}.csv"), table)?;
+    folder.keep(PREDICT, documents::text(&predicted).on("describe", &path)?)?;
+    let curves = serde_json::to_string(&predicted.curves()).on("describe", &folder.path().join(CURVES))?;
+    folder.write(CURVES, curves)?;
+    show(&folder, folder.path(), &theme, common, &warnings)
+}
+
+/// Draws a prediction from the `predict.json` and the curves of a folder, into `into`, and tells what it says.
+///
+/// Fails when a file is missing or was not written by this program.
+pub fn show(
+    into: &ResultFolder,
+    from: &Path,
+    theme: &Theme,
+    common: &Common,
+    warnings: &[String],
+) -> Result<(), Failure> {
+    let (document, text): (PredictDocument, String) = read_json(&from.join(PREDICT), "predict")?;
+    let predicted = &document.with_curves(read_json(&from.join(CURVES), "predict")?.0);
+    for (stem, table) in predict_curves::curves(predicted) {
+        into.write(&format!("{stem}.csv"), table)?;
     }
-    write_page(&folder, &predict_page::page(&predicted, &drawn))?;
-    let mut notes = String::new();
+    write_page(into, &predict_page::page(predicted), theme)?;
+    let mut notes = format!("\nresults: {}", into.path().join(PREDICT).display());
     if let (Some(form), Some(remarks)) = (&predicted.form, &predicted.form_remarks) {
-        folder.write(FORM, predict_form::page(form, remarks))?;
-        notes += &format!("\nform:    {}", folder.path().join(FORM).display());
+        into.write(FORM, predict_form::page(form, remarks).to_markdown())?;
+        notes += &format!("\nform:    {}", into.path().join(FORM).display());
     }
-    notes = format!("\nresults: {}", path.display()) + &notes;
-    let words = [predict_page::words(&predicted), predict_page::rest(&predicted)];
+    let words = [predict_page::words(predicted), predict_page::rest(predicted)];
     let told = Told {
         words: words.each_ref().map(String::as_str),
-        table: &predict_tables::figures(&predicted),
+        table: &predict_tables::figures(predicted),
         notes: &notes,
-        document: &document,
+        document: &text,
     };
-    screen::tell(common, &told, &warnings)
+    screen::tell(common, &told, warnings)
 }
 
 /// Where the results go unless a folder is named: after the folder of the model, which has the name of its record.

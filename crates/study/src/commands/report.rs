@@ -1,4 +1,5 @@
-//! `study report DIR`: tables and figures of a finished study or of a trace, from what is stored and nothing else.
+//! `study report DIR`: tables, figures and pages of a finished study, a fit, a trace or a prediction, from what is stored
+//! and nothing else.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -8,7 +9,9 @@ use campaign::store::{self, Stored};
 use clap::Args;
 use scenario::failure::Failure;
 
-use super::trace;
+use super::predict::{self, PREDICT};
+use super::{fit, trace};
+use crate::documents::fit::FIT;
 use crate::documents::trace::TRACE;
 use crate::options::{Common, StudyFigureOptions};
 use crate::views::page_files::BROWSER;
@@ -17,10 +20,10 @@ use crate::views::publish::publish;
 /// What `study report` is asked to do.
 #[derive(Debug, Clone, Args)]
 pub struct ReportRequest {
-    /// Folder of a finished study or of a trace; with --open also that of a fit or a prediction
+    /// Folder of a finished study, a fit, a trace or a prediction
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// Show report.html in a browser; of a fit or a prediction as it is
+    /// Show report.html in a browser
     #[arg(long)]
     pub open: bool,
     /// How figures are drawn, and which
@@ -28,18 +31,21 @@ pub struct ReportRequest {
     pub style: StudyFigureOptions,
 }
 
-/// Makes tables, figures and the pages of a finished study or of a trace where it is stored, or in `--out`; with `open`
-/// shows the page in a browser, which is all that can be done for a fit and a prediction.
+/// Makes tables, figures and the pages of a finished study, a fit, a trace or a prediction where it is stored, or in
+/// `--out`; with `open` shows the page in a browser.
 pub fn run(request: &ReportRequest, common: &Common) -> Result<(), Failure> {
-    let ReportRequest { folder: rows, open, style } = request;
-    let folder = common.out.as_deref().unwrap_or(rows);
-    let is_page = ["fit.json", "predict.json"].iter().any(|name| rows.join(name).is_file());
-    if rows.join(TRACE).is_file() {
-        trace::show(&ResultFolder::hold(folder)?, rows, &style.style.theme()?, common, &[])?;
-    } else if !(*open && is_page) {
-        rebuild(rows, style, common)?;
+    let ReportRequest { folder: stored, open, style } = request;
+    let folder = common.out.as_deref().unwrap_or(stored);
+    let held = || ResultFolder::hold(folder);
+    let theme = || style.style.theme();
+    let has = |name: &str| stored.join(name).is_file();
+    match () {
+        () if has(TRACE) => trace::show(&held()?, stored, &theme()?, common, &[])?,
+        () if has(FIT) => fit::show(&held()?, stored, &theme()?, common)?,
+        () if has(PREDICT) => predict::show(&held()?, stored, &theme()?, common, &[])?,
+        () => rebuild(stored, style, common)?,
     }
-    if *open { show(&(if is_page { rows } else { folder }).join(BROWSER)) } else { Ok(()) }
+    if *open { show(&folder.join(BROWSER)) } else { Ok(()) }
 }
 
 fn rebuild(rows: &Path, style: &StudyFigureOptions, common: &Common) -> Result<(), Failure> {

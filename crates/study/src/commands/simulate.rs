@@ -16,7 +16,7 @@ use serde_json::json;
 use super::reply;
 use crate::options::{Common, SimulateRequest};
 use crate::progress;
-use crate::views::picture::first_failure;
+use crate::views::page_files::first_failure;
 use crate::work::simulate::{RecordFiles, records, tasks};
 
 /// Simulates the trials that are asked for and writes them, with the truth of each.

@@ -5,15 +5,16 @@ use std::path::Path;
 
 use campaign::folder::ResultFolder;
 use report::Theme;
-use scenario::failure::{Failure, OnPath};
+use scenario::failure::Failure;
 
 use crate::documents::curves::Curves;
+use crate::documents::read_json;
 use crate::documents::trace::{TRACE, TraceDocument};
 use crate::options::{Common, TraceRequest};
 use crate::records::{default_folder, read_all, read_others, warn_of_repetition};
 use crate::screen::{self, Told};
 use crate::views::page_files::write_page;
-use crate::views::{trace_figures, trace_page, trace_tables};
+use crate::views::trace_page;
 use crate::work::steady;
 use crate::work::trace::{settings, trace, without};
 
@@ -43,17 +44,12 @@ pub fn show(
     common: &Common,
     warnings: &[String],
 ) -> Result<(), Failure> {
-    let path = from.join(TRACE);
-    let text = std::fs::read_to_string(&path).on("read", &path)?;
-    let document: TraceDocument = serde_json::from_str(&text)
-        .map_err(|error| Failure::input(format!("{}: {error}; make it again with `study trace`", path.display())))?;
+    let (document, text): (TraceDocument, String) = read_json(&from.join(TRACE), "trace")?;
     let curves = Curves::of(&document, from)?;
-    let drawn = trace_figures::draw(&document, &curves, steady::of_ship(&document.ship).as_ref(), theme, into)?;
-    write_page(into, &trace_page::page(&document, &drawn))?;
+    write_page(into, &trace_page::page(&document, &curves, steady::of_ship(&document.ship).as_ref()), theme)?;
     let notes = format!("\nresults: {}", into.path().join(TRACE).display());
     let [before, behind] = trace_page::words(&document);
-    let (fitted, judged) = document.errors();
-    let table = trace_tables::errors(&[fitted, judged].concat());
+    let table = trace_page::all_errors(&document);
     let told = Told { words: [&before, &behind], table: &table, notes: &notes, document: &text };
     screen::tell(common, &told, warnings)
 }

@@ -4,12 +4,24 @@ use std::collections::BTreeMap;
 
 use campaign::answer::MethodEntry;
 use predict::IdentifiedShip;
+use report::Curve;
+use report::figures::{Replays, ZigzagTrial};
 use serde::{Deserialize, Serialize};
+use ship::Particulars;
 use ship::angle::to_deg;
-use trial::{Trial, ZigZag, imo};
+use trial::{Quantity, Trial, ZigZag, ZigZagError, imo};
 
 use super::scales::ScalesEntry;
 use crate::records::file_of;
+
+/// Name of the file.
+pub const FIT: &str = "fit.json";
+
+/// Name of the file with the curves of its figures.
+pub const CURVES: &str = "curves.json";
+
+/// The method whose fit is drawn on its own where it has one.
+const SHOWN: &str = "output-error";
 
 /// One record of `fit.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -24,6 +36,9 @@ pub struct TrialEntry {
     pub duration_s: f64,
     /// Characteristics of this record; `null` when it is not a zig-zag.
     pub zigzag: Option<ZigZagEntry>,
+    /// Why it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_zigzag: Option<String>,
 }
 
 /// One IMO criterion.
@@ -74,17 +89,114 @@ pub struct FitDocument {
     /// Where the records are of several scales: which terms scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scales: Option<ScalesEntry>,
+    /// How records of several scales were brought to one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scaling: Option<String>,
+    /// Length at which numbers with a dimension are given, where it is known, m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length_m: Option<f64>,
+    /// Approach speed, m/s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_m_s: Option<f64>,
+    /// Every zig-zag identified alone, where there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub single_records: Option<SingleRecords>,
+    /// What was noticed when the records were read.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
+}
+
+impl FitDocument {
+    /// Length and speed at which numbers with a dimension are given, where they are known.
+    pub fn particulars(&self) -> Option<Particulars> {
+        Some(Particulars { length: self.length_m?, speed: self.speed_m_s? })
+    }
+
+    /// The method whose fit is drawn on its own.
+    pub fn shown_method(&self) -> Option<&str> {
+        let answered = || self.methods.iter().filter(|entry| entry.parameters.is_some()).map(|entry| &entry.method);
+        answered().find(|method| *method == SHOWN).or_else(|| answered().next()).map(String::as_str)
+    }
+
+    /// Everything that a reader should know: of the records and of the answers.
+    pub fn all_warnings(&self) -> Vec<String> {
+        let of = |entry: &MethodEntry| {
+            entry.warnings.iter().map(|warning| format!("{}: {warning}", entry.method)).collect::<Vec<String>>()
+        };
+        self.warnings.iter().cloned().chain(self.methods.iter().flat_map(of)).collect()
+    }
+}
+
+/// Every zig-zag of some records alone: whether K and T of a first-order response depend on the amplitude.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct SingleRecords {
+    /// The method that was used.
+    pub method: String,
+    /// The zig-zags that it could identify.
+    pub records: Vec<SingleRecord>,
+}
+
+/// K and T of one zig-zag.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct SingleRecord {
+    /// Mean size of the rudder between its executes, deg.
+    pub rudder_deg: f64,
+    /// Mean size of the heading at its peaks from the base course, deg.
+    pub heading_deg: f64,
+    /// K.
+    #[serde(rename = "K_per_s")]
+    pub k_per_s: Quantity,
+    /// T.
+    #[serde(rename = "T_s")]
+    pub t_s: Quantity,
+}
+
+/// `curves.json`: what the figures of a fit show, so that they can be drawn again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitCurves {
+    /// The records, first the fitted ones.
+    pub records: Vec<FitRecord>,
+    /// Of every method with a bounded one the outline of the region that holds K (1/s) and T (s) with 95 %.
+    pub regions: BTreeMap<String, Curve>,
+}
+
+/// A record with its replays, in degrees.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitRecord {
+    /// A name that no other record has.
+    pub name: String,
+    /// Its file.
+    pub file: String,
+    /// Whether another record has the name that it came with.
+    pub is_renamed: bool,
+    /// Whether it was kept for validation.
+    pub validation: bool,
+    /// The zig-zag with its characteristic points.
+    pub zigzag: Option<ZigzagTrial>,
+    /// Record and replays of all methods.
+    pub replays: Replays,
+    /// The rudder.
+    pub rudder: Curve,
+    /// Headings and rudder angles that are left out or doubtful, where there are some.
+    pub rejected: Option<[Curve; 2]>,
+    /// Yaw rate over heading of the record, where it shows one.
+    pub phase: Option<Curve>,
+    /// Whether that yaw rate is the slope of the smoothed heading.
+    pub smoothed: bool,
+    /// Yaw rate over heading of the replay of the method that is drawn on its own.
+    pub phase_replay: Option<Curve>,
 }
 
 /// The entry of a record.
-pub fn trial_entry(trial: &Trial, zigzag: Option<&ZigZag>) -> TrialEntry {
+pub fn trial_entry(trial: &Trial, zigzag: &Result<ZigZag, ZigZagError>) -> TrialEntry {
     let (file, sha256) = file_of(trial);
     TrialEntry {
         file: file.into(),
         sha256: sha256.into(),
         samples: trial.len(),
         duration_s: trial.duration(),
-        zigzag: zigzag.map(|zigzag| zigzag_entry(zigzag, trial)),
+        zigzag: zigzag.as_ref().ok().map(|zigzag| zigzag_entry(zigzag, trial)),
+        no_zigzag: zigzag.as_ref().err().map(ToString::to_string),
     }
 }
 

@@ -9,8 +9,11 @@ pub mod scales;
 pub mod trace;
 pub mod truth;
 
-use scenario::failure::Failure;
+use std::path::Path;
+
+use scenario::failure::{Failure, OnPath};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::screen;
@@ -18,6 +21,17 @@ use crate::screen;
 /// The text of a document. Fails where a type cannot be written as JSON.
 pub fn text(document: &impl Serialize) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(document).map(|text| text + "\n")
+}
+
+/// A document that a command wrote, and its text.
+///
+/// Fails when the file cannot be read or is none of this program.
+pub fn read_json<T: DeserializeOwned>(path: &Path, command: &str) -> Result<(T, String), Failure> {
+    let text = std::fs::read_to_string(path).on("read", path)?;
+    let document = serde_json::from_str(&text).map_err(|error| {
+        Failure::input(format!("{}: {error}; make it again with `study {command}`", path.display()))
+    })?;
+    Ok((document, text))
 }
 
 /// The document of a command without a file of its own: an object, with the name of what it holds first.

@@ -81,6 +81,11 @@ impl TraceDocument {
         self.records.iter().find_map(RecordEntry::particulars)
     }
 
+    /// Names of all records.
+    pub fn names(&self) -> Vec<String> {
+        self.records.iter().map(|record| record.name.clone()).collect()
+    }
+
     /// Names of the fitted records.
     pub fn title(&self) -> String {
         let fitted = self.records.iter().filter(|record| !record.held_out);

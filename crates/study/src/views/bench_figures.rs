@@ -4,11 +4,10 @@ use campaign::benchmark::Results;
 use campaign::benchmark::board::Board;
 use campaign::disk;
 use campaign::folder::ResultFolder;
-use report::figures::{Dot, DotColumn, DotPlot, Reference95, Scale, dots};
-use report::{Origin, Theme};
+use report::figures::{Division, Reference95, RowItem, RowKind, Rows, RowsColumn, Ruler};
+use report::{Origin, PageFigure};
 use scenario::failure::{Failure, OnPath};
-
-use super::picture::{slug, write_figure};
+use scenario::name::slug;
 
 /// A score over that of the reference beyond which an arrow stands for it.
 const FAR: f64 = 100.0;
@@ -29,17 +28,15 @@ pub fn remove(folder: &ResultFolder) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The stem of the figure of a field.
-pub fn of_field(field: &str) -> String {
-    format!("{RATIOS}-{}", slug(field))
+/// A sentence that begins with a capital.
+pub fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Draws them, and returns stems and captions.
-pub fn draw(results: &Results, theme: &Theme, folder: &ResultFolder) -> Result<Vec<(String, String)>, Failure> {
-    let mut drawn = Vec::new();
-    for field in results.fields() {
-        let Some(data) = ratios(results, field) else { continue };
-        write_figure(&dots(&data, theme), folder, &of_field(field))?;
+/// The figures, one for every kind of record.
+pub fn figures(results: &Results) -> Vec<PageFigure> {
+    let figure = |field: &str| {
         let caption = format!(
             "{}: median of the score over that of {} in the same case, with 95 % intervals where there are six independent \
              records or more. Left of the line a method is better. An arrow: more than {FAR} times, or no answer in half of \
@@ -47,15 +44,9 @@ pub fn draw(results: &Results, theme: &Theme, folder: &ResultFolder) -> Result<V
             capital(field),
             results.reference
         );
-        drawn.push((of_field(field), caption));
-    }
-    Ok(drawn)
-}
-
-/// A sentence that begins with a capital.
-pub fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+        Some(PageFigure::new(format!("{RATIOS}-{}", slug(field)), caption, ratios(results, field)?))
+    };
+    results.fields().into_iter().filter_map(figure).collect()
 }
 
 fn origin(method: &str) -> Origin {
@@ -69,7 +60,7 @@ fn origin(method: &str) -> Origin {
     }
 }
 
-fn ratios(results: &Results, field: &str) -> Option<DotPlot> {
+fn ratios(results: &Results, field: &str) -> Option<Rows> {
     let boards: Vec<_> = results.boards.iter().filter(|board| board.field == field).collect();
     let others: Vec<&String> = results.methods.iter().filter(|method| **method != results.reference).collect();
     let has_ratios = boards.iter().flat_map(|board| &board.standings).any(|standing| standing.ratio.is_some());
@@ -80,24 +71,22 @@ fn ratios(results: &Results, field: &str) -> Option<DotPlot> {
         let row = |method: &&String| {
             let standing = board.standings.iter().find(|standing| standing.method == **method);
             let Some(ratio) = standing.and_then(|standing| standing.ratio) else { return Vec::new() };
-            let far = |value: Option<f64>| value.unwrap_or(f64::MAX).max(f64::MIN_POSITIVE);
-            let interval = ratio.ci95.map(|ends| ends.map(far)).filter(|_| ratio.value.is_some());
-            vec![Dot { origin: origin(method), x: far(ratio.value), interval, hollow: false }]
+            let value = ratio.value.filter(|value| *value <= FAR).unwrap_or(f64::INFINITY);
+            let end = |end: Option<f64>| end.unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
+            let interval = ratio.ci95.map(|ends| ends.map(end)).filter(|_| value.is_finite());
+            vec![RowItem::new("", RowKind::Mark(origin(method).look(), value.max(f64::MIN_POSITIVE), interval))]
         };
-        DotColumn {
-            x_title: board.task.id().to_owned(),
-            scale: Scale::Log,
-            reference: Some(Reference95 { value: 1.0, band: [1.0; 2] }),
-            limit: Some(FAR),
+        RowsColumn {
+            x: Ruler::new(board.task.id(), Division::Factors),
+            reference: Some(Reference95::line(1.0)),
             rows: others.iter().map(row).collect(),
+            ..RowsColumn::default()
         }
     };
-    Some(DotPlot {
+    Some(Rows {
         title: None,
         names: others.iter().map(|method| (*method).clone()).collect(),
         columns: boards.iter().map(column).collect(),
-        rows_are_methods: true,
-        quiet: Vec::new(),
         note: Some(format!("Score over that of {} in the same case.", results.reference)),
     })
 }

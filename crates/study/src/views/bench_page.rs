@@ -1,14 +1,13 @@
 //! Pages of a benchmark: the whole, and one for every method.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use campaign::benchmark::Results;
 use campaign::benchmark::board::FEWEST;
 use campaign::benchmark::cases::{Answer, Case};
-use report::markdown;
+use report::Page;
 
-use super::bench_figures::{capital, of_field};
+use super::bench_figures::{capital, figures};
 use super::bench_tables as tables;
 
 /// How to read any of the tables.
@@ -19,84 +18,80 @@ const READING: &str = "*median*, *90 % within*: what the score of half and of ni
      drawing records with replacement, all cases of one simulated trial and all predictions of one measured record \
      together; with fewer than six there is none. They speak of records like these, not of other ships; trials of one hull differ in their noise alone.";
 
+const NAMING: &str = "*right*: the effect that is missing and nothing else, or nothing where nothing is missing; *among \
+     aliases*: a group that the record cannot tell apart and that holds it; *and more*: it or such a group, and another one; \
+     *named*: right or among aliases, with Wilson's 95 % interval.";
+
+const FILES: &str = "Made by `study bench`. `bench.json` has every answer and every number of this page, `rows.csv` a row for \
+     every answer, `leaderboard.csv` the tables with all their intervals.";
+
 /// `report.md`.
-pub fn page(results: &Results, drawn: &[(String, String)]) -> String {
-    let mut page = String::new();
-    let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
+pub fn page(results: &Results) -> Page {
     let definition = &results.definition;
-    line(&format!("# {}\n\n{}\n", definition.name, definition.about.trim()));
+    let mut page = Page::titled(definition.name.as_str());
+    page.say(&definition.about);
     let seed = definition.seed.map_or_else(String::new, |seed| format!(", with seed {seed}"));
-    line(&format!(
+    page.say(format!(
         "Definition {}…{seed}, program {}. Others are compared with `{}`. Our bias is in METHODOLOGY.md: the methods, the \
-         simulator and the choice of records are by the same hands.\n",
+         simulator and the choice of records are by the same hands.",
         &definition.sha256[..12],
         results.program,
         results.reference
     ));
-    line(&format!("{READING} What each method is and reads is said [below](#methods).\n"));
-    let figure = |stem: &str| {
-        drawn
-            .iter()
-            .find(|(own, _)| own == stem)
-            .map(|(_, caption)| format!("![{caption}]({stem}.png)\n\n*{caption}*\n"))
-    };
+    page.say(format!("{READING} What each method is and reads is said [below](#methods)."));
+    boards(&mut page, results);
+    page.part("Set by set");
+    page.say("Medians of the score.");
+    page.table(tables::sets(results));
+    page.part("Records");
+    page.list(results.sets.iter().filter_map(|set| {
+        let [download, licence, cite] = set.source.as_ref()?;
+        Some(format!("**{}**: {}. From {download}. Licence: {licence}. Cite: {cite}.", set.name, set.title))
+    }));
+    page.table(tables::present(results));
+    if !results.skipped.is_empty() {
+        page.say("Skipped:");
+        page.list(results.skipped.iter().map(|own| format!("{}, {}: {}", own.set, own.record, own.reason)));
+    }
+    page.part("Methods");
+    let methods = results.methods.iter().zip(&results.summaries);
+    page.list(methods.map(|(method, summary)| format!("[{method}](methods/{method}.md): {summary}")));
+    page.say(FILES);
+    page
+}
+
+/// The leaderboards with their figures.
+fn boards(page: &mut Page, results: &Results) {
     let mut before = None;
     for board in &results.boards {
         if before != Some(board.task) {
-            line(&format!("## {}\n", capital(board.task.title())));
-            line(&format!("Score: {}.\n", board.task.score().unwrap_or_default()));
+            page.part(capital(board.task.title()));
+            page.say(format!("Score: {}.", board.task.score().unwrap_or_default()));
             before = Some(board.task);
         }
-        line(&format!("### {}: {}\n", capital(&board.field), counted(board.cases, board.clusters)));
-        line(&tables::board(results, board).to_markdown());
+        page.subpart(format!("{}: {}", capital(&board.field), counted(board.cases, board.clusters)));
+        page.table(tables::board(results, board));
     }
     if !results.naming.is_empty() {
-        line("## Name the missing effect\n");
-        line(&tables::naming_totals(results).to_markdown());
-        line(
-            "*right*: the effect that is missing and nothing else, or nothing where nothing is missing; *among aliases*: a group \
-             that the record cannot tell apart and that holds it; *and more*: it or such a group, and another one; *named*: \
-             right or among aliases, with Wilson's 95 % interval.\n",
-        );
-        line(&tables::naming(results, None).to_markdown());
+        page.part("Name the missing effect");
+        page.table(tables::naming_totals(results));
+        page.say(NAMING);
+        page.table(tables::naming(results, None));
     }
-    line("## Beside the reference\n");
-    results.fields().into_iter().filter_map(|field| figure(&of_field(field))).for_each(|figure| line(&figure));
+    page.part("Beside the reference");
+    page.figures(figures(results));
     if let Some(overall) = &results.overall {
-        line("## All predictions in one number\n");
+        page.part("All predictions in one number");
         let boards: Vec<String> =
             overall.boards.iter().map(|(task, field)| format!("{} ({field})", task.id())).collect();
-        line(&format!(
+        page.say(format!(
             "The mean of the mean ranks over {}, each counting the same, with intervals by drawing sets and their records. It \
              hides how much better a method is, at what and on which ships, and it changes when a method joins. Replaying a \
-             fitted record is left out: there more parameters are an advantage in themselves.\n",
+             fitted record is left out: there more parameters are an advantage in themselves.",
             boards.join(", ")
         ));
-        line(&tables::overall(results).to_markdown());
+        page.table(tables::overall(results));
     }
-    line("## Set by set\n\nMedians of the score.\n");
-    line(&tables::sets(results).to_markdown());
-    line("## Records\n");
-    for set in &results.sets {
-        if let Some([download, licence, cite]) = &set.source {
-            line(&format!("- **{}**: {}. From {download}. Licence: {licence}. Cite: {cite}.", set.name, set.title));
-        }
-    }
-    line(&format!("\n{}", tables::present(results).to_markdown()));
-    if !results.skipped.is_empty() {
-        line("Skipped:\n");
-        results.skipped.iter().for_each(|own| line(&format!("- {}, {}: {}", own.set, own.record, own.reason)));
-        line("");
-    }
-    line("## Methods\n");
-    for (method, summary) in results.methods.iter().zip(&results.summaries) {
-        line(&format!("- [{method}](methods/{method}.md): {summary}"));
-    }
-    line(
-        "\nMade by `study bench`. `bench.json` has every answer and every number of this page, `rows.csv` a row for every \
-         answer, `leaderboard.csv` the tables with all their intervals.",
-    );
-    markdown::prose(&page)
 }
 
 fn counted(cases: usize, clusters: usize) -> String {
@@ -108,24 +103,27 @@ fn counted(cases: usize, clusters: usize) -> String {
 }
 
 /// `methods/ID.md`.
-pub fn of_method(results: &Results, method: &str) -> String {
-    let mut page = String::new();
-    let mut line = |line: &str| writeln!(page, "{line}").expect("writing to a string does not fail");
-    line(&format!("# {method}\n\nIn [{}](../report.md). {READING}\n", results.definition.name));
-    line(&format!("## Every task\n\n{}", tables::standings_of(results, method).to_markdown()));
-    line(&format!("## Every set\n\n{}", tables::of_method(results, method).to_markdown()));
+pub fn of_method(results: &Results, method: &str) -> Page {
+    let mut page = Page::titled(method);
+    page.say(format!("In [{}](../report.md). {READING}", results.definition.name));
+    page.part("Every task");
+    page.table(tables::standings_of(results, method));
+    page.part("Every set");
+    page.table(tables::of_method(results, method));
     if results.naming.iter().any(|own| own.method == method) {
-        line(&format!("## Missing effects\n\n{}", tables::naming(results, Some(method)).to_markdown()));
+        page.part("Missing effects");
+        page.table(tables::naming(results, Some(method)));
     }
-    line("## Failures\n");
+    page.part("Failures");
     let failures = failures(results, method);
     if failures.is_empty() {
-        line("None.");
+        page.say("None.");
     }
-    for ((kind, task, set), (count, first)) in failures {
-        line(&format!("- {set}, {task}: {count} × {kind}; the first: {first}"));
-    }
-    markdown::prose(&page)
+    let line = |((kind, task, set), (count, first)): ((&str, &str, &str), (usize, String))| {
+        format!("{set}, {task}: {count} × {kind}; the first: {first}")
+    };
+    page.list(failures.into_iter().map(line));
+    page
 }
 
 /// Failures of a method by kind, task and set: how many, and the first reason.

@@ -53,7 +53,7 @@ fn columns(reference: &str, indices: bool) -> Vec<Column> {
         Column::decimal("mean rank"),
     ];
     if indices {
-        columns.extend([Column::decimal("intervals hold K").unit("%"), Column::decimal("hold T").unit("%")]);
+        columns.extend(Column::all(".intervals hold K [%] | .hold T [%]"));
     }
     columns
 }
@@ -105,31 +105,12 @@ pub fn leaderboard(results: &Results) -> Table {
 
 /// All boards with all their numbers, for a program.
 pub fn leaderboard_numbers(results: &Results) -> Table {
-    let mut table = Table::new(
-        [
-            "task",
-            "records",
-            "cases",
-            "clusters",
-            "method",
-            "failed",
-            "median",
-            "median lower 95",
-            "median upper 95",
-            "90 % within",
-            "90 % within lower 95",
-            "90 % within upper 95",
-            "over reference",
-            "over reference lower 95",
-            "over reference upper 95",
-            "better [%]",
-            "better lower 95 [%]",
-            "better upper 95 [%]",
-            "mean rank",
-            "intervals hold K [%]",
-            "intervals hold T [%]",
-        ]
-        .map(Column::left),
+    let mut table = Table::headed(
+        "task | records | cases | clusters | method | failed | median | median lower 95 | \
+            median upper 95 | 90 % within | 90 % within lower 95 | 90 % within upper 95 | \
+            over reference | over reference lower 95 | over reference upper 95 | better [%] | \
+            better lower 95 [%] | better upper 95 [%] | mean rank | intervals hold K [%] | \
+            intervals hold T [%]",
     );
     let text = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let all = |figure: Option<Figure>| match figure {
@@ -174,13 +155,7 @@ pub fn sets(results: &Results) -> Table {
 
 /// One method on every set, beside the reference.
 pub fn of_method(results: &Results, method: &str) -> Table {
-    let mut columns = vec![
-        Column::left("task"),
-        Column::left("set"),
-        Column::right("n"),
-        Column::decimal("median"),
-        Column::right("failed"),
-    ];
+    let mut columns = Column::all("task | set | >n | .median | >failed");
     let place = |label: &str| results.methods.iter().position(|own| own == label);
     let reference = place(&results.reference).filter(|_| method != results.reference);
     columns.extend(reference.map(|_| Column::decimal(format!("median of {}", results.reference))));
@@ -262,7 +237,7 @@ pub fn naming(results: &Results, method: Option<&str>) -> Table {
 
 /// The ranking over all predictions.
 pub fn overall(results: &Results) -> Table {
-    let mut table = Table::new([Column::left("method"), Column::decimal("mean rank"), Column::left("95 %")]);
+    let mut table = Table::headed("method | .mean rank | 95 %");
     for (method, rank) in results.overall.iter().flat_map(|overall| &overall.standings) {
         table.push([method.clone(), value(*rank), ends(*rank)]);
     }
@@ -290,26 +265,9 @@ pub fn present(results: &Results) -> Table {
 
 /// One row for every answer.
 pub fn rows(results: &Results) -> Table {
-    let mut table = Table::new(
-        [
-            "task",
-            "records",
-            "set",
-            "trial",
-            "fitted",
-            "scored",
-            "method",
-            "score",
-            "K error [%]",
-            "T error [%]",
-            "K held",
-            "T held",
-            "missing",
-            "said",
-            "named",
-            "failure",
-        ]
-        .map(Column::left),
+    let mut table = Table::headed(
+        "task | records | set | trial | fitted | scored | method | score | K error [%] | \
+            T error [%] | K held | T held | missing | said | named | failure",
     );
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());

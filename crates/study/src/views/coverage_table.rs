@@ -11,7 +11,7 @@ use campaign::summary::PredictionSummary;
 /// Every figure of every cell and method.
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut columns = head_of_cells(design);
-    columns.extend([Column::left("method"), Column::left("figure"), Column::left("unit"), Column::right("trials")]);
+    columns.extend(Column::all("method | figure | unit | >trials"));
     columns.extend(["inside 90 %", "lower 95", "upper 95"].map(|name| Column::decimal(name).unit("%")));
     columns.extend(["of the ship", "bias", "rms error", "width"].map(|name| Column::decimal(name.to_owned())));
     let mut table = Table::new(columns);
@@ -29,9 +29,9 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 /// All figures of a cell and a method together: the mean of their shares, and the lowest and the highest of them.
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut columns = head_of_cells(design);
-    columns.extend([Column::left("method"), Column::right("figures"), Column::right("trials")]);
+    columns.extend(Column::all("method | >figures | >trials"));
     columns.extend(["inside 90 %", "lowest", "highest"].map(|name| Column::decimal(name).unit("%")));
-    columns.extend([Column::left("lowest of"), Column::left("highest of")]);
+    columns.extend(Column::all("lowest of | highest of"));
     let mut table = Table::new(columns);
     for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
         let [first, ..] = group else { continue };

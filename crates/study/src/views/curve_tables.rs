@@ -8,10 +8,11 @@ use campaign::store::Stored;
 use report::figures::Replays;
 use report::{Curve, Origin};
 use scenario::failure::Failure;
+use scenario::name::slug;
 
-use super::drawings::Drawing;
-use super::picture::slug;
+use super::study_figures::{FigurePlace, StudyFigure};
 use crate::documents::columns::digits;
+use crate::documents::fit::FitCurves;
 
 /// A column: its name with its unit, and its values over what the first column holds.
 type Column<'a> = (String, &'a Curve);
@@ -58,14 +59,21 @@ pub fn of_replays(replays: &Replays, rudder: Option<&Curve>) -> String {
     table("t_s", &columns)
 }
 
+/// Writes the replays of every record of a fit.
+pub fn write_replays(curves: &FitCurves, folder: &ResultFolder) -> Result<(), Failure> {
+    curves.records.iter().enumerate().try_for_each(|(number, record)| {
+        let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
+        folder.write(&format!("replay{suffix}.csv"), of_replays(&record.replays, Some(&record.rudder)))
+    })
+}
+
 /// Writes the replays of every showcase beside their figure.
-pub fn write_showcases(stored: &Stored, drawings: &[Drawing], folder: &ResultFolder) -> Result<(), Failure> {
-    for (index, showcase) in stored.showcases.iter().enumerate() {
-        let of_replays_figure =
-            |drawing: &&Drawing| drawing.showcase == Some(index) && drawing.stem.contains("replays");
-        let Some(drawing) = drawings.iter().find(of_replays_figure) else { continue };
+pub fn write_showcases(stored: &Stored, figures: &[StudyFigure], folder: &ResultFolder) -> Result<(), Failure> {
+    for (place, figure) in figures.iter().filter(|(_, figure)| figure.stem.contains("replays")) {
+        let FigurePlace::Showcase(index) = place else { continue };
+        let showcase = &stored.showcases[*index];
         let rudder = showcase.trial.as_ref().map(|trial| &trial.rudder);
-        let stem = drawing.stem.replace("replays", "replay");
+        let stem = figure.stem.replace("replays", "replay");
         folder.write(&format!("{stem}.csv"), of_replays(&showcase.replays, rudder))?;
     }
     Ok(())

@@ -1,174 +1,165 @@
-//! Figures of `study fit`: the first record with its characteristic points, every record with the replays of all
-//! methods and with the best fit, over time and in the phase plane, and K and T of all methods and of every record
-//! alone.
+//! Figures of a fit, from its document and its curves: every record with its characteristic points, with the replays of
+//! all methods and with the one that is shown alone, over time and in the phase plane; K and T of all methods, and of
+//! every record alone.
 
-use identify::Estimate;
-use identify::replay::replay;
-use rayon::prelude::*;
-use report::figures::{self, Fit, Layer, Layers, Panels, Pen, PhasePlane, RecordFit, Replay, Replays, Ruler, Stack};
-use report::palette::{BEFORE, Look, Marker, RUDDER, SOLID};
-use report::{Figure, Origin, Theme};
-use ship::Particulars;
-use trial::{Channel, Trial, ZigZag};
-
-use super::picture::write_figure;
-use super::{curve_tables, index_figures};
-use crate::work::alone::Amplitudes;
 use campaign::answer::MethodEntry;
-use campaign::curves::{curve, replay_curves, zigzag_figure};
-use campaign::folder::ResultFolder;
-use scenario::failure::Failure;
+use report::figures::{Division, Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Reference95, Ruler, Stack};
+use report::palette::{BEFORE, Look, Marker, SOLID};
+use report::{Curve, Origin, PageFigure, symbol};
+use ship::Particulars;
+use trial::Quantity;
 
-/// The method whose fit is drawn on its own where it has one.
-const BEST: &str = "output-error";
+use super::record_figures::{ModelOverTime, over_time, phase_plane, rudder};
+use crate::documents::fit::{FitCurves, FitDocument, FitRecord, SingleRecord, SingleRecords};
 
-/// A record to draw.
-pub struct Drawn<'a> {
-    /// The record.
-    pub trial: &'a Trial,
-    /// Its name; no two records have the same.
-    pub name: &'a str,
-    /// Whether it was kept for validation.
-    pub validation: bool,
-}
-
-/// What is drawn of all records together.
-pub struct Whole {
-    /// Name of the records.
-    pub title: String,
-    /// Length and speed, where they are known.
-    pub ship: Option<Particulars>,
-    /// Every zig-zag alone, where there are several.
-    pub amplitudes: Option<Amplitudes>,
-}
-
-/// Draws everything into `folder`: `trial` (of a zig-zag that was fitted), `raw` (where readings are left out or
-/// doubtful), `replays`, `fit` and `phase` of the first record, and the same with `-NAME` of the others; `indices`, K
-/// and T of all methods, and `amplitude`, those of every record alone. Beside them `replay.csv`, the curves of
-/// `replays`. Returns stems and captions.
-pub fn draw(
-    records: &[Drawn],
-    answers: &[(MethodEntry, Option<Estimate>)],
-    whole: &Whole,
-    theme: &Theme,
-    folder: &ResultFolder,
-) -> Result<Vec<(String, String)>, Failure> {
-    let mut drawn = vec![told("indices", "", &whole.title)];
-    let indices = index_figures::index_plane(whole.title.clone(), answers, whole.ship);
-    write_figure(&figures::index_plane(&indices, theme), folder, "indices")?;
-    if let Some(all) = &whole.amplitudes {
-        let joint = answers.iter().find(|(entry, _)| entry.method == all.method);
-        let joint = joint.and_then(|(_, estimate)| estimate.as_ref()).map(|estimate| [estimate.K(), estimate.T()]);
-        let data = index_figures::amplitude(whole.title.clone(), all, joint, whole.ship);
-        write_figure(&figures::amplitude(&data, theme), folder, "amplitude")?;
-        drawn.push(told("amplitude", "", &whole.title));
-    }
-    let work = records.par_iter().enumerate().map(|(number, record)| {
-        let suffix = if number == 0 { String::new() } else { format!("-{}", record.name) };
-        let mut drawn = Vec::new();
-        let mut put = |figure: &Figure, kind: &str| {
-            drawn.push(told(kind, &suffix, record.name));
-            write_figure(figure, folder, &format!("{kind}{suffix}"))
-        };
-        if let Some(zigzag) = ZigZag::of(record.trial).ok().filter(|_| !record.validation) {
-            let data =
-                figures::ZigzagTrial { title: Some(record.name.to_owned()), ..zigzag_figure(record.trial, &zigzag) };
-            put(&figures::zigzag_trial(&data, theme), "trial")?;
-        }
-        if !record.trial.rejected().is_empty() {
-            put(&raw(record, theme), "raw")?;
-        }
-        let replays = replays(record, answers);
-        put(&figures::replays(&replays, theme), "replays")?;
-        let rudder = curve(record.trial.time(), record.trial.rudder());
-        folder.write(&format!("replay{suffix}.csv"), curve_tables::of_replays(&replays, Some(&rudder)))?;
-        if let Some(phase) = phase(record, answers) {
-            put(&figures::phase_plane(&phase, theme), "phase")?;
-        }
-        put(&best_fit(record, &replays, theme), "fit")?;
-        Ok::<Vec<(String, String)>, Failure>(drawn)
-    });
-    // The first failure in order, whichever came first in time.
-    for of_record in work.collect::<Vec<_>>() {
-        drawn.extend(of_record?);
-    }
-    Ok(drawn)
-}
-
-/// Stem and caption of a kind of figure.
-fn told(kind: &str, suffix: &str, name: &str) -> (String, String) {
-    let what = match kind {
-        "indices" => "K and T of every method with the intervals and regions it quotes.",
-        "amplitude" => {
-            "K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
-        }
-        "trial" => "heading and rudder, with the characteristics of the zig-zag.",
-        "raw" => "the record as it was read, with marks at the readings that are left out or doubtful.",
-        "replays" => "the recorded rudder replayed with the answer of every method, and what is left of the heading.",
-        "phase" => "yaw rate against heading, of the record and of the replay of one method.",
-        _ => "heading, residual and rudder with the replay of one method.",
+/// All figures, in the order of the page.
+pub fn figures(document: &FitDocument, curves: &FitCurves) -> Vec<PageFigure> {
+    let fitted: Vec<&FitRecord> = curves.records.iter().filter(|record| !record.validation).collect();
+    let title = match fitted[..] {
+        [only] => only.name.clone(),
+        _ => format!("{} records together", fitted.len()),
     };
-    (format!("{kind}{suffix}"), format!("{name}: {what}"))
+    let caption = format!("{title}: K and T of every method with the intervals and regions it quotes.");
+    let mut figures = vec![PageFigure::new("indices", caption, index_plane(title.clone(), document, curves))];
+    figures.extend(document.single_records.as_ref().map(|all| {
+        let caption = format!(
+            "{title}: K and T of a first-order response fitted to every record alone, over the amplitude of its zig-zag."
+        );
+        PageFigure::new("amplitude", caption, single_records(title.clone(), all, document))
+    }));
+    let shown = document.shown_method();
+    for (number, record) in curves.records.iter().enumerate() {
+        figures.extend(of_record(record, if number == 0 { "" } else { &record.name }, shown));
+    }
+    figures
 }
 
-fn title(record: &Drawn) -> Option<String> {
-    Some(if record.validation { format!("{} (validation)", record.name) } else { record.name.to_owned() })
+/// The figures of a record; `suffix` ends their names, `shown` is the method whose fit is drawn on its own.
+fn of_record(record: &FitRecord, suffix: &str, shown: Option<&str>) -> Vec<PageFigure> {
+    let FitRecord { name, replays, rejected, phase_replay, .. } = record;
+    let title = replays.title.clone().unwrap_or_default();
+    let figure = |kind: &str, what: &str, plot: report::figures::Plot| {
+        let stem = if suffix.is_empty() { kind.to_owned() } else { format!("{kind}-{suffix}") };
+        PageFigure::new(stem, format!("{name}: {what}"), plot)
+    };
+    let mut figures = Vec::new();
+    figures.extend(record.zigzag.as_ref().map(|data| {
+        figure("trial", "heading and rudder, with the characteristics of the zig-zag.", data.clone().into())
+    }));
+    figures.extend(rejected.as_ref().map(|marks| {
+        let what = "the record as it was read, with marks at the readings that are left out or doubtful.";
+        figure("raw", what, raw(record, title.clone(), marks).into())
+    }));
+    let what = "the recorded rudder replayed with the answer of every method, and what is left of the heading.";
+    figures.push(figure("replays", what, replays.panels().into()));
+    figures.extend(phase_replay.as_ref().zip(shown).map(|(own, method)| {
+        let what = "yaw rate against heading, of the record and of the replay of one method.";
+        let way = (method.to_owned(), Origin::Method(method.to_owned()), own.clone());
+        figure("phase", what, phase_plane(title.clone(), record.phase.clone(), record.smoothed, vec![way]).into())
+    }));
+    let own = replays.replays.iter().find(|own| shown == Some(own.origin.label()));
+    let own = own.or_else(|| replays.replays.first()).map(|own| ModelOverTime {
+        origin: own.origin.clone(),
+        heading: own.heading.clone(),
+        residual: own.residual.clone(),
+        rms_deg: own.rms_deg,
+        band: None,
+    });
+    let data = over_time(title.clone(), replays.record.clone(), record.rudder.clone(), own.into_iter().collect());
+    figures.push(figure("fit", "heading, residual and rudder with the replay of one method.", data.into()));
+    figures
 }
 
 /// The record with marks at the readings that are left out or doubtful.
-fn raw(record: &Drawn, theme: &Theme) -> Figure {
-    let trial = record.trial;
+fn raw(record: &FitRecord, title: String, marks: &[Curve; 2]) -> Panels {
     let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
-    let marked = |channel: Channel| {
-        let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
-        let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
-        let none = vec![None; time.len()];
-        Layer::new("left out or doubtful", curve(&time, &values), figures::Drawn::Marks(look, none))
-    };
-    let heading = Layer::new("recorded heading", curve(trial.time(), trial.heading()), figures::Drawn::Record);
-    let pen = figures::Drawn::Line(Pen::new(RUDDER));
-    let rudder = Layer::new("recorded rudder", curve(trial.time(), trial.rudder()), pen);
-    let upper = vec![heading, marked(Channel::Heading)];
-    let lower = vec![rudder, marked(Channel::Rudder)];
-    let rows = vec![
-        Layers { y: Ruler::heading(), height: 0.3, layers: upper, ..Layers::default() },
-        Layers { y: Ruler::rudder(), height: 0.16, zero: true, layers: lower, ..Layers::default() },
-    ];
-    let stack = Stack { x: Ruler::time(), panels: rows, ..Stack::default() };
-    figures::panels(&Panels { title: title(record), stacks: vec![stack], ..Panels::default() }, theme)
-}
-
-fn replays(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Replays {
-    let trial = record.trial;
-    let replays = replay_curves(trial, answers, |method| Origin::Method(method.to_owned()));
-    Replays { title: title(record), record: curve(trial.time(), trial.heading()), truth: None, replays }
-}
-
-/// The record in the phase plane with the replay that is drawn on its own in `fit`.
-fn phase(record: &Drawn, answers: &[(MethodEntry, Option<Estimate>)]) -> Option<PhasePlane> {
-    let found = || answers.iter().filter_map(|(entry, estimate)| Some((&entry.method, estimate.as_ref()?)));
-    let (method, estimate) = found().find(|(method, _)| *method == BEST).or_else(|| found().next())?;
-    let replay = replay(record.trial, &estimate.response)?;
-    let fit = index_figures::phase_of(Origin::Method(method.clone()), &replay);
-    Some(index_figures::phase_plane(title(record)?, record.trial, vec![fit]))
-}
-
-fn best_fit(record: &Drawn, replays: &Replays, theme: &Theme) -> Figure {
-    let is_best = |replay: &&Replay| replay.origin == Origin::Method(BEST.to_owned());
-    let best = replays.replays.iter().find(is_best).or_else(|| replays.replays.first());
-    let fits = best.map(|replay| Fit {
-        origin: replay.origin.clone(),
-        heading: replay.heading.clone(),
-        residual: replay.residual.clone(),
-        rms_deg: replay.rms_deg,
-        band: None,
+    let marks = marks.each_ref().map(|curve| {
+        Layer::marks("left out or doubtful", look, curve.pairs().map(|(time, value)| (time, value, None)).collect())
     });
-    let trial = record.trial;
-    let data = RecordFit {
-        title: title(record),
-        heading: curve(trial.time(), trial.heading()),
-        rudder: curve(trial.time(), trial.rudder()),
-        fits: fits.into_iter().collect(),
+    let [of_heading, of_rudder] = marks;
+    let heading = Layer::new("recorded heading", record.replays.record.clone(), LayerKind::Record);
+    let mut lower = rudder("recorded rudder", record.rudder.clone(), 0.16);
+    lower.1.push(of_rudder);
+    let rows = vec![(PanelRow::new(Ruler::heading(), 0.3), vec![heading, of_heading]), lower];
+    Panels { title: Some(title), ..Panels::over_time(rows) }
+}
+
+/// What K and T are multiplied with in a figure.
+fn factors(ship: Option<Particulars>) -> [f64; 2] {
+    ship.map_or([1.0; 2], |ship| [ship.prime([-1, 0]), ship.prime([1, 0])])
+}
+
+/// Titles of axes of K and T: prime where the ship is known.
+fn titles(ship: Option<Particulars>) -> [String; 2] {
+    match ship {
+        Some(_) => [symbol("K′"), symbol("T′")],
+        None => [format!("{} [1/s]", symbol("K")), format!("{} [s]", symbol("T"))],
+    }
+}
+
+/// How many times the middle distance from the middle is drawn; what lies farther off is named below.
+const REACH: f64 = 4.0;
+
+/// K and T of all methods that have an answer, with the regions that hold both with 95 %.
+fn index_plane(title: String, document: &FitDocument, curves: &FitCurves) -> Panels {
+    let ship = document.particulars();
+    let [by_k, by_t] = factors(ship);
+    let scaled = |x: f64, y: f64| (by_k * x, by_t * y);
+    let layers = |entry: &MethodEntry| -> Option<[Option<Layer>; 2]> {
+        let own = entry.parameters.as_ref()?;
+        let look = Origin::Method(entry.method.clone()).look();
+        let pen = Pen { dash: look.dash, ..Pen::new(look.colour) };
+        let region = curves.regions.get(&entry.method).map(|region| {
+            let (x, y) = region.pairs().map(|(k, t)| scaled(k, t)).unzip();
+            Layer::line("", Curve { x, y }, pen)
+        });
+        let (k, t) = scaled(own.k_per_s.value, own.t_s.value);
+        Some([region, Some(Layer::marks(entry.method.as_str(), look, vec![(k, t, None)]))])
     };
-    figures::record_fit(&data, theme)
+    let [k, t] = titles(ship).map(|title| Ruler::decimal(title).within(REACH, None));
+    let layers = document.methods.iter().filter_map(layers).flatten().flatten().collect();
+    let note = format!("Outlines hold {} and {} together with 95 %.", symbol("K"), symbol("T"));
+    Panels {
+        title: Some(title),
+        names_aside: true,
+        note: (!curves.regions.is_empty()).then_some(note),
+        ..Panels::of(Stack::over(k, vec![(PanelRow::new(t, 0.5), layers)]))
+    }
+}
+
+/// A value farther from zero than so many times the middle one is shown by an arrow.
+const FAR: f64 = 3.0;
+
+/// K and T of every record alone over the amplitudes of its zig-zag, with those of all together.
+fn single_records(title: String, all: &SingleRecords, document: &FitDocument) -> Panels {
+    type Of = fn(&SingleRecord) -> Quantity;
+    let ship = document.particulars();
+    let joint = document.methods.iter().find(|entry| entry.method == all.method).and_then(|entry| entry.parameters);
+    // Points are not joined: a cross or a star would hide its bar.
+    let look = Look { marker: Marker::Circle, ..Origin::Method(all.method.clone()).look() };
+    let name = format!("{}, every record alone, 95 %", all.method);
+    let panel = |of: Of, factor: f64, amplitude: fn(&SingleRecord) -> f64| {
+        let point = |own: &SingleRecord| {
+            let value = of(own).scaled(factor);
+            (amplitude(own), value.value, value.ci95)
+        };
+        let marks = Layer::marks(name.as_str(), look, all.records.iter().map(point).collect());
+        LayeredPanel { head: None, layers: vec![marks.apart()] }
+    };
+    let row = |title: String, joint: Option<Quantity>, factor: f64| {
+        let joint = joint.map(|joint| joint.scaled(factor)).filter(|joint| joint.value.is_finite());
+        PanelRow {
+            reference: joint.map(|own| Reference95 { value: own.value, band: own.ci95.unwrap_or([own.value; 2]) }),
+            ..PanelRow::new(Ruler::decimal(title).within(FAR, Some(0.0)), 0.3)
+        }
+    };
+    let ([by_k, by_t], [k, t]) = (factors(ship), titles(ship));
+    let x = [format!("rudder {} [°]", symbol("δ")), format!("peak heading {} [°]", symbol("ψ"))];
+    let amplitudes: [fn(&SingleRecord) -> f64; 2] = [|own| own.rudder_deg, |own| own.heading_deg];
+    let mut panels: Vec<LayeredPanel> = amplitudes.map(|of| panel(|own| own.k_per_s, by_k, of)).into();
+    panels.extend(amplitudes.map(|of| panel(|own| own.t_s, by_t, of)));
+    let rows = vec![row(k, joint.map(|own| own.k_per_s), by_k), row(t, joint.map(|own| own.t_s), by_t)];
+    let stack = Stack { x: x.map(|title| Ruler::new(title, Division::Angle)).into(), rows, panels, ..Stack::default() };
+    let note = joint.map(|_| String::from("Line and grey band: all records together, 95 %."));
+    Panels { title: Some(title), note, ..Panels::of(stack) }
 }

@@ -1,80 +1,184 @@
-//! The page of `study fit`: what was read, the answers, what was measured, and the figures.
+//! The page of a fit: what was read, the answers, what was measured, and the figures.
 
+use campaign::answer::MethodEntry;
 use report::markdown::text;
-use report::{Table, markdown};
+use report::number::{MISSING, fixed, optional, with_uncertainty};
+use report::{Page, Table};
+use trial::Quantity;
 
-/// What the page is made of.
-pub struct FitPage<'a> {
-    /// What was read.
-    pub headline: &'a str,
-    /// One row per method.
-    pub methods: &'a Table,
-    /// Names of records, reasons of failures, characteristics; as on the screen.
-    pub notes: &'a str,
-    /// The same without dimension, and what of it scales; Markdown.
-    pub scales: &'a str,
-    /// What a reader has to know.
-    pub warnings: &'a [String],
-    /// Stems and captions of what was drawn.
-    pub figures: &'a [(String, String)],
+use super::{fit_figures, method_table, scale_tables};
+use crate::documents::fit::{FitCurves, FitDocument, ZigZagEntry};
+use crate::scales::scale_name;
+use crate::work::every_scale::SPEAKERS;
+
+const MODEL: &str = "The model is T dr/dt + r = K (δ + δ_r) with the yaw rate r and the rudder δ. *95 %* is the interval that a \
+                     method quotes beside its estimate, a dash where it quotes none. *rms ψ* is the root mean square of \
+                     measured minus replayed heading; on records that were kept for validation only the initial state is \
+                     fitted.";
+
+const FILES: &str = "`fit.json` has all of it with all digits: the records with their SHA-256 and their characteristics, every \
+                     method with its estimates, intervals, warnings and diagnostics, and what is known of the ship for \
+                     `study predict`.";
+
+/// `report.md` with its figures.
+pub fn page(document: &FitDocument, curves: &FitCurves) -> Page {
+    let mut page = Page::titled("Identification");
+    page.words(&headline(document, curves));
+    page.part("Methods");
+    page.table(answers(document, curves));
+    page.say(MODEL);
+    let notes = notes(document, curves);
+    if !notes.trim().is_empty() {
+        page.part("Records");
+        let entry = |line: &str| {
+            let place = if line.starts_with("  ") { "  - " } else { "- " };
+            format!("{place}{}", text(line.trim()))
+        };
+        let lines: Vec<String> = notes.lines().filter(|line| !line.trim().is_empty()).map(entry).collect();
+        page.say(lines.join("\n"));
+    }
+    let scales = scales(document);
+    if !scales.is_empty() {
+        page.part("Without dimension");
+        for (words, table) in scales {
+            page.say(words);
+            table.into_iter().for_each(|table| page.table(table));
+        }
+    }
+    let warnings = document.all_warnings();
+    if !warnings.is_empty() {
+        page.part("Warnings");
+        page.list(warnings.iter().map(|warning| text(warning)));
+    }
+    page.part("Figures");
+    page.figures(fit_figures::figures(document, curves));
+    page.say(FILES);
+    page
 }
 
-/// `report.md`.
-pub fn page(fit: &FitPage) -> String {
-    let mut page = String::from("# Identification\n\n");
-    for line in fit.headline.lines() {
-        page += &format!("{}\n\n", text(line));
+/// What follows the table on the screen.
+pub fn rest(document: &FitDocument, curves: &FitCurves) -> String {
+    let mut rest = notes(document, curves);
+    for (words, table) in scales(document) {
+        rest += &format!("\n{words}\n{}", table.map_or_else(String::new, |table| table.to_text()));
     }
-    page += &format!("## Methods\n\n{}\n", fit.methods.to_markdown());
-    page += "The model is T dr/dt + r = K (δ + δ_r) with the yaw rate r and the rudder δ. *95 %* is the interval that a method \
-             quotes beside its estimate, a dash where it quotes none. *rms ψ* is the root mean square of measured minus \
-             replayed heading; on records that were kept for validation only the initial state is fitted.\n\n";
-    if !fit.notes.trim().is_empty() {
-        page += "## Records\n\n";
-        for line in fit.notes.lines().filter(|line| !line.trim().is_empty()) {
-            let place = if line.starts_with("  ") { "  - " } else { "- " };
-            page += &format!("{place}{}\n", text(line.trim()));
+    rest
+}
+
+/// The answers of all methods.
+pub fn answers(document: &FitDocument, curves: &FitCurves) -> Table {
+    let validated = curves.records.iter().filter(|record| record.validation);
+    method_table::table(&document.methods, &validated.map(|record| record.name.clone()).collect::<Vec<_>>())
+}
+
+/// What was read.
+pub fn headline(document: &FitDocument, curves: &FitCurves) -> String {
+    let rows: usize = document.trials.iter().map(|trial| trial.samples).sum();
+    let head = match (&document.trials[..], curves.records.first()) {
+        ([only], Some(record)) => format!("{}: {rows} rows, {:.1} s", record.name, only.duration_s),
+        (several, _) => format!("{} records together: {rows} rows", several.len()),
+    };
+    document.scaling.as_ref().map_or_else(|| head.clone(), |sentence| format!("{head}\n{sentence}"))
+}
+
+/// Which record is meant where several have the same name, why methods failed, and the characteristics of the records.
+fn notes(document: &FitDocument, curves: &FitCurves) -> String {
+    let renamed = curves.records.iter().filter(|record| record.is_renamed);
+    let renamed = renamed.map(|record| format!("{} is {}\n", record.name, record.file)).collect::<String>();
+    let failed = |entry: &MethodEntry| Some(format!("{} failed: {}\n", entry.method, entry.reason.as_ref()?));
+    let failed = document.methods.iter().filter_map(failed).collect::<String>();
+    let mut notes: String =
+        [renamed, failed].into_iter().filter(|lines| !lines.is_empty()).map(|lines| format!("\n{lines}")).collect();
+    for (entry, record) in document.trials.iter().zip(&curves.records) {
+        let of = if document.trials.len() > 1 { format!("{}: ", record.name) } else { String::new() };
+        match (&entry.zigzag, &entry.no_zigzag) {
+            (Some(zigzag), _) => notes += &format!("\n{of}{}", characteristics(zigzag)),
+            (None, Some(why)) => notes += &format!("\n{of}no zig-zag characteristics: {why}\n"),
+            (None, None) => {}
         }
-        page += "\n";
     }
-    if !fit.scales.is_empty() {
-        page += &format!("## Without dimension\n{}\n", fit.scales);
+    notes
+}
+
+/// K' and T' of every method, and which terms scale: words, and the table under them.
+fn scales(document: &FitDocument) -> Vec<(String, Option<Table>)> {
+    let mut parts = Vec::new();
+    let prime = |entry: &MethodEntry| entry.prime.map(|prime| (entry.method.clone(), prime.k, prime.t));
+    let rows: Vec<(String, Quantity, Quantity)> = document.methods.iter().filter_map(prime).collect();
+    if let Some(ship) = document.particulars().filter(|_| !rows.is_empty()) {
+        let words = format!("prime indices K′ = K L/V, T′ = T V/L with {}", scale_name(ship));
+        parts.push((words, Some(scale_tables::prime_table(&rows))));
     }
-    if !fit.warnings.is_empty() {
-        page += "## Warnings\n\n";
-        fit.warnings.iter().for_each(|warning| page += &format!("- {}\n", text(warning)));
-        page += "\n";
+    let Some(scales) = &document.scales else { return parts };
+    let speaker = SPEAKERS.iter().find_map(|id| scales.comparisons.iter().find(|one| one.model == *id));
+    if let Some(model) = speaker.or(scales.comparisons.first()) {
+        let words = format!("every scale alone, {}: {}", model.model, scale_tables::sentence(model));
+        parts.push((words, Some(scale_tables::table(scales, model))));
+        let words = "a first-order response that lacks something differs between manoeuvres, too; `study trace` tells the \
+                     two apart";
+        parts.push((words.to_owned(), None));
     }
-    page += "## Figures\n\n";
-    for (stem, caption) in fit.figures {
-        let caption = text(caption);
-        page += &format!("![{caption}]({stem}.png)\n\n*{caption}*\n\n");
+    parts
+}
+
+/// Most overshoots that are written on the screen.
+const MOST_LISTED: usize = 12;
+
+/// Characteristics in words, and the IMO criteria this record measures; of very many overshoots the first.
+fn characteristics(entry: &ZigZagEntry) -> String {
+    let overshoots: Vec<String> = entry
+        .overshoots_deg
+        .iter()
+        .zip(&entry.overshoots_sd_deg)
+        .take(MOST_LISTED)
+        .map(|(&angle, &sd)| angle.map_or_else(|| MISSING.to_owned(), |angle| with_uncertainty(angle, sd)))
+        .collect();
+    let overshoots = match entry.overshoots_deg.len().saturating_sub(MOST_LISTED) {
+        0 if overshoots.is_empty() => "none".to_owned(),
+        0 => format!("{} deg", overshoots.join(", ")),
+        more => format!("{} deg, and {more} more in fit.json", overshoots.join(", ")),
+    };
+    let mut text = format!("zig-zag: initial turning time {}", seconds(entry.initial_turning_time_s, 2));
+    text += &format!(", period {}\n  overshoots {overshoots}\n", seconds(entry.period_s, 1));
+    if entry.imo.is_empty() && !entry.overshoots_deg.is_empty() {
+        text += "  IMO: not compared, length and speed of the ship are not known; give --length-m and --speed-kn\n";
     }
-    page += "`fit.json` has all of it with all digits: the records with their SHA-256 and their characteristics, every method \
-             with its estimates, intervals, warnings and diagnostics, and what is known of the ship for `study predict`.\n";
-    markdown::prose(&page)
+    if !entry.imo.is_empty() && entry.imo.iter().all(|criterion| criterion.measured.is_none()) {
+        text += "  IMO: this record measures none of the criteria, which are for zig-zags 10/10 and 20/20 from a straight course\n";
+    }
+    for criterion in entry.imo.iter().filter(|criterion| criterion.measured.is_some()) {
+        text += &format!(
+            "  IMO {}: {} {}, limit {}: {}\n",
+            criterion.criterion,
+            optional(criterion.measured, 2),
+            criterion.unit,
+            fixed(criterion.limit, 1),
+            criterion.verdict
+        );
+    }
+    text
+}
+
+fn seconds(value: Option<f64>, decimals: usize) -> String {
+    value.map_or_else(|| "not measured".to_owned(), |value| format!("{} s", fixed(value, decimals)))
 }
 
 #[cfg(test)]
 mod tests {
-    use report::Column;
-
     use super::*;
 
     #[test]
-    fn names_of_records_are_words_and_what_is_empty_is_left_out() {
-        let table = Table::new(vec![Column::left("method")]);
-        let figures = [("fit".to_owned(), "a*b*: the record".to_owned())];
-        let fit = FitPage {
-            headline: "<b>: 3 rows",
-            methods: &table,
-            notes: "",
-            scales: "",
-            warnings: &[],
-            figures: &figures,
+    fn very_many_overshoots_are_not_all_written_on_the_screen() {
+        let entry = |count: usize| ZigZagEntry {
+            initial_turning_time_s: None,
+            overshoots_deg: vec![Some(8.25); count],
+            overshoots_sd_deg: vec![None; count],
+            period_s: None,
+            imo: Vec::new(),
         };
-        let page = page(&fit);
-        assert!(page.contains("\n\\<b>: 3 rows\n") && !page.contains("## Records") && !page.contains("## Warnings"));
-        assert!(page.contains("![a\\*b\\*: the record](fit.png)"), "{page}");
+        assert!(characteristics(&entry(0)).contains("overshoots none"));
+        assert_eq!(characteristics(&entry(12)).matches("8.2").count(), 12);
+        let many = characteristics(&entry(3000));
+        assert!(many.contains("and 2988 more in fit.json") && many.len() < 400, "{many}");
     }
 }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use report::figures::{self, Division, Drawn, Layer, Layers, Panels, Pen, Ruler, Stack};
+use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
 use report::number::significant;
 use report::palette::{HEADING, RECORD, RUDDER, SHORT_DASH};
-use report::{Curve, Figure, Theme, symbol};
+use report::{Curve, symbol};
 
 use crate::documents::missing_moment::MissingMomentEntry;
 
@@ -45,44 +45,37 @@ fn values(table: &Table, name: &str) -> Vec<f64> {
 fn banded(known: Option<&String>, [middle, lower, upper]: [Curve; 3], explained: Curve) -> Vec<Layer> {
     let dashed = Pen { dash: SHORT_DASH, ..Pen::new(RUDDER) };
     let mut layers = vec![
-        Layer::new("95 % band", lower, Drawn::Band(upper, HEADING, 0.2)),
-        Layer::new("missing moment", middle, Drawn::Line(Pen::new(HEADING))),
+        Layer::band("95 % band", [lower, upper], HEADING, 0.2),
+        Layer::line("missing moment", middle, Pen::new(HEADING)),
     ];
-    layers.extend(known.map(|name| Layer::new(name, explained, Drawn::Line(dashed))));
+    layers.extend(known.map(|name| Layer::line(name, explained, dashed)));
     layers
 }
 
 /// The figure of one record, from its tables over time and over the channels.
-pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[Table; 2], theme: &Theme) -> Figure {
+pub fn figure(entry: &MissingMomentEntry, [time, channels]: &[Table; 2]) -> Panels {
     let known = entry.explanation.as_ref();
-    let panel = |height: f64, layers: Vec<Layer>| {
-        let y = Ruler::new("moment [° rudder]", Division::Decimal);
-        vec![Layers { y, height, zero: true, layers, ..Layers::default() }]
+    let over = |x: Ruler, height: f64, layers: Vec<Layer>| {
+        Stack::over(x, vec![(PanelRow::zeroed(Ruler::decimal("moment [° rudder]"), height), layers)])
     };
     let over_time = |name: &str| Curve::new(values(time, "t_s"), values(time, name));
     let ends = ["moment_rudder_deg", "lower95_rudder_deg", "upper95_rudder_deg"].map(over_time);
-    let layers = banded(known, ends, over_time("explained_rudder_deg"));
-    let mut stacks = vec![Stack { x: Ruler::time(), panels: panel(0.24, layers), ..Stack::default() }];
+    let mut stacks = vec![over(Ruler::time(), 0.24, banded(known, ends, over_time("explained_rudder_deg")))];
     stacks.extend(entry.over.iter().take(PANELS).map(|own| {
         let name = &own.column;
         let of = |what: &str| values(channels, &format!("{name}_{what}_rudder_deg"));
-        let over = |y: Vec<f64>| Curve::new(values(channels, name), y);
+        let curve = |y: Vec<f64>| Curve::new(values(channels, name), y);
         let (moment, half) = (of("moment"), of("half_width95"));
-        let edge = |side: f64| over(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
+        let edge = |side: f64| curve(moment.iter().zip(&half).map(|(m, half)| m + side * half).collect());
         let rows = Curve::new(values(time, name), values(time, "moment_rudder_deg"));
-        let mut layers = vec![Layer::new("its smoothed rows", rows, Drawn::Dots(RECORD)).within(0.3)];
-        layers.extend(banded(known, [over(moment.clone()), edge(-1.0), edge(1.0)], over(of("explained"))));
+        let mut layers = vec![Layer::new("its smoothed rows", rows, LayerKind::Dots(RECORD)).within(0.3)];
+        layers.extend(banded(known, [curve(moment.clone()), edge(-1.0), edge(1.0)], curve(of("explained"))));
+        let mut stack = over(Ruler::decimal(title_of(name)), 0.2, layers);
         let head = if own.shows { percent(own.variance_share) } else { "zero lies inside the band".into() };
-        Stack {
-            x: Ruler::new(title_of(name), Division::Decimal),
-            head: Some(head),
-            is_half: true,
-            panels: panel(0.2, layers),
-            ..Stack::default()
-        }
+        (stack.panels[0].head, stack.is_half) = (Some(head), true);
+        stack
     }));
-    let title = Some(format!("{}: yaw moment that the base lacks", entry.record));
-    figures::panels(&Panels { title, stacks, ..Panels::default() }, theme)
+    Panels { title: Some(format!("{}: yaw moment that the base lacks", entry.record)), stacks, ..Panels::default() }
 }
 
 /// What is said of the moment of one record.

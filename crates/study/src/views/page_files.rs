@@ -1,7 +1,9 @@
-//! The page of a report as files: `report.md`, and `report.html` made of it and of the figures that were just written.
+//! A page as files: its figures as SVG and PNG, `report.md`, and `report.html` made of both.
 
 use campaign::folder::ResultFolder;
+use rayon::prelude::*;
 use report::html::{self, Images};
+use report::{Page, PageFigure, Theme};
 use scenario::failure::{Failure, OnPath};
 
 /// The page as Markdown.
@@ -10,12 +12,42 @@ pub const REPORT: &str = "report.md";
 /// The same page for a browser, in one file.
 pub const BROWSER: &str = "report.html";
 
-/// Writes both pages. The figures that the Markdown names are those of the folder, so they are written before.
+/// Draws the figures of a page and writes it in both forms.
 ///
-/// Fails when a file cannot be written.
-pub fn write_page(folder: &ResultFolder, markdown: &str) -> Result<(), Failure> {
+/// Fails when a file cannot be written, with the first failure in the order of the page.
+pub fn write_page(folder: &ResultFolder, page: &Page, theme: &Theme) -> Result<(), Failure> {
+    let figures: Vec<&PageFigure> = page.drawings().collect();
+    first_failure(figures.par_iter().map(|PageFigure { stem, plot, .. }| {
+        let figure = plot.draw(theme);
+        folder.write(&format!("{stem}.svg"), figure.svg())?;
+        folder.write(&format!("{stem}.png"), figure.png().on("draw the figure", &folder.path().join(stem))?)
+    }))?;
+    let markdown = page.to_markdown();
+    let browser = html::page(&markdown, &|stem| Images::written(folder.path(), stem));
     folder.write(REPORT, markdown)?;
-    let page =
-        html::page(markdown, &|stem| Images::written(folder.path(), stem)).on("make", &folder.path().join(BROWSER))?;
-    folder.write(BROWSER, page)
+    folder.write(BROWSER, browser.on("make", &folder.path().join(BROWSER))?)
+}
+
+/// Does all of it in parallel and fails with the first failure in order, whichever came first in time.
+pub fn first_failure(work: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
+    work.collect::<Vec<_>>().into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_failure_in_order_is_told() {
+        let work = (0..64).into_par_iter().map(|k| match k {
+            // The earlier it is in order, the later it comes.
+            8.. => Err(Failure::work(format!("figure {k}"))),
+            7 => {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+                Err(Failure::work("figure 7".to_owned()))
+            }
+            _ => Ok(()),
+        });
+        assert_eq!(first_failure(work).map_err(|failure| failure.message), Err("figure 7".to_owned()));
+    }
 }

@@ -2,20 +2,21 @@
 //! was asked for.
 
 use campaign::design::Design;
-use campaign::summary::{self, PredictionSummary, Summary};
-use report::Origin;
+use campaign::summary::{self, CellDetail, MethodDetail, PredictionSummary, Summary};
 use report::figures::{
-    Dot, DotColumn, DotPlot, Ellipse, HeatMap, HeatPanel, KtPanel, KtScatter, Reference95, Scale, Violin, ViolinPanel,
-    Violins,
+    Cells, Division, Layer, LayerKind, LayeredPanel, MapCell, PanelRow, Panels, Pen, Reference95, RowItem, RowKind,
+    Rows, RowsColumn, Ruler, Shades, Stack,
 };
+use report::palette::DOTTED;
+use report::{Curve, Origin, symbol};
 
-use super::charts::{Quantity, origin};
+use super::charts::{ErrorMeasure, origin};
 
 /// Fewest points of an axis that make a map.
 const MAP: usize = 3;
 
-/// Maps of the errors of K, of T and of the validation for a design of two axes.
-pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
+/// Maps of the errors of K, of T and of the validation for a design of two axes: stems, what they show, and the maps.
+pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, String, Cells)> {
     let labels = |axis: usize| {
         let mut labels: Vec<String> = Vec::new();
         for cell in &design.cells {
@@ -28,84 +29,104 @@ pub fn heat_maps(design: &Design, summary: &Summary) -> Vec<(String, HeatMap)> {
     if design.axes.len() != 2 {
         return Vec::new();
     }
-    let (y_labels, x_labels) = (labels(0), labels(1));
-    if y_labels.len() < MAP || x_labels.len() < MAP {
+    let (rows, columns) = (labels(0), labels(1));
+    if rows.len() < MAP || columns.len() < MAP {
         return Vec::new();
     }
-    let of = |quantity: Quantity, panel: usize, stem: &str, value_title: &str| {
+    let of = |(measure, panel, stem, title): (ErrorMeasure, usize, &str, &str)| {
         // Cells are the product of the axes, the first axis slowest.
-        let value = |x: usize, y: usize, method: usize| {
-            let record = summary.record(y * x_labels.len() + x, method)?;
-            Some(quantity.of(record, panel)?.value)
+        let cell = |x: usize, y: usize, method: usize| {
+            let record = summary.record(y * columns.len() + x, method);
+            let value = record.and_then(|record| measure.of(record, panel)).map(|figure| figure.value);
+            MapCell { value, ..MapCell::default() }
         };
-        let map = HeatMap {
+        let panel = |method: usize| {
+            let row = |y: usize| (0..columns.len()).map(|x| cell(x, y, method)).collect();
+            (Some(design.methods[method].label.clone()), (0..rows.len()).map(row).collect())
+        };
+        let map = Cells {
             title: None,
-            x_title: design.axes[1].clone(),
-            y_title: design.axes[0].clone(),
-            x_labels: x_labels.clone(),
-            y_labels: y_labels.clone(),
-            value_title: value_title.to_owned(),
-            scale: Scale::Log,
-            panels: (0..design.methods.len())
-                .map(|method| HeatPanel {
-                    title: design.methods[method].label.clone(),
-                    values: (0..y_labels.len())
-                        .map(|y| (0..x_labels.len()).map(|x| value(x, y, method)).collect())
-                        .collect(),
-                })
-                .collect(),
+            titles: [design.axes[1].clone(), design.axes[0].clone()],
+            columns: columns.clone(),
+            rows: rows.clone(),
+            shades: Shades::Range(Division::Factors, title.to_owned()),
+            panels: (0..design.methods.len()).map(panel).collect(),
+            note: None,
         };
-        (format!("heat-map-{stem}"), map)
+        (format!("heat-map-{stem}"), title.to_owned(), map)
     };
-    let is_there =
-        |(_, map): &(String, HeatMap)| map.panels.iter().flat_map(|panel| &panel.values).flatten().any(Option::is_some);
+    let is_there = |(_, _, map): &(String, String, Cells)| {
+        map.panels.iter().flat_map(|(_, rows)| rows).flatten().any(|cell| cell.value.is_some())
+    };
     let maps = [
-        of(Quantity::Rms, 0, "K", "rms error of K [%]"),
-        of(Quantity::Rms, 1, "T", "rms error of T [%]"),
-        of(Quantity::Validation, 0, "validation", "validation error of the heading [°]"),
+        (ErrorMeasure::Rms, 0, "K", "rms error of K [%]"),
+        (ErrorMeasure::Rms, 1, "T", "rms error of T [%]"),
+        (ErrorMeasure::Validation, 0, "validation", "validation error of the heading [°]"),
     ];
-    maps.into_iter().filter(is_there).collect()
+    maps.map(of).into_iter().filter(is_there).collect()
 }
 
+/// Whiskers further out than this many times the middle one are cut.
+const SPREADS: f64 = 4.0;
+
 /// Distributions of the errors in the cells whose detail was asked for; nothing for fewer than ten trials.
-pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, Violins)> {
-    let panel = |detail: &summary::CellDetail,
-                 x_title: &str,
-                 violin: fn(&summary::MethodDetail) -> &Option<summary::Violin>| {
-        let of_method = |(method, own): (usize, &summary::MethodDetail)| Violin {
-            origin: origin(design, method),
-            density: violin(own).as_ref().map_or_else(Vec::new, |violin| violin.density.clone()),
-            quantiles: violin(own).as_ref().map(|violin| violin.quantiles),
-        };
-        let violins = detail.methods.iter().enumerate().map(of_method).collect();
-        ViolinPanel { x_title: x_title.to_owned(), violins }
+pub fn violins(design: &Design, summary: &Summary) -> Vec<(usize, Rows)> {
+    type Of = fn(&MethodDetail) -> &Option<summary::Violin>;
+    let column = |detail: &CellDetail, title: &str, of: Of| RowsColumn {
+        x: Ruler::decimal(title).within(SPREADS, Some(0.0)),
+        rows: (detail.methods.iter().enumerate())
+            .map(|(method, own)| {
+                let look = origin(design, method).look();
+                let violin = |own: &summary::Violin| RowKind::Violin(look, own.density.clone(), own.quantiles);
+                of(own).as_ref().map(|own| RowItem::new("", violin(own))).into_iter().collect()
+            })
+            .collect(),
+        zero: true,
+        ..RowsColumn::default()
     };
-    let of_cell = |detail: &summary::CellDetail| {
-        let panels = vec![
-            panel(detail, "error of K [%]", |own| &own.violin_k),
-            panel(detail, "error of T [%]", |own| &own.violin_t),
+    let of_cell = |detail: &CellDetail| {
+        let columns = vec![
+            column(detail, "error of K [%]", |own| &own.violin_k),
+            column(detail, "error of T [%]", |own| &own.violin_t),
         ];
         let trials = summary.record(detail.cell, 0).map_or(0, |record| record.trials);
-        let known = panels.iter().flat_map(|panel| &panel.violins).any(|violin| violin.quantiles.is_some());
-        (trials >= 10 && known).then_some((detail.cell, Violins { title: None, panels }))
+        let known = columns.iter().flat_map(|column| &column.rows).any(|row| !row.is_empty());
+        let names = (0..detail.methods.len()).map(|method| design.methods[method].label.clone()).collect();
+        let note = Some(String::from("Box: quartiles and median. Line: 2.5 to 97.5 %."));
+        (trials >= 10 && known).then_some((detail.cell, Rows { title: None, names, columns, note }))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
 
-/// Clouds of errors in the cells whose detail was asked for.
-pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, KtScatter)> {
-    let of_cell = |detail: &summary::CellDetail| {
-        let bound = design.cells[detail.cell].bound_percent2;
-        let bound = bound.map(|covariance| Ellipse { centre: (0.0, 0.0), covariance });
-        let panel = |(method, own): (usize, &summary::MethodDetail)| KtPanel {
-            origin: origin(design, method),
-            points: own.cloud.as_ref().map_or_else(Vec::new, |cloud| cloud.points.clone()),
-            ellipse: own.cloud.as_ref().map(|cloud| Ellipse { centre: cloud.centre, covariance: cloud.covariance }),
-            bound,
+/// Half the width of the axes of clouds over the middle one of the ellipses.
+const REACH: f64 = 2.2;
+
+/// Clouds of errors in the cells whose detail was asked for, and whether there is a bound.
+pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, bool, Panels)> {
+    let of_cell = |detail: &CellDetail| {
+        let bound = design.cells[detail.cell].bound_percent2.map(|covariance| Curve::contour95((0.0, 0.0), covariance));
+        let panel = |(method, own): (usize, &MethodDetail)| {
+            let (origin, cloud) = (origin(design, method), own.cloud.as_ref());
+            let (x, y) = cloud.map(|cloud| cloud.points.iter().copied().unzip()).unwrap_or_default();
+            let ellipse = cloud.map_or_else(Curve::default, |own| Curve::contour95(own.centre, own.covariance));
+            let mut layers = vec![
+                Layer::new("", Curve { x, y }, LayerKind::Cloud(origin.look().colour)),
+                Layer::line("", ellipse, Pen::new(origin.look().colour).width(1.3)),
+            ];
+            let pen = Pen { dash: DOTTED, ..Pen::of(&Origin::Bound) };
+            let name = "Cramér–Rao bound, 95 %";
+            layers.extend(bound.as_ref().map(|bound| Layer::line(name, bound.clone(), pen.width(1.2)).within(REACH)));
+            LayeredPanel { head: Some(design.methods[method].label.clone()), layers }
         };
-        let panels: Vec<KtPanel> = detail.methods.iter().enumerate().map(panel).collect();
-        let known = panels.iter().any(|panel| panel.ellipse.is_some());
-        known.then_some((detail.cell, KtScatter { title: None, panels }))
+        let count = detail.methods.len();
+        let axis = |index: &str| Ruler::decimal(format!("error of {} [%]", symbol(index))).about_zero(REACH);
+        let panels = detail.methods.iter().enumerate().map(panel).collect();
+        let across = if count == 4 { 2 } else { count.clamp(1, 3) };
+        let multiples = Stack::multiples(across, axis("K"), PanelRow::zeroed(axis("T"), 0.24), panels);
+        let note = Some(String::from("Outlines: 95 %."));
+        let data = Panels { note, ..Panels::of(Stack { zero: true, ..multiples }) };
+        let known = detail.methods.iter().any(|own| own.cloud.is_some());
+        known.then_some((detail.cell, bound.is_some(), data))
     };
     summary.details.iter().filter_map(of_cell).collect()
 }
@@ -113,7 +134,7 @@ pub fn scatters(design: &Design, summary: &Summary) -> Vec<(usize, KtScatter)> {
 /// K and T that the reference method finds at the named points of the last axis, over those of the first point, one
 /// series for every point of the other axes; nothing unless some ships are not first order and have no K and T of their
 /// own for all trials.
-pub fn indices(design: &Design, summary: &Summary) -> Option<(DotPlot, String)> {
+pub fn indices(design: &Design, summary: &Summary) -> Option<(Rows, String)> {
     let last = design.axes.len().checked_sub(1)?;
     let is_named = design.cells.iter().all(|cell| cell.values[last].is_none());
     if !is_named || design.cells.iter().all(|cell| !cell.is_nearest) || !summary.tracing.is_empty() {
@@ -138,58 +159,50 @@ pub fn indices(design: &Design, summary: &Summary) -> Option<(DotPlot, String)> 
         let record = summary.record(cell, summary.reference)?;
         [&record.k, &record.t][panel].answer
     };
-    let column = |panel: usize, symbol: &str| DotColumn {
-        x_title: format!("{symbol} over that of a {}", names[0]),
-        scale: Scale::Linear,
-        reference: None,
-        limit: None,
-        rows: (0..names.len())
-            .map(|row| {
-                let dot = |(number, (label, cells)): (usize, &(String, Vec<usize>))| {
-                    let first = answer(cells[0], panel)?;
-                    let own = answer(cells[row], panel)?.times(1.0 / first.value);
-                    let origin = Origin::Series { label: label.clone(), number };
-                    Some(Dot { origin, x: own.value, interval: own.ci95, hollow: false })
-                };
-                series.iter().enumerate().filter_map(dot).collect()
-            })
-            .collect(),
+    let column = |panel: usize, symbol: &str| {
+        let row = |row: usize| {
+            let dot = |(number, (label, cells)): (usize, &(String, Vec<usize>))| {
+                let first = answer(cells[0], panel)?;
+                let own = answer(cells[row], panel)?.times(1.0 / first.value);
+                let origin = Origin::Series { label: label.clone(), number };
+                Some(RowItem::below(origin.label(), origin.look(), own.value, own.ci95))
+            };
+            series.iter().enumerate().filter_map(dot).collect()
+        };
+        let x = Ruler::decimal(format!("{symbol} over that of a {}", names[0]));
+        RowsColumn { x, rows: (0..names.len()).map(row).collect(), ..RowsColumn::default() }
     };
-    let plot = DotPlot {
+    let rows = Rows {
         title: None,
         names: names.iter().map(|name| (*name).to_owned()).collect(),
         columns: vec![column(0, "K"), column(1, "T")],
-        rows_are_methods: false,
-        quiet: Vec::new(),
         note: Some(format!("Rows: {}. Bars: 95 % intervals of the mean.", design.axes[last])),
     };
-    Some((plot, design.methods[summary.reference].label.clone()))
+    Some((rows, design.methods[summary.reference].label.clone()))
 }
 
 /// How often 90 % intervals of predictions hold, cell by cell and method by method: the mean over the figures of the
 /// shares of trials, and as a bar the lowest and the highest of them; nothing without predictions.
-pub fn predictions(design: &Design, summary: &Summary) -> Option<DotPlot> {
+pub fn predictions(design: &Design, summary: &Summary) -> Option<Rows> {
     let of = |line: &PredictionSummary| 100.0 * line.inside as f64 / line.trials as f64;
     let dot = |cell: usize, method: usize| {
         let lines = || summary.predictions.iter().filter(move |line| (line.cell, line.method) == (cell, method));
         let shares: Vec<f64> = lines().map(of).collect();
         let ends = [shares.iter().copied().reduce(f64::min)?, shares.iter().copied().reduce(f64::max)?];
-        let x = shares.iter().sum::<f64>() / shares.len() as f64;
-        Some(Dot { origin: origin(design, method), x, interval: Some(ends), hollow: false })
+        let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+        let origin = origin(design, method);
+        Some(RowItem::below(origin.label(), origin.look(), mean, Some(ends)))
     };
     let row = |cell: usize| (0..design.methods.len()).filter_map(|method| dot(cell, method)).collect();
-    (!summary.predictions.is_empty()).then(|| DotPlot {
+    (!summary.predictions.is_empty()).then(|| Rows {
         title: None,
         names: design.cells.iter().map(|cell| cell.labels.join(", ")).collect(),
-        columns: vec![DotColumn {
-            x_title: "trials in which a 90 % interval holds [%]".to_owned(),
-            scale: Scale::Linear,
-            reference: Some(Reference95 { value: 90.0, band: [90.0; 2] }),
-            limit: None,
+        columns: vec![RowsColumn {
+            x: Ruler::decimal("trials in which a 90 % interval holds [%]"),
             rows: (0..design.cells.len()).map(row).collect(),
+            reference: Some(Reference95::line(90.0)),
+            ..RowsColumn::default()
         }],
-        rows_are_methods: false,
-        quiet: Vec::new(),
         note: Some("Markers: mean over the figures. Bars: from the lowest to the highest of them.".to_owned()),
     })
 }

@@ -7,8 +7,8 @@ use predict::prediction::Bands;
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 
-use super::picture::slug;
 use crate::records::names;
+use scenario::name::slug;
 
 /// A stem of its own for every manoeuvre and record.
 pub fn stems(document: &PredictDocument) -> Vec<String> {

@@ -3,129 +3,104 @@
 
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
-use predict::known::ValidityRange;
+use predict::kind::Pattern;
 use predict::prediction::Bands;
-use predict::steady::SteadyCurve;
+use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
-use rayon::prelude::*;
-use report::figures::{self, OvershootRow, Overshoots, PhasePlane, PredictionBands, SteadyCurves, Track};
-use report::{Curve, Figure, Theme};
+use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, RowItem, RowKind, Rows, RowsColumn, Ruler, Stack};
+use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
+use report::{Curve, Origin, PageFigure};
 use ship::angle::to_deg;
-use trial::Manoeuvre;
 use trial::imo::Unit;
 
-use super::index_figures;
-use super::picture::{first_failure, write_figure};
 use super::predict_curves::stems;
 use super::predict_tables::words;
-use campaign::folder::ResultFolder;
-use scenario::failure::Failure;
-
-/// Drawn ships whose steady curves are shown.
-const CURVES: usize = 40;
+use super::record_figures::{degrees, phase_curve, phase_plane, rudder, steady_turns};
 
 /// Headings drawn along a track.
 const HEADINGS: usize = 12;
 
-/// Stem, caption and what is drawn.
-type Drawing<'a> = (String, String, Box<dyn Fn() -> Figure + Sync + Send + 'a>);
-
-/// Draws everything into `folder` and returns stems and captions.
-pub fn draw(
-    document: &PredictDocument,
-    theme: &Theme,
-    folder: &ResultFolder,
-) -> Result<Vec<(String, String)>, Failure> {
-    let mut drawings: Vec<Drawing> = Vec::new();
+/// All figures, in the order of the page.
+pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
     let stems = stems(document);
+    let mut figures = Vec::new();
     for (prediction, stem) in document.manoeuvres.iter().zip(&stems) {
-        let kind = prediction.kind.to_string();
-        if matches!(prediction.kind, Manoeuvre::Spiral { .. }) {
-            let caption =
-                format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
-            let draw = move || figures::steady_curves(&steady(&prediction.curves, document.seen), theme);
-            drawings.push((stem.clone(), caption, Box::new(draw)));
-            continue;
-        }
-        let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
-        drawings.push((stem.clone(), caption, Box::new(move || bands_of(prediction, theme))));
-        if let (Manoeuvre::ZigZag { .. }, Some(passage)) = (&prediction.kind, &prediction.most_probable) {
-            let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
-            let draw = move || {
-                let way = index_figures::phase_named("most probable ship", &passage.heading, &passage.yaw_rate);
-                let title = Some(prediction.kind.to_string());
-                figures::phase_plane(&PhasePlane { title, fits: vec![way], ..PhasePlane::default() }, theme)
-            };
-            drawings.push((format!("{stem}-phase"), caption, Box::new(draw)));
-        }
-        if prediction.most_probable.as_ref().is_some_and(|passage| passage.way.is_some()) {
-            let caption =
-                format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.tracks.len());
-            drawings.push((format!("{stem}-track"), caption, Box::new(move || track(prediction, theme))));
-        }
+        figures.extend(of_manoeuvre(document, prediction, stem));
     }
     for (replayed, stem) in document.replays.iter().zip(&stems[document.manoeuvres.len()..]) {
         let caption = format!("{}: the record and its rudder replayed, nothing fitted to it.", replayed.name);
-        let draw = move || {
-            let [degrees, rudder] = [&replayed.measured, &replayed.rudder[1]]
-                .map(|angles| angles.iter().copied().map(to_deg).collect::<Vec<f64>>());
-            let recorded = Some(Curve::new(replayed.heading.time.as_slice(), degrees));
-            let data = PredictionBands {
-                title: Some(format!("{}, predicted", replayed.name)),
-                recorded,
-                rudder: Curve::new(replayed.rudder[0].as_slice(), rudder),
-                ..bands(&replayed.heading)
-            };
-            figures::prediction_bands(&data, theme)
-        };
-        drawings.push((stem.clone(), caption, Box::new(draw)));
+        figures.push(PageFigure::new(stem.as_str(), caption, replay(replayed)));
     }
     for (unit, stem) in [(Unit::Degrees, "imo-overshoots"), (Unit::ShipLengths, "imo-lengths")] {
-        let criteria: Vec<&PredictedCriterion> =
-            document.imo.iter().filter(|criterion| criterion.unit == unit.symbol()).collect();
-        if !criteria.is_empty() {
-            let caption = String::from("Criteria of IMO MSC.137(76): what is predicted and what is allowed.");
-            let draw = move || figures::overshoots(&limits(&criteria, unit), theme);
-            drawings.push((stem.to_owned(), caption, Box::new(draw)));
+        let criteria = document.imo.iter().filter(|criterion| criterion.unit == unit.symbol());
+        let rows: Vec<_> = criteria.map(limit).collect();
+        if !rows.is_empty() {
+            let caption = "Criteria of IMO MSC.137(76): what is predicted and what is allowed.";
+            let unit = if unit == Unit::Degrees { "°" } else { unit.symbol() };
+            figures.push(PageFigure::new(stem, caption, intervals("IMO MSC.137(76)", unit, rows)));
         }
     }
-    let measured: Vec<OvershootRow> = measured(document);
+    let measured = measured(document);
     if !measured.is_empty() {
-        let caption = String::from("Overshoots of the records and what was predicted of them.");
-        let data = Overshoots {
-            title: Some(String::from("Overshoots, measured and predicted")),
-            unit: String::from("°"),
-            rows: measured,
-        };
-        drawings.push((String::from("overshoots"), caption, Box::new(move || figures::overshoots(&data, theme))));
+        let caption = "Overshoots of the records and what was predicted of them.";
+        let data = intervals("Overshoots, measured and predicted", "°", measured);
+        figures.push(PageFigure::new("overshoots", caption, data));
     }
-    first_failure(drawings.par_iter().map(|(stem, _, draw)| write_figure(&draw(), folder, stem)))?;
-    Ok(drawings.into_iter().map(|(stem, caption, _)| (stem, caption)).collect())
+    figures
 }
 
-fn bands(of: &Bands) -> PredictionBands {
-    let curve = |values: &mut dyn Iterator<Item = f64>| Curve::new(of.time.as_slice(), values.collect::<Vec<f64>>());
-    let quantile = |place: usize| curve(&mut of.quantiles.iter().map(|row| to_deg(row[place])));
-    PredictionBands {
-        title: None,
-        heading: curve(&mut of.most_probable.iter().copied().map(to_deg)),
-        band50: [quantile(1), quantile(3)],
-        band90: [quantile(0), quantile(4)],
-        recorded: None,
-        rudder: Curve::default(),
+fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str) -> Vec<PageFigure> {
+    let kind = prediction.kind.to_string();
+    if prediction.kind.pattern == Pattern::Spiral {
+        let caption = format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
+        return vec![PageFigure::new(stem, caption, steady_turns(&prediction.curves, document.seen))];
     }
-}
-
-fn bands_of(prediction: &Prediction, theme: &Theme) -> Figure {
-    let rudder = prediction.most_probable.as_ref().map_or_else(Curve::default, |passage| {
+    let passage = prediction.most_probable.as_ref();
+    let steered = passage.map_or_else(Curve::default, |passage| {
         let time: Vec<f64> = (0..passage.rudder.len()).map(|row| passage.time(row)).collect();
-        Curve::new(time, passage.rudder.iter().copied().map(to_deg).collect::<Vec<f64>>())
+        Curve::new(time, degrees(&passage.rudder))
     });
-    let title = Some(prediction.kind.to_string());
-    figures::prediction_bands(&PredictionBands { title, rudder, ..bands(&prediction.heading) }, theme)
+    let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
+    let mut figures = vec![PageFigure::new(stem, caption, bands(kind.clone(), &prediction.heading, None, steered))];
+    if let (Pattern::ZigZag { .. }, Some(passage)) = (prediction.kind.pattern, passage) {
+        let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
+        let way = phase_curve(&passage.heading, &passage.yaw_rate);
+        let ways = vec![(String::from("most probable ship"), Origin::After, way)];
+        figures.push(PageFigure::new(format!("{stem}-phase"), caption, phase_plane(kind.clone(), None, false, ways)));
+    }
+    if passage.is_some_and(|passage| passage.way.is_some()) {
+        let caption =
+            format!("{kind}: track of the most probable ship; thin: {} drawn ships.", prediction.tracks.len());
+        figures.push(PageFigure::new(format!("{stem}-track"), caption, track(prediction)));
+    }
+    figures
 }
 
-fn track(prediction: &Prediction, theme: &Theme) -> Figure {
+/// How dense the outer band is, and the inner one, which lies on it.
+const BANDS: [f64; 2] = [0.2, 0.38];
+
+/// Heading with bands and rudder over one time axis; the outer band as far as there is room.
+fn bands(title: String, of: &Bands, recorded: Option<Curve>, rudder_deg: Curve) -> Panels {
+    let curve = |values: Vec<f64>| Curve::new(of.time.as_slice(), values);
+    let quantile = |place: usize| curve(of.quantiles.iter().map(|row| to_deg(row[place])).collect());
+    let band = |name: &str, ends: [usize; 2], opacity| Layer::band(name, ends.map(quantile), HEADING, opacity);
+    let mut layers =
+        vec![band("90 % of the drawn ships", [0, 4], BANDS[0]).within(1.0), band("50 %", [1, 3], BANDS[1])];
+    layers.extend(recorded.map(|own| Layer::new("recorded heading", own, LayerKind::Record)));
+    let pen = Pen::new(HEADING).width(1.2);
+    layers.push(Layer::line("most probable ship", curve(degrees(&of.most_probable)), pen));
+    let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), layers), rudder("rudder", rudder_deg, 0.13)];
+    let cut = Some(String::from("The band of 90 % is cut at the frame."));
+    Panels { title: Some(title), cut, ..Panels::over_time(rows) }
+}
+
+fn replay(replayed: &RecordReplay) -> Panels {
+    let recorded = Curve::new(replayed.heading.time.as_slice(), degrees(&replayed.measured));
+    let rudder = Curve::new(replayed.rudder[0].as_slice(), degrees(&replayed.rudder[1]));
+    bands(format!("{}, predicted", replayed.name), &replayed.heading, Some(recorded), rudder)
+}
+
+fn track(prediction: &Prediction) -> Panels {
     let curve = |track: &[[f64; 2]]| {
         let (east, north): (Vec<f64>, Vec<f64>) = track.iter().map(|place| (place[1], place[0])).unzip();
         Curve::new(east, north)
@@ -133,71 +108,64 @@ fn track(prediction: &Prediction, theme: &Theme) -> Figure {
     let passage = prediction.most_probable.as_ref();
     let own = passage.and_then(|passage| Some(passage.way.as_ref()?.track.as_slice())).unwrap_or_default();
     let step = (own.len() / HEADINGS).max(1);
-    let headings = passage.map_or_else(Vec::new, |passage| {
-        let place = |row: usize| [own[row][1], own[row][0], to_deg(passage.heading[row])];
-        (0..own.len()).step_by(step).map(place).collect()
-    });
-    let data = Track {
-        title: Some(prediction.kind.to_string()),
-        unit: String::from("m"),
-        most_probable: curve(own),
-        drawn: prediction.tracks.iter().map(|track| curve(track)).collect(),
-        recorded: None,
-        headings,
-    };
-    figures::track(&data, theme)
+    let (mut places, mut headings) = (Curve::default(), Vec::new());
+    for row in (0..own.len()).step_by(step) {
+        places.x.push(own[row][1]);
+        places.y.push(own[row][0]);
+        headings.extend(passage.map(|passage| to_deg(passage.heading[row])));
+    }
+    let drawn =
+        prediction.tracks.iter().map(|track| Layer::line("drawn ships", curve(track), Pen::pale()).within(0.35));
+    let layers = drawn.chain([
+        Layer::line("most probable ship", curve(own), Pen::new(HEADING).width(1.2)),
+        Layer::new("its heading (not to scale)", places, LayerKind::Ships(HEADING, headings)),
+    ]);
+    let row = PanelRow::new(Ruler::decimal("north [m]"), 0.7);
+    let stack = Stack::over(Ruler::decimal("east [m]"), vec![(row, layers.collect())]);
+    let cut = Some(String::from("Some drawn ships are cut at the frame."));
+    let title = Some(prediction.kind.to_string());
+    Panels { title, cut, ..Panels::of(Stack { equal: true, ..stack }) }
 }
 
-/// The diagram of steady turns of some ships, the most probable one first, and the range in which it was seen.
-pub fn steady(curves: &[SteadyCurve], seen: ValidityRange) -> SteadyCurves {
-    let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
-        let rows = 0..of.rudder.len();
-        let (x, y): (Vec<f64>, Vec<f64>) = rows
-            .map(|row| match keep(row) {
-                true => (to_deg(of.rudder[row]), to_deg(of.yaw_rate[row])),
-                false => (f64::NAN, f64::NAN),
-            })
-            .unzip();
-        Curve::new(x, y)
-    };
-    let Some((first, rest)) = curves.split_first() else { return SteadyCurves::default() };
-    // Where the rudder goes back while the yaw rate grows.
-    let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
-    let is_unstable = |row: usize| falls(row) || (row > 0 && falls(row - 1));
-    SteadyCurves {
-        title: Some(String::from("Steady turns")),
-        most_probable: curve(first, &|_| true),
-        unstable: if first.instability().is_some() { curve(first, &is_unstable) } else { Curve::default() },
-        drawn: rest.iter().take(CURVES).map(|ship| curve(ship, &|_| true)).collect(),
-        seen_rudder_deg: Some(to_deg(seen.rudder_rad)),
-        seen_rate_deg_s: Some(to_deg(seen.yaw_rate_rad_s)),
+/// Predicted quantities as intervals, against what was measured and what is allowed.
+fn intervals(title: &str, unit: &str, rows: Vec<(String, Vec<RowItem>)>) -> Rows {
+    let (names, rows) = rows.into_iter().unzip();
+    let x = Ruler::decimal(format!("predicted value [{unit}]"));
+    Rows {
+        title: Some(title.to_owned()),
+        names,
+        columns: vec![RowsColumn { x, rows, zero: true, ..RowsColumn::default() }],
+        note: None,
     }
 }
 
-fn limits(criteria: &[&PredictedCriterion], unit: Unit) -> Overshoots {
-    let row = |criterion: &&PredictedCriterion| OvershootRow {
-        limit: Some(criterion.limit),
-        extrapolated: criterion.extrapolated,
-        ..row(criterion.criterion.clone(), &criterion.interval())
-    };
-    Overshoots {
-        title: Some(String::from("IMO MSC.137(76)")),
-        unit: if unit == Unit::Degrees { String::from("°") } else { unit.symbol().to_owned() },
-        rows: criteria.iter().map(row).collect(),
-    }
+fn interval(of: &PredictionInterval, extrapolated: bool) -> Vec<RowItem> {
+    let look = Look { colour: HEADING, marker: Marker::Circle, dash: SOLID, hollow: extrapolated };
+    let name = if extrapolated { "median, extrapolated" } else { "median" };
+    vec![
+        RowItem::new("90 %", RowKind::Thin(of.ci90)).softly(),
+        RowItem::new("50 % of the drawn ships", RowKind::Thick(of.ci50)),
+        RowItem::new(name, RowKind::Mark(look, of.median, None)),
+    ]
 }
 
-fn row(label: String, &PredictionInterval { median, ci50, ci90 }: &PredictionInterval) -> OvershootRow {
-    OvershootRow { label, median, ci50, ci90, measured: None, limit: None, extrapolated: false }
+fn limit(criterion: &PredictedCriterion) -> (String, Vec<RowItem>) {
+    let mut items = interval(&criterion.interval(), criterion.extrapolated);
+    items.insert(2, RowItem::new("IMO limit", RowKind::Limit(criterion.limit)));
+    (criterion.criterion.clone(), items)
 }
 
 /// Overshoots of replayed records.
-fn measured(document: &PredictDocument) -> Vec<OvershootRow> {
+fn measured(document: &PredictDocument) -> Vec<(String, Vec<RowItem>)> {
+    let look = Look { colour: BEFORE, marker: Marker::Diamond, dash: SOLID, hollow: true };
     let mut rows = Vec::new();
     for replayed in &document.replays {
         for (name, figure) in replayed.figures.iter().filter(|(name, _)| name.ends_with("overshoot_deg")) {
-            let label = format!("{} {}", replayed.name, words(name).0);
-            rows.push(OvershootRow { measured: Some(figure.measured), ..row(label, &figure.interval) });
+            let mut items = interval(&figure.interval, false);
+            // Under the bar, so that it does not hide a median nearby.
+            let item = RowItem::new("measured", RowKind::Mark(look, figure.measured, None));
+            items.push(RowItem { aside: Some(0.34), ..item });
+            rows.push((format!("{} {}", replayed.name, words(name).0), items));
         }
     }
     rows

@@ -4,7 +4,9 @@ use predict::form::{DECIMALS, FormEntry, STOPPING, TRACK_REACH_LENGTHS};
 use predict::interval::PredictionInterval;
 use report::markdown::text;
 use report::number::{fixed, significant};
-use report::{Column, Table};
+use report::{Column, Page, Table};
+
+use super::bench_figures::capital;
 
 /// What stands for an entry that nobody can fill in.
 const EMPTY: &str = "–";
@@ -28,10 +30,11 @@ fn filled(entry: &FormEntry) -> String {
 }
 
 /// The page of the form.
-pub fn page(entries: &[FormEntry], remarks: &[String]) -> String {
-    let mut page = String::from(
-        "# Form for reporting manoeuvring data to IMO\n\nMSC/Circ.1053 (2002), appendix 6; criteria of resolution \
-         MSC.137(76). Every entry names its source; what is predicted is no trial.\n",
+pub fn page(entries: &[FormEntry], remarks: &[String]) -> Page {
+    let mut page = Page::titled("Form for reporting manoeuvring data to IMO");
+    page.say(
+        "MSC/Circ.1053 (2002), appendix 6; criteria of resolution MSC.137(76). Every entry names its source; what is predicted \
+         is no trial.",
     );
     let mut sections: Vec<&str> = Vec::new();
     for entry in entries {
@@ -45,27 +48,17 @@ pub fn page(entries: &[FormEntry], remarks: &[String]) -> String {
     });
     for section in declared {
         if !section.is_empty() {
-            page += &format!("\n## {}\n\n", text(&capital(section)));
-        } else {
-            page += "\n";
+            page.part(text(&capital(section)));
         }
-        let mut table =
-            Table::new([Column::left("entry"), Column::left("value"), Column::left("unit"), Column::left("source")]);
+        let mut table = Table::headed("entry | value | unit | source");
         for entry in entries.iter().filter(|entry| entry.section == section) {
             table.push([entry.field.clone(), filled(entry), unit(entry).to_owned(), entry.source.clone()]);
         }
-        page += &table.to_markdown();
+        page.table(table);
     }
-    page += "\n## Test results\n\n";
-    let mut table = Table::new([
-        Column::left("test"),
-        Column::left("result"),
-        Column::left("side"),
-        Column::left("value"),
-        Column::left("unit"),
-        Column::left("IMO criterion"),
-        Column::left("source"),
-    ]);
+    page.part("Test results");
+    let heads = ["test", "result", "side", "value", "unit", "IMO criterion", "source"];
+    let mut table = Table::new(heads.map(Column::left));
     for entry in entries.iter().filter(|entry| tested.contains(&entry.section.as_str())) {
         table.push([
             entry.section.clone(),
@@ -77,14 +70,10 @@ pub fn page(entries: &[FormEntry], remarks: &[String]) -> String {
             entry.source.clone(),
         ]);
     }
-    page += &table.to_markdown();
-    page += "\n## Remarks\n\n";
-    for remark in remarks {
-        page += &format!("- {}\n", text(remark));
-    }
-    if remarks.is_empty() {
-        page += "None.\n";
-    }
+    page.table(table);
+    page.part("Remarks");
+    page.list(remarks.iter().map(|remark| text(remark)));
+    page.say(if remarks.is_empty() { "None." } else { "" });
     page
 }
 
@@ -100,9 +89,4 @@ fn criterion(entry: &FormEntry) -> String {
 
 fn unit(entry: &FormEntry) -> &str {
     if entry.unit == "1" { "" } else { &entry.unit }
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -2,12 +2,13 @@
 
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
+use report::Page;
 use report::markdown::text;
 use report::number::{fixed, with_uncertainty};
 use ship::angle::to_deg;
 use trial::Manoeuvre;
 
-use super::predict_tables;
+use super::{predict_figures, predict_tables};
 
 /// What was predicted from what.
 pub fn words(document: &PredictDocument) -> String {
@@ -89,45 +90,50 @@ fn doubts(document: &PredictDocument) -> impl Iterator<Item = String> {
     document.corrected.iter().flat_map(|own| own.warnings.iter().map(|doubt| format!("{}: {doubt}", own.name)))
 }
 
-/// The page.
-pub fn page(document: &PredictDocument, drawn: &[(String, String)]) -> String {
-    let mut page = String::from("# Prediction\n\n");
-    for line in words(document).lines() {
-        page += &format!("{}\n\n", text(line));
-    }
-    page += "Every row is a figure of merit of ships that are drawn from the model: a structure by its probability, \
-             parameters by their covariance, a random moment, a rate of the rudder and a first yaw rate as the records \
-             have them. Intervals hold 50 and 90 % of them. \"Mostly from\" names the source that makes most of the \
-             interval, each source drawn alone.\n\n";
-    page += &predict_tables::figures(document).to_markdown();
+const READING: &str = "Every row is a figure of merit of ships that are drawn from the model: a structure by its probability, \
+                       parameters by their covariance, a random moment, a rate of the rudder and a first yaw rate as the \
+                       records have them. Intervals hold 50 and 90 % of them. \"Mostly from\" names the source that makes most \
+                       of the interval, each source drawn alone.";
+
+/// `report.md` with its figures.
+pub fn page(document: &PredictDocument) -> Page {
+    let mut page = Page::titled("Prediction");
+    page.words(&words(document));
+    page.say(READING);
+    page.table(predict_tables::figures(document));
     if !document.imo.is_empty() {
-        page += "\n## IMO MSC.137(76)\n\nThe share of the drawn ships that keep within the limit. The criteria are for \
-                 full load, even keel, deep water and calm.\n\n";
-        page += &predict_tables::criteria(document).to_markdown();
+        page.part("IMO MSC.137(76)");
+        page.say(
+            "The share of the drawn ships that keep within the limit. The criteria are for full load, even keel, deep water \
+             and calm.",
+        );
+        page.table(predict_tables::criteria(document));
     }
     if !document.replays.is_empty() {
-        page += "\n## Records\n\nNothing is fitted to these records. The band is that of the recorded rudder; figures of a \
-                 zig-zag are those of a helm that reverses the rudder at the headings of the record.\n\n";
-        for replayed in &document.replays {
-            page += &format!("- {}: {}\n", text(&replayed.name), coverage(replayed));
-        }
+        page.part("Records");
+        page.say(
+            "Nothing is fitted to these records. The band is that of the recorded rudder; figures of a zig-zag are those of a \
+             helm that reverses the rudder at the headings of the record.",
+        );
+        page.list(document.replays.iter().map(|own| format!("{}: {}", text(&own.name), coverage(own))));
     }
     if !document.corrected.is_empty() {
-        page += &format!(
-            "\n## Corrected to full load\n\nR = T F/B (MSC/Circ.1053, 3.4.1.2): T is measured, B is what the model of the \
-             condition of the trial does in the same manoeuvre, F what the model at full load does. {}\n\n",
+        page.part("Corrected to full load");
+        page.say(format!(
+            "R = T F/B (MSC/Circ.1053, 3.4.1.2): T is measured, B is what the model of the condition of the trial does in the \
+             same manoeuvre, F what the model at full load does. {}",
             text(&corrected_from(document))
+        ));
+        page.table(predict_tables::corrected(document));
+        page.say(
+            "The intervals hold the errors of both models, drawn apart, the random moment of a trial in each, and the reading \
+             of T.",
         );
-        page += &predict_tables::corrected(document).to_markdown();
-        page += "\nThe intervals hold the errors of both models, drawn apart, the random moment of a trial in each, and the \
-                 reading of T.\n";
-        doubts(document).for_each(|doubt| page += &format!("\n- {}\n", text(&doubt)));
+        page.list(doubts(document).map(|doubt| text(&doubt)));
     }
     if document.form.is_some() {
-        page += "\nThe form of MSC/Circ.1053 is in [trial-form.md](trial-form.md).\n";
+        page.say("The form of MSC/Circ.1053 is in [trial-form.md](trial-form.md).");
     }
-    for (stem, caption) in drawn {
-        page += &format!("\n![{0}]({stem}.png)\n\n{0}\n", text(caption));
-    }
+    page.figures(predict_figures::figures(document));
     page
 }

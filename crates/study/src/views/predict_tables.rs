@@ -3,8 +3,8 @@
 use predict::correction::Corrected;
 use predict::interval::PredictionInterval;
 use predict::{PredictDocument, Prediction};
+use report::Table;
 use report::number::{MISSING, fixed, significant, with_uncertainty};
-use report::{Column, Table};
 
 /// Name and unit of a figure whose unit is the end of its name.
 pub fn words(name: &str) -> (String, &'static str) {
@@ -36,16 +36,7 @@ fn cells(interval: &PredictionInterval) -> [String; 3] {
 
 /// Every figure of every manoeuvre and of every record.
 pub fn figures(document: &PredictDocument) -> Table {
-    let mut table = Table::new([
-        Column::left("manoeuvre"),
-        Column::left("figure"),
-        Column::left("unit"),
-        Column::decimal("median"),
-        Column::left("50 %"),
-        Column::left("90 %"),
-        Column::left("mostly from"),
-        Column::left("remark"),
-    ]);
+    let mut table = Table::headed("manoeuvre | figure | unit | .median | 50 % | 90 % | mostly from | remark");
     let mut push = |manoeuvre: &str, name: &str, interval: &PredictionInterval, source: String, remark: String| {
         let ((name, unit), [median, half, most]) = (words(name), cells(interval));
         table.push([manoeuvre.to_owned(), name, unit.to_owned(), median, half, most, source, remark]);
@@ -75,16 +66,7 @@ pub fn figures(document: &PredictDocument) -> Table {
 
 /// The criteria of IMO.
 pub fn criteria(document: &PredictDocument) -> Table {
-    let mut table = Table::new([
-        Column::left("criterion"),
-        Column::left("manoeuvre"),
-        Column::decimal("limit"),
-        Column::left("unit"),
-        Column::decimal("median"),
-        Column::left("90 %"),
-        Column::decimal("passes").unit("%"),
-        Column::left("remark"),
-    ]);
+    let mut table = Table::headed("criterion | manoeuvre | .limit | unit | .median | 90 % | .passes [%] | remark");
     for criterion in &document.imo {
         let [median, _, most] = cells(&criterion.interval());
         table.push([
@@ -103,18 +85,10 @@ pub fn criteria(document: &PredictDocument) -> Table {
 
 /// Every figure that was corrected to full load.
 pub fn corrected(document: &PredictDocument) -> Table {
-    let mut table = Table::new([
-        Column::left("record"),
-        Column::left("figure"),
-        Column::left("unit"),
-        Column::left("T measured"),
-        Column::decimal("F/B"),
-        Column::left("F/B 90 %"),
-        Column::decimal("R"),
-        Column::left("R 50 %"),
-        Column::left("R 90 %"),
-        Column::left("remark"),
-    ]);
+    let mut table = Table::headed(
+        "record | figure | unit | T measured | .F/B | F/B 90 % | .R | R 50 % | R 90 % | \
+            remark",
+    );
     for correction in &document.corrected {
         for (name, Corrected { measured, sd, factor, result, warnings, .. }) in &correction.figures {
             let ([factor, _, of_factor], [median, half, most]) = (cells(factor), cells(result));

@@ -8,12 +8,12 @@ use campaign::folder::ResultFolder;
 use campaign::store::Stored;
 use campaign::summary::{Summary, Tally};
 use rayon::prelude::*;
-use report::{Table, Theme, markdown};
+use report::{Table, Theme};
 use scenario::failure::{Failure, OnPath};
 use serde_json::json;
 
-use super::drawings::{self, write_all};
 use super::page_files::{REPORT, write_page};
+use super::study_figures::{self, FigurePlace, KEY_FIGURE};
 use super::study_page::{on_screen, page};
 use super::{coverage_table, curve_tables, document, tables, tracing_table};
 use crate::options::{Common, FigureChoice, Format};
@@ -74,7 +74,7 @@ pub fn put(
         write_csv(folder, "tracing.csv", &summary.tracing, |lines| {
             tracing_table::table(lines, &summary, design, true)
         })?;
-        folder.write("reliability.csv", tracing_table::reliability(&drawings::first_trace(&summary)).to_csv())?;
+        folder.write("reliability.csv", tracing_table::reliability(&study_figures::first_trace(&summary)).to_csv())?;
     }
     if !summary.predictions.is_empty() {
         write_csv(folder, "predictions.csv", &summary.predictions, |lines| coverage_table::table(lines, design))?;
@@ -84,19 +84,16 @@ pub fn put(
         folder.write("summary.md", brief.to_markdown())?;
     }
     folder.write("summary.tex", tables::for_paper(&summary, stored).to_latex())?;
-    let drawings = drawings::of(stored, &summary, figures);
-    write_all(&drawings, theme, folder)?;
+    let figures = study_figures::of(stored, &summary, figures);
     // The figure of an earlier scenario must not stand for this one.
-    if drawings.iter().all(|drawing| drawing.stem != drawings::HERO) {
+    if figures.iter().all(|(place, _)| *place != FigurePlace::Key) {
         for kind in ["svg", "png"] {
-            let path = folder.path().join(format!("{}.{kind}", drawings::HERO));
+            let path = folder.path().join(format!("{KEY_FIGURE}.{kind}"));
             disk::remove_if_there(&path).on("remove", &path)?;
         }
     }
-    curve_tables::write_showcases(stored, &drawings, folder)?;
-    // Whatever a scenario or a label holds: no HTML.
-    write_page(folder, &markdown::prose(&page(stored, &summary, brief.as_ref(), &drawings)))?;
-    drop(drawings);
+    curve_tables::write_showcases(stored, &figures, folder)?;
+    write_page(folder, &page(stored, &summary, brief, figures), theme)?;
     Ok(summary)
 }
 

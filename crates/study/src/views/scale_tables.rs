@@ -31,14 +31,14 @@ pub fn sentence(model: &ComparedModel) -> String {
 
 /// The table of one model.
 pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
-    let mut columns = vec![Column::left("term"), Column::left("all together")];
+    let mut columns = Column::all("term | all together");
     columns.extend(
         scales
             .groups
             .iter()
             .map(|group| Column::left(scale_name(Particulars { length: group.length_m, speed: group.speed_m_s }))),
     );
-    columns.extend([Column::decimal("difference").unit("sd"), Column::left("verdict")]);
+    columns.extend(Column::all(".difference [sd] | verdict"));
     let mut table = Table::new(columns);
     let number = |quantity: &Quantity| match quantity.value.is_finite() {
         true => uncertain(quantity.value, quantity.sd),
@@ -57,15 +57,7 @@ pub fn table(scales: &ScalesEntry, model: &ComparedModel) -> Table {
 
 /// K' and T' with their intervals, one row for every name.
 pub fn prime_table(rows: &[(String, Quantity, Quantity)]) -> Table {
-    let mut table = Table::new([
-        Column::left("method"),
-        Column::decimal("K′"),
-        Column::interval(),
-        Column::left("sd"),
-        Column::decimal("T′"),
-        Column::interval(),
-        Column::left("sd"),
-    ]);
+    let mut table = Table::headed("method | .K′ | ~95 % | sd | .T′ | ~95 % | sd");
     let sd =
         |quantity: &Quantity| quantity.sd.map_or_else(|| MISSING.to_owned(), |sd| report::number::significant(sd, 2));
     for (name, k, t) in rows {

@@ -114,9 +114,7 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     for index in ["K", "T"] {
         columns.push(Column::decimal(format!("{index} median")).unit("%"));
         columns.push(Column::decimal(format!("{index} rms")).unit("%"));
-        columns.push(Column::interval().unit("%"));
-        columns.push(Column::right("coverage").unit("%"));
-        columns.push(Column::decimal("sd/bound"));
+        columns.extend(Column::all("~95 % [%] | >coverage [%] | .sd/bound"));
     }
     if validated {
         columns.push(Column::decimal("validation").unit("deg"));
@@ -147,12 +145,10 @@ fn brief(record: &Record) -> Vec<String> {
 
 /// One row per method over all cells.
 pub fn overall(summary: &Summary, design: &Design) -> Table {
-    let mut columns = vec![Column::left("method"), Column::right("failed")];
+    let mut columns = Column::all("method | >failed");
     for index in ["K", "T"] {
         columns.push(Column::decimal(format!("{index} median size")).unit("%"));
-        columns.push(Column::interval().unit("%"));
-        columns.push(Column::decimal("90 %").unit("%"));
-        columns.push(Column::right("coverage").unit("%"));
+        columns.extend(Column::all("~95 % [%] | .90 % [%] | >coverage [%]"));
     }
     columns.push(Column::decimal("validation").unit("deg"));
     let mut table = Table::new(columns);
@@ -186,7 +182,7 @@ pub fn for_paper(summary: &Summary, stored: &Stored) -> Table {
 /// Every method against the reference on the same trials: `pairs.csv`.
 pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
     let mut columns = head(design);
-    columns.extend([Column::left("reference"), Column::right("trials")]);
+    columns.extend(Column::all("reference | >trials"));
     for index in ["K", "T"] {
         columns.extend(with_ends(&format!("{index} rms difference"), "%"));
         columns.extend(with_ends(&format!("{index} rms ratio"), ""));

@@ -3,9 +3,7 @@
 use std::collections::BTreeSet;
 
 use report::Curve;
-use report::figures::{
-    Confusion, ConfusionCell, ConfusionRow, Division, Drawn, Layer, Layers, Panels, Pen, Ruler, Stack,
-};
+use report::figures::{Cells, Division, Layer, MapCell, Outline, PanelRow, Panels, Pen, Ruler, Shades, Stack};
 use report::palette::{DASHED, DOTTED, Dash, INK, Look, Marker, Origin, SOLID};
 use scenario::HULL;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Discrete, Poisson};
@@ -19,7 +17,7 @@ const NOTHING: &str = "nothing";
 
 /// The confusion matrices with their names: a row is what the ships of one or more cells lack, one matrix for every
 /// combination of the other axes where the first decides what is missing, and one for ships that lack several effects.
-pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Confusion)> {
+pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Cells)> {
     let rest = |line: &TraceSummary| design.cells[line.cell].labels.get(1..).unwrap_or_default().join(", ");
     let kinds = |lines: &[&TraceSummary]| lines.iter().map(|line| &line.missing).collect::<BTreeSet<_>>().len();
     let mut groups: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
@@ -45,7 +43,7 @@ pub fn confusions(design: &Design, lines: &[TraceSummary]) -> Vec<(String, Confu
     found
 }
 
-fn confusion(design: &Design, lines: &[&TraceSummary]) -> Confusion {
+fn confusion(design: &Design, lines: &[&TraceSummary]) -> Cells {
     let mut rows: Vec<(String, Vec<&TraceSummary>)> = Vec::new();
     for &line in lines {
         let name = match &line.missing[..] {
@@ -74,22 +72,26 @@ fn confusion(design: &Design, lines: &[&TraceSummary]) -> Confusion {
         let trials: u64 = lines.iter().map(|line| line.trials).sum();
         let named = share(lines.iter().map(count).sum(), trials);
         let is_right = lines[0].missing.iter().any(|own| own == id) || (id == NOTHING && lines[0].missing.is_empty());
-        ConfusionCell {
-            share: named.map_or(0.0, |share| 100.0 * share.value),
+        let is_alias = lines.iter().any(|line| line.aliases.contains(id));
+        MapCell {
+            value: Some(named.map_or(0.0, |share| 100.0 * share.value)),
             interval: named.and_then(|share| share.ci95).map(|ends| ends.map(|end| 100.0 * end)),
-            is_right,
-            is_alias: !is_right && lines.iter().any(|line| line.aliases.contains(id)),
+            outline: if is_right { Some(Outline::Right) } else { is_alias.then_some(Outline::Alias) },
         }
     };
-    let row = |(name, lines): &(String, Vec<&TraceSummary>)| ConfusionRow {
-        name: name.clone(),
-        trials: lines.iter().map(|line| line.trials).sum(),
-        cells: columns.iter().map(|id| cell(lines, id)).collect(),
-    };
-    Confusion {
+    let trials = |lines: &[&TraceSummary]| lines.iter().map(|line| line.trials).sum::<u64>();
+    let cells = rows.iter().map(|(_, lines)| columns.iter().map(|id| cell(lines, id)).collect());
+    Cells {
         title: None,
+        titles: [String::from("named by the trace"), String::new()],
         columns: columns.iter().map(|id| id.replace('_', " ")).collect(),
-        rows: rows.iter().map(row).collect(),
+        rows: rows.iter().map(|(name, lines)| format!("{name} (n = {})", trials(lines))).collect(),
+        shades: Shades::Shares,
+        panels: vec![(None, cells.collect())],
+        note: Some(String::from(
+            "Shares of the trials in per cent, with 95 % intervals where there is room; empty: never named; full without \
+             a number: 100.",
+        )),
     }
 }
 
@@ -115,18 +117,16 @@ type Share = (f64, f64, Option<[f64; 2]>);
 fn shares(x: Ruler, y_title: &str, series: Vec<(&str, Vec<Share>)>, theory: Vec<(String, Curve)>) -> Panels {
     const DASHES: [Dash; 3] = [SOLID, DASHED, DOTTED];
     const LOOKS: [(Origin, Marker); 2] = [(Origin::After, Marker::Circle), (Origin::Before, Marker::Square)];
-    let mut layers: Vec<Layer> = Vec::new();
-    for ((name, curve), dash) in theory.into_iter().zip(DASHES) {
-        layers.push(Layer::new(name, curve, Drawn::Line(Pen { width: 0.9, dash, ..Pen::new(INK) })));
-    }
-    for ((name, points), (origin, marker)) in series.into_iter().zip(LOOKS) {
+    let line = |((name, curve), dash): ((String, Curve), Dash)| {
+        Layer::line(name, curve, Pen { width: 0.9, dash, ..Pen::new(INK) })
+    };
+    let marks = |((name, points), (origin, marker)): ((&str, Vec<Share>), (Origin, Marker))| {
         let look = Look { colour: origin.look().colour, marker, dash: SOLID, hollow: false };
-        let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|point| (point.0, point.1)).unzip();
-        let intervals = points.into_iter().map(|point| point.2).collect();
-        layers.push(Layer::new(name, Curve { x, y }, Drawn::Marks(look, intervals)));
-    }
-    let panel = Layers { y: Ruler::new(y_title, Division::Percent), height: 0.42, layers, ..Layers::default() };
-    Panels { stacks: vec![Stack { x, panels: vec![panel], ..Stack::default() }], ..Panels::default() }
+        Layer::marks(name, look, points)
+    };
+    let layers = theory.into_iter().zip(DASHES).map(line).chain(series.into_iter().zip(LOOKS).map(marks)).collect();
+    let row = PanelRow::new(Ruler::new(y_title, Division::Percent), 0.42);
+    Panels::of(Stack::over(x, vec![(row, layers)]))
 }
 
 /// Power over the expected likelihood ratio, for cells with one missing effect.

@@ -1,15 +1,16 @@
 //! What is said of a trace: the words on the screen, and `report.md`. Both are made from the document.
 
-use std::fmt::Write as _;
-
 use ::trace::document::{Outcome, ParameterEntry};
-use report::markdown::prose;
+use predict::known::ValidityRange;
+use predict::steady::SteadyCurve;
 use report::number::{fixed, significant};
-use report::{Column, Table};
+use report::{Page, PageFigure, Table};
 use ship::Shown;
 
-use super::trace_figures::{Drawn, Part};
+use super::record_figures::steady_turns;
+use super::trace_figures as figures;
 use super::trace_tables as tables;
+use crate::documents::curves::Curves;
 use crate::documents::trace::TraceDocument;
 use crate::scales::scale_name;
 
@@ -20,21 +21,25 @@ const LISTED: usize = 8;
 pub fn words(document: &TraceDocument) -> [String; 2] {
     let trace = &document.trace;
     let mut before = format!("{}\n", trace.headline);
-    if let Some(scales) = &document.scales {
-        let _ = writeln!(before, "{scales}");
-    }
+    before += &document.scales.as_ref().map_or_else(String::new, |scales| format!("{scales}\n"));
     if !trace.effects.is_empty() {
-        let _ = write!(before, "\n{}", tables::effects(document).to_text());
+        before += &format!("\n{}", tables::effects(document).to_text());
     }
     let mut behind = format!("\nnoise: {}", noise(document));
     if let Some(signature) = &trace.unexplained.signature {
-        let _ = write!(behind, "\nleft: {signature}");
+        behind += &format!("\nleft: {signature}");
     }
     for warning in bounds(&trace.model.parameters).into_iter().chain(outliers(document)) {
-        let _ = write!(behind, "\nwarning: {warning}");
+        behind += &format!("\nwarning: {warning}");
     }
-    let _ = write!(behind, "\nnext trial: {}", trace.next_trial);
+    behind += &format!("\nnext trial: {}", trace.next_trial);
     [before, behind]
+}
+
+/// Errors on all records.
+pub fn all_errors(document: &TraceDocument) -> Table {
+    let (fitted, judged) = document.errors();
+    tables::errors(&[fitted, judged].concat())
 }
 
 /// The noise in one sentence.
@@ -73,34 +78,6 @@ fn bounds(parameters: &[ParameterEntry]) -> Vec<String> {
     parameters.iter().filter(|own| own.at_bound).map(of).collect()
 }
 
-/// A page that grows.
-struct Page(String);
-
-impl Page {
-    fn say(&mut self, text: impl AsRef<str>) {
-        self.0 += text.as_ref();
-        self.0 += "\n\n";
-    }
-
-    fn table(&mut self, title: &str, table: &Table, words: &str) {
-        self.say(format!("## {title}\n\n{}", table.to_markdown()));
-        if !words.is_empty() {
-            self.say(words);
-        }
-    }
-
-    /// The figures of a part, under a title where it has one.
-    fn figures(&mut self, part: Part, title: &str, drawn: &[Drawn]) {
-        let own = || drawn.iter().filter(|one| one.part == part);
-        if !title.is_empty() && own().next().is_some() {
-            self.say(format!("## {title}"));
-        }
-        for Drawn { stem, caption, .. } in own() {
-            self.say(format!("![{caption}]({stem}.png)\n\n{caption}"));
-        }
-    }
-}
-
 const JUDGED: &str = "Nothing but the initial state is fitted to a record here. *Held out*: no number above depends \
                       on the record. *Left out*: base and model are fitted to the other records. *Every 20 s*: the \
                       replay begins anew so often.";
@@ -113,22 +90,28 @@ const EVIDENCE: &str = "The probability of an effect is the weight of all struct
 const CANDIDATES: &str = "Visibility is the expected square of the size of an effect over its error beside all other \
                           candidates: what is small here cannot be seen in these records.";
 
-/// `report.md`. `drawn` are the figures.
-pub fn page(document: &TraceDocument, drawn: &[Drawn]) -> String {
+/// `report.md` with its figures; `turns` are the steady turns of the model.
+pub fn page(document: &TraceDocument, curves: &Curves, turns: Option<&(Vec<SteadyCurve>, ValidityRange)>) -> Page {
     let trace = &document.trace;
-    let mut page = Page(String::new());
-    page.say(format!("# Trace of {}\n\n**{}**", document.title(), trace.headline));
-    if let Some(scales) = &document.scales {
-        page.say(format!("{scales}."));
-    }
-    page.figures(Part::Record, "", drawn);
+    let mut page = Page::titled(format!("Trace of {}", document.title()));
+    let table = |page: &mut Page, title: &str, table: Table, words: &str| {
+        page.part(title);
+        page.table(table);
+        page.say(words);
+    };
+    page.say(format!("**{}**", trace.headline));
+    page.say(document.scales.as_ref().map_or_else(String::new, |scales| format!("{scales}.")));
+    let [of_fitted, of_held_out] = figures::records(document, curves);
+    page.figures(of_fitted);
     let (fitted, judged) = document.errors();
     if !judged.is_empty() {
-        page.table("Records that were not fitted", &tables::errors(&judged), JUDGED);
-        page.figures(Part::HeldOut, "", drawn);
+        table(&mut page, "Records that were not fitted", tables::errors(&judged), JUDGED);
+        page.figures(figures::held_out(document));
+        page.figures(of_held_out);
     }
-    page.figures(Part::Evidence, "Evidence", drawn);
-    page.table("Structures", &tables::structures(document), EVIDENCE);
+    page.part("Evidence");
+    page.figures([figures::evidence(document)]);
+    table(&mut page, "Structures", tables::structures(document), EVIDENCE);
     page.say(format!(
         "{} candidates; prior probability of an effect {}, of a moment of time in one record {}; rule: {}.",
         trace.prior.candidates,
@@ -137,19 +120,43 @@ pub fn page(document: &TraceDocument, drawn: &[Drawn]) -> String {
         trace.prior.rule,
     ));
     if !trace.effects.is_empty() {
-        page.table("Effects", &tables::effects(document), "");
+        table(&mut page, "Effects", tables::effects(document), "");
     }
     for effect in &trace.effects {
         page.say(format!("**{} ({})**: `{}`. {}", effect.id, effect.form, effect.equation, effect.evidence));
     }
-    page.table("Fitted records", &tables::errors(&fitted), "");
-    page.table("Candidates", &tables::candidates(document), CANDIDATES);
-    page.table("Noise", &tables::noise(document), "");
-    page.table("Model", &tables::parameters(document), &model(document));
-    if let Some(signature) = &trace.unexplained.signature {
-        page.say(format!("## What is left\n\n{signature}."));
+    table(&mut page, "Fitted records", tables::errors(&fitted), "");
+    table(&mut page, "Candidates", tables::candidates(document), CANDIDATES);
+    table(&mut page, "Noise", tables::noise(document), "");
+    table(&mut page, "Model", tables::parameters(document), &model(document));
+    what_is_left(&mut page, document);
+    table(&mut page, "Aliases and blind spots", aliases(document), "");
+    page.part("Next trial");
+    page.say(&trace.next_trial);
+    let moments = figures::moments(document, curves);
+    if !moments.is_empty() {
+        page.part("The yaw moment that the base lacks");
+        page.figures(moments);
     }
-    if let Some(own) = &trace.unexplained.empirical {
+    page.part("Further figures");
+    page.figures(figures::overshoots(document, curves));
+    page.figures(turns.map(|(curves, seen)| {
+        let caption = "Steady yaw rate against rudder of the model, an unstable branch dashed; thin: ships that the records \
+                       cannot tell from it; grey: the range of the records.";
+        PageFigure::new("steady", caption, steady_turns(curves, *seen))
+    }));
+    page.figures(figures::further(document, curves));
+    page
+}
+
+/// What no effect explains.
+fn what_is_left(page: &mut Page, document: &TraceDocument) {
+    let unexplained = &document.trace.unexplained;
+    if let Some(signature) = &unexplained.signature {
+        page.part("What is left");
+        page.say(format!("{signature}."));
+    }
+    if let Some(own) = &unexplained.empirical {
         let values: Vec<String> = own.parameters.iter().map(tables::value).collect();
         page.say(format!(
             "Not part of the model: a moment of this shape would lower the heading error to {}° (ΔBIC {}): {}; {}.",
@@ -159,11 +166,6 @@ pub fn page(document: &TraceDocument, drawn: &[Drawn]) -> String {
             values.join(", ")
         ));
     }
-    page.table("Aliases and blind spots", &aliases(document), "");
-    page.say(format!("## Next trial\n\n{}", trace.next_trial));
-    page.figures(Part::Moment, "The yaw moment that the base lacks", drawn);
-    page.figures(Part::Further, "Further figures", drawn);
-    prose(&(page.0.trim_end().to_owned() + "\n"))
 }
 
 /// What is said under the table of parameters.
@@ -180,7 +182,7 @@ fn model(document: &TraceDocument) -> String {
 
 /// What these records cannot tell: effects from each other, and effects at all.
 fn aliases(document: &TraceDocument) -> Table {
-    let mut table = Table::new([Column::left("effect"), Column::left("these records cannot tell it from")]);
+    let mut table = Table::headed("effect | these records cannot tell it from");
     for effect in document.trace.effects.iter().filter(|effect| !effect.alias_forms.is_empty()) {
         table.push([tables::term(&effect.id, &effect.form, effect.only.as_ref()), effect.alias_forms.join(", ")]);
     }

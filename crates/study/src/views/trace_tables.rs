@@ -43,13 +43,7 @@ pub fn term(id: &str, form: &str, only: Option<&String>) -> String {
 
 /// Named effects with their parameters.
 pub fn effects(document: &TraceDocument) -> Table {
-    let mut table = Table::new([
-        Column::left("effect"),
-        Column::decimal("probability"),
-        Column::decimal("ΔBIC"),
-        Column::left("parameters"),
-        Column::left("not told from"),
-    ]);
+    let mut table = Table::headed("effect | .probability | .ΔBIC | parameters | not told from");
     for effect in &document.trace.effects {
         let asked = if effect.asked { ", asked for" } else { "" };
         let parameters: Vec<String> = effect.parameters.values().map(value).collect();
@@ -69,11 +63,10 @@ pub fn errors(records: &[RecordErrors]) -> Table {
     let mut columns = ["record", "use", "model"].map(Column::left).to_vec();
     columns.push(Column::decimal("heading").unit("deg"));
     columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
-    columns.push(Column::decimal("yaw rate").unit("deg/s"));
-    columns.push(Column::decimal("overshoots").unit("deg"));
-    columns.push(Column::decimal("after/before"));
-    columns.push(Column::decimal("band covers").unit("%"));
-    columns.push(Column::decimal("band width").unit("deg"));
+    columns.extend(Column::all(
+        ".yaw rate [deg/s] | .overshoots [deg] | .after/before | .band covers [%] | \
+            .band width [deg]",
+    ));
     let mut table = Table::new(columns);
     let three = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(value, 3));
     for RecordErrors { name, used, errors } in records {
@@ -140,15 +133,7 @@ pub fn parameters(document: &TraceDocument) -> Table {
 
 /// What became of every candidate.
 pub fn candidates(document: &TraceDocument) -> Table {
-    let mut table = Table::new([
-        Column::left("candidate"),
-        Column::left("form"),
-        Column::left("outcome"),
-        Column::decimal("probability"),
-        Column::decimal("ΔBIC"),
-        Column::left("p"),
-        Column::decimal("visibility"),
-    ]);
+    let mut table = Table::headed("candidate | form | outcome | .probability | .ΔBIC | p | .visibility");
     let two = |value: Option<f64>| value.map_or_else(|| MISSING.into(), |value| significant(value, 2));
     for one in &document.trace.candidates {
         if one.forms.is_empty() {
@@ -185,8 +170,7 @@ const NEGLIGIBLE: f64 = 1e-3;
 
 /// The structures with their probabilities.
 pub fn structures(document: &TraceDocument) -> Table {
-    let mut table =
-        Table::new([Column::left("structure"), Column::decimal("probability"), Column::left("in the average")]);
+    let mut table = Table::headed("structure | .probability | in the average");
     for one in document.trace.structures.iter().filter(|one| one.member || one.weight > NEGLIGIBLE) {
         let of = |own: &TermEntry| term(&own.id, &own.form, own.only.as_ref());
         let terms: Vec<String> = one.effects.iter().map(of).collect();
@@ -198,12 +182,7 @@ pub fn structures(document: &TraceDocument) -> Table {
 
 /// The noise of every fitted record.
 pub fn noise(document: &TraceDocument) -> Table {
-    let mut table = Table::new([
-        Column::left("record"),
-        Column::decimal("heading, white").unit("deg"),
-        Column::left("beside it"),
-        Column::left("headings left out at").unit("s"),
-    ]);
+    let mut table = Table::headed("record | .heading, white [deg] | beside it | headings left out at [s]");
     for own in &document.trace.noise {
         let name = document.records.iter().find(|record| record.file == own.file).map_or(&own.file, |one| &one.name);
         let beside = coloured(own);

@@ -23,8 +23,7 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
     if several {
         columns.push(Column::left("method"));
     }
-    columns.push(Column::left("missing"));
-    columns.push(Column::right("trials"));
+    columns.extend(Column::all("missing | >trials"));
     let shares = ["all named", "exact", "false names", "named where clear"];
     for name in shares {
         columns.push(Column::decimal(name).unit("%"));
@@ -72,15 +71,10 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
 
 /// Effects by the probability that was given to them, over all cells.
 pub fn reliability(lines: &[TraceSummary]) -> Table {
-    let mut table = Table::new(vec![
-        Column::right("probability from").unit("%"),
-        Column::right("to").unit("%"),
-        Column::right("effects"),
-        Column::decimal("mean probability").unit("%"),
-        Column::decimal("present").unit("%"),
-        Column::decimal("low").unit("%"),
-        Column::decimal("high").unit("%"),
-    ]);
+    let mut table = Table::headed(
+        ">probability from [%] | >to [%] | >effects | .mean probability [%] | .present [%] | \
+            .low [%] | .high [%]",
+    );
     for (range, ends) in promised(lines).iter().zip(PROMISED.windows(2)) {
         let mean = (range.effects > 0).then(|| 100.0 * range.sum / range.effects as f64);
         let present = share(range.present, range.effects);

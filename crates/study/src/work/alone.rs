@@ -2,27 +2,10 @@
 
 use identify::{Estimate, Identifier};
 use rayon::prelude::*;
-use trial::{Quantity, Trial, ZigZag};
+use ship::angle::to_deg;
+use trial::{Trial, ZigZag};
 
-/// K and T of one zig-zag.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Alone {
-    /// Mean size of the rudder between its executes, and of the heading at the peaks from the base course, rad.
-    pub amplitudes: [f64; 2],
-    /// K, 1/s.
-    pub k: Quantity,
-    /// T, s.
-    pub t: Quantity,
-}
-
-/// Every zig-zag of some records alone, with the method that was used.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Amplitudes {
-    /// Identifier of the method.
-    pub method: &'static str,
-    /// The records that are zig-zags and could be identified.
-    pub records: Vec<Alone>,
-}
+use crate::documents::fit::{SingleRecord, SingleRecords};
 
 /// Mean size of the rudder of a zig-zag, and of its heading at the peaks, rad.
 fn amplitudes(trial: &Trial) -> Option<[f64; 2]> {
@@ -34,21 +17,24 @@ fn amplitudes(trial: &Trial) -> Option<[f64; 2]> {
     (!peaks.is_empty() && !rudders.is_empty()).then(|| [mean(&rudders), mean(&peaks)])
 }
 
-fn alone(trial: &Trial, method: &dyn Identifier) -> Option<Alone> {
-    let of = |estimate: Estimate| Some(Alone { amplitudes: amplitudes(trial)?, k: estimate.K(), t: estimate.T() });
-    method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k.value.is_finite())
+fn alone(trial: &Trial, method: &dyn Identifier) -> Option<SingleRecord> {
+    let of = |estimate: Estimate| {
+        let [rudder_deg, heading_deg] = amplitudes(trial)?.map(to_deg);
+        Some(SingleRecord { rudder_deg, heading_deg, k_per_s: estimate.K(), t_s: estimate.T() })
+    };
+    method.identify(std::slice::from_ref(trial)).ok().and_then(of).filter(|own| own.k_per_s.value.is_finite())
 }
 
 /// Every record alone by the first of some methods, or by the next where that fails for one of them; `None` for less
 /// than two zig-zags.
-pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<Amplitudes> {
+pub fn of_records(trials: &[Trial], methods: &[&dyn Identifier]) -> Option<SingleRecords> {
     let zigzags: Vec<&Trial> = trials.iter().filter(|trial| amplitudes(trial).is_some()).collect();
-    let mut best: Option<Amplitudes> = None;
+    let mut best: Option<SingleRecords> = None;
     for method in methods.iter().filter(|_| zigzags.len() > 1) {
-        let records: Vec<Alone> = zigzags.par_iter().filter_map(|trial| alone(trial, *method)).collect();
+        let records: Vec<SingleRecord> = zigzags.par_iter().filter_map(|trial| alone(trial, *method)).collect();
         let complete = records.len() == zigzags.len();
         if best.as_ref().is_none_or(|best| records.len() > best.records.len()) {
-            best = Some(Amplitudes { method: method.id(), records });
+            best = Some(SingleRecords { method: method.id().to_owned(), records });
         }
         if complete {
             break;

@@ -1,39 +1,91 @@
 //! An identification: every method on the records together, its answer held against other records, and what is known of
 //! the ship.
 
+use identify::estimate::Uncertainty;
 use identify::replay::replay;
 use identify::{Estimate, Identifier, IdentifierSettings, registry};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
+use report::figures::{Replays, ZigzagTrial};
+use report::{Curve, Origin};
 use scenario::failure::Failure;
-use ship::Particulars;
 use ship::angle::to_deg;
-use trial::{Trial, ZigZag, ZigZagError};
+use trial::zigzag::PhasePlane;
+use trial::{Channel, Trial, ZigZag, ZigZagError};
 
-use super::alone::{self, Amplitudes};
+use super::alone;
 use super::every_scale;
-use crate::documents::fit::{FitDocument, TrialEntry, trial_entry};
+use crate::documents::fit::{FitCurves, FitDocument, FitRecord, TrialEntry, trial_entry};
 use crate::outside::{self, Named, NamedCommand};
-use crate::records::{file_of, warn_of_no_track};
+use crate::records::{file_of, names, warn_of_no_track};
 use crate::scales::{self, Together};
 use crate::{interrupt, progress};
 use campaign::answer::{MethodEntry, Validation, entry};
+use campaign::curves::{curve, replay_curves, zigzag_figure};
 use campaign::known::{self, Shown};
 
 /// What came out.
 pub struct Fit {
     /// The records, brought to one scale.
     pub together: Together,
-    /// Length and speed at which numbers with a dimension are told.
-    pub ship: Option<Particulars>,
-    /// Zig-zags of the records as they were read; times and limits of a record are those of its own scale.
-    pub zigzags: Vec<Result<ZigZag, ZigZagError>>,
     /// The answers of the methods.
     pub answers: Vec<(MethodEntry, Option<Estimate>)>,
-    /// Every zig-zag alone, where there are several.
-    pub amplitudes: Option<Amplitudes>,
     /// What other programs read.
-    pub file: FitDocument,
+    pub document: FitDocument,
+}
+
+impl Fit {
+    /// What the figures show of the records and of the answers.
+    pub fn curves(&self) -> FitCurves {
+        let Together { trials, others, .. } = &self.together;
+        let names = names(trials.iter().chain(others).map(Trial::name));
+        let records = trials.iter().chain(others).zip(names).enumerate();
+        let record = |(number, (trial, name))| self.record(trial, name, number >= trials.len());
+        let regions = self.answers.iter().filter_map(|(entry, estimate)| {
+            let estimate = estimate.as_ref()?;
+            let Uncertainty::Covariance(covariance) = &estimate.uncertainty else { return None };
+            let outline = covariance.outline(&estimate.response)?;
+            let (x, y): (Vec<f64>, Vec<f64>) = outline.into_iter().map(|[k, t]| (k, t)).unzip();
+            Some((entry.method.clone(), Curve { x, y }))
+        });
+        FitCurves { records: records.map(record).collect(), regions: regions.collect() }
+    }
+
+    fn record(&self, trial: &Trial, name: String, validation: bool) -> FitRecord {
+        let phase = |heading: &[f64], rate: &[f64]| {
+            let degrees = |values: &[f64]| values.iter().copied().map(to_deg).collect::<Vec<f64>>();
+            Curve::new(degrees(heading), degrees(rate))
+        };
+        let own = PhasePlane::of(trial);
+        let title = if validation { format!("{name} (validation)") } else { name.clone() };
+        let zigzag = ZigZag::of(trial).ok().filter(|_| !validation);
+        let rejected = |channel: Channel| {
+            let marks = trial.rejected().iter().filter(|mark| mark.channel == channel);
+            let (time, values): (Vec<f64>, Vec<f64>) = marks.map(|mark| (mark.time, mark.value)).unzip();
+            curve(&time, &values)
+        };
+        let shown = self.document.shown_method();
+        let shown = self.answers.iter().find(|(entry, _)| Some(entry.method.as_str()) == shown);
+        let shown = shown.and_then(|(_, estimate)| replay(trial, &estimate.as_ref()?.response));
+        FitRecord {
+            file: file_of(trial).0.to_owned(),
+            is_renamed: name != trial.name(),
+            validation,
+            zigzag: zigzag.map(|own| ZigzagTrial { title: Some(name.clone()), ..zigzag_figure(trial, &own) }),
+            replays: Replays {
+                title: Some(title),
+                record: curve(trial.time(), trial.heading()),
+                truth: None,
+                replays: replay_curves(trial, &self.answers, |method| Origin::Method(method.to_owned())),
+            },
+            rudder: curve(trial.time(), trial.rudder()),
+            rejected: (!trial.rejected().is_empty()).then(|| [Channel::Heading, Channel::Rudder].map(rejected)),
+            smoothed: own.as_ref().is_some_and(|own| own.smoothed),
+            phase: own.map(|own| phase(&own.heading, &own.yaw_rate)),
+            phase_replay: shown.map(|own| phase(&own.heading, &own.yaw_rate)),
+            name,
+        }
+    }
 }
 
 /// Identifies the records together by every method and replays the answers on `others`.
@@ -67,10 +119,10 @@ pub fn fit(
     }
     let zigzags: Vec<Result<ZigZag, ZigZagError>> = records.iter().map(ZigZag::of).collect();
     let entries_of_trials: Vec<TrialEntry> =
-        records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag.as_ref().ok())).collect();
+        records.iter().zip(&zigzags).map(|(trial, zigzag)| trial_entry(trial, zigzag)).collect();
     let shown = Shown::of(trials).with_motion();
     warn_of_no_track(&shown, warnings);
-    let file = FitDocument {
+    let document = FitDocument {
         schema: "fit/1".into(),
         zigzag: entries_of_trials[0].zigzag.clone(),
         trials: entries_of_trials,
@@ -81,10 +133,14 @@ pub fn fit(
             })
             .collect(),
         scales: every_scale::compared(methods, &answers, &together),
+        scaling: together.sentence(),
+        length_m: ship.map(|ship| ship.length),
+        speed_m_s: ship.map(|ship| ship.speed),
+        single_records: alone::of_records(trials, &speakers(methods, &entries)),
+        warnings: warnings.clone(),
         methods: entries,
     };
-    let amplitudes = alone::of_records(trials, &speakers(methods, &file.methods));
-    Ok(Fit { ship, zigzags, answers, amplitudes, file, together })
+    Ok(Fit { together, answers, document })
 }
 
 /// The named methods of the project with their default settings, all for no name, and outside estimators behind them;

@@ -2,4 +2,4 @@
 
 /// Red, green and blue, 0 to 255 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Colour(pub u8, pub u8, pub u8);
+pub struct Paint(pub u8, pub u8, pub u8);

@@ -1,0 +1,153 @@
+//! How far an axis goes: over what has to be seen, and over what may be cut as far as there is room.
+
+use super::shared::median;
+use crate::axis;
+
+/// What of wild data an axis shows: so many times the middle extent from a centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// Times the middle extent.
+    pub times: f64,
+    /// The centre; the middle of the data where there is none.
+    pub centre: Option<f64>,
+    /// Whether the axis goes as far to one side of the centre as to the other.
+    pub symmetric: bool,
+}
+
+/// What stands along an axis.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Extents {
+    /// Ends of everything that sets the axis, a pair for each thing.
+    pub core: Vec<(f64, f64)>,
+    /// Values that have to be seen whatever else there is.
+    pub fixed: Vec<f64>,
+    /// Values that may widen the axis by a share of the range of everything else.
+    pub soft: Vec<(f64, f64)>,
+}
+
+/// The share of the range by which the ends of intervals may widen an axis.
+pub(super) const INTERVALS: f64 = 1.0;
+
+/// The least extent that counts as usual, as a share of the centre: equal values differ by rounding alone.
+const LEAST_USUAL: f64 = 1e-3;
+
+/// The least room of an interval, as a share of the largest value: equal values have no range.
+const LEAST_ROOM: f64 = 0.2;
+
+/// Lower ends of intervals nearer to zero than this share of the smallest value are cut on an axis of equal factors:
+/// they would stretch it by decades.
+const LOWEST: f64 = 0.5;
+
+/// Upper ends beyond this many times the largest value are cut there.
+const HIGHEST: f64 = 10.0;
+
+impl Extents {
+    /// Adds a thing that sets the axis.
+    pub(super) fn add(&mut self, values: impl IntoIterator<Item = f64>) {
+        self.core.extend(axis::range(values));
+    }
+
+    /// Both ends, and whether something soft is cut; `None` where there is nothing.
+    pub(super) fn ends(&self, reach: Option<Reach>) -> (Option<(f64, f64)>, bool) {
+        let within = reach.map_or_else(|| self.core.clone(), |reach| self.within(reach));
+        let flat = |pairs: &[(f64, f64)]| -> Vec<f64> { pairs.iter().flat_map(|(lo, hi)| [*lo, *hi]).collect() };
+        let fixed = self.fixed.iter().copied();
+        let Some((lo, hi)) = axis::range(flat(&within).into_iter().chain(fixed)) else {
+            return (axis::range(self.soft.iter().map(|(value, _)| *value)), false);
+        };
+        let (mut ends, mut is_cut) = ((lo, hi), false);
+        for (value, room) in self.soft.iter().filter(|(value, _)| value.is_finite()) {
+            let least = if *room == INTERVALS { LEAST_ROOM * lo.abs().max(hi.abs()) } else { 0.0 };
+            let room = match hi > lo || least > 0.0 {
+                true => (room * (hi - lo)).max(least),
+                false => f64::INFINITY,
+            };
+            ends = (ends.0.min(value.max(lo - room)), ends.1.max(value.min(hi + room)));
+            is_cut |= *value < lo - room || *value > hi + room;
+        }
+        match reach {
+            Some(Reach { symmetric: true, centre, .. }) => {
+                let centre = centre.unwrap_or(0.0);
+                let half = (ends.0 - centre).abs().max((ends.1 - centre).abs());
+                (Some((centre - half, centre + half)), is_cut)
+            }
+            _ => (Some(ends), is_cut),
+        }
+    }
+
+    /// What lies within the reach of an axis, and of what lies in it by a part, that part.
+    fn within(&self, Reach { times, centre, .. }: Reach) -> Vec<(f64, f64)> {
+        let middles = self.core.iter().map(|(lo, hi)| 0.5 * (lo + hi));
+        let centre = centre.or_else(|| median(middles)).unwrap_or(0.0);
+        let extents = self.core.iter().map(|(lo, hi)| (lo - centre).abs().max((hi - centre).abs()));
+        let usual = median(extents.filter(|own| *own > 0.0)).unwrap_or(f64::INFINITY);
+        let room = times * usual.max(LEAST_USUAL * centre.abs());
+        let (least, most) = (centre - room, centre + room);
+        let near = self.core.iter().filter(|(lo, hi)| *lo <= most && *hi >= least);
+        near.map(|(lo, hi)| (lo.max(least), hi.min(most))).collect()
+    }
+
+    /// The values that have a place on an axis of equal factors.
+    pub(super) fn positive(&self) -> Vec<f64> {
+        let all = self.core.iter().flat_map(|(lo, hi)| [*lo, *hi]).chain(self.fixed.iter().copied());
+        let mut values: Vec<f64> = all.filter(|value| *value >= 0.0 && value.is_finite()).collect();
+        let lowest = values.iter().copied().filter(|value| *value > 0.0).fold(f64::INFINITY, f64::min);
+        let highest = values.iter().copied().fold(0.0, f64::max);
+        let soft = self.soft.iter().map(|(value, _)| *value).filter(|value| *value > LOWEST * lowest);
+        values.extend(soft.map(|value| value.min(HIGHEST * highest)).collect::<Vec<f64>>());
+        values
+    }
+}
+
+/// Share of the points on either side that may be far from all others.
+const FAR: f64 = 0.005;
+
+/// Times the range of the other points that an axis reaches beyond them for these.
+const ROOM: f64 = 0.5;
+
+/// Values with those that are few and far from all others drawn in.
+pub(super) fn robust(mut values: Vec<f64>) -> Vec<f64> {
+    values.sort_by(f64::total_cmp);
+    let skipped = (FAR * values.len() as f64).ceil() as usize;
+    let inner = values.get(skipped..values.len().saturating_sub(skipped)).filter(|inner| inner.len() > 10);
+    match inner.and_then(|inner| axis::range(inner.iter().copied())) {
+        Some((lo, hi)) => {
+            let room = ROOM * (hi - lo);
+            vec![values[0].max(lo - room), values[values.len() - 1].min(hi + room)]
+        }
+        None => values,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wild_does_not_set_an_axis_and_what_is_fixed_does() {
+        let mut data = Extents::default();
+        [0.1, 0.101, 0.099, 9.0].into_iter().for_each(|value| data.add([value, 1.1 * value]));
+        let ends = |data: &Extents, reach| data.ends(reach).0.expect("there are data");
+        assert_eq!(ends(&data, None), (0.099, 9.9));
+        let reach = Reach { times: 4.0, centre: None, symmetric: false };
+        assert!(ends(&data, Some(reach)).1 < 0.2, "{:?}", ends(&data, Some(reach)));
+        data.fixed.push(1.0);
+        assert_eq!(ends(&data, Some(reach)).1, 1.0);
+        let about = Reach { centre: Some(0.0), symmetric: true, ..reach };
+        let (lo, hi) = ends(&data, Some(about));
+        assert_eq!(lo, -hi);
+    }
+
+    #[test]
+    fn soft_values_widen_an_axis_as_far_as_there_is_room() {
+        let mut data = Extents::default();
+        data.add([0.0, 10.0]);
+        data.soft = vec![(12.0, 0.25)];
+        assert_eq!(data.ends(None), (Some((0.0, 12.0)), false));
+        data.soft.push((1e9, 0.25));
+        assert_eq!(data.ends(None), (Some((0.0, 12.5)), true));
+        data.soft = vec![(0.1, 1.0), (1e-9, 1.0), (40.0, 1.0)];
+        data.core = vec![(1.0, 10.0)];
+        assert_eq!(data.positive(), [1.0, 10.0, 40.0]);
+    }
+}

@@ -1,0 +1,249 @@
+//! What a study stores of the first trial of a cell, besides the trial itself, and the figures of it.
+
+use serde::{Deserialize, Serialize};
+
+use super::panels::{Layer, LayerKind, LayeredPanel, PanelRow, Panels, Pen, Ruler, Stack};
+use super::rows::{RowItem, RowKind, Rows, RowsColumn};
+use crate::curve::Curve;
+use crate::markup::symbol;
+use crate::number::{self, MISSING};
+use crate::palette::{HEADING, INK, Origin, RECORD};
+
+/// A curve fitted to a heading: how well a Fourier series (or any other) carries the record.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct CurveFit {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// Measured heading, degrees over seconds.
+    pub measured: Curve,
+    /// Fitted heading, degrees over seconds, dense enough to look smooth.
+    pub fitted: Curve,
+    /// Name of the fitted curve, such as "Fourier series, 5 harmonics".
+    pub fitted_name: String,
+    /// Measured minus fitted heading, degrees over seconds.
+    pub residual: Curve,
+    /// Coefficient of determination of the heading.
+    pub r_squared: Option<f64>,
+    /// Fundamental of the series, rad/s.
+    pub fundamental_rad_s: Option<f64>,
+}
+
+impl CurveFit {
+    /// Measured points and fitted curve above, the residual on its own scale below.
+    pub fn panels(&self) -> Panels {
+        let name = if self.fitted_name.is_empty() { "fitted curve" } else { &self.fitted_name };
+        let upper = vec![
+            Layer::new("measured", self.measured.clone(), LayerKind::Record),
+            Layer::line(name, self.fitted.clone(), Pen::new(HEADING)),
+        ];
+        let lower = vec![
+            Layer::line("", self.residual.clone(), Pen::new(RECORD).width(0.6)),
+            Layer::new("", self.residual.clone(), LayerKind::Dots(INK)),
+        ];
+        let residual = Ruler::new("residual [°]", super::Division::Angle);
+        let rows = vec![(PanelRow::new(Ruler::heading(), 0.32), upper), (PanelRow::zeroed(residual, 0.14), lower)];
+        let finite = |value: Option<f64>| value.filter(|own| own.is_finite());
+        // Five decimals, because the fit of a smooth record differs from 1 in the fourth.
+        let r_squared = finite(self.r_squared).map(|own| format!("{} = {}", symbol("R²"), number::fixed(own, 5)));
+        let fundamental = finite(self.fundamental_rad_s)
+            .map(|own| format!("fundamental {} = {} rad/s", symbol("ω"), number::significant(own, 4)));
+        let said = r_squared.into_iter().chain(fundamental).collect();
+        Panels { title: self.title.clone(), said, ..Panels::over_time(rows) }
+    }
+}
+
+/// One source of heading, yaw rate and yaw acceleration; an empty curve is not drawn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MotionCurves {
+    /// Where the curves come from; decides how they look.
+    pub origin: Origin,
+    /// Name in the legend, when it is not that of the origin.
+    pub name: Option<String>,
+    /// Heading, degrees over seconds.
+    pub heading: Curve,
+    /// Yaw rate, degrees per second over seconds.
+    pub yaw_rate: Curve,
+    /// Yaw acceleration, degrees per second squared over seconds.
+    pub yaw_acceleration: Curve,
+}
+
+/// Headings and their derivatives.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Derivatives {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// The sources, drawn in this order.
+    pub curves: Vec<MotionCurves>,
+}
+
+impl Derivatives {
+    /// Heading, yaw rate and yaw acceleration above each other: what differentiation makes of a small error in the
+    /// heading.
+    pub fn panels(&self) -> Panels {
+        let row = |y: Ruler, of: fn(&MotionCurves) -> &Curve| {
+            let layer = |own: &MotionCurves| {
+                let name = own.name.as_deref().unwrap_or_else(|| own.origin.label());
+                Layer::line(name, of(own).clone(), Pen::of(&own.origin))
+            };
+            (PanelRow::new(y, 0.2), self.curves.iter().map(layer).collect())
+        };
+        let rows = vec![
+            row(Ruler::heading(), |own| &own.heading),
+            row(Ruler::yaw_rate(), |own| &own.yaw_rate),
+            row(Ruler::decimal(format!("yaw accel. {} [°/s²]", symbol("ṙ"))), |own| &own.yaw_acceleration),
+        ];
+        Panels { title: self.title.clone(), ..Panels::over_time(rows) }
+    }
+}
+
+/// The heading a method's model gives for the recorded rudder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Replay {
+    /// The method; decides how its replay looks.
+    pub origin: Origin,
+    /// Replayed heading, degrees over seconds.
+    pub heading: Curve,
+    /// Recorded minus replayed heading, degrees over seconds.
+    pub residual: Curve,
+    /// Root mean square of the residual, degrees.
+    pub rms_deg: Option<f64>,
+}
+
+/// A record and its replays.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Replays {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// Recorded heading, degrees over seconds.
+    pub record: Curve,
+    /// Noise-free heading, degrees over seconds.
+    pub truth: Option<Curve>,
+    /// One replay per method.
+    pub replays: Vec<Replay>,
+}
+
+/// A replay may leave the range of the record by this share of it before it is cut.
+const HEADING_ROOM: f64 = 0.25;
+/// A residual is cut at this many times the middle one of all the largest residuals.
+const RESIDUAL_ROOM: f64 = 4.0;
+
+impl Replays {
+    /// Record and replays above, one residual panel per method below, because seven of them on top of each other cannot
+    /// be read. A replay or residual that runs far off is cut at the frame, and its panel says how far it goes, so that
+    /// one failure does not flatten the others.
+    pub fn panels(&self) -> Panels {
+        let mut upper = vec![Layer::new("record", self.record.clone(), LayerKind::Record)];
+        let truth = |own: &Curve| Layer::line("truth", own.clone(), Pen::of(&Origin::Truth));
+        upper.extend(self.truth.as_ref().map(truth));
+        upper.extend(self.replays.iter().map(|own| {
+            Layer::line(own.origin.label(), own.heading.clone(), Pen::of(&own.origin)).within(HEADING_ROOM)
+        }));
+        let below = |own: &Replay| {
+            let rms = own.rms_deg.filter(|rms| rms.is_finite());
+            let rms = rms.map_or_else(|| MISSING.into(), |rms| format!("{}°", number::significant(rms, 2)));
+            let solid = Pen::new(own.origin.look().colour).width(0.8);
+            LayeredPanel {
+                head: Some(format!("{}, rms {rms}", own.origin.label())),
+                layers: vec![Layer::line("", own.residual.clone(), solid)],
+            }
+        };
+        let residual = Ruler::new("residual [°]", super::Division::Angle).about_zero(RESIDUAL_ROOM);
+        let across = if self.replays.len() < 3 { 1 } else { 2 };
+        let multiples = self.replays.iter().map(below).collect();
+        let lower = Stack::multiples(across, Ruler::time(), PanelRow::zeroed(residual, 0.085), multiples);
+        let mut time = Ruler::time();
+        let mut stacks = vec![lower];
+        if self.replays.is_empty() {
+            stacks.clear();
+        } else {
+            time.title.clear();
+        }
+        stacks.insert(0, Stack::over(time, vec![(PanelRow::new(Ruler::heading(), 0.28), upper)]));
+        Panels { title: self.title.clone(), stacks, ..Panels::default() }
+    }
+}
+
+/// A value and, where the method gives one, its interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PointEstimate {
+    /// The value.
+    pub value: f64,
+    /// 95 % interval.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// What one method found; `None` where it found nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MethodEstimate {
+    /// The method; decides how its row looks.
+    pub origin: Origin,
+    /// Gain, 1/s.
+    pub k_per_s: Option<PointEstimate>,
+    /// Time constant, s.
+    pub t_s: Option<PointEstimate>,
+}
+
+/// A pair of values to compare with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reference {
+    /// Gain, 1/s.
+    pub k_per_s: f64,
+    /// Time constant, s.
+    pub t_s: f64,
+}
+
+/// Estimates of K and T with their 95 % intervals, against the truth and the published value.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Intervals {
+    /// Title above the figure.
+    pub title: Option<String>,
+    /// The estimates, from top to bottom.
+    pub estimates: Vec<MethodEstimate>,
+    /// The parameters the trial was simulated with.
+    pub truth: Option<Reference>,
+    /// The parameters printed in the literature.
+    pub published: Option<Reference>,
+}
+
+/// The axis reaches this many times the usual distance from the truth; what lies beyond is an outlier.
+const SPREADS: f64 = 7.0;
+
+impl Intervals {
+    /// K and T side by side, one row per method.
+    pub fn rows(&self) -> Rows {
+        type Estimated = fn(&MethodEstimate) -> Option<PointEstimate>;
+        let column = |title: String, of: Estimated, reference: fn(&Reference) -> f64| {
+            let row = |own: &MethodEstimate| {
+                let mark = |point: PointEstimate| {
+                    RowItem::new("", RowKind::Mark(own.origin.look(), point.value, point.interval))
+                };
+                of(own).map(mark).into_iter().collect()
+            };
+            let line = |origin: Origin, own: &Option<Reference>| {
+                own.as_ref().map(|own| (origin.label().to_owned(), Pen::of(&origin).width(0.8), reference(own)))
+            };
+            let truth = line(Origin::Truth, &self.truth);
+            let centre = truth.as_ref().map(|(.., value)| *value);
+            RowsColumn {
+                x: Ruler::decimal(title).within(SPREADS, centre),
+                rows: self.estimates.iter().map(row).collect(),
+                lines: truth.into_iter().chain(line(Origin::Published, &self.published)).collect(),
+                ..RowsColumn::default()
+            }
+        };
+        let points = || self.estimates.iter().flat_map(|own| [own.k_per_s, own.t_s]).flatten();
+        let has_bars = points().any(|own| own.interval.is_some()).then_some("Bars: 95 % intervals.");
+        let lacks = points().any(|own| own.interval.is_none());
+        let lacks = lacks.then_some("Without bar: the method gives no interval.");
+        let note: Vec<&str> = [has_bars, lacks].into_iter().flatten().collect();
+        Rows {
+            title: self.title.clone(),
+            names: self.estimates.iter().map(|own| own.origin.label().to_owned()).collect(),
+            columns: vec![
+                column(format!("{} [1/s]", symbol("K")), |own| own.k_per_s, |own| own.k_per_s),
+                column(format!("{} [s]", symbol("T")), |own| own.t_s, |own| own.t_s),
+            ],
+            note: (!note.is_empty()).then(|| note.join(" ")),
+        }
+    }
+}

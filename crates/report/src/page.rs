@@ -1,0 +1,157 @@
+//! A page: blocks in reading order, from which the terminal, Markdown and (of the Markdown) a browser are written. What
+//! a figure shows is part of the page, so a page can be drawn again wherever it was made.
+
+use crate::figures::Plot;
+use crate::markdown::{prose, text};
+use crate::table::Table;
+
+/// A figure of a page.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PageFigure {
+    /// Stem of its files.
+    pub stem: String,
+    /// What is to be seen.
+    pub caption: String,
+    /// What is drawn.
+    pub plot: Plot,
+}
+
+impl PageFigure {
+    /// A figure.
+    pub fn new(stem: impl Into<String>, caption: impl Into<String>, plot: impl Into<Plot>) -> Self {
+        Self { stem: stem.into(), caption: caption.into(), plot: plot.into() }
+    }
+}
+
+/// A part of a page.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PageBlock {
+    /// A headline and its level, 1 for the page itself.
+    Headline(usize, String),
+    /// A paragraph of Markdown.
+    Prose(String),
+    /// A list, every entry Markdown.
+    List(Vec<String>),
+    /// A table.
+    Table(Table),
+    /// A figure.
+    Figure(PageFigure),
+}
+
+/// Blocks in reading order.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Page {
+    /// The blocks.
+    pub blocks: Vec<PageBlock>,
+}
+
+impl Page {
+    /// A page of this title.
+    pub fn titled(title: impl Into<String>) -> Self {
+        Self { blocks: vec![PageBlock::Headline(1, title.into())] }
+    }
+
+    /// Adds a headline of a part.
+    pub fn part(&mut self, title: impl Into<String>) {
+        self.blocks.push(PageBlock::Headline(2, title.into()));
+    }
+
+    /// Adds a headline below that of a part.
+    pub fn subpart(&mut self, title: impl Into<String>) {
+        self.blocks.push(PageBlock::Headline(3, title.into()));
+    }
+
+    /// Adds a paragraph of Markdown, unless it is empty.
+    pub fn say(&mut self, prose: impl AsRef<str>) {
+        let prose = prose.as_ref().trim();
+        if !prose.is_empty() {
+            self.blocks.push(PageBlock::Prose(prose.to_owned()));
+        }
+    }
+
+    /// Adds paragraphs of words that are read as they are, one a line.
+    pub fn words(&mut self, lines: &str) {
+        lines.lines().for_each(|line| self.say(text(line)));
+    }
+
+    /// Adds a list of Markdown, unless it is empty.
+    pub fn list(&mut self, entries: impl IntoIterator<Item = String>) {
+        let entries: Vec<String> = entries.into_iter().collect();
+        if !entries.is_empty() {
+            self.blocks.push(PageBlock::List(entries));
+        }
+    }
+
+    /// Adds a table.
+    pub fn table(&mut self, table: Table) {
+        self.blocks.push(PageBlock::Table(table));
+    }
+
+    /// Adds figures.
+    pub fn figures(&mut self, figures: impl IntoIterator<Item = PageFigure>) {
+        self.blocks.extend(figures.into_iter().map(PageBlock::Figure));
+    }
+
+    /// The figures in reading order.
+    pub fn drawings(&self) -> impl Iterator<Item = &PageFigure> {
+        self.blocks.iter().filter_map(|block| if let PageBlock::Figure(own) = block { Some(own) } else { None })
+    }
+
+    /// As Markdown (the GitHub flavour). HTML in it is shown and not obeyed.
+    pub fn to_markdown(&self) -> String {
+        let block = |block: &PageBlock| match block {
+            PageBlock::Headline(level, title) => format!("{} {title}\n", "#".repeat(*level)),
+            PageBlock::Prose(prose) => format!("{prose}\n"),
+            PageBlock::List(entries) => entries.iter().map(|entry| format!("- {entry}\n")).collect(),
+            PageBlock::Table(table) => table.to_markdown(),
+            PageBlock::Figure(PageFigure { stem, caption, .. }) => {
+                let caption = text(caption);
+                format!("![{caption}]({stem}.png)\n\n*{caption}*\n")
+            }
+        };
+        prose(&self.blocks.iter().map(block).collect::<Vec<String>>().join("\n"))
+    }
+
+    /// For a terminal: words and tables.
+    pub fn to_text(&self) -> String {
+        let block = |block: &PageBlock| match block {
+            PageBlock::Headline(_, words) | PageBlock::Prose(words) => Some(format!("{words}\n")),
+            PageBlock::List(entries) => Some(entries.join("\n") + "\n"),
+            PageBlock::Table(table) => Some(table.to_text()),
+            PageBlock::Figure(_) => None,
+        };
+        self.blocks.iter().filter_map(block).collect::<Vec<String>>().join("\n")
+    }
+
+    /// The tables in LaTeX, below each other.
+    pub fn to_latex(&self) -> String {
+        let tables =
+            self.blocks.iter().filter_map(|block| if let PageBlock::Table(own) = block { Some(own) } else { None });
+        tables.map(Table::to_latex).collect::<Vec<String>>().join("\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figures::Panels;
+    use crate::table::Column;
+
+    #[test]
+    fn blocks_stand_apart_in_every_form() {
+        let mut page = Page::titled("Trial");
+        page.words("a*b\n<b>c");
+        page.say("  ");
+        page.part("Numbers");
+        let mut table = Table::new(vec![Column::left("K")]);
+        table.push(["0.1"]);
+        page.table(table);
+        page.figures([PageFigure::new("fit", "a*b", Panels::default())]);
+        page.list(["one".to_owned(), "two".to_owned()]);
+        let markdown = "# Trial\n\na\\*b\n\n\\<b>c\n\n## Numbers\n\n| K   |\n| --- |\n| 0.1 |\n\n![a\\*b](fit.png)\n\n\
+                        *a\\*b*\n\n- one\n- two\n";
+        assert_eq!(page.to_markdown(), markdown);
+        assert!(page.to_text().ends_with("Numbers\n\nK\n───\n0.1\n\none\ntwo\n"), "{}", page.to_text());
+        assert!(page.to_latex().contains("toprule") && page.drawings().count() == 1);
+    }
+}

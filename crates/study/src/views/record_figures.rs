@@ -1,0 +1,135 @@
+//! Figures of records that `study fit`, `study trace` and `study predict` have in common: a record with models of it
+//! over time, the phase plane, and the diagram of steady turns.
+
+use predict::known::ValidityRange;
+use predict::steady::SteadyCurve;
+use report::figures::{Division, Layer, LayerKind, PanelRow, Panels, Pen, Ruler, Stack};
+use report::number::significant;
+use report::palette::{HEADING, PAPER, RECORD, RUDDER, SHORT_DASH};
+use report::{Curve, Origin};
+use ship::angle::to_deg;
+use trial::Trial;
+use trial::zigzag::PhasePlane;
+
+/// Angles as degrees over what they stand at.
+pub fn degrees(values: &[f64]) -> Vec<f64> {
+    values.iter().copied().map(to_deg).collect()
+}
+
+/// A model of a record over time: the heading and its residual in degrees, the root mean square of this, and half the
+/// width of its 95 % band.
+pub struct ModelOverTime {
+    /// Whose model.
+    pub origin: Origin,
+    /// RecordReplay heading.
+    pub heading: Curve,
+    /// Recorded minus replayed heading.
+    pub residual: Curve,
+    /// Its root mean square, degrees.
+    pub rms_deg: Option<f64>,
+    /// The lower and upper ends of the band about the heading and about no residual.
+    pub band: Option<[[Curve; 2]; 2]>,
+}
+
+/// How dense the area of a band is.
+const OPACITY: f64 = 0.2;
+
+/// The panel of a rudder.
+pub fn rudder(name: &str, curve: Curve, height: f64) -> (PanelRow, Vec<Layer>) {
+    (PanelRow::zeroed(Ruler::rudder(), height), vec![Layer::line(name, curve, Pen::new(RUDDER))])
+}
+
+/// Heading with models, residuals and rudder over one time axis.
+pub fn over_time(title: String, heading: Curve, rudder_deg: Curve, models: Vec<ModelOverTime>) -> Panels {
+    let mut upper = vec![Layer::new("recorded heading", heading, LayerKind::Record)];
+    let mut middle = Vec::new();
+    // A band that is wider than everything else is cut at the frame: it would flatten the record.
+    let mut bands = Vec::new();
+    for ModelOverTime { origin, heading, residual, rms_deg, band } in models {
+        let (pen, colour) = (Pen::of(&origin), origin.look().colour);
+        let rms = rms_deg.map_or_else(String::new, |rms| format!(", rms {}°", significant(rms, 2)));
+        upper.push(Layer::line(format!("{}{rms}", origin.label()), heading, pen));
+        // Solid, because dashes would hide parts of a noisy residual.
+        middle.push(Layer::line("", residual, Pen::new(colour).width(0.8)));
+        bands.extend(band.map(|[heading, residual]| {
+            [Layer::band("95 % band", heading, colour, OPACITY), Layer::band("", residual, colour, OPACITY)]
+        }));
+    }
+    for [heading, residual] in bands {
+        upper.push(heading.within(0.0));
+        middle.push(residual.within(0.0));
+    }
+    let residual = PanelRow::zeroed(Ruler::new("residual [°]", Division::Angle), 0.14);
+    let rows = vec![
+        (PanelRow::new(Ruler::heading(), 0.28), upper),
+        (residual, middle),
+        rudder("recorded rudder", rudder_deg, 0.13),
+    ];
+    Panels { title: Some(title), ..Panels::over_time(rows) }
+}
+
+/// One panel with lines through zero.
+fn plane(title: String, x: Ruler, height: f64, layers: Vec<Layer>) -> Panels {
+    let stack = Stack::over(x, vec![(PanelRow::zeroed(Ruler::yaw_rate(), height), layers)]);
+    let cut = Some(String::from("Some drawn ships are cut at the frame."));
+    Panels { title: Some(title), cut, ..Panels::of(Stack { zero: true, ..stack }) }
+}
+
+/// Yaw rate over heading of a record, and whether the rate is the slope of its smoothed heading.
+pub fn phase_of(trial: &Trial) -> (Option<Curve>, bool) {
+    let phase = PhasePlane::of(trial);
+    let smoothed = phase.as_ref().is_some_and(|phase| phase.smoothed);
+    (phase.map(|phase| phase_curve(&phase.heading, &phase.yaw_rate)), smoothed)
+}
+
+/// Yaw rate over heading, degrees.
+pub fn phase_curve(heading: &[f64], yaw_rate: &[f64]) -> Curve {
+    Curve::new(degrees(heading), degrees(yaw_rate))
+}
+
+/// Yaw rate against heading: a record, and the ways of models by their names.
+pub fn phase_plane(title: String, record: Option<Curve>, smoothed: bool, ways: Vec<(String, Origin, Curve)>) -> Panels {
+    let name = if smoothed { "record, slope of its smoothed heading" } else { "record" };
+    let record = record.map(|curve| Layer::new(name, curve, LayerKind::Record));
+    let ways = ways.into_iter().map(|(name, origin, curve)| Layer::line(name, curve, Pen::of(&origin)));
+    plane(title, Ruler::heading(), 0.5, record.into_iter().chain(ways).collect())
+}
+
+/// Drawn ships whose steady curves are shown.
+const CURVES: usize = 40;
+
+/// Steady turns of some ships, the most probable one first, as in the diagram of a spiral test: the branch on which a
+/// ship that is unstable on a straight course cannot stay dashed, the ships that may be meant just as well pale, over
+/// the field in which there are records.
+pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
+    let curve = |of: &SteadyCurve, keep: &dyn Fn(usize) -> bool| {
+        let place = |row: usize| match keep(row) {
+            true => (to_deg(of.rudder[row]), to_deg(of.yaw_rate[row])),
+            false => (f64::NAN, f64::NAN),
+        };
+        let (x, y): (Vec<f64>, Vec<f64>) = (0..of.rudder.len()).map(place).unzip();
+        Curve::new(x, y)
+    };
+    let (rudder, rate) = (to_deg(seen.rudder_rad), to_deg(seen.yaw_rate_rad_s));
+    let edge = |side: f64| Curve::new([-rudder, rudder], [side * rate; 2]);
+    let mut layers = vec![Layer::band("seen in the records", [edge(-1.0), edge(1.0)], RECORD, 0.2)];
+    if let Some((first, rest)) = curves.split_first() {
+        let drawn = rest.iter().take(CURVES).map(|ship| curve(ship, &|_| true));
+        layers.extend(drawn.map(|ship| Layer::line("drawn ships", ship, Pen::pale()).within(0.4)));
+        // Where the rudder goes back while the yaw rate grows.
+        let falls = |row: usize| row + 1 < first.rudder.len() && first.rudder[row + 1] < first.rudder[row];
+        let can_be_unstable = first.instability().is_some();
+        let is_inside = |row: usize| can_be_unstable && falls(row) && row > 0 && falls(row - 1);
+        let is_unstable = |row: usize| can_be_unstable && (falls(row) || (row > 0 && falls(row - 1)));
+        let own = Pen::new(HEADING).width(1.3);
+        // A white edge keeps the curve apart from the drawn ones.
+        layers.push(Layer::line("", curve(first, &|_| true), Pen::new(PAPER).width(2.4)));
+        layers.push(Layer::line("most probable ship", curve(first, &|row| !is_inside(row)), own));
+        if can_be_unstable {
+            let dashed = Pen { dash: SHORT_DASH, ..own };
+            layers.push(Layer::line("unstable branch", curve(first, &is_unstable), dashed));
+        }
+    }
+    let note = Some(String::from("Outside the grey field the curves are extrapolated."));
+    Panels { note, ..plane(String::from("Steady turns"), Ruler::rudder(), 0.42, layers) }
+}

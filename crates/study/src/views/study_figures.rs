@@ -1,0 +1,272 @@
+//! The figures of a finished study: which there are, what they say, and where they stand.
+
+use std::collections::HashSet;
+
+use report::PageFigure;
+use report::figures::Plot;
+use scenario::name::slug;
+
+use super::charts::{self, ErrorMeasure};
+use super::key_figure;
+use super::pooled_charts;
+use super::trace_charts as traces;
+use super::tracing_table::has_several;
+use campaign::showcase::Showcase;
+use campaign::store::Stored;
+use campaign::summary::{Summary, TraceSummary};
+
+use crate::options::FigureChoice;
+use crate::screen;
+
+/// Where a figure stands in the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FigurePlace {
+    /// Before everything else: the one that stands for the study.
+    Key,
+    /// With the first trial of a cell.
+    Showcase(usize),
+    /// With what traces named.
+    Traces,
+    /// With all trials.
+    AllTrials,
+    /// The same, of errors over the axes.
+    Chart,
+}
+
+/// A figure and its place.
+pub type StudyFigure = (FigurePlace, PageFigure);
+
+/// Stem of the figure that stands for a study.
+pub const KEY_FIGURE: &str = "hero";
+
+/// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
+/// A name of a figure that there is not is warned of.
+pub fn of(stored: &Stored, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
+    let words = &stored.design.words;
+    let mut figures = all(stored, summary);
+    tell_apart(figures.iter_mut().map(|(_, figure)| &mut figure.stem));
+    let known: Vec<String> = figures.iter().map(|(_, figure)| figure.stem.clone()).collect();
+    let warn = |key: &str, name: &str| {
+        screen::warn(&format!("warning: `output.{key}`: there is no figure {name:?}; there are: {}", known.join(", ")));
+    };
+    let key = words.figure.as_ref().and_then(|stem| {
+        let found = figures.iter().find(|(_, figure)| figure.stem == *stem);
+        if found.is_none() {
+            warn("figure", stem);
+        }
+        found.map(|(place, figure)| {
+            let mut plot = figure.plot.clone();
+            if *place == FigurePlace::Chart {
+                plot = key_figure::of_chart(plot, &words.methods);
+            }
+            if words.title.is_some() {
+                plot.title_mut().clone_from(&words.title);
+            }
+            (FigurePlace::Key, PageFigure { stem: KEY_FIGURE.to_owned(), caption: figure.caption.clone(), plot })
+        })
+    });
+    let named = words.figures.as_deref().filter(|_| choice == FigureChoice::Named);
+    for name in named.into_iter().flatten().filter(|name| !known.contains(name)) {
+        warn("figures", name);
+    }
+    figures.retain(|(_, figure)| match choice {
+        FigureChoice::All => true,
+        FigureChoice::Hero => false,
+        FigureChoice::Named => named.is_none_or(|named| named.contains(&figure.stem)),
+    });
+    key.into_iter().chain(figures).collect()
+}
+
+/// All figures there are.
+fn all(stored: &Stored, summary: &Summary) -> Vec<StudyFigure> {
+    let mut figures = Vec::new();
+    for (index, showcase) in stored.showcases.iter().enumerate() {
+        figures.extend(of_showcase(&slug(&showcase.title), showcase).map(|own| (FigurePlace::Showcase(index), own)));
+    }
+    figures.extend(of_traces(stored, summary).into_iter().map(|own| (FigurePlace::Traces, own)));
+    figures.extend(of_errors(stored, summary).into_iter().map(|own| (FigurePlace::Chart, own)));
+    figures.extend(of_all_trials(stored, summary).into_iter().map(|own| (FigurePlace::AllTrials, own)));
+    figures
+}
+
+/// Numbers stems that are the same: two titles may make one slug.
+fn tell_apart<'a>(stems: impl Iterator<Item = &'a mut String>) {
+    let mut taken = HashSet::new();
+    for stem in stems {
+        let own = stem.clone();
+        let mut number = 2;
+        while !taken.insert(stem.clone()) {
+            *stem = format!("{own}-{number}");
+            number += 1;
+        }
+    }
+}
+
+/// What a person should see in the charts of one measure.
+fn reading(measure: ErrorMeasure) -> &'static str {
+    match measure {
+        ErrorMeasure::Rms => {
+            "Root mean square error of K and T with 95 % bootstrap intervals, over the Cramér–Rao bound where all cells have \
+             one. Over the bound, a line that rises where there is less noise is bias. A difference from the nearest \
+             first-order response is no error: the ship has no K and T of its own."
+        }
+        ErrorMeasure::Coverage => {
+            "Share of quoted 95 % intervals that hold the truth, with Wilson's intervals. Inside the grey band a method is as \
+             honest as this number of trials can tell; below it, it is too sure. Methods that quote an interval in fewer than \
+             half of the trials are missing."
+        }
+        ErrorMeasure::Failures => {
+            "Share of trials without an answer, with Wilson's intervals; methods that always answer are left out. The reasons are \
+             listed below."
+        }
+        ErrorMeasure::Validation => {
+            "Median error of the heading on the validation manoeuvre, its rudder replayed through the answer: what K and T are \
+             worth for prediction. Where all methods agree, the error is that of the model."
+        }
+    }
+}
+
+/// Cells of a study with traces beyond which errors of K and T are not drawn one by one.
+const MOST_TRACED: usize = 24;
+
+/// What the first of several traces said.
+pub fn first_trace(summary: &Summary) -> Vec<TraceSummary> {
+    let first = summary.tracing.first().map_or(0, |line| line.method);
+    summary.tracing.iter().filter(|line| line.method == first).cloned().collect()
+}
+
+/// The words that say of which of several things a figure is.
+fn here(of: &str) -> String {
+    if of.is_empty() { String::new() } else { format!(" Here: {of}.") }
+}
+
+/// A stem of one of several figures.
+fn stem_of(stem: &str, of: &str) -> String {
+    if of.is_empty() { stem.to_owned() } else { format!("{stem}-{}", slug(of)) }
+}
+
+/// Figures about what traces named.
+fn of_traces(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
+    let design = &stored.design;
+    // Of several traces the first is drawn: the others are in the tables.
+    let lines = first_trace(summary);
+    let first = lines.first().map_or(0, |line| line.method);
+    let whose = if has_several(design) { here(&design.methods[first].label) } else { String::new() };
+    let confusion = |(number, (group, map)): (usize, (String, _))| {
+        let caption = "How often each effect was named, in per cent of the trials, with 95 % intervals. A row is what the \
+                       trials lack, a column what was named; aliases count for their own name only.";
+        let stem = if number == 0 { String::from("confusion") } else { format!("confusion-{}", slug(&group)) };
+        PageFigure::new(stem, format!("{caption}{}{whose}", here(&group)), Plot::Cells(map))
+    };
+    let power = traces::power(&lines).map(|data| {
+        let caption = "Share of trials in which the one missing effect was named (itself or its group), over the likelihood \
+                       ratio it has on average against the best first-order response, with 95 % intervals. Curves: power of a \
+                       likelihood-ratio test with one to three parameters at the threshold that a trace has under white noise.";
+        PageFigure::new("power", format!("{caption}{whose}"), data)
+    });
+    let reliability = traces::reliability(&lines).map(|data| {
+        let caption = "How often an effect was there, over the probability that the trace gave it: every effect on the list \
+                       counts once in every trial of a ship whose effects are known, with 95 % intervals.";
+        PageFigure::new("reliability", format!("{caption}{whose}"), data)
+    });
+    let confusions = traces::confusions(design, &lines).into_iter().enumerate().map(confusion);
+    confusions.chain(power).chain(reliability).collect()
+}
+
+/// Errors over the axes. What a trace finds has its own figures; of many cells the errors would be a figure each.
+fn of_errors(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
+    let design = &stored.design;
+    let mut figures = Vec::new();
+    for measure in ErrorMeasure::ALL {
+        if !summary.tracing.is_empty() && design.cells.len() > MOST_TRACED {
+            break;
+        }
+        for (group, plot) in charts::over_axes(design, summary, measure) {
+            let stem = group.as_ref().map_or_else(|| measure.stem().to_owned(), |own| stem_of(measure.stem(), own));
+            let place = group.map_or_else(String::new, |group| format!(" Here: {group}."));
+            figures.push(PageFigure::new(stem, format!("{}{place}", reading(measure)), plot));
+        }
+    }
+    figures
+}
+
+fn of_all_trials(stored: &Stored, summary: &Summary) -> Vec<PageFigure> {
+    let design = &stored.design;
+    let mut figures = Vec::new();
+    figures.extend(pooled_charts::predictions(design, summary).map(|data| {
+        let caption = "Share of trials in which the 90 % interval of a manoeuvre that was not made holds what the ship does. Left \
+                       of the line a method is too sure.";
+        PageFigure::new("predictions", caption, data)
+    }));
+    figures.extend(pooled_charts::indices(design, summary).map(|(data, method)| {
+        let caption = format!(
+            "Mean K and T that {method} finds, over those of the first row: where they change from row to row, K and T belong \
+             to the trial and not to the ship."
+        );
+        PageFigure::new("indices", caption, data)
+    }));
+    for (stem, title, data) in pooled_charts::heat_maps(design, summary) {
+        figures.push(PageFigure::new(stem, format!("{title} of every method over both axes: dark is good."), data));
+    }
+    // A single cell needs no name.
+    let name = |cell: usize| if design.cells.len() > 1 { design.cells[cell].labels.join(", ") } else { String::new() };
+    for (cell, data) in pooled_charts::violins(design, summary) {
+        let caption = "Distribution of the errors. A violin beside zero is bias, a long one is scatter.";
+        let (stem, place) = (stem_of("violins", &name(cell)), here(&name(cell)));
+        figures.push(PageFigure::new(stem, format!("{caption}{place}"), data));
+    }
+    for (cell, is_bounded, data) in pooled_charts::scatters(design, summary) {
+        let caption = "Errors of K and T together: the cloud of each method and its 95 % ellipse (answers beyond four robust \
+                       standard deviations drawn in)";
+        // Trials with a bound each have none in common.
+        let bound = if is_bounded { " beside that of the Cramér–Rao bound" } else { "" };
+        let (stem, place) = (stem_of("scatter", &name(cell)), here(&name(cell)));
+        figures.push(PageFigure::new(stem, format!("{caption}{bound}.{place}"), data));
+    }
+    figures
+}
+
+fn of_showcase<'a>(prefix: &'a str, showcase: &'a Showcase) -> impl Iterator<Item = PageFigure> + use<'a> {
+    let figures: [(&str, &str, Option<Plot>); 5] = [
+        (
+            "trial",
+            "The trial with its characteristic points (ITTC): executes, overshoots, times to check yaw, period.",
+            showcase.trial.clone().map(Plot::from),
+        ),
+        (
+            "fourier-fit",
+            "The Fourier series fitted to the heading, and what it leaves.",
+            showcase.fourier_fit.as_ref().map(|data| data.panels().into()),
+        ),
+        (
+            "derivatives",
+            "Heading, yaw rate and yaw acceleration of the fitted series against the truth: a good heading does not make a \
+             good acceleration.",
+            showcase.derivatives.as_ref().map(|data| data.panels().into()),
+        ),
+        (
+            "replays",
+            "The recorded rudder replayed through every method's K, T and δ_r; only the initial state is fitted.",
+            Some(showcase.replays.panels().into()),
+        ),
+        (
+            "intervals",
+            "K and T of every method with 95 % intervals, beside the truth and the published values.",
+            Some(showcase.intervals.rows().into()),
+        ),
+    ];
+    let stem = move |name: &str| if prefix.is_empty() { name.to_owned() } else { format!("{prefix}-{name}") };
+    figures.into_iter().filter_map(move |(name, caption, plot)| Some(PageFigure::new(stem(name), caption, plot?)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_figure_overwrites_another() {
+        let mut stems = ["errors", "errors-2", "errors", "errors"].map(String::from);
+        tell_apart(stems.iter_mut());
+        assert_eq!(stems, ["errors", "errors-2", "errors-3", "errors-4"]);
+    }
+}
