@@ -288,7 +288,7 @@ fn curves(compared: &Compared, x: usize, groups: &[ChartGroup]) -> Panels {
             layers: compared.methods.iter().filter_map(of_method).chain(bound).collect(),
         }
     };
-    let marks = design.words.marks.iter().filter(|mark| mark.axis == design.axes[x]);
+    let marks = design.words.output.marks.iter().filter(|mark| mark.axis == design.axes[x]);
     let stack = Stack {
         x: vec![across; groups.len()],
         rows: titles.iter().map(row).collect(),

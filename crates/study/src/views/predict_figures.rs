@@ -3,7 +3,6 @@
 
 use predict::imo::PredictedCriterion;
 use predict::interval::PredictionInterval;
-use predict::kind::Pattern;
 use predict::prediction::Bands;
 use predict::replay::RecordReplay;
 use predict::{PredictDocument, Prediction};
@@ -11,6 +10,7 @@ use report::figures::{Layer, LayerKind, PanelRow, Panels, Pen, RowItem, RowKind,
 use report::palette::{BEFORE, HEADING, Look, Marker, SOLID};
 use report::{Curve, Origin, PageFigure};
 use ship::angle::to_deg;
+use trial::Manoeuvre;
 use trial::imo::Unit;
 
 use super::predict_curves::stems;
@@ -51,7 +51,7 @@ pub fn figures(document: &PredictDocument) -> Vec<PageFigure> {
 
 fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str) -> Vec<PageFigure> {
     let kind = prediction.kind.to_string();
-    if prediction.kind.pattern == Pattern::Spiral {
+    if matches!(prediction.kind, Manoeuvre::Spiral { .. }) {
         let caption = format!("{kind}: steady yaw rate against rudder, the unstable branch dashed; thin: drawn ships.");
         return vec![PageFigure::new(stem, caption, steady_turns(&prediction.curves, document.seen))];
     }
@@ -62,7 +62,7 @@ fn of_manoeuvre(document: &PredictDocument, prediction: &Prediction, stem: &str)
     });
     let caption = format!("{kind}: heading of the most probable ship with the bands of {} draws.", document.draws);
     let mut figures = vec![PageFigure::new(stem, caption, bands(kind.clone(), &prediction.heading, None, steered))];
-    if let (Pattern::ZigZag { .. }, Some(passage)) = (prediction.kind.pattern, passage) {
+    if let (Manoeuvre::ZigZag { .. }, Some(passage)) = (&prediction.kind, passage) {
         let caption = format!("{kind}: yaw rate against heading of the most probable ship.");
         let way = phase_curve(&passage.heading, &passage.yaw_rate);
         let ways = vec![(String::from("most probable ship"), Origin::After, way)];

@@ -42,7 +42,7 @@ pub const KEY_FIGURE: &str = "hero";
 /// The figures of a study, in the order of the report: first the one that stands for it, where the scenario names one.
 /// A name of a figure that there is not is warned of.
 pub fn of(stored: &Stored, summary: &Summary, choice: FigureChoice) -> Vec<StudyFigure> {
-    let words = &stored.design.words;
+    let words = &stored.design.words.output;
     let mut figures = all(stored, summary);
     tell_apart(figures.iter_mut().map(|(_, figure)| &mut figure.stem));
     let known: Vec<String> = figures.iter().map(|(_, figure)| figure.stem.clone()).collect();
