@@ -4,11 +4,11 @@
 
 use std::collections::BTreeMap;
 
+use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::Quantity;
 
-use crate::diagnostics::Whiteness;
 use crate::judge::ReplayResult;
 use crate::replay_errors::HORIZONS;
 

@@ -141,6 +141,12 @@ impl Structure {
         entries
     }
 
+    /// What is expected of the fitted entries, and where they are.
+    pub fn fitted_priors(&self, theta: &[f64]) -> Vec<(Prior, f64)> {
+        let fitted = self.entries().into_iter().zip(theta).filter(|(entry, _)| entry.prior.is_fitted());
+        fitted.map(|(entry, &value)| (entry.prior, value)).collect()
+    }
+
     /// Places in θ of the fitted entries: unknown k of a fit is the entry at place k of these.
     pub fn fitted(&self) -> Vec<usize> {
         let entries = self.entries();

@@ -95,7 +95,7 @@ impl Analysis {
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
         let law = Law { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
-        let normal = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
+        let (normal, _) = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
         let known = full.kept_covariance(None)?.try_inverse()?;
         let count = known.nrows();
         let mut precision = normal.matrix;

@@ -273,7 +273,7 @@ fn relative_wind(trial: &Trial) -> Option<(Vec<f64>, Vec<f64>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::of_columns;
+    use crate::testing::of_columns;
 
     #[test]
     fn groups_end_at_gaps() {

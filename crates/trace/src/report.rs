@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use estimation::mixture::{NormalMixture, NormalPair, Summary, ratio};
+use estimation::residuals::Whiteness;
 use nalgebra::DMatrix;
 use ship::angle::to_deg;
 use ship::effects::{self, Effect};
@@ -11,17 +13,16 @@ use trial::{Quantity, Trial};
 
 use crate::base::Base;
 use crate::candidates::{Candidate, PROBABILITY, PROBABILITY_OF_TIME};
-use crate::diagnostics::{Signature, Whiteness};
 use crate::document::*;
 use crate::fit::{Fit, Problem};
 use crate::full::Full;
 use crate::judge::RecordComparison;
-use crate::mixture::{Mixture, Pair, ratio};
 use crate::model::TermName;
 use crate::naming::{Named, named};
 use crate::noise::Wander;
 use crate::remainder::Remainder;
 use crate::settings::Settings;
+use crate::signature::Signature;
 use crate::structures::Structures;
 use crate::words;
 
@@ -143,21 +144,21 @@ impl Said<'_> {
     fn indices(&self) -> Indices {
         let members = self.structures.members();
         let covariances: Vec<Option<DMatrix<f64>>> = members.iter().map(|(_, fit)| fit.covariance()).collect();
-        let pairs: Vec<Pair> = members
+        let pairs: Vec<NormalPair> = members
             .iter()
             .zip(&covariances)
             .map(|((weight, fit), covariance)| {
                 let of = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
                 let (denominator, numerator) = ((fit.theta[0], of(0, 0)), (fit.theta[1], of(1, 1)));
-                Pair { weight: *weight, denominator, numerator, covariance: of(0, 1) }
+                NormalPair { weight: *weight, denominator, numerator, covariance: of(0, 1) }
             })
             .collect();
-        let one = |pair: &Pair| Pair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
-        let (k, t) = (ratio(&pairs), ratio(&pairs.iter().map(one).collect::<Vec<_>>()));
+        let one = |pair: &NormalPair| NormalPair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
+        let (k, t) = (quantity(ratio(&pairs)), quantity(ratio(&pairs.iter().map(one).collect::<Vec<_>>())));
         let parts = members.iter().zip(&covariances).map(|((weight, fit), covariance)| {
             (*weight, fit.theta[2], covariance.as_ref().map_or(f64::INFINITY, |all| all[(2, 2)].max(0.0).sqrt()))
         });
-        self.with_prime([k, t, Mixture { parts: parts.collect() }.quantity()])
+        self.with_prime([k, t, quantity(NormalMixture { parts: parts.collect() }.summary())])
     }
 
     /// All parameters of a structure as its effects take them.
@@ -168,7 +169,7 @@ impl Said<'_> {
         let of = |(place, value): (usize, &f64)| {
             let sd = covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
             let quantity = match entries[place].prior.is_fitted() {
-                true => Mixture { parts: vec![(1.0, *value, sd)] }.quantity(),
+                true => quantity(NormalMixture { parts: vec![(1.0, *value, sd)] }.summary()),
                 false => Quantity::bare(*value),
             };
             let at_bound = entries[place].ends_at(fit.theta[place]);
@@ -215,10 +216,10 @@ impl Said<'_> {
                 let sd = covariance.as_ref().map_or(f64::INFINITY, |all| all[(at, at)].max(0.0).sqrt());
                 (*weight, fit.structure.physical(&fit.theta)[at], sd)
             });
-            let mixture = Mixture { parts: parts.collect() };
+            let mixture = NormalMixture { parts: parts.collect() };
             let entry = &first.structure.entries()[first.structure.ranges()[*place].start + k];
             let quantity = match entry.prior.is_fitted() {
-                true => mixture.quantity(),
+                true => quantity(mixture.summary()),
                 false => Quantity::bare(mixture.parts[0].1),
             };
             let ends = entry.ends_at(first.theta[first.structure.ranges()[*place].start + k]);
@@ -438,4 +439,8 @@ impl Said<'_> {
         };
         self.trials.iter().enumerate().map(of).collect()
     }
+}
+
+fn quantity((value, error): Summary) -> Quantity {
+    Quantity { value, sd: error.map(|(sd, _)| sd), ci95: error.map(|(_, interval)| interval) }
 }

@@ -7,11 +7,11 @@ mod result;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use estimation::subsets::{Removable, conditional};
 use rayon::prelude::*;
 
 use crate::candidates::{Candidate, is_delay, is_variant};
-use crate::evidence::{Removable, conditional};
-use crate::fit::{Effort, Fit, Problem, System};
+use crate::fit::{Effort, Fit, Problem};
 use crate::full::Full;
 use crate::model::{Structure, Term, TermName};
 use crate::selection::Selection;
@@ -135,8 +135,8 @@ impl Stage<'_> {
     /// Weighs all subsets round a point of the full model, and refits the best.
     fn look(&mut self, at: (Vec<f64>, Vec<[f64; 2]>), about: &[bool]) {
         let structure = &self.full.fit.structure;
-        let system = System::at(self.problem, structure, &at.0, &at.1, &self.weights);
-        let Some(quadratic) = Quadratic::new(&system, structure, &at.0, &self.log_odds()) else { return };
+        let normal = self.problem.posterior(structure, &at.0, &at.1, &self.weights);
+        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &self.log_odds()) else { return };
         if self.visibility.is_empty() {
             self.visibility = self.visibility(&quadratic);
         }

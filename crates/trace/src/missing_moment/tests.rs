@@ -7,7 +7,7 @@ use ship::effects::NonlinearDamping;
 use ship::first_order::{State, Transition};
 
 use super::*;
-use crate::synthetic::{BASE, Plan, of_columns, record, ship};
+use crate::testing::{BASE, Plan, of_columns, record, ship};
 
 fn base() -> FirstOrder {
     FirstOrder { inverse_T: BASE[0], K_over_T: BASE[1], rudder_bias: BASE[2] }
