@@ -41,14 +41,41 @@ impl Powers {
     }
 }
 
+/// Exponents and magnitudes of a monomial as it is written: "δ|δ||ψ|" is δ to the second power, of which one factor is a
+/// magnitude, times the magnitude of ψ.
+const fn parsed(form: &str) -> ([i32; 4], [bool; 3]) {
+    let (text, mut byte, mut factor, mut inside) = (form.as_bytes(), 0, 0, false);
+    let (mut of, mut magnitude) = ([0; 4], [false; 3]);
+    while byte < text.len() {
+        // Of letters and exponents beyond ASCII the last byte tells which it is.
+        let known = match text[byte] {
+            b'r' => 0,
+            0xB4 => 1,
+            0x88 => 2,
+            b'U' => 3,
+            _ => 4,
+        };
+        if known < 4 {
+            factor = known;
+            of[factor] += 1;
+            magnitude[if factor < 3 { factor } else { 0 }] |= inside && factor < 3;
+        }
+        match text[byte] {
+            b'|' => inside = !inside,
+            0xB2 => of[factor] += 1,
+            0xB3 => of[factor] += 2,
+            _ => {}
+        }
+        byte += 1;
+    }
+    (of, magnitude)
+}
+
 macro_rules! library {
-    ($($form:literal = $of:expr),* $(,)?) => {
-        library![$($form = $of, [false; 3]);*]
-    };
-    ($($form:literal = $of:expr, $magnitude:expr);* $(;)?) => {
+    ($($form:literal),* $(,)?) => {
         &[$(Powers {
-            of: $of,
-            magnitude: $magnitude,
+            of: parsed($form).0,
+            magnitude: parsed($form).1,
             form: $form,
             equation: concat!("T r' + r = K (δ + δ_r + c ", $form, ")"),
         }),*]
@@ -57,70 +84,53 @@ macro_rules! library {
 
 /// Monomials up to the third degree that no named effect is.
 pub const LIBRARY: &[Powers] = library![
-    "ψ" = [0, 0, 1, 0],
-    "ψ²" = [0, 0, 2, 0],
-    "ψ³" = [0, 0, 3, 0],
-    "δ²" = [0, 2, 0, 0],
-    "rδ" = [1, 1, 0, 0],
-    "rψ" = [1, 0, 1, 0],
-    "δψ" = [0, 1, 1, 0],
-    "r²δ" = [2, 1, 0, 0],
-    "rδ²" = [1, 2, 0, 0],
-    "r²ψ" = [2, 0, 1, 0],
-    "rψ²" = [1, 0, 2, 0],
-    "δ²ψ" = [0, 2, 1, 0],
-    "δψ²" = [0, 1, 2, 0],
-    "rδψ" = [1, 1, 1, 0],
-    "U" = [0, 0, 0, 1],
-    "rU" = [1, 0, 0, 1],
-    "δU" = [0, 1, 0, 1],
-    "ψU" = [0, 0, 1, 1],
+    "ψ", "ψ²", "ψ³", "δ²", "rδ", "rψ", "δψ", "r²δ", "rδ²", "r²ψ", "rψ²", "δ²ψ", "δψ²", "rδψ", "U", "rU", "δU", "ψU",
 ];
 
 /// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
 /// show what a rule names where much is on offer.
 pub const WITH_MAGNITUDES: &[Powers] = library![
-    "|ψ|" = [0, 0, 1, 0], [false, false, true];
-    "|r|" = [1, 0, 0, 0], [true, false, false];
-    "ψ|ψ|" = [0, 0, 2, 0], [false, false, true];
-    "δ|δ|" = [0, 2, 0, 0], [false, true, false];
-    "δ|ψ|" = [0, 1, 1, 0], [false, false, true];
-    "ψ|δ|" = [0, 1, 1, 0], [false, true, false];
-    "|δ||ψ|" = [0, 1, 1, 0], [false, true, true];
-    "r|ψ|" = [1, 0, 1, 0], [false, false, true];
-    "ψ|r|" = [1, 0, 1, 0], [true, false, false];
-    "|r||ψ|" = [1, 0, 1, 0], [true, false, true];
-    "r|δ|" = [1, 1, 0, 0], [false, true, false];
-    "δ|r|" = [1, 1, 0, 0], [true, false, false];
-    "|r||δ|" = [1, 1, 0, 0], [true, true, false];
-    "|ψ|³" = [0, 0, 3, 0], [false, false, true];
-    "|δ|³" = [0, 3, 0, 0], [false, true, false];
-    "|r|³" = [3, 0, 0, 0], [true, false, false];
-    "δψ|ψ|" = [0, 1, 2, 0], [false, false, true];
-    "ψ²|δ|" = [0, 1, 2, 0], [false, true, false];
-    "ψ|δ||ψ|" = [0, 1, 2, 0], [false, true, true];
-    "δ²|ψ|" = [0, 2, 1, 0], [false, false, true];
-    "δψ|δ|" = [0, 2, 1, 0], [false, true, false];
-    "δ|δ||ψ|" = [0, 2, 1, 0], [false, true, true];
-    "rψ|ψ|" = [1, 0, 2, 0], [false, false, true];
-    "ψ²|r|" = [1, 0, 2, 0], [true, false, false];
-    "ψ|r||ψ|" = [1, 0, 2, 0], [true, false, true];
-    "rδ|δ|" = [1, 2, 0, 0], [false, true, false];
-    "δ²|r|" = [1, 2, 0, 0], [true, false, false];
-    "δ|r||δ|" = [1, 2, 0, 0], [true, true, false];
-    "r²|ψ|" = [2, 0, 1, 0], [false, false, true];
-    "rψ|r|" = [2, 0, 1, 0], [true, false, false];
-    "r|r||ψ|" = [2, 0, 1, 0], [true, false, true];
-    "r²|δ|" = [2, 1, 0, 0], [false, true, false];
-    "rδ|r|" = [2, 1, 0, 0], [true, false, false];
-    "r|r||δ|" = [2, 1, 0, 0], [true, true, false];
-    "rδ|ψ|" = [1, 1, 1, 0], [false, false, true];
-    "rψ|δ|" = [1, 1, 1, 0], [false, true, false];
-    "r|δ||ψ|" = [1, 1, 1, 0], [false, true, true];
-    "δψ|r|" = [1, 1, 1, 0], [true, false, false];
-    "δ|r||ψ|" = [1, 1, 1, 0], [true, false, true];
-    "ψ|r||δ|" = [1, 1, 1, 0], [true, true, false];
-    "|r||δ||ψ|" = [1, 1, 1, 0], [true, true, true];
+    "|ψ|",
+    "|r|",
+    "ψ|ψ|",
+    "δ|δ|",
+    "δ|ψ|",
+    "ψ|δ|",
+    "|δ||ψ|",
+    "r|ψ|",
+    "ψ|r|",
+    "|r||ψ|",
+    "r|δ|",
+    "δ|r|",
+    "|r||δ|",
+    "|ψ|³",
+    "|δ|³",
+    "|r|³",
+    "δψ|ψ|",
+    "ψ²|δ|",
+    "ψ|δ||ψ|",
+    "δ²|ψ|",
+    "δψ|δ|",
+    "δ|δ||ψ|",
+    "rψ|ψ|",
+    "ψ²|r|",
+    "ψ|r||ψ|",
+    "rδ|δ|",
+    "δ²|r|",
+    "δ|r||δ|",
+    "r²|ψ|",
+    "rψ|r|",
+    "r|r||ψ|",
+    "r²|δ|",
+    "rδ|r|",
+    "r|r||δ|",
+    "rδ|ψ|",
+    "rψ|δ|",
+    "r|δ||ψ|",
+    "δψ|r|",
+    "δ|r||ψ|",
+    "ψ|r||δ|",
+    "|r||δ||ψ|",
 ];
 
 /// Every monomial of both lists.
@@ -141,7 +151,7 @@ fn terms(
         (square / count.max(1) as f64).sqrt().max(1e-9)
     };
     let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
-    let speed = mean_square(records, Record::speed).map(f64::sqrt);
+    let speed = mean_square(records, |record| record.speed.as_ref()).map(f64::sqrt);
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
     list.filter(move |powers| speed.is_some() || powers.of[3] == 0).filter_map(move |powers| {
         let Proposal { effect, priors } = Monomial { powers, size }.proposal(&about)?;
@@ -224,5 +234,27 @@ impl<R: EffectReal> Acts<R> for Monomial {
             }
         };
         (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn monomials_are_read_as_they_are_written() {
+        let none = [false; 3];
+        let cases = [
+            ("ψ³", [0, 0, 3, 0], none),
+            ("rδ²", [1, 2, 0, 0], none),
+            ("δU", [0, 1, 0, 1], none),
+            ("|ψ|³", [0, 0, 3, 0], [false, false, true]),
+            ("δ|δ||ψ|", [0, 2, 1, 0], [false, true, true]),
+            ("ψ²|r|", [1, 0, 2, 0], [true, false, false]),
+        ];
+        for (form, of, magnitude) in cases {
+            assert_eq!(parsed(form), (of, magnitude), "{form}");
+        }
+        assert_eq!((LIBRARY.len(), WITH_MAGNITUDES.len()), (18, 41));
     }
 }

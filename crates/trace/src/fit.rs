@@ -316,6 +316,15 @@ impl Fit {
         covariance.iter().all(|x| x.is_finite()).then_some(covariance)
     }
 
+    /// Values of all entries of θ as the effects take them, with standard deviations: infinite where the records do not
+    /// tell them apart.
+    pub fn physical(&self) -> Vec<(f64, f64)> {
+        let covariance = self.covariance().map(|all| self.structure.physical_covariance(&all));
+        let sd = |place: usize| covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
+        let values = self.structure.physical(&self.theta).into_iter().enumerate();
+        values.map(|(place, value)| (value, sd(place))).collect()
+    }
+
     /// Covariance of the fitted entries of [`Structure::alone`] of a record.
     pub fn kept_covariance(&self, record: Option<usize>) -> Option<DMatrix<f64>> {
         let all = self.covariance()?;

@@ -40,7 +40,8 @@ const ROUNDS: usize = 2;
 /// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
 fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
     let of = |record: &crate::record::Record| {
-        let mut bends: Vec<f64> = record.rudder().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+        let mut bends: Vec<f64> =
+            record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
         bends.sort_by(|one, other| other.total_cmp(one));
         let most = ((bends.len() as f64 * BENT) as usize).max(1);
         let square = bends.iter().take(most).sum::<f64>() / most as f64;
@@ -61,12 +62,6 @@ pub struct Ground<'a> {
     floors: Vec<f64>,
 }
 
-/// A law with its −2 log of the marginal likelihood.
-struct Judged {
-    law: Law,
-    height: f64,
-}
-
 impl<'a> Ground<'a> {
     /// That of a fit. States at the beginning stand behind the fitted parameters.
     pub fn of(problem: &'a Problem, fit: &Fit) -> Self {
@@ -85,10 +80,7 @@ impl<'a> Ground<'a> {
         let white = self.judge(Colour { wander: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
         let coloured = self.levels(kinds, &white.law);
-        let priced = |judged: Judged| {
-            let height = judged.height + judged.law.colour.freedom() as f64 * log_n;
-            Found { law: judged.law, height, waves_gain: 0.0 }
-        };
+        let priced = |own: Found| Found { height: own.height + own.law.colour.freedom() as f64 * log_n, ..own };
         let all = [white].into_iter().chain(coloured).map(priced);
         all.min_by(|one, other| one.height.total_cmp(&other.height)).expect("white noise is one")
     }
@@ -106,7 +98,7 @@ impl<'a> Ground<'a> {
     }
 
     /// The sizes of the noise of all records under a colour, from `start`.
-    fn judge(&self, colour: Colour, start: &[f64]) -> Judged {
+    fn judge(&self, colour: Colour, start: &[f64]) -> Found {
         let ones = vec![1.0; start.len()];
         let mut law = Law { colour, variance: start.to_vec(), power: ones.clone() };
         let unit = Law { colour, variance: ones.clone(), power: ones };
@@ -119,7 +111,7 @@ impl<'a> Ground<'a> {
             law.variance = next;
             height = value;
         }
-        Judged { law, height }
+        Found { law, height, waves_gain: 0.0 }
     }
 
     fn of_record(&self, record: usize, weights: &Weights) -> (Normal, Vec<f64>) {
@@ -159,7 +151,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Some kinds of colour at their best levels: all are tried roughly, the best few finely.
-    fn levels(&self, kinds: &[Wander], white: &Law) -> Vec<Judged> {
+    fn levels(&self, kinds: &[Wander], white: &Law) -> Vec<Found> {
         let at = |kind: Wander, log: f64| {
             let colour = Colour { wander: Some((kind, log.exp())), ..white.colour };
             self.judge(colour, &white.variance)
@@ -181,7 +173,7 @@ impl<'a> Ground<'a> {
 pub struct Found {
     /// The law.
     pub law: Law,
-    /// −2 log p, with the price of its colour.
+    /// −2 log p; of the law that is chosen with the price of its colour.
     pub height: f64,
     /// How much better waves explain what is left, with the price of their parameters.
     pub waves_gain: f64,
@@ -199,7 +191,7 @@ pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, kind
             best.law.colour.wander.map(|_| Colour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let Judged { law, height } = ground.judge(colour, &best.law.variance);
+            let Found { law, height, .. } = ground.judge(colour, &best.law.variance);
             let height = height + colour.freedom() as f64 * log_n;
             if height < best.height {
                 best = Found { law, height, waves_gain: best.waves_gain + best.height - height };
