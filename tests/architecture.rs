@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crates from the ground up: each may use those before it.
-const FLOORS: [&str; 14] = [
+const FLOORS: [&str; 13] = [
     "estimation",
     "ship",
     "trial",
@@ -17,7 +17,6 @@ const FLOORS: [&str; 14] = [
     "report",
     "scenario",
     "campaign",
-    "bench",
     "kempf",
     "study",
     "python",

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use bench::board::boards;
-use bench::cases::Case;
-use bench::overall::overall;
-use bench::{Definition, Results, Task, naming};
+use campaign::benchmark::board::boards;
+use campaign::benchmark::cases::Case;
+use campaign::benchmark::overall::overall;
+use campaign::benchmark::{Definition, Results, Task, naming};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -62,7 +62,7 @@ fn the_floor_is_on_every_board_of_headings() {
     for board in results.boards.iter().filter(|board| board.task != Task::Indices) {
         let labels: Vec<&str> = board.standings.iter().map(|standing| standing.method.as_str()).collect();
         assert_eq!(labels.len(), results.methods.len(), "{labels:?}");
-        assert!(labels.contains(&bench::method::STRAIGHT_ON), "{labels:?}");
+        assert!(labels.contains(&campaign::benchmark::method::STRAIGHT_ON), "{labels:?}");
     }
 }
 

@@ -16,6 +16,7 @@
 
 pub mod answer;
 pub mod answers;
+pub mod benchmark;
 mod bound;
 pub mod collect;
 pub mod curves;

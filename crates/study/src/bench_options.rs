@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use bench::Task;
+use campaign::benchmark::Task;
 use clap::Args;
 use scenario::problem::suggestion;
 

@@ -1,11 +1,11 @@
-//! `study bench`: the benchmark on measured and simulated trials. The numbers are made in the crate `bench`; here its
+//! `study bench`: the benchmark on measured and simulated trials. The numbers are made in `campaign::benchmark`; here its
 //! tables, figures and files.
 
 use std::env;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use ::bench::{Definition, Entry, Method, Results, Shelf};
+use campaign::benchmark::{Definition, Entry, Method, Results, Shelf};
 use campaign::folder::ResultFolder;
 use scenario::failure::{Failure, OnPath};
 use scenario::problem::suggestion;
@@ -46,7 +46,7 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
     let methods = methods(request)?;
     let shelf = Shelf::search(&folders(&request.data), &definition)?;
     let entry = Entry { definition: &definition, shelf: &shelf, methods: &methods };
-    let results = ::bench::run(&entry, &Terminal::new(common.quiet))?;
+    let results = campaign::benchmark::run(&entry, &Terminal::new(common.quiet))?;
     if results.cases.is_empty() {
         let reasons: Vec<String> = results.skipped.iter().map(skipped).collect();
         return Err(Failure::input(format!("there is nothing to ask:\n  {}", reasons.join("\n  "))));
@@ -99,7 +99,7 @@ fn folders(named: &[PathBuf]) -> Vec<PathBuf> {
     }
 }
 
-fn skipped(one: &::bench::results::Skipped) -> String {
+fn skipped(one: &campaign::benchmark::results::Skipped) -> String {
     format!("{}, {}: {}", one.set, one.record, one.reason)
 }
 

@@ -48,7 +48,7 @@ pub fn run(request: &PredictRequest, common: &Common) -> Result<(), Failure> {
         _ => None,
     };
     let file = columns.map(|path| path.display().to_string());
-    let declared = file.as_deref().zip(declared.as_ref().map(Sidecar::conditions));
+    let declared = file.as_deref().zip(declared.as_ref().map(|sidecar| &sidecar.conditions));
     let asked = Asked {
         models: &models,
         ballast: &ballast,

@@ -1,7 +1,7 @@
 //! Figures of a benchmark: scores over those of the reference.
 
-use bench::Results;
-use bench::board::Board;
+use campaign::benchmark::Results;
+use campaign::benchmark::board::Board;
 use campaign::disk;
 use campaign::folder::ResultFolder;
 use report::figures::{Dot, DotColumn, DotPlot, Reference95, Scale, dots};
@@ -61,8 +61,8 @@ pub fn capital(words: &str) -> String {
 fn origin(method: &str) -> Origin {
     match method {
         // The floor is no method: grey.
-        bench::method::STRAIGHT_ON => Origin::Series { label: method.to_owned(), number: 2 },
-        bench::method::TRACE_OF_HEADING => {
+        campaign::benchmark::method::STRAIGHT_ON => Origin::Series { label: method.to_owned(), number: 2 },
+        campaign::benchmark::method::TRACE_OF_HEADING => {
             Origin::Variant { label: method.to_owned(), method: scenario::TRACE.to_owned(), number: 0 }
         }
         method => Origin::Method(method.to_owned()),

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use bench::Results;
-use bench::board::FEWEST;
-use bench::cases::{Answer, Case};
+use campaign::benchmark::Results;
+use campaign::benchmark::board::FEWEST;
+use campaign::benchmark::cases::{Answer, Case};
 use report::markdown;
 
 use super::bench_figures::{capital, of_field};

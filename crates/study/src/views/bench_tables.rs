@@ -1,9 +1,9 @@
 //! Tables of a benchmark: leaderboards, sets, answers one by one.
 
-use bench::board::{Board, Figure, SetLine, Share, Standing, by_set};
-use bench::cases::{Case, Naming};
-use bench::naming::{NamingLine, total};
-use bench::{Results, Task};
+use campaign::benchmark::board::{Board, Figure, SetLine, Share, Standing, by_set};
+use campaign::benchmark::cases::{Case, Naming};
+use campaign::benchmark::naming::{NamingLine, total};
+use campaign::benchmark::{Results, Task};
 use report::number::{MISSING, fixed, significant};
 use report::{Column, Table};
 

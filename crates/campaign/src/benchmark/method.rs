@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ::trace::document::EffectEntry;
 use ::trace::record::Record;
 use ::trace::{Analysis, TraceError};
-use campaign::statistics::Moments;
+use crate::statistics::Moments;
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
 use scenario::failure::Failure;

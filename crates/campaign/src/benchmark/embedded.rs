@@ -4,11 +4,11 @@
 pub const PLACE: &str = "scenarios/bench/zigzag-bench.toml";
 
 /// The definition.
-pub const DEFINITION: &str = include_str!("../../../scenarios/bench/zigzag-bench.toml");
+pub const DEFINITION: &str = include_str!("../../../../scenarios/bench/zigzag-bench.toml");
 
 macro_rules! texts {
     ($($name:literal),+ $(,)?) => {
-        &[$(($name, include_str!(concat!("../../../scenarios/bench/", $name)))),+]
+        &[$(($name, include_str!(concat!("../../../../scenarios/bench/", $name)))),+]
     };
 }
 

@@ -1,14 +1,14 @@
 //! Leaderboards: the scores of one task on measured or on simulated records, method by method. An answer that failed is
 //! worse than any other, whatever is made of it.
 
-use campaign::statistics::{Statistic, share};
+use crate::statistics::{Statistic, share};
 use serde::{Deserialize, Serialize};
 
-use crate::cases::{Case, mean};
-use crate::statistics::{middle_and_high, ranks, ratio, resampled};
-use crate::task::Task;
+use crate::benchmark::cases::{Case, mean};
+use crate::benchmark::statistics::{middle_and_high, ranks, ratio, resampled};
+use crate::benchmark::task::Task;
 
-pub use crate::statistics::{FEWEST, Figure};
+pub use crate::benchmark::statistics::{FEWEST, Figure};
 
 /// All methods on one task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -219,7 +219,7 @@ pub fn steps(cases: &[Case], task: Task, field: &str, method: &str) -> Vec<(f64,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::Answer;
+    use crate::benchmark::cases::Answer;
 
     fn case(trial: u64, scores: [Option<f64>; 2]) -> Case {
         let answers = ["a", "b"].iter().zip(scores).map(|(method, score)| {

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::board::{Board, boards};
-use crate::cases::Case;
-use crate::definition::{Definition, Set, Source};
-use crate::naming::{self, NamingLine};
-use crate::overall::{Overall, overall};
-use crate::shelf::UsedFile;
+use crate::benchmark::board::{Board, boards};
+use crate::benchmark::cases::Case;
+use crate::benchmark::definition::{Definition, Set, Source};
+use crate::benchmark::naming::{self, NamingLine};
+use crate::benchmark::overall::{Overall, overall};
+use crate::benchmark::shelf::UsedFile;
 
 /// Version of the file.
 pub const SCHEMA: &str = "bench/1";
@@ -104,7 +104,7 @@ impl Present {
             Source::Simulated { .. } => None,
         };
         let files = files.into_iter().chain(std::iter::repeat(None));
-        let record = |(member, file): (&crate::definition::Member, Option<UsedFile>)| PresentRecord {
+        let record = |(member, file): (&crate::benchmark::definition::Member, Option<UsedFile>)| PresentRecord {
             name: member.name.clone(),
             manoeuvre: member.deed.words(),
             file,

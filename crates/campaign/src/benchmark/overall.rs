@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::board::{Figure, by_field, clusters, ranks_of, scores};
-use crate::cases::{Case, mean};
-use crate::statistics::resampled_by_set;
-use crate::task::Task;
+use crate::benchmark::board::{Figure, by_field, clusters, ranks_of, scores};
+use crate::benchmark::cases::{Case, mean};
+use crate::benchmark::statistics::resampled_by_set;
+use crate::benchmark::task::Task;
 
 /// The ranking.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

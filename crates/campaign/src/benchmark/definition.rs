@@ -5,19 +5,19 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use campaign::task::Task as Replicate;
+use crate::task::Task as Replicate;
 use scenario::failure::Failure;
 use scenario::{HULL, Scenario, hex, name};
 use sha2::{Digest, Sha256};
 use trial::Sidecar;
 use trial::file::{self, Kind};
 
-use crate::cases::MEASURED;
-use crate::embedded;
-use crate::task::Task;
-use crate::wire::{DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire};
+use crate::benchmark::cases::MEASURED;
+use crate::benchmark::embedded;
+use crate::benchmark::task::Task;
+use crate::benchmark::wire::{DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire};
 
-pub use crate::wire::Deed;
+pub use crate::benchmark::wire::Deed;
 
 /// A benchmark that has been checked.
 pub struct Definition {
@@ -306,7 +306,7 @@ impl Reading<'_> {
                 let found = format!("a trial of {} has {} records", place.display(), own.records());
                 return refuse(&wire.scenario, found, "expected as many names as records", "mend `records`");
             }
-            let key = campaign::engine::key(&scenario, Replicate { cell, replicate: 0 });
+            let key = crate::engine::key(&scenario, Replicate { cell, replicate: 0 });
             let first = own.specimen(&key).map_err(Failure::input)?;
             let deeds = first.specification.records(&key).map(|(simulation, _)| Deed::of(&simulation.manoeuvre));
             let mut records = Vec::new();

@@ -1,9 +1,9 @@
 //! All records, all methods, all answers. The work is shared by threads; what comes out has the order of the
 //! definition.
 
-use campaign::Observer;
-use campaign::engine::{simulate, truths};
-use campaign::task::Task as Replicate;
+use crate::Observer;
+use crate::engine::{simulate, truths};
+use crate::task::Task as Replicate;
 use rayon::prelude::*;
 use scenario::failure::Failure;
 use ship::FirstOrder;
@@ -11,12 +11,12 @@ use ship::angle::to_deg;
 use simulate::StreamKey;
 use trial::{Scales, Trial};
 
-use crate::cases::{Answer, Case, MEASURED, Naming, stored};
-use crate::definition::{Definition, Question, RecordFile, Set, Source};
-use crate::method::{self, Failed, Method, Model};
-use crate::results::{self, Present, Results, Skipped};
-use crate::shelf::{Shelf, UsedFile};
-use crate::task::Task;
+use crate::benchmark::cases::{Answer, Case, MEASURED, Naming, stored};
+use crate::benchmark::definition::{Definition, Question, RecordFile, Set, Source};
+use crate::benchmark::method::{self, Failed, Method, Model};
+use crate::benchmark::results::{self, Present, Results, Skipped};
+use crate::benchmark::shelf::{Shelf, UsedFile};
+use crate::benchmark::task::Task;
 
 /// What is entered.
 pub struct Entry<'a> {
@@ -149,7 +149,7 @@ fn simulated<'a>(set: &'a Set, skipped: &mut Vec<Skipped>) -> Vec<Unit<'a>> {
                 false => None,
             };
             let records = records.into_iter().map(|simulated| Some(simulated.trial)).collect();
-            Ok(Unit { set, trial: Some(replicate), records, truth, key: campaign::engine::key(scenario, task) })
+            Ok(Unit { set, trial: Some(replicate), records, truth, key: crate::engine::key(scenario, task) })
         })
         .collect();
     let mut units = Vec::new();

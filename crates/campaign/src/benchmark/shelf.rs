@@ -6,7 +6,7 @@ use std::fs;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use campaign::disk;
+use crate::disk;
 use scenario::failure::Failure;
 use scenario::hex;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use trial::Trial;
 use trial::reader::{RECORD, read_bytes};
 
-use crate::definition::{Definition, RecordFile, Source};
+use crate::benchmark::definition::{Definition, RecordFile, Source};
 
 /// Folders below one another that are searched: a link that leads back is not followed, and nobody has as many.
 const DEEPEST: usize = 32;

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::board::Share;
-use crate::cases::{Case, Naming};
-use crate::task::Task;
+use crate::benchmark::board::Share;
+use crate::benchmark::cases::{Case, Naming};
+use crate::benchmark::task::Task;
 
 /// What a method said of the ships of one set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! A definition as it is written: what serde reads. [`crate::definition`] checks it.
+//! A definition as it is written: what serde reads. [`crate::benchmark::definition`] checks it.
 
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;

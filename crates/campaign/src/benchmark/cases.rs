@@ -1,9 +1,9 @@
 //! What was asked and what was answered: one case for every question on every trial, with the answers of all methods.
 
-use campaign::statistics::Moments;
+use crate::statistics::Moments;
 use serde::{Deserialize, Serialize};
 
-use crate::task::Task;
+use crate::benchmark::task::Task;
 
 /// The field of all measured records.
 pub const MEASURED: &str = "measured";

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use campaign::Unwatched;
+use crate::Unwatched;
 use identify::estimate::{Estimate, StopReason, Uncertainty};
 use identify::{Identifier, IdentifyError};
 
