@@ -9,7 +9,7 @@ use crate::rows::Foretold;
 
 /// What the ship of a trial does in the manoeuvres that are predicted: figures by name, `None` where it does not come
 /// to the end of one.
-pub struct Deeds(Vec<Option<Vec<figures::Figure>>>);
+pub struct Deeds(Vec<Option<figures::Figures>>);
 
 /// The key of the trials that were not made: their chance is not that of the record.
 fn other(key: &StreamKey) -> StreamKey {
@@ -42,7 +42,7 @@ pub fn foretold(predictions: &Predictions, known: IdentifiedShip, deeds: &Deeds)
         let Some(deeds) = deeds else { continue };
         let Ok(prediction) = mixture.predict(kind, predictions.draws, false) else { continue };
         for (name, figure) in prediction.figures {
-            let truth = deeds.iter().find(|(own, _)| *own == name).and_then(|(_, value)| *value);
+            let truth = deeds.get(name.as_str()).copied().flatten();
             let Some(truth) = truth else { continue };
             all.push(Foretold {
                 name: format!("{kind} {name}").into(),

@@ -251,7 +251,7 @@ fn ship(
     warnings: &mut Vec<String>,
 ) -> Result<Option<Particulars>, Failure> {
     let Some(length) = options.length_m else { return Ok(None) };
-    if let Some(speed) = options.speed_m_s.or(options.speed_kn.map(|speed| speed * KNOT)) {
+    if let Some(speed) = options.speed() {
         return Ok(Some(Particulars { length, speed }));
     }
     let file = path.display();

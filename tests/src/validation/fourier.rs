@@ -2,7 +2,7 @@
 
 use identify::Identifier;
 use identify::fourier::regression::Response;
-use identify::fourier::{self, Fundamental, StartPoint};
+use identify::fourier::{self, Fundamental};
 use identify::fourier_projected::{Order, Rudder, Settings};
 use trial::Trial;
 
@@ -49,7 +49,7 @@ pub fn section() -> Section {
     for (rudder, heading, begin, global, w, r_squared) in FITS {
         let trial = record(rudder, heading, begin);
         let time: Vec<f64> = trial.time().iter().map(|t| t - trial.time()[0]).collect();
-        let search = if global { Fundamental::Global } else { Fundamental::Starts(vec![StartPoint::FftPeak]) };
+        let search = if global { Fundamental::Global } else { Fundamental::FftPeak };
         let curve = fourier::fit(&time, trial.heading(), HARMONICS, &search).expect("271 headings are enough").curve;
         let from = if begin == Begin::Mid { "mid-trial" } else { "from rest" };
         let way = if global { "lowest sum of squares" } else { "local search from the peak of the spectrum" };
@@ -72,7 +72,6 @@ pub fn section() -> Section {
             harmonics: Order::Fixed(HARMONICS),
             rudder: side,
             response: Response::YawRate,
-            trim_share: 0.05,
             ..Settings::default()
         };
         let method = settings.build().expect("valid settings");

@@ -15,7 +15,9 @@ use trial::file::{self, Kind};
 use crate::benchmark::cases::MEASURED;
 use crate::benchmark::embedded;
 use crate::benchmark::task::Task;
-use crate::benchmark::wire::{DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire};
+use crate::benchmark::wire::{
+    DefinitionWire, MeasuredWire, Name, PredictionWire, RecordWire, SimulatedWire, TasksWire,
+};
 
 pub use crate::benchmark::wire::Deed;
 

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::statistics::Moments;
 use ::trace::document::EffectEntry;
 use ::trace::record::Record;
 use ::trace::{Analysis, TraceError};
-use crate::statistics::Moments;
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
 use scenario::failure::Failure;
