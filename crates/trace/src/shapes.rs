@@ -14,7 +14,7 @@ use ship::replay::replay_states;
 
 use estimation::column::dot;
 
-use crate::empirical::{LIBRARY, PRIOR_SD};
+use crate::empirical::{PRIOR_SD, plain};
 use crate::fit::{Fit, Problem};
 use crate::full::Full;
 use crate::law::{Found, Ground};
@@ -157,7 +157,7 @@ fn shared(motions: &[Motion], form: &str, log_odds: f64, moments: &[Vec<f64>]) -
 
 /// Every shape.
 fn library(motions: &[Motion]) -> Vec<Shape> {
-    let odds = LOG_ODDS - (LIBRARY.len() as f64).ln();
+    let odds = LOG_ODDS - (plain().len() as f64).ln();
     let monomial = |powers: &crate::empirical::Powers| {
         let of = |motion: &Motion| -> Vec<f64> {
             let value = |row: usize| powers.at([motion.rate[row], motion.rudder[row], motion.heading[row]]);
@@ -165,7 +165,7 @@ fn library(motions: &[Motion]) -> Vec<Shape> {
         };
         shared(motions, powers.form, odds, &motions.iter().map(of).collect::<Vec<_>>())
     };
-    let mut all: Vec<Shape> = LIBRARY.iter().filter(|powers| powers.of[3] == 0).filter_map(monomial).collect();
+    let mut all: Vec<Shape> = plain().iter().filter(|powers| powers.of[3] == 0).filter_map(monomial).collect();
     let aside: Vec<Vec<f64>> = motions.iter().map(Motion::aside).collect();
     all.extend(shared(motions, "distance to one side", LOG_ODDS, &aside));
     all.extend(motions.iter().flat_map(of_time));
