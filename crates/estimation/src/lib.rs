@@ -5,12 +5,16 @@
 //! | sums over columns of numbers, with the same bits on every machine | [`column`], [`lanes`] |
 //! | the Fourier transform | [`transform`] |
 //! | the Kalman filter with its smoother and its derivatives | [`kalman`] |
+//! | exact steps of such systems in time, and sample paths | [`stochastic`] |
 //! | numbers that carry their derivatives | [`number`] |
 //! | linear least squares with covariance and condition number | [`least_squares`] |
 //! | nonlinear least squares between bounds | [`levenberg_marquardt`] |
 //! | the lowest point of a function of one number | [`minimum`](fn@minimum::minimum) |
 //! | covariances of scores that are correlated in time | [`covariance`] |
 //! | medians and quantiles | [`statistics`] |
+//! | mixtures of normal laws, and ratios over them | [`mixture`] |
+//! | the evidence of every subset of some terms | [`subsets`] |
+//! | whether a residual is white, and its spectrum | [`residuals`] |
 
 pub mod column;
 pub mod covariance;
@@ -19,6 +23,10 @@ pub mod lanes;
 pub mod least_squares;
 pub mod levenberg_marquardt;
 pub mod minimum;
+pub mod mixture;
 pub mod number;
+pub mod residuals;
 pub mod statistics;
+pub mod stochastic;
+pub mod subsets;
 pub mod transform;

@@ -27,6 +27,7 @@ pub mod first_order;
 pub mod integrate;
 pub mod linear;
 pub mod narrow_band;
+pub mod number;
 pub mod particulars;
 pub mod replay;
 pub mod response;
@@ -39,15 +40,9 @@ pub use dynamics::{Dynamics, Input, Measured, Motion, Regressor};
 pub use effects::EffectReal;
 pub use estimation::number::Real;
 pub use first_order::FirstOrder;
+pub use number::{DIRECTIONS, Tangent};
 pub use particulars::Particulars;
 pub use response::{Response, ResponseModel};
 pub use ships::Ship;
 pub use shown::Shown;
 pub use signal::Polyline;
-
-/// Directions in which a [`Tangent`] is differentiated at once: those of a first-order response and of an effect with
-/// two parameters.
-pub const DIRECTIONS: usize = 6;
-
-/// A number that a response is replayed in together with its derivatives.
-pub type Tangent = estimation::number::Dual<DIRECTIONS>;

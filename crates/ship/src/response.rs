@@ -19,36 +19,9 @@ pub const BASE_PARAMETERS: usize = 3;
 
 /// The base parameters, described like those of effects.
 pub const BASE: [Parameter; BASE_PARAMETERS] = [
-    Parameter {
-        key: "inverse_T",
-        symbol: "1/T",
-        unit: "1/s",
-        neutral: 0.05,
-        typical: 0.05,
-        lowest: -10.0,
-        highest: 10.0,
-        odd: false,
-    },
-    Parameter {
-        key: "K_over_T",
-        symbol: "K/T",
-        unit: "1/s²",
-        neutral: 5e-3,
-        typical: 5e-3,
-        lowest: 0.0,
-        highest: 100.0,
-        odd: false,
-    },
-    Parameter {
-        key: "rudder_bias",
-        symbol: "δ_r",
-        unit: "rad",
-        neutral: 0.0,
-        typical: 0.02,
-        lowest: -0.6,
-        highest: 0.6,
-        odd: true,
-    },
+    Parameter::even(["inverse_T", "1/T", "1/s"], [0.05, 0.05], [-10.0, 10.0]),
+    Parameter::even(["K_over_T", "K/T", "1/s²"], [5e-3, 5e-3], [0.0, 100.0]),
+    Parameter::odd(["rudder_bias", "δ_r", "rad"], [0.0, 0.02], [-0.6, 0.6]),
 ];
 
 /// Where the parameters and states of one effect lie.

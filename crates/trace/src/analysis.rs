@@ -4,6 +4,7 @@
 
 use std::borrow::Cow;
 
+use estimation::residuals::{self, GappedSeries, Whiteness};
 use identify::{Estimate, maximum_likelihood};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -13,7 +14,6 @@ use trial::Trial;
 use crate::average::{After, Average};
 use crate::base::Base;
 use crate::candidates::{self, Candidate};
-use crate::diagnostics::{self, Series, Whiteness};
 use crate::document::Document;
 use crate::empirical;
 use crate::fit::{Fit, Problem};
@@ -205,8 +205,8 @@ fn keep_nearest(all: &mut [RecordComparison]) -> bool {
 fn whiteness<'a>(all: impl Iterator<Item = &'a ReplayResult>, trials: &[Trial]) -> Whiteness {
     let series = all
         .zip(trials)
-        .map(|(one, trial)| Series::new(&one.replay.time, &one.replay.residual, trial.sampling_period()));
-    diagnostics::whiteness(&series.collect::<Vec<_>>())
+        .map(|(one, trial)| GappedSeries::new(&one.replay.time, &one.replay.residual, trial.sampling_period()));
+    residuals::whiteness(&series.collect::<Vec<_>>())
 }
 
 /// A structure that the records cannot tell from the best, as a prediction takes it: without what is of one record.

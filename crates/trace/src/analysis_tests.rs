@@ -6,7 +6,7 @@ use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetr
 use trial::Trial;
 
 use crate::document::Verdict;
-use crate::synthetic::{Plan, record, ship, wandering};
+use crate::testing::{Plan, record, ship, wandering};
 use crate::{Analysis, EffectId, Rule, Selection, Settings, trace};
 
 fn of(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>, plan: Plan) -> Trial {

@@ -8,6 +8,7 @@
 //! known to vary; it knows nothing of effects that are on no list.
 
 use estimation::column::dot;
+use estimation::kalman::{MOST, System};
 use identify::replay::Replay;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -17,7 +18,6 @@ use trial::Trial;
 
 use crate::average::After;
 use crate::fit::{Fit, Problem};
-use crate::noise::System;
 use crate::record::Record;
 
 /// Standard deviations on either side of 95 % of a normal error.
@@ -74,7 +74,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
 
 /// What is drawn of one structure on one record.
 struct Drawn {
-    system: System,
+    system: System<f64, MOST>,
     deviation: f64,
     /// Standard deviation of the white noise of every row, rad.
     white: Vec<f64>,
@@ -129,7 +129,7 @@ impl Drawn {
         };
         let full = record.full_readings as f64;
         Some(Self {
-            system: problem.noise[0].system(&law.colour),
+            system: problem.noise[0].system(&law.colour).0,
             deviation: variance.sqrt(),
             white: record.observed.iter().map(|&row| (variance * full / record.readings[row] as f64).sqrt()).collect(),
             columns,

@@ -38,28 +38,27 @@ pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
 }
 
 /// The manoeuvres of some records, with the span of one of them.
-pub fn manoeuvres(records: &[Record], trials: &[Trial], time: f64, of: &Record) -> Manoeuvres {
-    let approach = || trials.iter().find_map(|trial| trial.particulars().map(|own| own.speed));
-    let speed = |signal: fn(&Record) -> Option<&Polyline>| {
-        let square = mean_square(records, signal)?;
-        let mean = mean_square(records, Record::speed).map_or(square, |speed| speed).sqrt();
-        Some(approach().unwrap_or(mean))
-    };
+pub fn manoeuvres<'a>(records: &'a [Record], trials: &[Trial], time: f64, of: &Record) -> Manoeuvres {
+    let own_speed = |record: &'a Record| record.speed.as_ref();
+    let approach = trials.iter().find_map(|trial| trial.particulars().map(|own| own.speed));
+    let mean_speed = mean_square(records, own_speed);
+    // The speed is needed where a channel is there that counts in it.
+    let speed = |square: f64| approach.unwrap_or(mean_speed.unwrap_or(square).sqrt());
     let propeller = || {
-        let mean = mean_square(records, Record::propeller)?.sqrt();
-        let values = records.iter().filter_map(Record::propeller).flat_map(|rate| rate.values());
+        let mean = mean_square(records, |record| record.propeller.as_ref())?.sqrt();
+        let values = records.iter().filter_map(|record| record.propeller.as_ref()).flat_map(|rate| rate.values());
         let (lowest, highest) = values.fold((f64::MAX, f64::MIN), |(low, high), &n| (low.min(n), high.max(n)));
         (highest - lowest > PROPELLER_CHANGE * mean).then_some(mean)
     };
-    let rudder = records.iter().flat_map(Record::rudder).fold(1e-3_f64, |most, delta| most.max(delta.abs()));
+    let angles = records.iter().flat_map(|record| record.rudder.values());
     Manoeuvres {
         time,
-        rudder,
+        rudder: angles.fold(1e-3_f64, |most, delta| most.max(delta.abs())),
         duration: records.iter().map(Record::duration).fold(0.0, f64::max),
         spacing: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
-        speed: speed(Record::speed),
-        sway: speed(Record::sway),
-        wind_square: mean_square(records, Record::wind_speed),
+        speed: mean_speed.map(speed),
+        sway: mean_square(records, |record| record.sway.as_ref()).map(speed),
+        wind_square: mean_square(records, |record| record.wind_speed.as_ref()),
         propeller: propeller(),
         span: [of.time[0], of.time[of.time.len() - 1]],
     }
@@ -109,7 +108,7 @@ pub fn is_delay(effect: &dyn Effect) -> bool {
 }
 
 /// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.
-pub fn mean_square(records: &[Record], signal: impl Fn(&Record) -> Option<&Polyline>) -> Option<f64> {
+pub fn mean_square<'a>(records: &'a [Record], signal: impl Fn(&'a Record) -> Option<&'a Polyline>) -> Option<f64> {
     let mut sum = 0.0;
     let mut count = 0usize;
     for record in records {

@@ -4,11 +4,11 @@
 
 use std::collections::BTreeMap;
 
+use estimation::residuals::Whiteness;
 use serde::{Deserialize, Serialize};
 use ship::angle::to_deg;
 use trial::Quantity;
 
-use crate::diagnostics::Whiteness;
 use crate::judge::ReplayResult;
 use crate::replay_errors::HORIZONS;
 
@@ -41,8 +41,8 @@ impl Verdict {
     }
 }
 
-/// What became of a candidate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+/// What became of a candidate, the best first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// It is named.

@@ -1,10 +1,10 @@
 //! Terms without a name in the field: monomials in yaw rate, rudder, heading and speed, for what no named effect
 //! carries; and such with magnitudes, against which named effects can be held.
 
-use ship::effects::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use ship::effects::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use ship::{EffectReal, Regressor};
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use trial::Trial;
 
@@ -22,173 +22,101 @@ pub struct Monomial {
 }
 
 /// One monomial of the library.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Powers {
     /// Exponents of r, δ, ψ and U.
     pub of: [i32; 4],
-    /// Whether one factor of the power of r, δ and ψ is a magnitude.
-    pub magnitude: [bool; 3],
+    /// Whether one factor of the power is a magnitude.
+    magnitude: [bool; 4],
     /// The monomial, as it is written.
     pub form: &'static str,
-    /// The equation.
-    pub equation: &'static str,
+    equation: String,
 }
 
 impl Powers {
+    /// The monomial as it is written: "δ|δ||ψ|" is δ to the second power, of which one factor is a magnitude, times the
+    /// magnitude of ψ.
+    fn read(form: &'static str) -> Self {
+        let (mut of, mut magnitude, mut factor, mut inside) = ([0; 4], [false; 4], 0, false);
+        for letter in form.chars() {
+            match letter {
+                '|' => inside = !inside,
+                '²' => of[factor] += 1,
+                '³' => of[factor] += 2,
+                name => {
+                    factor = "rδψU".chars().position(|own| own == name).expect("a factor of the library");
+                    of[factor] += 1;
+                    magnitude[factor] |= inside;
+                }
+            }
+        }
+        Self { of, magnitude, form, equation: format!("T r' + r = K (δ + δ_r + c {form})") }
+    }
+
     /// The monomial without magnitudes of r (rad/s), δ and ψ (rad).
     pub fn at(&self, factors: [f64; 3]) -> f64 {
         factors.iter().zip(self.of).map(|(factor, power)| factor.powi(power)).product()
     }
 }
 
-macro_rules! library {
-    ($($form:literal = $of:expr),* $(,)?) => {
-        library![$($form = $of, [false; 3]);*]
-    };
-    ($($form:literal = $of:expr, $magnitude:expr);* $(;)?) => {
-        &[$(Powers {
-            of: $of,
-            magnitude: $magnitude,
-            form: $form,
-            equation: concat!("T r' + r = K (δ + δ_r + c ", $form, ")"),
-        }),*]
-    };
-}
-
 /// Monomials up to the third degree that no named effect is.
-pub const LIBRARY: &[Powers] = library![
-    "ψ" = [0, 0, 1, 0],
-    "ψ²" = [0, 0, 2, 0],
-    "ψ³" = [0, 0, 3, 0],
-    "δ²" = [0, 2, 0, 0],
-    "rδ" = [1, 1, 0, 0],
-    "rψ" = [1, 0, 1, 0],
-    "δψ" = [0, 1, 1, 0],
-    "r²δ" = [2, 1, 0, 0],
-    "rδ²" = [1, 2, 0, 0],
-    "r²ψ" = [2, 0, 1, 0],
-    "rψ²" = [1, 0, 2, 0],
-    "δ²ψ" = [0, 2, 1, 0],
-    "δψ²" = [0, 1, 2, 0],
-    "rδψ" = [1, 1, 1, 0],
-    "U" = [0, 0, 0, 1],
-    "rU" = [1, 0, 0, 1],
-    "δU" = [0, 1, 0, 1],
-    "ψU" = [0, 0, 1, 1],
-];
+const PLAIN: &str = "ψ ψ² ψ³ δ² rδ rψ δψ r²δ rδ² r²ψ rψ² δ²ψ δψ² rδψ U rU δU ψU";
 
 /// Monomials up to the third degree with magnitudes that no named effect is. They are not proposed to anybody: they
 /// show what a rule names where much is on offer.
-pub const WITH_MAGNITUDES: &[Powers] = library![
-    "|ψ|" = [0, 0, 1, 0], [false, false, true];
-    "|r|" = [1, 0, 0, 0], [true, false, false];
-    "ψ|ψ|" = [0, 0, 2, 0], [false, false, true];
-    "δ|δ|" = [0, 2, 0, 0], [false, true, false];
-    "δ|ψ|" = [0, 1, 1, 0], [false, false, true];
-    "ψ|δ|" = [0, 1, 1, 0], [false, true, false];
-    "|δ||ψ|" = [0, 1, 1, 0], [false, true, true];
-    "r|ψ|" = [1, 0, 1, 0], [false, false, true];
-    "ψ|r|" = [1, 0, 1, 0], [true, false, false];
-    "|r||ψ|" = [1, 0, 1, 0], [true, false, true];
-    "r|δ|" = [1, 1, 0, 0], [false, true, false];
-    "δ|r|" = [1, 1, 0, 0], [true, false, false];
-    "|r||δ|" = [1, 1, 0, 0], [true, true, false];
-    "|ψ|³" = [0, 0, 3, 0], [false, false, true];
-    "|δ|³" = [0, 3, 0, 0], [false, true, false];
-    "|r|³" = [3, 0, 0, 0], [true, false, false];
-    "δψ|ψ|" = [0, 1, 2, 0], [false, false, true];
-    "ψ²|δ|" = [0, 1, 2, 0], [false, true, false];
-    "ψ|δ||ψ|" = [0, 1, 2, 0], [false, true, true];
-    "δ²|ψ|" = [0, 2, 1, 0], [false, false, true];
-    "δψ|δ|" = [0, 2, 1, 0], [false, true, false];
-    "δ|δ||ψ|" = [0, 2, 1, 0], [false, true, true];
-    "rψ|ψ|" = [1, 0, 2, 0], [false, false, true];
-    "ψ²|r|" = [1, 0, 2, 0], [true, false, false];
-    "ψ|r||ψ|" = [1, 0, 2, 0], [true, false, true];
-    "rδ|δ|" = [1, 2, 0, 0], [false, true, false];
-    "δ²|r|" = [1, 2, 0, 0], [true, false, false];
-    "δ|r||δ|" = [1, 2, 0, 0], [true, true, false];
-    "r²|ψ|" = [2, 0, 1, 0], [false, false, true];
-    "rψ|r|" = [2, 0, 1, 0], [true, false, false];
-    "r|r||ψ|" = [2, 0, 1, 0], [true, false, true];
-    "r²|δ|" = [2, 1, 0, 0], [false, true, false];
-    "rδ|r|" = [2, 1, 0, 0], [true, false, false];
-    "r|r||δ|" = [2, 1, 0, 0], [true, true, false];
-    "rδ|ψ|" = [1, 1, 1, 0], [false, false, true];
-    "rψ|δ|" = [1, 1, 1, 0], [false, true, false];
-    "r|δ||ψ|" = [1, 1, 1, 0], [false, true, true];
-    "δψ|r|" = [1, 1, 1, 0], [true, false, false];
-    "δ|r||ψ|" = [1, 1, 1, 0], [true, false, true];
-    "ψ|r||δ|" = [1, 1, 1, 0], [true, true, false];
-    "|r||δ||ψ|" = [1, 1, 1, 0], [true, true, true];
-];
+const WITH_MAGNITUDES: &str = "|ψ| |r| ψ|ψ| δ|δ| δ|ψ| ψ|δ| |δ||ψ| r|ψ| ψ|r| |r||ψ| r|δ| δ|r| |r||δ| |ψ|³ |δ|³ |r|³ δψ|ψ| ψ²|δ| \
+    ψ|δ||ψ| δ²|ψ| δψ|δ| δ|δ||ψ| rψ|ψ| ψ²|r| ψ|r||ψ| rδ|δ| δ²|r| δ|r||δ| r²|ψ| rψ|r| r|r||ψ| r²|δ| rδ|r| \
+    r|r||δ| rδ|ψ| rψ|δ| r|δ||ψ| δψ|r| δ|r||ψ| ψ|r||δ| |r||δ||ψ|";
 
 /// Every monomial of both lists.
-pub fn all() -> impl Iterator<Item = &'static Powers> {
-    LIBRARY.iter().chain(WITH_MAGNITUDES)
+static LIBRARY: LazyLock<Vec<Powers>> =
+    LazyLock::new(|| PLAIN.split(' ').chain(WITH_MAGNITUDES.split(' ')).map(Powers::read).collect());
+
+/// Every monomial, those with magnitudes last.
+pub fn all() -> &'static [Powers] {
+    &LIBRARY
 }
 
-/// The terms that some monomials are on records which have the channels they need.
-fn terms(
-    records: &[Record],
-    trials: &[Trial],
-    time: f64,
-    list: impl Iterator<Item = &'static Powers>,
-) -> impl Iterator<Item = Arc<Term>> {
+/// The monomials without magnitudes.
+pub fn plain() -> &'static [Powers] {
+    &LIBRARY[..PLAIN.split(' ').count()]
+}
+
+/// Prior odds of a term without a name.
+const LOG_ODDS: f64 = -4.0;
+
+/// The monomials as candidates, where the records have the channels that they need.
+pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Iterator<Item = Candidate> {
     let about = manoeuvres(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
         let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
         (square / count.max(1) as f64).sqrt().max(1e-9)
     };
     let heading = rms(&mut records.iter().flat_map(|r| r.observed.iter().map(|&row| r.heading[row])));
-    let speed = mean_square(records, Record::speed).map(f64::sqrt);
+    let speed = mean_square(records, |record| record.speed.as_ref()).map(f64::sqrt);
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
-    list.filter(move |powers| speed.is_some() || powers.of[3] == 0).filter_map(move |powers| {
+    all().iter().filter(move |powers| speed.is_some() || powers.of[3] == 0).filter_map(move |powers| {
         let Proposal { effect, priors } = Monomial { powers, size }.proposal(&about)?;
-        Some(Arc::new(Term { effect, only: None, priors }))
+        Some(Candidate { term: Arc::new(Term { effect, only: None, priors }), log_odds: LOG_ODDS })
     })
-}
-
-/// Prior odds of a term without a name.
-const LOG_ODDS: f64 = -4.0;
-
-/// Every monomial as a candidate.
-pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Iterator<Item = Candidate> {
-    terms(records, trials, time, all()).map(|term| Candidate { term, log_odds: LOG_ODDS })
 }
 
 /// Standard deviation of a coefficient, rad.
 pub const PRIOR_SD: f64 = 0.05;
 
 /// The coefficient of a term without a name: a rudder angle, for factors in units of their own size.
-pub const COEFFICIENT: Parameter = Parameter {
-    key: "c",
-    symbol: "c",
-    unit: "rad",
-    neutral: 0.0,
-    typical: 0.02,
-    lowest: -10.0,
-    highest: 10.0,
-    odd: false,
-};
+pub const COEFFICIENT: Parameter = Parameter::even(["c", "c", "rad"], [0.0, 0.02], [-10.0, 10.0]);
 
 const PARAMETERS: [Parameter; 1] = [COEFFICIENT];
 
 impl Effect for Monomial {
-    fn id(&self) -> &'static str {
-        "empirical"
-    }
-
-    fn form(&self) -> &'static str {
-        self.powers.form
-    }
-
-    fn equation(&self) -> &'static str {
-        self.powers.equation
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        Description {
+            id: "empirical",
+            form: self.powers.form,
+            equation: &self.powers.equation,
+            parameters: &PARAMETERS,
+        }
     }
 
     fn constants(&self) -> Vec<f64> {
@@ -218,11 +146,31 @@ impl<R: EffectReal> Acts<R> for Monomial {
         let factors = [now.yaw_rate, now.rudder, now.heading, speed];
         let power = |k: usize| {
             let (x, exponent) = (factors[k] / self.size[k], self.powers.of[k]);
-            match self.powers.magnitude.get(k) {
-                Some(true) => x.powi(exponent - 1) * x.abs(),
-                _ => x.powi(exponent),
-            }
+            if self.powers.magnitude[k] { x.powi(exponent - 1) * x.abs() } else { x.powi(exponent) }
         };
         (0..factors.len()).fold(now.gain * p[0], |product, k| product * power(k))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn monomials_are_read_as_they_are_written() {
+        let none = [false; 4];
+        let cases = [
+            ("ψ³", [0, 0, 3, 0], none),
+            ("rδ²", [1, 2, 0, 0], none),
+            ("δU", [0, 1, 0, 1], none),
+            ("|ψ|³", [0, 0, 3, 0], [false, false, true, false]),
+            ("δ|δ||ψ|", [0, 2, 1, 0], [false, true, true, false]),
+            ("ψ²|r|", [1, 0, 2, 0], [true, false, false, false]),
+        ];
+        for (form, of, magnitude) in cases {
+            let found = Powers::read(form);
+            assert_eq!((found.of, found.magnitude), (of, magnitude), "{form}");
+        }
+        assert_eq!((plain().len(), all().len()), (18, 59));
     }
 }

@@ -4,12 +4,13 @@
 //! J(θ, x₀) = Σ_records |W (ψ − ψ̂(θ, x₀))|²/σ² + Σ ((θ − μ)/s)², with the filter W that makes the noise of a record
 //! white. Unknowns are the fitted entries of θ in order, then heading and yaw rate at the beginning of every record.
 
+use estimation::levenberg_marquardt::{Minimum, Normal, Objective, Rules, minimise};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use ship::effects::Prior;
-use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::distribution::{self, ContinuousCDF};
 
-use crate::linear::{Linear, NormalEquations, tangents};
+use crate::linear::{Linear, tangents};
 use crate::model::{Structure, headings};
 use crate::noise::RecordNoise;
 use crate::record::Record;
@@ -29,11 +30,22 @@ impl Effort {
     pub const COARSE: Self = Self { steps: 6, negligible: 0.5 };
     /// To the end.
     pub const FINE: Self = Self { steps: 15, negligible: 0.03 };
-}
 
-/// First damping, and the number of dampings that are tried before a point counts as a minimum.
-const DAMPING: f64 = 1e-3;
-const MOST_DAMPINGS: usize = 8;
+    fn rules(self) -> Rules {
+        Rules {
+            steps: self.steps,
+            damping: 1e-3,
+            shrink: 0.1,
+            trusted: 0.5,
+            grow: 8.0,
+            least: [0.0, 1e-6],
+            tries: 8,
+            promise: self.negligible,
+            enough: [self.negligible, 0.0],
+            in_a_row: 1,
+        }
+    }
+}
 
 /// The records that are fitted together.
 #[derive(Debug, Clone)]
@@ -127,48 +139,33 @@ impl Problem {
         weights: &Weights,
         effort: Effort,
     ) -> Fit {
-        let entries = structure.entries();
-        let mut point = Point::new(self, structure, theta, initial, weights);
-        let mut system = System::at(self, structure, &point.theta, &point.initial, weights);
-        let mut damping = DAMPING;
-        for _ in 0..effort.steps {
-            let mut next = None;
-            for _ in 0..MOST_DAMPINGS {
-                let Some((step, gain)) = system.step(damping) else { break };
-                if gain < effort.negligible {
-                    break;
-                }
-                let (theta, initial) = point.moved(&entries, &step);
-                let trial = Point::new(self, structure, theta, initial, weights);
-                if trial.value < point.value {
-                    damping *= if point.value - trial.value > 0.5 * gain { 0.1 } else { 1.0 };
-                    next = Some(trial);
-                    break;
-                }
-                damping = (damping * 8.0).max(1e-6);
-            }
-            let Some(next) = next else { break };
-            let gained = point.value - next.value;
-            point = next;
-            system = System::at(self, structure, &point.theta, &point.initial, weights);
-            if gained < effort.negligible {
-                break;
-            }
-        }
+        let priors = structure.entries().into_iter().map(|entry| entry.prior).collect();
+        let (last, kept) = (Point::default(), Point::default());
+        let mut search = Search { problem: self, structure, weights, priors, last, kept };
+        let start = search.unknowns(&theta, &initial);
+        search.last = search.point(theta, initial);
+        let Minimum { normal, .. } = minimise(&mut search, start, &effort.rules());
+        let kept = search.kept;
         Fit {
-            evidence: system.evidence(point.value),
+            evidence: evidence(structure, &kept, &normal),
             structure: structure.clone(),
-            misfit: point.misfit,
-            penalty: point.value - point.misfit,
-            residual: point.residual,
-            theta: point.theta,
-            initial: point.initial,
-            precision: system.precision,
+            misfit: kept.misfit,
+            penalty: kept.value - kept.misfit,
+            residual: kept.residual,
+            theta: kept.theta,
+            initial: kept.initial,
+            precision: normal.matrix,
         }
+    }
+
+    /// Normal equations of J at a point.
+    pub fn posterior(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]], weights: &Weights) -> Normal {
+        posterior(&self.linear(structure, theta, initial), structure, theta, weights)
     }
 }
 
 /// Where a fit stands.
+#[derive(Clone, Default, PartialEq)]
 struct Point {
     theta: Vec<f64>,
     initial: Vec<[f64; 2]>,
@@ -178,33 +175,67 @@ struct Point {
     value: f64,
 }
 
-impl Point {
-    fn new(
-        problem: &Problem,
-        structure: &Structure,
-        theta: Vec<f64>,
-        initial: Vec<[f64; 2]>,
-        weights: &Weights,
-    ) -> Self {
-        let residual = problem.residual(structure, &theta, &initial);
-        let misfit = weights.misfit(&residual);
-        let penalty: f64 =
-            structure.entries().iter().zip(&theta).map(|(entry, &x)| deviation(entry.prior, x).powi(2)).sum();
-        let value = misfit + penalty;
-        Self { theta, initial, residual, misfit, value: if value.is_finite() { value } else { f64::INFINITY } }
+/// A fit on its way.
+struct Search<'a> {
+    problem: &'a Problem,
+    structure: &'a Structure,
+    weights: &'a Weights,
+    priors: Vec<Prior>,
+    /// The last point that was looked at, and the last that was accepted.
+    last: Point,
+    kept: Point,
+}
+
+impl Search<'_> {
+    /// The unknowns: fitted entries of θ, then the initial states.
+    fn unknowns(&self, theta: &[f64], initial: &[[f64; 2]]) -> DVector<f64> {
+        let fitted = theta.iter().zip(&self.priors).filter(|(_, prior)| prior.is_fitted()).map(|(value, _)| *value);
+        let all: Vec<f64> = fitted.chain(initial.iter().flatten().copied()).collect();
+        DVector::from_vec(all)
     }
 
-    /// The point a step away, within the bounds.
-    fn moved(&self, entries: &[crate::model::Entry], step: &DVector<f64>) -> (Vec<f64>, Vec<[f64; 2]>) {
-        let mut steps = step.iter();
-        let mut next = || steps.next().copied().unwrap_or(0.0);
-        let theta = self.theta.iter().zip(entries).map(|(&value, entry)| match entry.prior.is_fitted() {
-            true => (value + next()).clamp(entry.prior.lowest, entry.prior.highest),
-            false => value,
-        });
-        let theta: Vec<f64> = theta.collect();
-        (theta, self.initial.iter().map(|[psi, r]| [psi + next(), r + next()]).collect())
+    fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> Point {
+        let residual = self.problem.residual(self.structure, &theta, &initial);
+        let misfit = self.weights.misfit(&residual);
+        let penalty: f64 = self.priors.iter().zip(&theta).map(|(prior, &x)| deviation(*prior, x).powi(2)).sum();
+        let value = misfit + penalty;
+        Point { theta, initial, residual, misfit, value: if value.is_finite() { value } else { f64::INFINITY } }
     }
+}
+
+impl Objective for Search<'_> {
+    fn bounds(&self, unknown: usize) -> [f64; 2] {
+        let prior = self.priors.iter().filter(|prior| prior.is_fitted()).nth(unknown);
+        prior.map_or([f64::NEG_INFINITY, f64::INFINITY], |prior| [prior.lowest, prior.highest])
+    }
+
+    fn value(&mut self, at: &[f64]) -> f64 {
+        let mut values = at.iter().copied();
+        let mut next = || values.next().unwrap_or(f64::NAN);
+        let before = &self.last;
+        let theta = self.priors.iter().zip(&before.theta).map(|(p, own)| if p.is_fitted() { next() } else { *own });
+        let theta = theta.collect();
+        let initial = before.initial.iter().map(|_| [next(), next()]).collect();
+        self.last = self.point(theta, initial);
+        self.last.value
+    }
+
+    fn linearise(&mut self, _: &[f64], normal: &mut Normal) -> f64 {
+        self.kept.clone_from(&self.last);
+        let Point { theta, initial, .. } = &self.kept;
+        *normal = self.problem.posterior(self.structure, theta, initial, self.weights);
+        self.kept.value
+    }
+}
+
+/// Normal equations of J from residual and sensitivities at a point.
+pub fn posterior(linear: &Linear, structure: &Structure, theta: &[f64], weights: &Weights) -> Normal {
+    let (mut normal, _) = linear.normal(weights);
+    for (k, (prior, value)) in structure.fitted_priors(theta).into_iter().enumerate() {
+        normal.matrix[(k, k)] += curvature(prior);
+        normal.gradient[k] -= deviation(prior, value) * curvature(prior).sqrt();
+    }
+    normal
 }
 
 /// Distance of a value from what is expected, in standard deviations.
@@ -225,94 +256,35 @@ pub fn log_normaliser(prior: Prior) -> f64 {
     if prior.sd.is_infinite() {
         return -(prior.highest - prior.lowest).ln();
     }
-    let law = Normal::standard();
+    let law = distribution::Normal::standard();
     let inside = law.cdf((prior.highest - prior.mean) / prior.sd) - law.cdf((prior.lowest - prior.mean) / prior.sd);
     -0.5 * std::f64::consts::TAU.ln() - prior.sd.ln() - inside.max(1e-12).ln()
 }
 
-/// Normal equations of J at a point.
-pub struct System {
-    /// Second derivatives of J/2 by the unknowns.
-    pub precision: DMatrix<f64>,
-    /// First derivatives of −J/2.
-    pub gradient: DVector<f64>,
-    /// Whether an unknown lies at an end of its range and would leave it.
-    held: Vec<bool>,
-    /// What is expected of the fitted entries, and where they are.
-    priors: Vec<(Prior, f64)>,
-    /// Entries that belong to terms.
-    of_terms: usize,
-}
-
-impl System {
-    /// The system of a structure at some parameters.
-    pub fn at(
-        problem: &Problem,
-        structure: &Structure,
-        theta: &[f64],
-        initial: &[[f64; 2]],
-        weights: &Weights,
-    ) -> Self {
-        Self::of(&problem.linear(structure, theta, initial), structure, theta, weights)
-    }
-
-    /// The same from residual and sensitivities there.
-    pub fn of(linear: &Linear, structure: &Structure, theta: &[f64], weights: &Weights) -> Self {
-        let NormalEquations { matrix: mut precision, mut gradient, .. } = linear.normal(weights);
-        let entries = structure.entries();
-        let fitted = entries.iter().zip(theta).filter(|(entry, _)| entry.prior.is_fitted());
-        let priors: Vec<(Prior, f64)> = fitted.map(|(entry, &value)| (entry.prior, value)).collect();
-        let mut held = vec![false; linear.unknowns];
-        for (k, &(prior, value)) in priors.iter().enumerate() {
-            precision[(k, k)] += curvature(prior);
-            gradient[k] -= deviation(prior, value) * curvature(prior).sqrt();
-            let [low, high] =
-                [prior.lowest, prior.highest].map(|end| (value - end).abs() <= 1e-12 * (1e-6 + end.abs()));
-            held[k] = low && gradient[k] < 0.0 || high && gradient[k] > 0.0;
+/// Log of the marginal likelihood up to what all structures share (Laplace). The part of a normal law that lies beyond the
+/// end of a range is left out.
+fn evidence(structure: &Structure, at: &Point, normal: &Normal) -> f64 {
+    let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
+    let priors = structure.fitted_priors(&at.theta);
+    let of_terms = structure.entries()[structure.base_count()..].iter().filter(|entry| entry.prior.is_fitted()).count();
+    let constants: f64 = priors[priors.len() - of_terms..].iter().map(|(prior, _)| log_normaliser(*prior)).sum();
+    let volume = 0.5 * of_terms as f64 * std::f64::consts::TAU.ln() - 0.5 * factor.ln_determinant();
+    let covariance = factor.inverse();
+    let law = distribution::Normal::standard();
+    let inside = |(k, &(prior, value)): (usize, &(Prior, f64))| {
+        let sd = covariance[(k, k)].sqrt();
+        let held = normal.is_held(k, value, [prior.lowest, prior.highest]);
+        let push = if held { normal.gradient[k] * sd } else { 0.0 };
+        let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
+        let room = if push > 0.0 { to_high - push } else { to_low + push };
+        // ∫ over the range of exp(−½ (x − push)²) against that of the whole line at its height within the range.
+        match room < -5.0 {
+            true => -(-room * std::f64::consts::TAU.sqrt()).ln(),
+            false => law.cdf(room).ln() + 0.5 * push * push,
         }
-        let of_terms = entries[structure.base_count()..].iter().filter(|entry| entry.prior.is_fitted()).count();
-        Self { precision, gradient, held, priors, of_terms }
-    }
-
-    /// A damped step and what it promises to take from J.
-    fn step(&self, damping: f64) -> Option<(DVector<f64>, f64)> {
-        let n = self.gradient.len();
-        let scale: Vec<f64> = (0..n).map(|k| self.precision[(k, k)].sqrt().recip()).collect();
-        let matrix = DMatrix::from_fn(n, n, |i, j| match (i == j, self.held[i] || self.held[j]) {
-            (true, _) => 1.0 + damping + 1e-11,
-            (false, true) => 0.0,
-            (false, false) => self.precision[(i, j)] * scale[i] * scale[j],
-        });
-        let right = DVector::from_fn(n, |i, _| if self.held[i] { 0.0 } else { self.gradient[i] * scale[i] });
-        let scaled = matrix.cholesky()?.solve(&right);
-        let gain = scaled.dot(&right) + damping * scaled.norm_squared();
-        let step = DVector::from_fn(n, |i, _| scaled[i] * scale[i]);
-        step.iter().all(|x| x.is_finite()).then_some((step, gain))
-    }
-
-    /// Log of the marginal likelihood up to what all structures share (Laplace), from the value of J. The part of a
-    /// normal law that lies beyond the end of a range is left out.
-    fn evidence(&self, value: f64) -> f64 {
-        let Some(factor) = self.precision.clone().cholesky() else { return f64::NEG_INFINITY };
-        let constants: f64 =
-            self.priors[self.priors.len() - self.of_terms..].iter().map(|(prior, _)| log_normaliser(*prior)).sum();
-        let volume = 0.5 * self.of_terms as f64 * std::f64::consts::TAU.ln() - 0.5 * factor.ln_determinant();
-        let covariance = factor.inverse();
-        let law = Normal::standard();
-        let inside = |(k, (prior, value)): (usize, &(Prior, f64))| {
-            let sd = covariance[(k, k)].sqrt();
-            let push = if self.held[k] { self.gradient[k] * sd } else { 0.0 };
-            let [to_low, to_high] = [(value - prior.lowest) / sd, (prior.highest - value) / sd];
-            let room = if push > 0.0 { to_high - push } else { to_low + push };
-            // ∫ over the range of exp(−½ (x − push)²) against that of the whole line at its height within the range.
-            match room < -5.0 {
-                true => -(-room * std::f64::consts::TAU.sqrt()).ln(),
-                false => law.cdf(room).ln() + 0.5 * push * push,
-            }
-        };
-        let ends: f64 = self.priors.iter().enumerate().map(inside).sum();
-        -0.5 * value + constants + volume + ends
-    }
+    };
+    let ends: f64 = priors.iter().enumerate().map(inside).sum();
+    -0.5 * at.value + constants + volume + ends
 }
 
 /// A fitted structure.
@@ -342,6 +314,15 @@ impl Fit {
         let inverse = self.precision.clone().cholesky()?.inverse();
         let covariance = self.structure.spread(&inverse);
         covariance.iter().all(|x| x.is_finite()).then_some(covariance)
+    }
+
+    /// Values of all entries of θ as the effects take them, with standard deviations: infinite where the records do not
+    /// tell them apart.
+    pub fn physical(&self) -> Vec<(f64, f64)> {
+        let covariance = self.covariance().map(|all| self.structure.physical_covariance(&all));
+        let sd = |place: usize| covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
+        let values = self.structure.physical(&self.theta).into_iter().enumerate();
+        values.map(|(place, value)| (value, sd(place))).collect()
     }
 
     /// Covariance of the fitted entries of [`Structure::alone`] of a record.

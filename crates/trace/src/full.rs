@@ -10,6 +10,7 @@ use crate::candidates::{Candidate, is_variant};
 use crate::fit::{Effort, Fit, Problem};
 use crate::law::{self, Found};
 use crate::model::{Structure, Term};
+use crate::noise::Wander;
 use crate::transient;
 use crate::weights::{Law, Weights};
 
@@ -41,8 +42,9 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
     let structure = own.of(known.iter().map(|one| Arc::clone(&one.term)).collect());
     let first = Law::white(problem.records.len(), (FIRST * FIRST) * base.mean_square());
     let fit = physics(problem, base, &structure, &problem.weights(&first));
-    let ask = |fit: &Fit, from: &Law, among: law::Among| law::of(problem, fit, &from.variance, with_waves, among);
-    let lasting = ask(&fit, &first, law::Among::All);
+    let all: Vec<Wander> = Wander::all().collect();
+    let ask = |fit: &Fit, from: &Law, kinds: &[Wander]| law::of(problem, fit, &from.variance, with_waves, kinds);
+    let lasting = ask(&fit, &first, &all);
 
     // Moments that come at an instant enter where they explain most beside everything else.
     let mut log_odds: Vec<f64> = known.iter().map(|one| one.log_odds).collect();
@@ -61,21 +63,21 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
         |law: &Law| problem.fit(&structure, theta.clone(), fit.initial.clone(), &problem.weights(law), Effort::COARSE);
     let known_law = lasting.law.clone();
     let whole = of(&known_law);
-    let beside = ask(&whole, &lasting.law, law::Among::All);
+    let beside = ask(&whole, &lasting.law, &all);
     let mut laws = vec![beside];
-    let again = |found: &Found| ask(&whole, &found.law, law::Among::OfHeading);
+    let of_heading: Vec<Wander> = Wander::all().filter(|kind| kind.is_of_heading()).collect();
     if !laws[0].law.is_alike(&lasting.law) {
         laws.push(lasting);
     }
     if laws.iter().any(|found| found.law.is_random_moment()) {
-        laws.push(again(&laws[0]));
+        laws.push(ask(&whole, &laws[0].law, &of_heading));
     }
     let fitted = |law: &Law| if law.is_alike(&known_law) { whole.clone() } else { of(law) };
     let mut fulls: Vec<Full> = laws
         .into_par_iter()
         .map(|Found { law, waves_gain, .. }| Full { fit: fitted(&law), law, waves_gain, log_odds: log_odds.clone() })
         .collect();
-    let nothing = nothing(problem, base, with_waves);
+    let nothing = nothing(problem, base, with_waves, &all);
     if fulls.iter().all(|full| !full.law.is_alike(&nothing.law)) {
         fulls.push(nothing);
     }
@@ -83,7 +85,7 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
 }
 
 /// The base alone with the noise that it leaves: what the records are if nothing is missing but weather is there.
-fn nothing(problem: &Problem, base: &Base, with_waves: bool) -> Full {
+fn nothing(problem: &Problem, base: &Base, with_waves: bool, kinds: &[Wander]) -> Full {
     let own = Structure::base(problem.records.len(), problem.time);
     let law = Law::white(problem.records.len(), base.mean_square());
     let theta = start(&own, &base.estimate.response, std::iter::empty());
@@ -91,7 +93,7 @@ fn nothing(problem: &Problem, base: &Base, with_waves: bool) -> Full {
         problem.fit(&own, theta, initial, &problem.weights(law), Effort::FINE)
     };
     let fit = of(theta, base.initial(), &law);
-    let Found { law, waves_gain, .. } = law::of(problem, &fit, &law.variance, with_waves, law::Among::All);
+    let Found { law, waves_gain, .. } = law::of(problem, &fit, &law.variance, with_waves, kinds);
     Full { fit: of(fit.theta, fit.initial, &law), law, waves_gain, log_odds: Vec::new() }
 }
 

@@ -8,13 +8,14 @@
 //! A colour pays log n for each of its parameters (Schwarz 1978). The law is common to all structures: what a structure
 //! without an effect leaves is never taken for weather.
 
+use estimation::levenberg_marquardt::Normal;
+use estimation::minimum::minimum;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 
 use crate::fit::{Fit, Problem, curvature, deviation};
-use crate::linear::{Linear, NormalEquations};
-use crate::minimum::minimum;
-use crate::noise::{COMPASS, Colour, GUSTS, SMOOTH, Wander};
+use crate::linear::Linear;
+use crate::noise::{Colour, Wander};
 use crate::waves;
 use crate::weights::{Law, Weights};
 
@@ -39,7 +40,8 @@ const ROUNDS: usize = 2;
 /// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
 fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
     let of = |record: &crate::record::Record| {
-        let mut bends: Vec<f64> = record.rudder().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+        let mut bends: Vec<f64> =
+            record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
         bends.sort_by(|one, other| other.total_cmp(one));
         let most = ((bends.len() as f64 * BENT) as usize).max(1);
         let square = bends.iter().take(most).sum::<f64>() / most as f64;
@@ -60,21 +62,13 @@ pub struct Ground<'a> {
     floors: Vec<f64>,
 }
 
-/// A law with its −2 log of the marginal likelihood.
-struct Judged {
-    law: Law,
-    height: f64,
-}
-
 impl<'a> Ground<'a> {
     /// That of a fit. States at the beginning stand behind the fitted parameters.
     pub fn of(problem: &'a Problem, fit: &Fit) -> Self {
         let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
-        let entries = fit.structure.entries();
-        let fitted = entries.iter().zip(&fit.theta).filter(|(entry, _)| entry.prior.is_fitted());
-        let prior = fitted.map(|(entry, value)| {
-            let precision = curvature(entry.prior);
-            (precision, deviation(entry.prior, *value) / precision.sqrt())
+        let prior = fit.structure.fitted_priors(&fit.theta).into_iter().map(|(prior, value)| {
+            let precision = curvature(prior);
+            (precision, deviation(prior, value) / precision.sqrt())
         });
         let mut prior: Vec<(f64, f64)> = prior.collect();
         prior.resize(linear.unknowns, (0.0, 0.0));
@@ -82,21 +76,18 @@ impl<'a> Ground<'a> {
     }
 
     /// The law of largest marginal likelihood beside the waves of a law, from its sizes.
-    pub fn law(&self, start: &Law, among: Among) -> Found {
+    pub fn law(&self, start: &Law, kinds: &[Wander]) -> Found {
         let white = self.judge(Colour { wander: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
-        let coloured = self.levels(among.kinds(), &white.law);
-        let priced = |judged: Judged| {
-            let height = judged.height + judged.law.colour.freedom() as f64 * log_n;
-            Found { law: judged.law, height, waves_gain: 0.0 }
-        };
+        let coloured = self.levels(kinds, &white.law);
+        let priced = |own: Found| Found { height: own.height + own.law.colour.freedom() as f64 * log_n, ..own };
         let all = [white].into_iter().chain(coloured).map(priced);
         all.min_by(|one, other| one.height.total_cmp(&other.height)).expect("white noise is one")
     }
 
     /// Factor of the precision of all unknowns under weights, and their step from where they stand.
     pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
-        let NormalEquations { mut matrix, mut gradient, .. } = self.linear.normal(weights);
+        let (Normal { mut matrix, mut gradient }, _) = self.linear.normal(weights);
         for (k, &(precision, beside)) in self.prior.iter().enumerate() {
             matrix[(k, k)] += precision;
             gradient[k] -= precision * beside;
@@ -107,33 +98,33 @@ impl<'a> Ground<'a> {
     }
 
     /// The sizes of the noise of all records under a colour, from `start`.
-    fn judge(&self, colour: Colour, start: &[f64]) -> Judged {
+    fn judge(&self, colour: Colour, start: &[f64]) -> Found {
         let ones = vec![1.0; start.len()];
         let mut law = Law { colour, variance: start.to_vec(), power: ones.clone() };
         let unit = Law { colour, variance: ones.clone(), power: ones };
         let weights = self.problem.weights(&unit);
         // Of every record by itself, under unit variance: the sums for other sizes follow.
-        let blocks: Vec<NormalEquations> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
+        let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
         let mut height = f64::INFINITY;
         for _ in 0..ROUNDS {
             let Some((next, value)) = self.round(&law, &blocks, &weights) else { break };
             law.variance = next;
             height = value;
         }
-        Judged { law, height }
+        Found { law, height, waves_gain: 0.0 }
     }
 
-    fn of_record(&self, record: usize, weights: &Weights) -> NormalEquations {
+    fn of_record(&self, record: usize, weights: &Weights) -> (Normal, Vec<f64>) {
         let alone = Linear { blocks: vec![self.linear.blocks[record].clone()], unknowns: self.linear.unknowns };
         let own = Weights { whiteners: vec![weights.whiteners[record].clone()], scale: vec![weights.scale[record]] };
         alone.normal(&own)
     }
 
     /// New sizes and the height at the old ones.
-    fn round(&self, law: &Law, blocks: &[NormalEquations], weights: &Weights) -> Option<(Vec<f64>, f64)> {
+    fn round(&self, law: &Law, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
         let n = self.linear.unknowns;
         let (mut matrix, mut gradient) = (DMatrix::zeros(n, n), DVector::zeros(n));
-        for (block, variance) in blocks.iter().zip(&law.variance) {
+        for ((block, _), variance) in blocks.iter().zip(&law.variance) {
             matrix += &block.matrix / *variance;
             gradient += &block.gradient / *variance;
         }
@@ -148,10 +139,11 @@ impl<'a> Ground<'a> {
         let inverse = factor.inverse();
         let mut height = factor.ln_determinant() + penalty - step.dot(&gradient);
         let mut sizes = Vec::with_capacity(blocks.len());
-        for (record, (block, variance)) in blocks.iter().zip(&law.variance).enumerate() {
+        for (record, ((block, squares), variance)) in blocks.iter().zip(&law.variance).enumerate() {
+            let square = squares[0];
             let rows = self.linear.blocks[record].residual.len() as f64;
-            height += rows * variance.ln() + weights.whiteners[record].log_variance + block.squares[0] / variance;
-            let left = block.squares[0] - 2.0 * step.dot(&block.gradient) + step.dot(&(&block.matrix * &step));
+            height += rows * variance.ln() + weights.whiteners[record].log_variance + square / variance;
+            let left = square - 2.0 * step.dot(&block.gradient) + step.dot(&(&block.matrix * &step));
             let taken = (inverse.component_mul(&block.matrix)).sum() / variance;
             sizes.push((left.max(0.0) / (rows - taken).max(0.2 * rows)).max(self.floors[record]));
         }
@@ -159,41 +151,20 @@ impl<'a> Ground<'a> {
     }
 
     /// Some kinds of colour at their best levels: all are tried roughly, the best few finely.
-    fn levels(&self, kinds: Vec<Wander>, white: &Law) -> Vec<Judged> {
+    fn levels(&self, kinds: &[Wander], white: &Law) -> Vec<Found> {
         let at = |kind: Wander, log: f64| {
             let colour = Colour { wander: Some((kind, log.exp())), ..white.colour };
             self.judge(colour, &white.variance)
         };
         let [low, high] = LEVELS.map(f64::ln);
-        let roughly = |kind: Wander| {
+        let roughly = |&kind: &Wander| {
             let levels = (0..ROUGH).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(ROUGH));
             (levels.map(|log| at(kind, log).height).fold(f64::INFINITY, f64::min), kind)
         };
-        let mut all: Vec<(f64, Wander)> = kinds.into_par_iter().map(roughly).collect();
+        let mut all: Vec<(f64, Wander)> = kinds.par_iter().map(roughly).collect();
         all.sort_by(|one, other| one.0.total_cmp(&other.0));
         all.truncate(FINALISTS);
         all.into_par_iter().map(|(_, kind)| at(kind, minimum(low, high, GRID, |log| at(kind, log).height).0)).collect()
-    }
-}
-
-/// Which kinds of colour are tried.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Among {
-    /// All.
-    All,
-    /// Errors of the heading, no random moment.
-    OfHeading,
-}
-
-impl Among {
-    fn kinds(self) -> Vec<Wander> {
-        let gusts = (0..GUSTS.len()).map(Wander::OrnsteinUhlenbeck);
-        let moments = [Wander::White, Wander::Walk].into_iter().chain(gusts);
-        let heading = (0..COMPASS.len()).map(Wander::Compass).chain((0..SMOOTH.len()).map(Wander::Smooth));
-        match self {
-            Self::All => moments.chain(heading).collect(),
-            Self::OfHeading => heading.collect(),
-        }
     }
 }
 
@@ -202,17 +173,17 @@ impl Among {
 pub struct Found {
     /// The law.
     pub law: Law,
-    /// −2 log p, with the price of its colour.
+    /// −2 log p; of the law that is chosen with the price of its colour.
     pub height: f64,
     /// How much better waves explain what is left, with the price of their parameters.
     pub waves_gain: f64,
 }
 
-/// The law of what a fit leaves; `variance` are sizes to begin with, rad².
-pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, among: Among) -> Found {
+/// The law of what a fit leaves, of some kinds of colour; `variance` are sizes to begin with, rad².
+pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, kinds: &[Wander]) -> Found {
     let ground = Ground::of(problem, fit);
     let start = Law { variance: variance.to_vec(), ..Law::white(variance.len(), 1.0) };
-    let mut best = ground.law(&start, among);
+    let mut best = ground.law(&start, kinds);
     if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
         let log_n = (problem.observations() as f64).ln();
         let colours = [
@@ -220,7 +191,7 @@ pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, amon
             best.law.colour.wander.map(|_| Colour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let Judged { law, height } = ground.judge(colour, &best.law.variance);
+            let Found { law, height, .. } = ground.judge(colour, &best.law.variance);
             let height = height + colour.freedom() as f64 * log_n;
             if height < best.height {
                 best = Found { law, height, waves_gain: best.waves_gain + best.height - height };

@@ -1,7 +1,8 @@
 //! Residual and sensitivities of the records, and their normal equations.
 
 use estimation::column::dot;
-use nalgebra::{DMatrix, DVector};
+use estimation::levenberg_marquardt::Normal;
+use nalgebra::DVector;
 use rayon::prelude::*;
 use ship::DIRECTIONS;
 use ship::{Real, Tangent};
@@ -17,6 +18,22 @@ pub struct Block {
     pub residual: Vec<f64>,
     /// Unknowns that act, each with the change of the heading.
     pub columns: Vec<(usize, Vec<f64>)>,
+}
+
+impl Block {
+    /// The same, made white and of unit variance.
+    pub fn white(&self, record: usize, weights: &Weights) -> Self {
+        let mut white = self.clone();
+        let mut all: Vec<&mut Vec<f64>> = white.columns.iter_mut().map(|(_, column)| column).collect();
+        all.push(&mut white.residual);
+        weights.apply(record, &mut all);
+        white
+    }
+
+    /// Products of its columns with another one, by unknown.
+    pub fn products(&self, column: &[f64], sums: &mut DVector<f64>) {
+        self.columns.iter().for_each(|(unknown, own)| sums[*unknown] += dot(own, column));
+    }
 }
 
 /// Replays one record with derivatives by some variables: their unknown, and their place in θ and behind it.
@@ -59,30 +76,12 @@ pub struct Linear {
     pub unknowns: usize,
 }
 
-/// XᵀX and Xᵀe of weighed sensitivities.
-#[derive(Debug, Clone)]
-pub struct NormalEquations {
-    /// XᵀX.
-    pub matrix: DMatrix<f64>,
-    /// Xᵀe.
-    pub gradient: DVector<f64>,
-    /// |e|² of every record.
-    pub squares: Vec<f64>,
-}
-
 impl Linear {
-    /// Normal equations under weights.
-    pub fn normal(&self, weights: &Weights) -> NormalEquations {
-        let mut normal = NormalEquations {
-            matrix: DMatrix::zeros(self.unknowns, self.unknowns),
-            gradient: DVector::zeros(self.unknowns),
-            squares: Vec::with_capacity(self.blocks.len()),
-        };
+    /// Normal equations under weights, and |e|² of every record.
+    pub fn normal(&self, weights: &Weights) -> (Normal, Vec<f64>) {
+        let (mut normal, mut squares) = (Normal::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
-            let Block { mut residual, mut columns } = block.clone();
-            let mut all: Vec<&mut Vec<f64>> = columns.iter_mut().map(|(_, column)| column).collect();
-            all.push(&mut residual);
-            weights.apply(record, &mut all);
+            let Block { residual, columns } = block.white(record, weights);
             for (k, (i, one)) in columns.iter().enumerate() {
                 for (j, other) in &columns[..=k] {
                     let product = dot(one, other);
@@ -93,8 +92,8 @@ impl Linear {
                 }
                 normal.gradient[*i] += dot(one, &residual);
             }
-            normal.squares.push(dot(&residual, &residual));
+            squares.push(dot(&residual, &residual));
         }
-        normal
+        (normal, squares)
     }
 }

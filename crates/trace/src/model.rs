@@ -141,6 +141,12 @@ impl Structure {
         entries
     }
 
+    /// What is expected of the fitted entries, and where they are.
+    pub fn fitted_priors(&self, theta: &[f64]) -> Vec<(Prior, f64)> {
+        let fitted = self.entries().into_iter().zip(theta).filter(|(entry, _)| entry.prior.is_fitted());
+        fitted.map(|(entry, &value)| (entry.prior, value)).collect()
+    }
+
     /// Places in θ of the fitted entries: unknown k of a fit is the entry at place k of these.
     pub fn fitted(&self) -> Vec<usize> {
         let entries = self.entries();
@@ -176,29 +182,25 @@ impl Structure {
         entry.only.is_none_or(|only| only == record)
     }
 
+    /// Places in θ that are counted from another one, with that one.
+    fn counted(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.terms.iter().zip(self.ranges()).flat_map(|(term, range)| {
+            let beside = |(place, prior): (usize, &Prior)| Some((place, range.start + prior.beside?));
+            range.clone().zip(&term.priors).filter_map(beside).collect::<Vec<_>>()
+        })
+    }
+
     /// Values as the effects take them: what is counted from another parameter is added to it.
     pub fn physical<R: EffectReal>(&self, theta: &[R]) -> Vec<R> {
         let mut values = theta.to_vec();
-        for (term, range) in self.terms.iter().zip(self.ranges()) {
-            for (k, prior) in term.priors.iter().enumerate() {
-                if let Some(other) = prior.beside {
-                    values[range.start + k] = theta[range.start + k] + theta[range.start + other];
-                }
-            }
-        }
+        self.counted().for_each(|(place, other)| values[place] = theta[place] + theta[other]);
         values
     }
 
     /// Covariance of the values as the effects take them from that of θ.
     pub fn physical_covariance(&self, covariance: &DMatrix<f64>) -> DMatrix<f64> {
         let mut map = DMatrix::identity(covariance.nrows(), covariance.ncols());
-        for (term, range) in self.terms.iter().zip(self.ranges()) {
-            for (k, prior) in term.priors.iter().enumerate() {
-                if let Some(other) = prior.beside {
-                    map[(range.start + k, range.start + other)] = 1.0;
-                }
-            }
-        }
+        self.counted().for_each(|(place, other)| map[(place, other)] = 1.0);
         &map * covariance * map.transpose()
     }
 

@@ -65,15 +65,7 @@ fn one(structures: &Structures, (id, only): Key, probability: f64) -> Named {
 
 /// The smallest group of effects of which one is there, the most probable of them first.
 fn group(structures: &Structures, open: &[Key], threshold: f64) -> Option<(Vec<Key>, f64)> {
-    let union = |group: &[Key]| -> f64 {
-        let has = |(id, only): &Key, terms: &[TermName]| terms.iter().any(|name| name.0 == *id && name.2 == *only);
-        structures
-            .weighed_names()
-            .filter(|(_, names)| group.iter().any(|key| has(key, names)))
-            .map(|(weight, _)| weight)
-            .sum::<f64>()
-            .clamp(0.0, 1.0)
-    };
+    let union = |group: &[Key]| structures.of_any(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];
     while group.len() < LARGEST_GROUP {
         let own = union(&group);

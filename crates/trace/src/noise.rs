@@ -12,17 +12,11 @@
 
 use std::sync::OnceLock;
 
-use estimation::kalman::{self, Filter, MOST, Step, Whitener};
-use estimation::with_states;
+use estimation::kalman::{MOST, Step, System, Whitener};
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
 use crate::record::Record;
-
-mod system;
-
-use system::joint;
-pub(crate) use system::{Matrix, System, van_loan};
 
 /// What wanders beside the white heading noise: a random yaw moment, or an error of the compass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,6 +45,13 @@ pub const COMPASS: [f64; 4] = [0.01, 0.03, 0.06, 0.128];
 pub const SMOOTH: [f64; 3] = [0.01, 0.03, 0.08];
 
 impl Wander {
+    /// Every kind: random moments, then errors of the heading.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let gusts = (0..GUSTS.len()).map(Self::OrnsteinUhlenbeck);
+        let compass = (0..COMPASS.len()).map(Self::Compass);
+        [Self::White, Self::Walk].into_iter().chain(gusts).chain(compass).chain((0..SMOOTH.len()).map(Self::Smooth))
+    }
+
     /// Whether it is an error of the heading, and no moment.
     pub fn is_of_heading(self) -> bool {
         matches!(self, Self::Compass(_) | Self::Smooth(_))
@@ -140,8 +141,8 @@ struct Drift {
     states: usize,
     /// Variance of the states at the beginning.
     beginning: [f64; 3],
-    /// Transition and added covariance of every distinct step.
-    steps: Vec<(Matrix, Matrix)>,
+    /// Every distinct step.
+    steps: Vec<Step<f64, MOST>>,
     /// The step before every observed row.
     of_row: Vec<usize>,
 }
@@ -157,17 +158,14 @@ impl Drift {
             (_, None) => [0.0; 3],
         };
         let mut known: Vec<f64> = Vec::new();
-        let mut steps = Vec::new();
-        let of_row = durations
-            .iter()
-            .map(|&h| {
-                known.iter().rposition(|&other| (other - h).abs() <= 1e-6 * h).unwrap_or_else(|| {
-                    known.push(h);
-                    steps.push(van_loan(&generator, intensity, h));
-                    known.len() - 1
-                })
+        let of_row = durations.iter().map(|&h| {
+            known.iter().rposition(|&other| (other - h).abs() <= 1e-6 * h).unwrap_or_else(|| {
+                known.push(h);
+                known.len() - 1
             })
-            .collect();
+        });
+        let of_row = of_row.collect();
+        let steps = known.iter().map(|&h| Step::over(&generator, intensity, h)).collect();
         Self { states: generator.nrows(), beginning, steps, of_row }
     }
 }
@@ -180,11 +178,8 @@ pub struct RecordNoise {
     variances: Vec<f64>,
     longest: f64,
     damping: f64,
-    white: Drift,
-    walk: Drift,
-    gusts: [OnceLock<Drift>; GUSTS.len()],
-    compass: [OnceLock<Drift>; COMPASS.len()],
-    smooth: [OnceLock<Drift>; SMOOTH.len()],
+    /// What wanders, of every kind that was asked for, in the order of [`Wander::all`].
+    drifts: Vec<OnceLock<Drift>>,
 }
 
 impl RecordNoise {
@@ -192,47 +187,26 @@ impl RecordNoise {
     /// record, s, and a full row is the mean of `full_readings`.
     pub fn new(record: &Record, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
         let time = |number: usize| record.time[record.observed[number]];
-        let durations: Vec<f64> =
-            (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
+        let durations = (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
+        let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
+        let variances = record.observed.iter().map(variance).collect();
         // A course-unstable ship is steered: what a random moment does is over after a rudder order.
         let damping = inverse_time.max(0.0);
-        let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
-        Self {
-            white: Drift::new(Wander::White, damping, &durations, longest),
-            walk: Drift::new(Wander::Walk, damping, &durations, longest),
-            gusts: Default::default(),
-            compass: Default::default(),
-            smooth: Default::default(),
-            damping,
-            variances: record.observed.iter().map(variance).collect(),
-            durations,
-            longest,
-        }
-    }
-
-    /// Length of the longest record, s.
-    pub fn longest(&self) -> f64 {
-        self.longest
+        Self { durations, variances, longest, damping, drifts: Wander::all().map(|_| OnceLock::new()).collect() }
     }
 
     /// The filter that makes noise of this colour white, in units of the white noise of a full row.
     pub fn whitener(&self, colour: &Colour) -> Whitener {
-        let system = self.system(colour);
-        with_states!(system.states, N => self.filter::<N>(&system))
+        let (system, states) = self.system(colour);
+        system.whitener(states)
     }
 
-    /// Random moment and waves of this colour as one linear system, without the white noise of the rows.
-    pub(crate) fn system(&self, colour: &Colour) -> System {
+    /// Random moment and waves of this colour as one linear system, and the number of its states.
+    pub(crate) fn system(&self, colour: &Colour) -> (System<f64, MOST>, usize) {
         let drift = colour.wander.map(|(kind, level)| {
+            let place = Wander::all().position(|other| other == kind).expect("a kind of the list");
             let new = || Drift::new(kind, self.damping, &self.durations, self.longest);
-            let drift = match kind {
-                Wander::White => &self.white,
-                Wander::Walk => &self.walk,
-                Wander::OrnsteinUhlenbeck(number) => self.gusts[number].get_or_init(new),
-                Wander::Compass(number) => self.compass[number].get_or_init(new),
-                Wander::Smooth(number) => self.smooth[number].get_or_init(new),
-            };
-            (drift, level)
+            (self.drifts[place].get_or_init(new), level)
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);
         let mut initial = [[0.0; MOST]; MOST];
@@ -244,28 +218,40 @@ impl RecordNoise {
             (initial[own][own], initial[own + 1][own + 1]) = (p0, p1);
         }
         let mut known: Vec<(f64, usize)> = Vec::new();
-        let mut steps: Vec<(Matrix, Matrix)> = Vec::new();
         let of_row = self.durations.iter().enumerate().map(|(row, &h)| {
             let key = drift.map_or(0, |(drift, _)| drift.of_row[row]);
             let place = known.iter().rposition(|step| step.1 == key && (step.0 - h).abs() <= 1e-6 * h.max(1e-300));
             place.unwrap_or_else(|| {
                 known.push((h, key));
-                steps.push(joint(drift.map(|(drift, level)| (&drift.steps[key], level, own)), &colour.waves, h));
-                steps.len() - 1
+                known.len() - 1
             })
         });
-        let of_row = of_row.collect();
+        let of_row: Vec<usize> = of_row.collect();
+        let nothing = Step { transition: [[0.0; MOST]; MOST], added: [[0.0; MOST]; MOST] };
+        let step = |&(h, key): &(f64, usize)| {
+            let mut step = drift.map_or(nothing, |(drift, level)| drift.steps[key].scaled(level));
+            if let Some(waves) = &colour.waves {
+                add_waves(&mut step, own, waves, h);
+            }
+            step
+        };
+        let steps = known.iter().map(step).collect();
+        let beside = colour.waves.filter(|_| own > 0).map(|_| own);
         let states = own + if colour.waves.is_some() { 2 } else { 0 };
-        System { states, beside: colour.waves.filter(|_| own > 0).map(|_| own), steps, of_row, initial }
+        (System::of_rows(steps, initial, (&of_row, &self.variances), beside), states)
     }
+}
 
-    /// The filter of a system of N states.
-    fn filter<const N: usize>(&self, system: &System) -> Whitener {
-        let matrix = |wide: &Matrix| -> [[f64; N]; N] { std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j])) };
-        let steps = system.steps.iter().map(|(f, q)| Step { transition: matrix(f), added: matrix(q) });
-        let rows = (system.of_row.as_slice(), self.variances.as_slice());
-        let own = kalman::System::of_rows(steps.collect(), matrix(&system.initial), rows, system.beside);
-        Filter::new(own).whitener()
+/// Puts waves into a step over h, as the two states from `own` on.
+fn add_waves(step: &mut Step<f64, MOST>, own: usize, waves: &NarrowBand, h: f64) {
+    let sea = waves.step(h);
+    let (a, b) = (sea.advance([1.0, 0.0], [0.0; 2]), sea.advance([0.0, 1.0], [0.0; 2]));
+    let (c, d) = (sea.advance([0.0; 2], [1.0, 0.0]), sea.advance([0.0; 2], [0.0, 1.0]));
+    for i in 0..2 {
+        (step.transition[own + i][own], step.transition[own + i][own + 1]) = (a[i], b[i]);
+        for j in 0..2 {
+            step.added[own + i][own + j] = c[i] * c[j] + d[i] * d[j];
+        }
     }
 }
 

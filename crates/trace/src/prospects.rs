@@ -1,6 +1,7 @@
 //! What another trial would tell: which aliases it would separate and which blind spots it would reveal.
 
-use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -9,14 +10,14 @@ use trial::Trial;
 use crate::analysis::Analysis;
 use crate::document::Outcome;
 use crate::fit::Problem;
-use crate::model::TermName;
+use crate::model::Term;
 use crate::record::Record;
 use crate::weights::Law;
 
 /// Expected square of a size over its error from which an effect can be told from all others.
 const TOLD: f64 = 20.0;
 
-/// What another trial would tell.
+/// What another trial would tell. An effect is written with its form: "wind_moment (steady wind)".
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prospect {
     /// The manoeuvre.
@@ -33,6 +34,10 @@ pub struct Prospect {
     pub information: f64,
 }
 
+fn label(id: &str, form: &str) -> String {
+    format!("{id} ({form})")
+}
+
 impl Analysis {
     /// What each of some planned trials would tell beside the records, best first.
     ///
@@ -47,47 +52,24 @@ impl Analysis {
 
     fn prospect(&self, name: &str, trial: &Trial) -> Option<Prospect> {
         let seen = self.seen_with(trial)?;
-        let of = |id: &str, form: &str| {
-            seen.iter()
-                .filter(|((own, other, _), _)| *own == id && *other == form)
-                .map(|(_, seen)| *seen)
-                .fold(0.0, f64::max)
-        };
-        let label = |id: &str, form: &str| format!("{id} ({form})");
-        let mut prospect = Prospect {
-            name: name.to_owned(),
-            separated: Vec::new(),
-            still_alike: Vec::new(),
-            revealed: Vec::new(),
-            still_hidden: Vec::new(),
-            information: seen.values().map(|seen| seen.ln_1p()).sum(),
-        };
-        for effect in &self.document.effects {
-            for other in &effect.alias_forms {
-                let (id, form) =
-                    other.split_once(" (").map_or((other.as_str(), ""), |(id, form)| (id, form.trim_end_matches(')')));
-                let told = of(&effect.id, &effect.form).min(of(id, form)) > TOLD;
-                let pair = [label(&effect.id, &effect.form), other.clone()];
-                if told { prospect.separated.push(pair) } else { prospect.still_alike.push(pair) }
-            }
-        }
-        for candidate in &self.document.candidates {
-            for form in
-                candidate.forms.iter().filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none())
-            {
-                let own = label(&candidate.id, &form.form);
-                if of(&candidate.id, &form.form) > TOLD {
-                    prospect.revealed.push(own)
-                } else {
-                    prospect.still_hidden.push(own)
-                }
-            }
-        }
-        Some(prospect)
+        let is_told = |label: &String| seen.iter().any(|(own, seen)| own == label && *seen > TOLD);
+        let rivals =
+            self.document.effects.iter().flat_map(|effect| {
+                effect.alias_forms.iter().map(|other| [label(&effect.id, &effect.form), other.clone()])
+            });
+        let (separated, still_alike) = rivals.partition(|pair| pair.iter().all(is_told));
+        let hidden = self.document.candidates.iter().flat_map(|candidate| {
+            let forms = candidate.forms.iter();
+            let hidden = forms.filter(|form| form.outcome == Outcome::NotObservable && form.only.is_none());
+            hidden.map(|form| label(&candidate.id, &form.form))
+        });
+        let (revealed, still_hidden) = hidden.partition(is_told);
+        let information = seen.iter().map(|(_, seen)| seen.ln_1p()).sum();
+        Some(Prospect { name: name.to_owned(), separated, still_alike, revealed, still_hidden, information })
     }
 
     /// Expected squared size over error of every candidate of the ship, from the records and another trial.
-    fn seen_with(&self, trial: &Trial) -> Option<BTreeMap<TermName, f64>> {
+    fn seen_with(&self, trial: &Trial) -> Option<Vec<(String, f64)>> {
         let full = &self.full.fit;
         let (structure, theta) = full.structure.alone(None, &full.theta);
         let record = Record::averaged(trial, self.problem.time);
@@ -95,22 +77,21 @@ impl Analysis {
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
         let law = Law { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
-        let normal = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
+        let (normal, _) = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
         let known = full.kept_covariance(None)?.try_inverse()?;
         let count = known.nrows();
         let mut precision = normal.matrix;
         precision.view_mut((0, 0), (count, count)).zip_apply(&known, |own, known| *own += known);
         let covariance = regular(precision)?;
-        let mut seen = BTreeMap::new();
         let places = structure.unknowns();
-        for (term, range) in structure.terms.iter().zip(structure.ranges()) {
+        let seen = |(term, range): (&Arc<Term>, Range<usize>)| {
             let own = range.zip(&term.priors).zip(term.neutral()).filter_map(|((place, prior), neutral)| {
                 let place = places[place].filter(|_| !prior.is_shape)?;
                 Some((prior.sd.powi(2) + (prior.mean - neutral).powi(2)) / covariance[(place, place)])
             });
-            seen.insert(term.name(), own.fold(0.0, f64::max));
-        }
-        Some(seen)
+            (label(term.effect.id(), term.effect.form()), own.fold(0.0, f64::max))
+        };
+        Some(structure.terms.iter().zip(structure.ranges()).map(seen).collect())
     }
 }
 

@@ -49,12 +49,18 @@ pub struct Record {
     pub spacing: f64,
     /// Usual time between values of the rudder, s.
     pub rudder_spacing: f64,
-    rudder: Polyline,
-    speed: Option<Polyline>,
-    sway: Option<Polyline>,
-    wind_speed: Option<Polyline>,
-    wind_from: Option<Polyline>,
-    propeller: Option<Polyline>,
+    /// Rudder angle, rad.
+    pub rudder: Polyline,
+    /// Speed, m/s.
+    pub speed: Option<Polyline>,
+    /// Sway velocity, m/s.
+    pub sway: Option<Polyline>,
+    /// Relative wind speed, m/s, measured or computed from the true one, where its direction is there as well.
+    pub wind_speed: Option<Polyline>,
+    /// Direction from which the relative wind comes, rad from the bow, where its speed is there as well.
+    pub wind_from: Option<Polyline>,
+    /// Propeller revolutions, 1/s.
+    pub propeller: Option<Polyline>,
 }
 
 impl Record {
@@ -90,11 +96,16 @@ impl Record {
         let last = trial.observed_rows().last().unwrap_or(0);
         let period = trial.sampling_period();
         let grouped = |count| groups(&trial.time()[first..=last], count, GAP * period);
-        let mut record = Rows::default();
+        let (mut time, mut heading, mut readings) = (Vec::new(), Vec::new(), Vec::new());
         for (from, to) in grouped(of_heading) {
-            record.push(&trial.time()[first + from..first + to], &trial.heading()[first + from..first + to]);
+            let rows = first + from..first + to;
+            let read: Vec<usize> = rows.clone().filter(|&row| trial.heading()[row].is_finite()).collect();
+            let mean_of = |values: &[f64]| read.iter().map(|&row| values[row]).sum::<f64>() / read.len() as f64;
+            // Without any, a row stands at the mean of all times.
+            time.push(if read.is_empty() { mean(&trial.time()[rows]) } else { mean_of(trial.time()) });
+            heading.push(if read.is_empty() { f64::NAN } else { mean_of(trial.heading()) });
+            readings.push(read.len());
         }
-        let Rows { time, heading, readings } = record;
         let observed = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
 
         let signals = grouped(of_rudder);
@@ -112,7 +123,8 @@ impl Record {
             (Some(speed), Some(from)) => Some((take(speed), take(&unwrapped(from)))),
             _ => relative_wind(trial).map(|(speed, from)| (take(&speed), take(&unwrapped(&from)))),
         };
-        let (wind_speed, wind_from) = relative.unzip();
+        let wind = relative.and_then(|(speed, from)| Some((signal(Some(speed))?, signal(Some(from))?)));
+        let (wind_speed, wind_from) = wind.unzip();
         Self {
             name: trial.name().into(),
             readings,
@@ -122,20 +134,13 @@ impl Record {
             rudder_spacing: period * of_rudder as f64,
             speed: signal(speed),
             sway: signal(channel(Channel::Sway)),
-            wind_speed: signal(wind_speed),
-            wind_from: signal(wind_from),
+            wind_speed,
+            wind_from,
             propeller: signal(channel(Channel::PropellerRate)),
             rudder: Polyline::new(signal_time, take(trial.rudder())).expect("means of increasing times increase"),
             time,
             heading,
         }
-    }
-
-    /// The same record with the headings of a range of times taken away.
-    pub fn without(&self, from: f64, to: f64) -> Self {
-        let mut other = self.clone();
-        other.observed.retain(|&row| !(from..to).contains(&self.time[row]));
-        other
     }
 
     /// The signals that drive a replay of a response: those it needs.
@@ -151,65 +156,9 @@ impl Record {
         }
     }
 
-    /// Values of the rudder angle, rad.
-    pub fn rudder(&self) -> &[f64] {
-        self.rudder.values()
-    }
-
-    /// Rudder angle, rad, as a signal.
-    pub fn rudder_signal(&self) -> &Polyline {
-        &self.rudder
-    }
-
-    /// Direction from which the relative wind comes, rad from the bow, as a signal, where its speed is there as well.
-    pub fn wind_from(&self) -> Option<&Polyline> {
-        self.wind_from.as_ref().filter(|_| self.wind_speed.is_some())
-    }
-
-    /// Speed, m/s, as a signal.
-    pub fn speed(&self) -> Option<&Polyline> {
-        self.speed.as_ref()
-    }
-
-    /// Propeller revolutions, 1/s, as a signal.
-    pub fn propeller(&self) -> Option<&Polyline> {
-        self.propeller.as_ref()
-    }
-
-    /// Relative wind speed, m/s, as a signal, where its direction is there as well; measured, or computed from the true
-    /// one.
-    pub fn wind_speed(&self) -> Option<&Polyline> {
-        self.wind_speed.as_ref().filter(|_| self.wind_from.is_some())
-    }
-
-    /// Sway velocity, m/s, as a signal.
-    pub fn sway(&self) -> Option<&Polyline> {
-        self.sway.as_ref()
-    }
-
     /// Length in time, s.
     pub fn duration(&self) -> f64 {
         self.time[self.time.len() - 1] - self.time[0]
-    }
-}
-
-/// Rows of a record: means of readings.
-#[derive(Default)]
-struct Rows {
-    time: Vec<f64>,
-    heading: Vec<f64>,
-    readings: Vec<usize>,
-}
-
-impl Rows {
-    /// Adds the mean of the headings that were read, at the mean of their times; without any, a row at the mean of all
-    /// times.
-    fn push(&mut self, time: &[f64], heading: &[f64]) {
-        let read: Vec<usize> = (0..time.len()).filter(|&row| heading[row].is_finite()).collect();
-        let mean_of = |values: &[f64]| read.iter().map(|&row| values[row]).sum::<f64>() / read.len() as f64;
-        self.time.push(if read.is_empty() { mean(time) } else { mean_of(time) });
-        self.heading.push(if read.is_empty() { f64::NAN } else { mean_of(heading) });
-        self.readings.push(read.len());
     }
 }
 
@@ -273,7 +222,7 @@ fn relative_wind(trial: &Trial) -> Option<(Vec<f64>, Vec<f64>)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::of_columns;
+    use crate::testing::of_columns;
 
     #[test]
     fn groups_end_at_gaps() {
@@ -301,7 +250,7 @@ mod tests {
         let heading = time.iter().enumerate().map(|(k, t)| if k % 10 == 0 { 0.01 * t } else { f64::NAN }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
         let record = Record::averaged(&of_columns(time, heading, rudder), 16.0);
-        assert_eq!((record.full_readings, record.observed.len(), record.rudder().len()), (1, 601, 2001));
+        assert_eq!((record.full_readings, record.observed.len(), record.rudder.values().len()), (1, 601, 2001));
         assert!(record.observed.iter().all(|&row| record.readings[row] == 1));
     }
 

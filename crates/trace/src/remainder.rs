@@ -1,15 +1,16 @@
 //! What the structures leave of the fitted records.
 
+use estimation::residuals::{GappedSeries, evenness, whiteness};
 use trial::Trial;
 
-use crate::diagnostics::{self, Signature};
 use crate::fit::Problem;
 use crate::full::Full;
-use crate::innovations::Innovations;
 use crate::judge::{RecordComparison, ReplayResult};
 use crate::replay_errors::Errors;
 use crate::shapes::{self, Empirical};
+use crate::signature::{Signature, signature};
 use crate::structures::Structures;
+use crate::weights::Law;
 
 /// Errors of all records together, squared, before and after.
 pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
@@ -45,7 +46,7 @@ impl Remainder {
         trials: &[Trial],
     ) -> Self {
         let Some(best) = structures.all.first() else { return Self { holds: true, signature: None, empirical: None } };
-        let holds = Innovations::of(problem, &best.fit.residual, &full.law).agree();
+        let holds = holds(problem, &best.fit.residual, &full.law);
         let [before, after] = squares(identification);
         let share = (after / before).sqrt();
         let is_noise = holds && !full.law.is_of_model() && !full.law.is_random_moment();
@@ -69,15 +70,26 @@ impl Remainder {
             let first = trials[number].observed_rows().next().unwrap_or(0);
             let rows = first..first + replay.time.len();
             let (heading, rudder) = (&trials[number].heading()[rows.clone()], &trials[number].rudder()[rows]);
-            diagnostics::signature(
-                number,
-                &replay.time,
-                &replay.residual,
-                heading,
-                rudder,
-                trials[number].sampling_period(),
-            )
+            signature(number, &replay.time, &replay.residual, heading, rudder, trials[number].sampling_period())
         });
         Self { holds, signature, empirical }
     }
+}
+
+/// Probability below which innovations are not those of the law.
+const IMPROBABLE: f64 = 1e-4;
+
+/// Whether a law describes the residual (rad) of every record: what is new in every heading, given those before it, is
+/// white (Ljung and Box 1978), of one variance, and without a single surprise.
+fn holds(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> bool {
+    let weights = problem.weights(law);
+    let (mut even, mut series) = (1.0_f64, Vec::new());
+    for (number, (record, residual)) in problem.records.iter().zip(residual).enumerate() {
+        let mut white = residual.clone();
+        weights.apply(number, &mut [&mut white]);
+        let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
+        even = even.min(evenness(&white));
+        series.push(GappedSeries::new(&time, &white, record.spacing));
+    }
+    whiteness(&series).p_value.min(even * series.len() as f64) > IMPROBABLE
 }

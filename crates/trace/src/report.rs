@@ -2,26 +2,27 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::DMatrix;
+use estimation::mixture::{NormalMixture, NormalPair, Summary, ratio};
+use estimation::residuals::Whiteness;
 use ship::angle::to_deg;
-use ship::effects::{self, Effect};
+use ship::effects::{self, Effect, Parameter};
 use ship::particulars::prime_unit;
 use ship::{Particulars, Regressor};
 use trial::{Quantity, Trial};
 
 use crate::base::Base;
 use crate::candidates::{Candidate, PROBABILITY, PROBABILITY_OF_TIME};
-use crate::diagnostics::{Signature, Whiteness};
 use crate::document::*;
 use crate::fit::{Fit, Problem};
 use crate::full::Full;
 use crate::judge::RecordComparison;
-use crate::mixture::{Mixture, Pair, ratio};
-use crate::model::TermName;
+use crate::model::{Entry, TermName};
 use crate::naming::{Named, named};
 use crate::noise::Wander;
 use crate::remainder::Remainder;
+use crate::selection::EffectId;
 use crate::settings::Settings;
+use crate::signature::Signature;
 use crate::structures::Structures;
 use crate::words;
 
@@ -81,7 +82,7 @@ impl Said<'_> {
             headline: words::headline(verdict, &effects, &error),
             verdict,
             base: self.base_indices(),
-            candidates: self.candidates(&named),
+            candidates: EffectId::all().into_iter().map(|id| self.candidate(id.as_str(), &named)).collect(),
             structures: self.listed(),
             prior: PriorEntry {
                 candidates: self.candidates.len(),
@@ -142,89 +143,61 @@ impl Said<'_> {
     /// K, T and δ_r averaged over the structures.
     fn indices(&self) -> Indices {
         let members = self.structures.members();
-        let covariances: Vec<Option<DMatrix<f64>>> = members.iter().map(|(_, fit)| fit.covariance()).collect();
-        let pairs: Vec<Pair> = members
-            .iter()
-            .zip(&covariances)
-            .map(|((weight, fit), covariance)| {
-                let of = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
-                let (denominator, numerator) = ((fit.theta[0], of(0, 0)), (fit.theta[1], of(1, 1)));
-                Pair { weight: *weight, denominator, numerator, covariance: of(0, 1) }
-            })
-            .collect();
-        let one = |pair: &Pair| Pair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
+        let pair = |(weight, fit): &(f64, &Fit)| {
+            let covariance = fit.covariance();
+            let of = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
+            let (denominator, numerator) = ((fit.theta[0], of(0, 0)), (fit.theta[1], of(1, 1)));
+            NormalPair { weight: *weight, denominator, numerator, covariance: of(0, 1) }
+        };
+        let pairs: Vec<NormalPair> = members.iter().map(pair).collect();
+        let one = |pair: &NormalPair| NormalPair { numerator: (1.0, 0.0), covariance: 0.0, ..*pair };
         let (k, t) = (ratio(&pairs), ratio(&pairs.iter().map(one).collect::<Vec<_>>()));
-        let parts = members.iter().zip(&covariances).map(|((weight, fit), covariance)| {
-            (*weight, fit.theta[2], covariance.as_ref().map_or(f64::INFINITY, |all| all[(2, 2)].max(0.0).sqrt()))
-        });
-        self.with_prime([k, t, Mixture { parts: parts.collect() }.quantity()])
+        let bias = members.iter().map(|(weight, fit)| (*weight, fit.physical()[2].0, fit.physical()[2].1));
+        self.with_prime([k, t, NormalMixture { parts: bias.collect() }.summary()].map(quantity))
     }
 
     /// All parameters of a structure as its effects take them.
     fn parameters(&self, fit: &Fit) -> Vec<ParameterEntry> {
-        let covariance = fit.covariance().map(|all| fit.structure.physical_covariance(&all));
-        let values = fit.structure.physical(&fit.theta);
-        let entries = fit.structure.entries();
-        let of = |(place, value): (usize, &f64)| {
-            let sd = covariance.as_ref().map_or(f64::INFINITY, |all| all[(place, place)].max(0.0).sqrt());
-            let quantity = match entries[place].prior.is_fitted() {
-                true => Mixture { parts: vec![(1.0, *value, sd)] }.quantity(),
-                false => Quantity::bare(*value),
-            };
-            let at_bound = entries[place].ends_at(fit.theta[place]);
-            self.parameter(entries[place].parameter, quantity, entries[place].only, at_bound)
-        };
-        values.iter().enumerate().map(of).collect()
+        let values = fit.structure.entries().into_iter().zip(fit.physical()).zip(&fit.theta);
+        values.map(|((entry, (value, sd)), &own)| self.parameter(&entry, vec![(1.0, value, sd)], own)).collect()
     }
 
-    fn parameter(
-        &self,
-        parameter: &effects::Parameter,
-        quantity: Quantity,
-        only: Option<usize>,
-        at_bound: bool,
-    ) -> ParameterEntry {
-        let prime = self.ship().filter(|_| parameter.dimension() != [0, 0]).map(|ship| PrimeEntry {
-            quantity: quantity.scaled(ship.prime(parameter.dimension())),
-            unit: prime_unit(parameter.unit),
+    /// An entry of θ from its weights, values and standard deviations in some structures; `own` is that of the first.
+    fn parameter(&self, entry: &Entry, parts: Vec<(f64, f64, f64)>, own: f64) -> ParameterEntry {
+        let quantity = match entry.prior.is_fitted() {
+            true => quantity(NormalMixture { parts }.summary()),
+            false => Quantity::bare(parts[0].1),
+        };
+        self.number(entry.parameter, quantity, entry.only, entry.ends_at(own))
+    }
+
+    fn number(&self, own: &Parameter, quantity: Quantity, only: Option<usize>, at_bound: bool) -> ParameterEntry {
+        let prime = self.ship().filter(|_| own.dimension() != [0, 0]).map(|ship| PrimeEntry {
+            quantity: quantity.scaled(ship.prime(own.dimension())),
+            unit: prime_unit(own.unit),
         });
-        let only = self.only(only);
-        let (key, symbol, unit) = (parameter.key.into(), parameter.symbol.into(), parameter.unit.into());
-        ParameterEntry { key, symbol, quantity, unit, prime, only, at_bound }
+        let (key, symbol, unit) = (own.key.into(), own.symbol.into(), own.unit.into());
+        ParameterEntry { key, symbol, quantity, unit, prime, only: self.only(only), at_bound }
     }
 
     /// Parameters of a term, averaged over the structures that have it.
     fn of_term(&self, name: TermName) -> BTreeMap<String, ParameterEntry> {
-        let has = |fit: &Fit| fit.structure.terms.iter().position(|term| term.name() == name);
-        let fits: Vec<(f64, &Fit, usize)> = self
-            .structures
-            .members()
-            .into_iter()
-            .filter_map(|(weight, fit)| Some((weight, fit, has(fit)?)))
-            .chain(self.structures.all.iter().filter_map(|one| Some((1e-9 * one.weight, &one.fit, has(&one.fit)?))))
-            .collect();
-        let Some((_, first, place)) = fits.first() else { return BTreeMap::new() };
-        let term = &first.structure.terms[*place];
-        let covariances: Vec<Option<DMatrix<f64>>> = fits
-            .iter()
-            .map(|(_, fit, _)| fit.covariance().map(|all| fit.structure.physical_covariance(&all)))
-            .collect();
+        let members = self.structures.members().into_iter();
+        let all = members.chain(self.structures.all.iter().map(|one| (1e-9 * one.weight, &one.fit)));
+        let with = all.filter_map(|(weight, fit)| {
+            let place = fit.structure.terms.iter().position(|term| term.name() == name)?;
+            let range = fit.structure.ranges()[place].clone();
+            let values = fit.physical()[range.clone()].to_vec();
+            Some((weight, values, fit.structure.entries()[range.clone()].to_vec(), fit.theta[range].to_vec()))
+        });
+        let fits: Vec<(f64, Vec<(f64, f64)>, Vec<Entry>, Vec<f64>)> = with.collect();
+        let Some((_, _, entries, own)) = fits.first() else { return BTreeMap::new() };
         let of = |k: usize| {
-            let parts = fits.iter().zip(&covariances).map(|((weight, fit, place), covariance)| {
-                let at = fit.structure.ranges()[*place].start + k;
-                let sd = covariance.as_ref().map_or(f64::INFINITY, |all| all[(at, at)].max(0.0).sqrt());
-                (*weight, fit.structure.physical(&fit.theta)[at], sd)
-            });
-            let mixture = Mixture { parts: parts.collect() };
-            let entry = &first.structure.entries()[first.structure.ranges()[*place].start + k];
-            let quantity = match entry.prior.is_fitted() {
-                true => mixture.quantity(),
-                false => Quantity::bare(mixture.parts[0].1),
-            };
-            let ends = entry.ends_at(first.theta[first.structure.ranges()[*place].start + k]);
-            self.parameter(entry.parameter, quantity, entry.only, ends)
+            let parts = fits.iter().map(|(weight, values, ..)| (*weight, values[k].0, values[k].1));
+            let entry = self.parameter(&entries[k], parts.collect(), own[k]);
+            (entry.symbol.clone(), entry)
         };
-        (0..term.priors.len()).map(of).map(|entry| (entry.symbol.clone(), entry)).collect()
+        (0..own.len()).map(of).collect()
     }
 
     fn effects(&self, named: &[Named]) -> Vec<EffectEntry> {
@@ -263,7 +236,7 @@ impl Said<'_> {
         let sd = sea.sd * self.full.law.variance[0].sqrt();
         let values = [sd, sea.frequency, sea.damping];
         let parameters = own.parameters().iter().zip(values).map(|(parameter, value)| {
-            (parameter.symbol.into(), self.parameter(parameter, Quantity::bare(value), None, false))
+            (parameter.symbol.into(), self.number(parameter, Quantity::bare(value), None, false))
         });
         let gain = self.full.waves_gain;
         Some(EffectEntry {
@@ -282,16 +255,6 @@ impl Said<'_> {
         })
     }
 
-    fn candidates(&self, named: &[Named]) -> Vec<CandidateEntry> {
-        let mut ids: Vec<&'static str> = Vec::new();
-        for effect in effects::all() {
-            if !ids.contains(&effect.id()) {
-                ids.push(effect.id());
-            }
-        }
-        ids.into_iter().map(|id| self.candidate(id, named)).collect()
-    }
-
     fn candidate(&self, id: &'static str, named: &[Named]) -> CandidateEntry {
         let own = self.candidates.iter().filter(|one| one.term.effect.id() == id);
         let forms: Vec<FormEntry> = own.map(|one| self.form(one.term.name(), named)).collect();
@@ -306,18 +269,12 @@ impl Said<'_> {
             }
             _ => None,
         };
-        let rank = |outcome: Outcome| match outcome {
-            Outcome::Added => 0,
-            Outcome::Alias => 1,
-            Outcome::Rejected => 2,
-            Outcome::NotObservable => 3,
-        };
-        let best = forms.iter().min_by(|one, other| {
-            rank(one.outcome).cmp(&rank(other.outcome)).then(other.probability.total_cmp(&one.probability))
-        });
+        let best = forms
+            .iter()
+            .min_by(|one, other| one.outcome.cmp(&other.outcome).then(other.probability.total_cmp(&one.probability)));
         let probability = match is_sea {
             true => f64::from(u8::from(sea)),
-            false => self.structures.anywhere(id),
+            false => self.structures.of_any(|name| name.0 == id),
         };
         let outcome = match (is_sea && !excluded, sea) {
             (true, true) => Outcome::Added,
@@ -375,7 +332,7 @@ impl Said<'_> {
         let own = self.remainder.empirical.as_ref()?;
         let parameter = |&(value, sd): &(f64, f64)| {
             let quantity = Quantity { value, sd: Some(sd), ci95: Some([value - 1.96 * sd, value + 1.96 * sd]) };
-            self.parameter(&crate::empirical::COEFFICIENT, quantity, None, false)
+            self.number(&crate::empirical::COEFFICIENT, quantity, None, false)
         };
         Some(EmpiricalEntry {
             terms: own.group.clone(),
@@ -386,20 +343,17 @@ impl Said<'_> {
     }
 
     fn errors(&self) -> ErrorEntry {
-        let pairs = |trials: &[Trial], all: &[Option<&RecordComparison>]| -> Vec<BeforeAfter> {
-            let both = trials.iter().zip(all).filter_map(|(trial, one)| Some((trial, (*one)?)));
-            both.map(|(trial, one)| BeforeAfter {
-                file: words::file_of(trial),
-                before: (&one.before).into(),
-                after: (&one.after).into(),
-            })
-            .collect()
+        let of = |(trial, one): (&Trial, &RecordComparison)| BeforeAfter {
+            file: words::file_of(trial),
+            before: (&one.before).into(),
+            after: (&one.after).into(),
         };
+        let left_out = self.trials.iter().zip(self.left_out).filter_map(|(trial, one)| Some((trial, one.as_ref()?)));
         ErrorEntry {
             kept_base: self.no_nearer.then(|| words::NO_NEARER.into()),
-            identification: pairs(self.trials, &self.identification.iter().map(Some).collect::<Vec<_>>()),
-            validation: pairs(self.validation.0, &self.validation.1.iter().map(Some).collect::<Vec<_>>()),
-            leave_one_out: pairs(self.trials, &self.left_out.iter().map(Option::as_ref).collect::<Vec<_>>()),
+            identification: self.trials.iter().zip(self.identification).map(of).collect(),
+            validation: self.validation.0.iter().zip(self.validation.1).map(of).collect(),
+            leave_one_out: left_out.map(of).collect(),
         }
     }
 
@@ -438,4 +392,8 @@ impl Said<'_> {
         };
         self.trials.iter().enumerate().map(of).collect()
     }
+}
+
+fn quantity((value, error): Summary) -> Quantity {
+    Quantity { value, sd: error.map(|(sd, _)| sd), ci95: error.map(|(_, interval)| interval) }
 }

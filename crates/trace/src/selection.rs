@@ -3,8 +3,6 @@
 use identify::settings::SettingsError;
 use ship::effects;
 
-use crate::model::Term;
-
 /// Identifier of an effect on the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EffectId(&'static str);
@@ -78,11 +76,6 @@ impl Selection {
     /// Whether an effect was asked for.
     pub fn asks_for(&self, id: &str) -> bool {
         self.with.iter().any(|asked| asked.as_str() == id)
-    }
-
-    /// Whether a term was asked for and stays.
-    pub fn keeps(&self, term: &Term) -> bool {
-        self.asks_for(term.effect.id())
     }
 
     /// Whether an effect may be in the model.

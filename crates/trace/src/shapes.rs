@@ -14,12 +14,13 @@ use ship::replay::replay_states;
 
 use estimation::column::dot;
 
-use crate::empirical::{LIBRARY, PRIOR_SD};
+use crate::empirical::{PRIOR_SD, plain};
 use crate::fit::{Fit, Problem};
 use crate::full::Full;
-use crate::law::{self, Found, Ground};
+use crate::law::{Found, Ground};
+use crate::linear::Block;
 use crate::model::step;
-use crate::noise::Colour;
+use crate::noise::{Colour, Wander};
 use crate::structures::Member;
 use crate::weights::Law;
 
@@ -156,7 +157,7 @@ fn shared(motions: &[Motion], form: &str, log_odds: f64, moments: &[Vec<f64>]) -
 
 /// Every shape.
 fn library(motions: &[Motion]) -> Vec<Shape> {
-    let odds = LOG_ODDS - (LIBRARY.len() as f64).ln();
+    let odds = LOG_ODDS - (plain().len() as f64).ln();
     let monomial = |powers: &crate::empirical::Powers| {
         let of = |motion: &Motion| -> Vec<f64> {
             let value = |row: usize| powers.at([motion.rate[row], motion.rudder[row], motion.heading[row]]);
@@ -164,7 +165,7 @@ fn library(motions: &[Motion]) -> Vec<Shape> {
         };
         shared(motions, powers.form, odds, &motions.iter().map(of).collect::<Vec<_>>())
     };
-    let mut all: Vec<Shape> = LIBRARY.iter().filter(|powers| powers.of[3] == 0).filter_map(monomial).collect();
+    let mut all: Vec<Shape> = plain().iter().filter(|powers| powers.of[3] == 0).filter_map(monomial).collect();
     let aside: Vec<Vec<f64>> = motions.iter().map(Motion::aside).collect();
     all.extend(shared(motions, "distance to one side", LOG_ODDS, &aside));
     all.extend(motions.iter().flat_map(of_time));
@@ -226,7 +227,7 @@ struct Stand<'a> {
 
 impl<'a> Stand<'a> {
     fn new(ground: Ground<'a>, shapes: Vec<Shape>, start: &Law) -> Self {
-        let Found { law, height, .. } = ground.law(start, law::Among::All);
+        let Found { law, height, .. } = ground.law(start, &Wander::all().collect::<Vec<_>>());
         let of = |shape: &Shape| 2.0 * (shape.columns.len() as f64 * shape.sd.ln() - shape.log_odds);
         let height = height + shapes.iter().map(of).sum::<f64>();
         Self { ground, shapes, law, height }
@@ -249,20 +250,14 @@ impl<'a> Stand<'a> {
     fn scan(&self, law: &Law, library: &[Shape]) -> Vec<usize> {
         let weights = self.ground.problem.weights(law);
         let Some((factor, step)) = self.ground.solved(&weights) else { return Vec::new() };
-        let mut white = self.ground.linear.blocks.clone();
-        for (record, block) in white.iter_mut().enumerate() {
-            let mut all: Vec<&mut Vec<f64>> = block.columns.iter_mut().map(|(_, column)| column).collect();
-            all.push(&mut block.residual);
-            weights.apply(record, &mut all);
-        }
+        let blocks = self.ground.linear.blocks.iter().enumerate();
+        let white: Vec<Block> = blocks.map(|(record, block)| block.white(record, &weights)).collect();
         let gain = |shape: &Shape| {
             let mut own = shape.columns.clone();
             own.iter_mut().flatten().for_each(|(record, column)| weights.apply(*record, &mut [column]));
             let cross = own.iter().map(|column| {
                 let mut cross = DVector::zeros(step.len());
-                for (record, values) in column {
-                    white[*record].columns.iter().for_each(|(unknown, other)| cross[*unknown] += dot(other, values));
-                }
+                column.iter().for_each(|(record, values)| white[*record].products(values, &mut cross));
                 cross
             });
             let cross: Vec<DVector<f64>> = cross.collect();

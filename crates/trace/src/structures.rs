@@ -7,13 +7,13 @@ mod result;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use estimation::subsets::{Removable, conditional};
 use rayon::prelude::*;
 
 use crate::candidates::{Candidate, is_delay, is_variant};
-use crate::evidence::{Removable, conditional};
-use crate::fit::{Effort, Fit, Problem, System};
+use crate::fit::{Effort, Fit, Problem};
 use crate::full::Full;
-use crate::model::{Structure, Term, TermName};
+use crate::model::{Entry, Structure, Term, TermName};
 use crate::selection::Selection;
 use crate::settings::Rule;
 use crate::weights::Weights;
@@ -135,8 +135,8 @@ impl Stage<'_> {
     /// Weighs all subsets round a point of the full model, and refits the best.
     fn look(&mut self, at: (Vec<f64>, Vec<[f64; 2]>), about: &[bool]) {
         let structure = &self.full.fit.structure;
-        let system = System::at(self.problem, structure, &at.0, &at.1, &self.weights);
-        let Some(quadratic) = Quadratic::new(&system, structure, &at.0, &self.log_odds()) else { return };
+        let normal = self.problem.posterior(structure, &at.0, &at.1, &self.weights);
+        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &self.log_odds()) else { return };
         if self.visibility.is_empty() {
             self.visibility = self.visibility(&quadratic);
         }
@@ -212,7 +212,7 @@ impl Stage<'_> {
     }
 
     fn log_odds(&self) -> Vec<f64> {
-        let required = |term: &Arc<Term>| self.selection.keeps(term);
+        let required = |term: &Arc<Term>| self.selection.asks_for(term.effect.id());
         let terms = self.full.fit.structure.terms.iter().zip(&self.full.log_odds);
         terms.map(|(term, odds)| if required(term) { 1e6 } else { *odds }).collect()
     }
@@ -245,17 +245,14 @@ impl Stage<'_> {
         let out: Vec<&Removable> =
             quadratic.removable.iter().zip(chosen).filter(|(_, kept)| !**kept).map(|(own, _)| own).collect();
         let moved = conditional(&quadratic.covariance, &quadratic.mean, &out);
-        let entries = structure.entries();
-        let mut next = 0..;
-        let mut value = |k: usize| match entries[k].prior.is_fitted() {
-            true => moved[next.next().expect("an unknown for every fitted entry")]
-                .clamp(entries[k].prior.lowest, entries[k].prior.highest),
-            false => at.0[k],
+        let mut moved = moved.iter();
+        let mut next = || *moved.next().expect("an unknown for every fitted entry and state");
+        let value = |(entry, own): (Entry, &f64)| match entry.prior.is_fitted() {
+            true => next().clamp(entry.prior.lowest, entry.prior.highest),
+            false => *own,
         };
-        let all: Vec<f64> = (0..entries.len()).map(&mut value).collect();
-        let first = moved.len() - 2 * at.1.len();
-        let initial =
-            (0..at.1.len()).map(|record| [moved[first + 2 * record], moved[first + 2 * record + 1]]).collect();
+        let all: Vec<f64> = structure.entries().into_iter().zip(&at.0).map(value).collect();
+        let initial = at.1.iter().map(|_| [next(), next()]).collect();
         let mut theta = all[..structure.base_count()].to_vec();
         let mut terms = Vec::new();
         for ((term, range), _) in structure.terms.iter().zip(structure.ranges()).zip(chosen).filter(|(_, kept)| **kept)
@@ -279,7 +276,7 @@ impl Stage<'_> {
     }
 
     fn odds_of(&self, term: &Arc<Term>) -> f64 {
-        if self.selection.keeps(term) {
+        if self.selection.asks_for(term.effect.id()) {
             return 0.0;
         }
         let name = term.name();

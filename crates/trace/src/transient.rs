@@ -2,10 +2,11 @@
 //! are tried at every place with the response of the base in closed form, beside all unknowns of the full model.
 
 use estimation::column::dot;
+use estimation::levenberg_marquardt::Normal;
 use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Problem, System};
+use crate::fit::{Fit, Problem, posterior};
 use crate::linear::Linear;
 use crate::model::Term;
 use crate::weights::Weights;
@@ -20,9 +21,9 @@ const BETWEEN_STEPS: f64 = 1.0 / 80.0;
 /// stays; `None` where the unknowns of the fit cannot be told apart.
 pub fn places(problem: &Problem, fit: &Fit, weights: &Weights, terms: &[&Term]) -> Vec<Option<Vec<f64>>> {
     let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
-    let system = System::of(&linear, &fit.structure, &fit.theta, weights);
-    let Some(factor) = system.precision.clone().cholesky() else { return vec![None; terms.len()] };
-    terms.iter().map(|term| place(problem, fit, weights, term, (&linear, &system, &factor))).collect()
+    let normal = posterior(&linear, &fit.structure, &fit.theta, weights);
+    let Some(factor) = normal.matrix.clone().cholesky() else { return vec![None; terms.len()] };
+    terms.iter().map(|term| place(problem, fit, weights, term, (&linear, &normal, &factor))).collect()
 }
 
 /// The best place of one moment beside a linearised fit.
@@ -31,15 +32,12 @@ fn place(
     fit: &Fit,
     weights: &Weights,
     term: &Term,
-    (linear, system, factor): (&Linear, &System, &Cholesky<f64, Dyn>),
+    (linear, normal, factor): (&Linear, &Normal, &Cholesky<f64, Dyn>),
 ) -> Option<Vec<f64>> {
     let number = term.only.unwrap_or(0);
     let record = &problem.records[number];
-    let mut block = linear.blocks[number].clone();
-    let mut all: Vec<&mut Vec<f64>> = block.columns.iter_mut().map(|(_, column)| column).collect();
-    all.push(&mut block.residual);
-    weights.apply(number, &mut all);
-    let explained = factor.solve(&system.gradient);
+    let block = linear.blocks[number].white(number, weights);
+    let explained = factor.solve(&normal.gradient);
 
     let (a, b) = (fit.theta[0], fit.theta[1]);
     let times: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
@@ -64,7 +62,7 @@ fn place(
                 times.iter().map(|t| b * (step_response(a, t - from) - step_response(a, t - from - length))).collect();
             weights.apply(number, &mut [&mut column]);
             let mut cross = DVector::zeros(linear.unknowns);
-            block.columns.iter().for_each(|(unknown, own)| cross[*unknown] += dot(own, &column));
+            block.products(&column, &mut cross);
             let prior = term.priors[0].sd.powi(-2);
             let own = dot(&column, &column) - cross.dot(&factor.solve(&cross)) + prior;
             let with = dot(&column, &block.residual) - cross.dot(&explained);

@@ -83,7 +83,7 @@ pub fn find(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Option<Narro
 
 /// Angular frequency of the manoeuvre, rad/s: the rudder changes its side twice a period.
 fn fundamental(record: &crate::record::Record) -> f64 {
-    let rudder = record.rudder();
+    let rudder = record.rudder.values();
     let largest = rudder.iter().fold(0.0_f64, |most, delta| most.max(delta.abs()));
     let mut side = 0.0;
     let mut changes = 0usize;

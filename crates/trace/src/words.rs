@@ -3,9 +3,9 @@
 use ship::angle::to_deg;
 use trial::{Origin, Trial};
 
-use crate::diagnostics::Signature;
 use crate::document::{BeforeAfter, EffectEntry, ErrorEntry, Verdict};
 use crate::naming::Named;
+use crate::signature::Signature;
 
 /// Why the replay of the base is kept.
 pub const NO_NEARER: &str = "the structures replay the records no nearer than the base: a random moment describes them, which no replay foresees";

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::dynamics::{Measured, Regressor};
 use estimation::number::Real;
 
-use crate::Tangent;
+use crate::number::Tangent;
 use crate::particulars::{self, Dimension};
 
 /// One parameter of an effect or of the base.
@@ -31,6 +31,21 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// A parameter that stays the same when port and starboard are exchanged: key, symbol and unit; neutral and typical
+    /// value; smallest and largest.
+    pub const fn even(
+        [key, symbol, unit]: [&'static str; 3],
+        [neutral, typical]: [f64; 2],
+        [lowest, highest]: [f64; 2],
+    ) -> Self {
+        Self { key, symbol, unit, neutral, typical, lowest, highest, odd: false }
+    }
+
+    /// The same for one that changes its sign then.
+    pub const fn odd(words: [&'static str; 3], sizes: [f64; 2], ends: [f64; 2]) -> Self {
+        Self { odd: true, ..Self::even(words, sizes, ends) }
+    }
+
     /// Exponents of second and metre in the unit; angles have none.
     pub fn dimension(&self) -> Dimension {
         particulars::dimension(self.unit)
@@ -108,21 +123,45 @@ impl Places {
     pub const MOMENT: Self = Self { moment: true, ..Self::NONE };
 }
 
+/// What an effect is called, and its parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Description {
+    /// Fixed identifier, shared by all forms of the effect.
+    pub id: &'static str,
+    /// Which form of the effect this is, in words ("r³", "dead time").
+    pub form: &'static str,
+    /// The equation, for reports.
+    pub equation: &'static str,
+    /// The parameters, in the order in which their values travel.
+    pub parameters: &'static [Parameter],
+}
+
 /// Something a first-order response lacks: what it is. What it does is said by [`Acts`].
 ///
 /// `p` is always the effect's own parameters.
 pub trait Effect: Acts<f64> + Acts<Tangent> + fmt::Debug + Send + Sync {
+    /// What it is called, and its parameters.
+    fn description(&self) -> Description;
+
     /// Fixed identifier, shared by all forms of the effect.
-    fn id(&self) -> &'static str;
+    fn id(&self) -> &'static str {
+        self.description().id
+    }
 
     /// Which form of the effect this is, in words ("r³", "dead time").
-    fn form(&self) -> &'static str;
+    fn form(&self) -> &'static str {
+        self.description().form
+    }
 
     /// The equation, for reports.
-    fn equation(&self) -> &'static str;
+    fn equation(&self) -> &'static str {
+        self.description().equation
+    }
 
     /// The parameters, in the order in which their values travel.
-    fn parameters(&self) -> &'static [Parameter];
+    fn parameters(&self) -> &'static [Parameter] {
+        self.description().parameters
+    }
 
     /// The measured channel it needs; without it the effect is silent.
     fn needs(&self) -> Option<Regressor> {

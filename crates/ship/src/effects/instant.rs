@@ -3,16 +3,7 @@
 use super::effect::Parameter;
 
 /// The instant t₀, s.
-pub const INSTANT: Parameter = Parameter {
-    key: "t_0",
-    symbol: "t₀",
-    unit: "s",
-    neutral: 100.0,
-    typical: 100.0,
-    lowest: -1e7,
-    highest: 1e7,
-    odd: false,
-};
+pub const INSTANT: Parameter = Parameter::even(["t_0", "t₀", "s"], [100.0, 100.0], [-1e7, 1e7]);
 
 /// Width w of an edge, in rows.
 pub const EDGE_ROWS: f64 = 2.0;

@@ -23,7 +23,9 @@ mod transient_disturbance;
 mod wave_yaw;
 mod wind_moment;
 
-pub use effect::{Acts, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling};
+pub use effect::{
+    Acts, Description, Effect, EffectReal, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale, SwayCoupling,
+};
 pub use moment_drift::MomentDrift;
 pub use nonlinear_damping::NonlinearDamping;
 pub use port_starboard_asymmetry::PortStarboardAsymmetry;

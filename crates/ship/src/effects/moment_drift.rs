@@ -1,6 +1,6 @@
 //! A slow trend of the yaw moment over the record.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use estimation::number::Real;
 
 /// m (t − t₀) as an equivalent rudder angle.
@@ -10,32 +10,16 @@ pub struct MomentDrift {
     pub reference_time: f64,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter {
-    key: "m",
-    symbol: "m",
-    unit: "rad/s",
-    neutral: 0.0,
-    typical: 7e-5,
-    lowest: -0.01,
-    highest: 0.01,
-    odd: true,
-}];
+const PARAMETERS: [Parameter; 1] = [Parameter::odd(["m", "m", "rad/s"], [0.0, 7e-5], [-0.01, 0.01])];
 
 impl Effect for MomentDrift {
-    fn id(&self) -> &'static str {
-        "moment_drift"
-    }
-
-    fn form(&self) -> &'static str {
-        "linear trend"
-    }
-
-    fn equation(&self) -> &'static str {
-        "T r' + r = K (δ + δ_r + m (t − t₀))"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        Description {
+            id: "moment_drift",
+            form: "linear trend",
+            equation: "T r' + r = K (δ + δ_r + m (t − t₀))",
+            parameters: &PARAMETERS,
+        }
     }
 
     fn constants(&self) -> Vec<f64> {

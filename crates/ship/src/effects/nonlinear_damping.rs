@@ -1,6 +1,6 @@
 //! Damping that grows with the yaw rate: the terms of Norrbin and Bech.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use estimation::number::Real;
 
 /// One nonlinear term of the yaw damping; the parameter is its coefficient divided by T, which stays regular when
@@ -19,64 +19,18 @@ pub enum NonlinearDamping {
     Square,
 }
 
-const CUBIC: [Parameter; 1] = [Parameter {
-    key: "n3_over_T",
-    symbol: "n₃/T",
-    unit: "s/rad²",
-    neutral: 0.0,
-    typical: 40.0,
-    lowest: 0.0,
-    highest: 1e7,
-    odd: false,
-}];
-const QUADRATIC: [Parameter; 1] = [Parameter {
-    key: "n2_over_T",
-    symbol: "n₂/T",
-    unit: "1/rad",
-    neutral: 0.0,
-    typical: 0.7,
-    lowest: 0.0,
-    highest: 1e4,
-    odd: false,
-}];
-const SQUARE: [Parameter; 1] = [Parameter {
-    key: "n11_over_T",
-    symbol: "n₁₁/T",
-    unit: "1/rad",
-    neutral: 0.0,
-    typical: 0.2,
-    lowest: -1e3,
-    highest: 1e3,
-    odd: true,
-}];
+const CUBIC: [Parameter; 1] = [Parameter::even(["n3_over_T", "n₃/T", "s/rad²"], [0.0, 40.0], [0.0, 1e7])];
+const QUADRATIC: [Parameter; 1] = [Parameter::even(["n2_over_T", "n₂/T", "1/rad"], [0.0, 0.7], [0.0, 1e4])];
+const SQUARE: [Parameter; 1] = [Parameter::odd(["n11_over_T", "n₁₁/T", "1/rad"], [0.0, 0.2], [-1e3, 1e3])];
 
 impl Effect for NonlinearDamping {
-    fn id(&self) -> &'static str {
-        "nonlinear_damping"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::Cubic => "r³",
-            Self::Quadratic => "r|r|",
-            Self::Square => "r²",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::Cubic => "T r' + r + n₃ r³ = K (δ + δ_r)",
-            Self::Quadratic => "T r' + r + n₂ r|r| = K (δ + δ_r)",
-            Self::Square => "T r' + r + n₁₁ r² = K (δ + δ_r)",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::Cubic => &CUBIC,
-            Self::Quadratic => &QUADRATIC,
-            Self::Square => &SQUARE,
-        }
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::Cubic => ("r³", "T r' + r + n₃ r³ = K (δ + δ_r)", &CUBIC),
+            Self::Quadratic => ("r|r|", "T r' + r + n₂ r|r| = K (δ + δ_r)", &QUADRATIC),
+            Self::Square => ("r²", "T r' + r + n₁₁ r² = K (δ + δ_r)", &SQUARE),
+        };
+        Description { id: "nonlinear_damping", form, equation, parameters }
     }
 
     /// Without dimension: r³ within 8, r|r| within 1.2, r² within 0.4.

@@ -1,6 +1,6 @@
 //! A ship that turns more readily to one side.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Proposal};
 use estimation::number::Real;
 
 /// Asymmetry of the rudder, or of the hull in a turn.
@@ -13,51 +13,16 @@ pub enum PortStarboardAsymmetry {
     Drift,
 }
 
-const GAIN: [Parameter; 1] = [Parameter {
-    key: "a",
-    symbol: "a",
-    unit: "1",
-    neutral: 0.0,
-    typical: 0.05,
-    lowest: -0.8,
-    highest: 0.8,
-    odd: true,
-}];
-const DRIFT: [Parameter; 1] = [Parameter {
-    key: "c_r",
-    symbol: "c_r",
-    unit: "s",
-    neutral: 0.0,
-    typical: 0.5,
-    lowest: -1e3,
-    highest: 1e3,
-    odd: true,
-}];
+const GAIN: [Parameter; 1] = [Parameter::odd(["a", "a", "1"], [0.0, 0.05], [-0.8, 0.8])];
+const DRIFT: [Parameter; 1] = [Parameter::odd(["c_r", "c_r", "s"], [0.0, 0.5], [-1e3, 1e3])];
 
 impl Effect for PortStarboardAsymmetry {
-    fn id(&self) -> &'static str {
-        "port_starboard_asymmetry"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::Gain => "gain by side",
-            Self::Drift => "moment by drift",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::Gain => "T r' + r = K (δ + a |δ| + δ_r)",
-            Self::Drift => "T r' + r = K (δ + c_r |r| + δ_r)",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::Gain => &GAIN,
-            Self::Drift => &DRIFT,
-        }
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::Gain => ("gain by side", "T r' + r = K (δ + a |δ| + δ_r)", &GAIN),
+            Self::Drift => ("moment by drift", "T r' + r = K (δ + c_r |r| + δ_r)", &DRIFT),
+        };
+        Description { id: "port_starboard_asymmetry", form, equation, parameters }
     }
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {

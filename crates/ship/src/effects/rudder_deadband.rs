@@ -1,6 +1,6 @@
 //! Play between the recorded and the acting rudder.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use estimation::number::Real;
 
 /// Backlash or dead band of half-width g.
@@ -12,38 +12,15 @@ pub enum RudderDeadband {
     DeadBand,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter {
-    key: "g",
-    symbol: "g",
-    unit: "rad",
-    neutral: 0.0,
-    typical: 0.012,
-    lowest: 0.0,
-    highest: 0.15,
-    odd: false,
-}];
+const PARAMETERS: [Parameter; 1] = [Parameter::even(["g", "g", "rad"], [0.0, 0.012], [0.0, 0.15])];
 
 impl Effect for RudderDeadband {
-    fn id(&self) -> &'static str {
-        "rudder_deadband"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::Backlash => "backlash",
-            Self::DeadBand => "dead band",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::Backlash => "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)",
-            Self::DeadBand => "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::Backlash => ("backlash", "T r' + r = K (δ_e + δ_r), |δ_e − δ| ≤ g (play)", &PARAMETERS),
+            Self::DeadBand => ("dead band", "T r' + r = K (sgn δ max(|δ| − g, 0) + δ_r)", &PARAMETERS),
+        };
+        Description { id: "rudder_deadband", form, equation, parameters }
     }
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {

@@ -1,38 +1,22 @@
 //! A rudder that loses lift at large angles.
 
-use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Prior, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Prior, Proposal};
 use estimation::number::Real;
 
 /// δ_e = δ − c₃ δ³ (stall).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RudderSaturation;
 
-const PARAMETERS: [Parameter; 1] = [Parameter {
-    key: "c3",
-    symbol: "c₃",
-    unit: "1/rad²",
-    neutral: 0.0,
-    typical: 0.5,
-    lowest: -2.0,
-    highest: 5.0,
-    odd: false,
-}];
+const PARAMETERS: [Parameter; 1] = [Parameter::even(["c3", "c₃", "1/rad²"], [0.0, 0.5], [-2.0, 5.0])];
 
 impl Effect for RudderSaturation {
-    fn id(&self) -> &'static str {
-        "rudder_saturation"
-    }
-
-    fn form(&self) -> &'static str {
-        "stall"
-    }
-
-    fn equation(&self) -> &'static str {
-        "T r' + r = K (δ − c₃ δ³ + δ_r)"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        Description {
+            id: "rudder_saturation",
+            form: "stall",
+            equation: "T r' + r = K (δ − c₃ δ³ + δ_r)",
+            parameters: &PARAMETERS,
+        }
     }
 
     /// Half of sin 2δ, the side force of a rudder whose lift is normal to its blade, is δ − ⅔ δ³; a hull that turns

@@ -1,6 +1,6 @@
 //! Sway coupling: the second time constant and the rudder zero that a first-order response lacks.
 
-use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Prior, Proposal, SwayCoupling};
 use estimation::number::Real;
 
 /// T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ', with T₁ = 1/a of the base.
@@ -10,43 +10,18 @@ use estimation::number::Real;
 pub struct SecondOrder;
 
 const PARAMETERS: [Parameter; 2] = [
-    Parameter {
-        key: "T2",
-        symbol: "T₂",
-        unit: "s",
-        neutral: 1.0,
-        typical: 2.5,
-        lowest: 0.02,
-        highest: 600.0,
-        odd: false,
-    },
-    Parameter {
-        key: "T3",
-        symbol: "T₃",
-        unit: "s",
-        neutral: 1.0,
-        typical: 6.2,
-        lowest: -600.0,
-        highest: 2000.0,
-        odd: false,
-    },
+    Parameter::even(["T2", "T₂", "s"], [1.0, 2.5], [0.02, 600.0]),
+    Parameter::even(["T3", "T₃", "s"], [1.0, 6.2], [-600.0, 2000.0]),
 ];
 
 impl Effect for SecondOrder {
-    fn id(&self) -> &'static str {
-        "second_order"
-    }
-
-    fn form(&self) -> &'static str {
-        "sway coupling"
-    }
-
-    fn equation(&self) -> &'static str {
-        "T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ'"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        Description {
+            id: "second_order",
+            form: "sway coupling",
+            equation: "T₁T₂ r'' + (T₁+T₂) r' + r = K (δ + δ_r) + K T₃ δ'",
+            parameters: &PARAMETERS,
+        }
     }
 
     /// T₂ and T₃ − T₂, which is the effect: hulls have T₂U/L of 0.1 to 0.5 and T₃U/L of 0.3 to 1.

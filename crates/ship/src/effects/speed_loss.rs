@@ -1,6 +1,6 @@
 //! Speed that falls in the turn, and with it the gain and the damping of the yaw response.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal, Scale};
 use crate::dynamics::Regressor;
 use estimation::number::Real;
 
@@ -38,70 +38,16 @@ impl SpeedLoss {
 }
 
 const MODELLED: [Parameter; 3] = [
-    Parameter {
-        key: "c_u",
-        symbol: "c_u",
-        unit: "s/rad²",
-        neutral: 0.0,
-        typical: 15.0,
-        lowest: 0.0,
-        highest: 1e5,
-        odd: false,
-    },
-    Parameter {
-        key: "T_u",
-        symbol: "T_u",
-        unit: "s",
-        neutral: 100.0,
-        typical: 100.0,
-        lowest: 1.0,
-        highest: 1e4,
-        odd: false,
-    },
-    Parameter {
-        key: "m_b",
-        symbol: "m_b",
-        unit: "1",
-        neutral: 2.0,
-        typical: 2.0,
-        lowest: 0.0,
-        highest: 3.0,
-        odd: false,
-    },
+    Parameter::even(["c_u", "c_u", "s/rad²"], [0.0, 15.0], [0.0, 1e5]),
+    Parameter::even(["T_u", "T_u", "s"], [100.0, 100.0], [1.0, 1e4]),
+    Parameter::even(["m_b", "m_b", "1"], [2.0, 2.0], [0.0, 3.0]),
 ];
 const MEASURED: [Parameter; 2] = [
-    Parameter {
-        key: "m_a",
-        symbol: "m_a",
-        unit: "1",
-        neutral: 0.0,
-        typical: 1.0,
-        lowest: -1.0,
-        highest: 3.0,
-        odd: false,
-    },
-    Parameter {
-        key: "m_b",
-        symbol: "m_b",
-        unit: "1",
-        neutral: 0.0,
-        typical: 2.0,
-        lowest: -1.0,
-        highest: 4.0,
-        odd: false,
-    },
+    Parameter::even(["m_a", "m_a", "1"], [0.0, 1.0], [-1.0, 3.0]),
+    Parameter::even(["m_b", "m_b", "1"], [0.0, 2.0], [-1.0, 4.0]),
 ];
 
-const PROPELLER: [Parameter; 1] = [Parameter {
-    key: "m_n",
-    symbol: "m_n",
-    unit: "1",
-    neutral: 0.0,
-    typical: 2.0,
-    lowest: -1.0,
-    highest: 4.0,
-    odd: false,
-}];
+const PROPELLER: [Parameter; 1] = [Parameter::even(["m_n", "m_n", "1"], [0.0, 2.0], [-1.0, 4.0])];
 const INFLOW: [Parameter; 3] = [
     Parameter { typical: 1.0, ..MEASURED[0] },
     Parameter { key: "e", symbol: "e", typical: 0.5, lowest: -0.5, highest: 1.5, ..MEASURED[0] },
@@ -112,37 +58,22 @@ const INFLOW: [Parameter; 3] = [
 const SLOWEST: f64 = 0.05;
 
 impl Effect for SpeedLoss {
-    fn id(&self) -> &'static str {
-        "speed_loss"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::Modelled => "modelled speed",
-            Self::Measured { .. } => "measured speed",
-            Self::Inflow { .. } => "inflow share",
-            Self::Propeller { .. } => "measured propeller",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::Modelled => "r' = −(q/T) r + (K/T) q^m_b (δ + δ_r), q' = (1 − q)/T_u − c_u r²",
-            Self::Measured { .. } => "r' = −(q^m_a/T) r + (K/T) q^m_b (δ + δ_r), q = U/U₀",
-            Self::Inflow { .. } => {
-                "r' = −(1 + m_a (q − 1))/T r + (K/T) (1 + e (q − 1) + e_n (n/n₀ − 1))² (δ + δ_r), q = U/U₀"
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::Modelled => {
+                ("modelled speed", "r' = −(q/T) r + (K/T) q^m_b (δ + δ_r), q' = (1 − q)/T_u − c_u r²", &MODELLED)
             }
-            Self::Propeller { .. } => "r' = −r/T + (K/T) (n/n₀)^m_n (δ + δ_r)",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::Modelled => &MODELLED,
-            Self::Measured { .. } => &MEASURED,
-            Self::Inflow { .. } => &INFLOW,
-            Self::Propeller { .. } => &PROPELLER,
-        }
+            Self::Measured { .. } => {
+                ("measured speed", "r' = −(q^m_a/T) r + (K/T) q^m_b (δ + δ_r), q = U/U₀", &MEASURED)
+            }
+            Self::Inflow { .. } => (
+                "inflow share",
+                "r' = −(1 + m_a (q − 1))/T r + (K/T) (1 + e (q − 1) + e_n (n/n₀ − 1))² (δ + δ_r), q = U/U₀",
+                &INFLOW,
+            ),
+            Self::Propeller { .. } => ("measured propeller", "r' = −r/T + (K/T) (n/n₀)^m_n (δ + δ_r)", &PROPELLER),
+        };
+        Description { id: "speed_loss", form, equation, parameters }
     }
 
     fn constants(&self) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! A rudder that acts later than the one recorded: dead time, a first-order lag, or two clocks.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use estimation::number::Real;
 
 /// Lag between the recorded and the acting rudder.
@@ -12,54 +12,19 @@ pub enum SteeringLag {
     FirstOrder,
 }
 
-const DEAD_TIME: [Parameter; 1] = [Parameter {
-    key: "tau",
-    symbol: "τ",
-    unit: "s",
-    neutral: 0.0,
-    typical: 1.0,
-    lowest: -20.0,
-    highest: 20.0,
-    odd: false,
-}];
-const FIRST_ORDER: [Parameter; 1] = [Parameter {
-    key: "tau_E",
-    symbol: "τ_E",
-    unit: "s",
-    neutral: 0.0,
-    typical: 1.0,
-    lowest: 0.0,
-    highest: 30.0,
-    odd: false,
-}];
+const DEAD_TIME: [Parameter; 1] = [Parameter::even(["tau", "τ", "s"], [0.0, 1.0], [-20.0, 20.0])];
+const FIRST_ORDER: [Parameter; 1] = [Parameter::even(["tau_E", "τ_E", "s"], [0.0, 1.0], [0.0, 30.0])];
 
 /// A lag shorter than this, s, is below the resolution of any record and passes the rudder through.
 const SHORTEST_LAG: f64 = 0.02;
 
 impl Effect for SteeringLag {
-    fn id(&self) -> &'static str {
-        "steering_lag"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::DeadTime => "dead time",
-            Self::FirstOrder => "first-order lag",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::DeadTime => "T r' + r = K (δ(t − τ) + δ_r)",
-            Self::FirstOrder => "T r' + r = K (δ_e + δ_r), τ_E δ_e' + δ_e = δ",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::DeadTime => &DEAD_TIME,
-            Self::FirstOrder => &FIRST_ORDER,
-        }
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::DeadTime => ("dead time", "T r' + r = K (δ(t − τ) + δ_r)", &DEAD_TIME),
+            Self::FirstOrder => ("first-order lag", "T r' + r = K (δ_e + δ_r), τ_E δ_e' + δ_e = δ", &FIRST_ORDER),
+        };
+        Description { id: "steering_lag", form, equation, parameters }
     }
 
     fn proposal(&self, about: &Manoeuvres) -> Option<Proposal> {

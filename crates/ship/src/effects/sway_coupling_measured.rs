@@ -1,6 +1,6 @@
 //! Sway velocity as a regressor, where the record has it.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
 use estimation::number::Real;
 
@@ -12,32 +12,16 @@ pub struct SwayCouplingMeasured {
     pub approach_speed: f64,
 }
 
-const PARAMETERS: [Parameter; 1] = [Parameter {
-    key: "c_v",
-    symbol: "c_v",
-    unit: "rad s/m",
-    neutral: 0.0,
-    typical: 0.1,
-    lowest: -100.0,
-    highest: 100.0,
-    odd: false,
-}];
+const PARAMETERS: [Parameter; 1] = [Parameter::even(["c_v", "c_v", "rad s/m"], [0.0, 0.1], [-100.0, 100.0])];
 
 impl Effect for SwayCouplingMeasured {
-    fn id(&self) -> &'static str {
-        "sway_coupling_measured"
-    }
-
-    fn form(&self) -> &'static str {
-        "measured sway"
-    }
-
-    fn equation(&self) -> &'static str {
-        "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        Description {
+            id: "sway_coupling_measured",
+            form: "measured sway",
+            equation: "T r' + r = K (δ + δ_r + c_v q v), q = U/U₀",
+            parameters: &PARAMETERS,
+        }
     }
 
     /// N_v/N_δ of hulls is −3 ± 1.5 without dimension.

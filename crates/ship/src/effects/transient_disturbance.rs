@@ -1,6 +1,6 @@
 //! A moment that is present for a part of the record only: a squall, a passing ship.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use super::instant::{EDGE_ROWS, INSTANT, REACH};
 use estimation::number::Real;
 
@@ -16,21 +16,12 @@ pub enum TransientDisturbance {
     },
 }
 
-const MOMENT: Parameter = Parameter {
-    key: "m",
-    symbol: "m",
-    unit: "rad",
-    neutral: 0.0,
-    typical: 0.03,
-    lowest: -0.6,
-    highest: 0.6,
-    odd: true,
-};
+const MOMENT: Parameter = Parameter::odd(["m", "m", "rad"], [0.0, 0.03], [-0.6, 0.6]);
 
 const PASSING: [Parameter; 3] = [
     MOMENT,
     Parameter { key: "t_c", symbol: "t_c", ..INSTANT },
-    Parameter { key: "d", symbol: "d", unit: "s", neutral: 30.0, typical: 30.0, lowest: 0.5, highest: 1e5, odd: false },
+    Parameter::even(["d", "d", "s"], [30.0, 30.0], [0.5, 1e5]),
 ];
 
 const LASTING: [Parameter; 2] = [MOMENT, INSTANT];
@@ -48,29 +39,12 @@ const LONGEST: f64 = 0.2;
 const SOONEST: f64 = 0.05;
 
 impl Effect for TransientDisturbance {
-    fn id(&self) -> &'static str {
-        "transient_disturbance"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::Passing => "moment for a while",
-            Self::Lasting { .. } => "moment that stays",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::Passing => "T r' + r = K (δ + δ_r + m s(t; t_c, d))",
-            Self::Lasting { .. } => "T r' + r = K (δ + δ_r + m s(t; t₀))",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::Passing => &PASSING,
-            Self::Lasting { .. } => &LASTING,
-        }
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::Passing => ("moment for a while", "T r' + r = K (δ + δ_r + m s(t; t_c, d))", &PASSING),
+            Self::Lasting { .. } => ("moment that stays", "T r' + r = K (δ + δ_r + m s(t; t₀))", &LASTING),
+        };
+        Description { id: "transient_disturbance", form, equation, parameters }
     }
 
     fn constants(&self) -> Vec<f64> {

@@ -1,6 +1,6 @@
 //! Yaw from first-order waves: random, narrow-banded, added to the heading that is seen.
 
-use super::effect::{Acts, Effect, Manoeuvres, Parameter, Places, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Parameter, Places, Proposal};
 use crate::narrow_band::NarrowBand;
 use estimation::number::Real;
 
@@ -9,53 +9,19 @@ use estimation::number::Real;
 pub struct WaveYaw;
 
 const PARAMETERS: [Parameter; 3] = [
-    Parameter {
-        key: "sigma_w",
-        symbol: "σ_w",
-        unit: "rad",
-        neutral: 0.0,
-        typical: 7e-3,
-        lowest: 0.0,
-        highest: 0.2,
-        odd: false,
-    },
-    Parameter {
-        key: "omega0",
-        symbol: "ω₀",
-        unit: "rad/s",
-        neutral: 0.6,
-        typical: 0.6,
-        lowest: 0.02,
-        highest: 20.0,
-        odd: false,
-    },
-    Parameter {
-        key: "zeta",
-        symbol: "ζ",
-        unit: "1",
-        neutral: 0.1,
-        typical: 0.1,
-        lowest: 0.005,
-        highest: 0.7,
-        odd: false,
-    },
+    Parameter::even(["sigma_w", "σ_w", "rad"], [0.0, 7e-3], [0.0, 0.2]),
+    Parameter::even(["omega0", "ω₀", "rad/s"], [0.6, 0.6], [0.02, 20.0]),
+    Parameter::even(["zeta", "ζ", "1"], [0.1, 0.1], [0.005, 0.7]),
 ];
 
 impl Effect for WaveYaw {
-    fn id(&self) -> &'static str {
-        "wave_yaw"
-    }
-
-    fn form(&self) -> &'static str {
-        "narrow band"
-    }
-
-    fn equation(&self) -> &'static str {
-        "ψ_seen = ψ + ξ, ξ'' + 2ζω₀ ξ' + ω₀² ξ = white noise"
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        &PARAMETERS
+    fn description(&self) -> Description {
+        Description {
+            id: "wave_yaw",
+            form: "narrow band",
+            equation: "ψ_seen = ψ + ξ, ξ'' + 2ζω₀ ξ' + ω₀² ξ = white noise",
+            parameters: &PARAMETERS,
+        }
     }
 
     /// It is no response: it is looked for among the colours of the noise.

@@ -1,6 +1,6 @@
 //! A yaw moment that depends on heading: steady wind, or the wind the record has measured.
 
-use super::effect::{Acts, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
+use super::effect::{Acts, Description, Effect, Manoeuvres, Now, Parameter, Places, Prior, Proposal};
 use crate::dynamics::Regressor;
 use estimation::number::Real;
 
@@ -14,65 +14,21 @@ pub enum WindMoment {
 }
 
 const STEADY: [Parameter; 2] = [
-    Parameter {
-        key: "w_c",
-        symbol: "w_c",
-        unit: "rad",
-        neutral: 0.0,
-        typical: 0.02,
-        lowest: -0.6,
-        highest: 0.6,
-        odd: true,
-    },
-    Parameter {
-        key: "w_s",
-        symbol: "w_s",
-        unit: "rad",
-        neutral: 0.0,
-        typical: 0.02,
-        lowest: -0.6,
-        highest: 0.6,
-        odd: false,
-    },
+    Parameter::odd(["w_c", "w_c", "rad"], [0.0, 0.02], [-0.6, 0.6]),
+    Parameter::even(["w_s", "w_s", "rad"], [0.0, 0.02], [-0.6, 0.6]),
 ];
-const MEASURED: [Parameter; 1] = [Parameter {
-    key: "c_w",
-    symbol: "c_w",
-    unit: "rad s²/m²",
-    neutral: 0.0,
-    typical: 0.01,
-    lowest: -10.0,
-    highest: 10.0,
-    odd: false,
-}];
+const MEASURED: [Parameter; 1] = [Parameter::even(["c_w", "c_w", "rad s²/m²"], [0.0, 0.01], [-10.0, 10.0])];
 
 /// Moment of a moderate wind as an angle of the rudder, rad.
 const MODERATE: f64 = 0.025;
 
 impl Effect for WindMoment {
-    fn id(&self) -> &'static str {
-        "wind_moment"
-    }
-
-    fn form(&self) -> &'static str {
-        match self {
-            Self::Steady => "steady wind",
-            Self::Measured => "measured wind",
-        }
-    }
-
-    fn equation(&self) -> &'static str {
-        match self {
-            Self::Steady => "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)",
-            Self::Measured => "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)",
-        }
-    }
-
-    fn parameters(&self) -> &'static [Parameter] {
-        match self {
-            Self::Steady => &STEADY,
-            Self::Measured => &MEASURED,
-        }
+    fn description(&self) -> Description {
+        let (form, equation, parameters): (_, _, &[Parameter]) = match self {
+            Self::Steady => ("steady wind", "T r' + r = K (δ + δ_r + w_c cos 2ψ + w_s sin 2ψ)", &STEADY),
+            Self::Measured => ("measured wind", "T r' + r = K (δ + δ_r + c_w U_rel² sin γ_rel)", &MEASURED),
+        };
+        Description { id: "wind_moment", form, equation, parameters }
     }
 
     fn sees_heading(&self) -> bool {

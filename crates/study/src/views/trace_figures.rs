@@ -1,10 +1,10 @@
 //! Figures of a trace, from its document and its curves: every record with the model before and after, errors on
 //! records that were not fitted, the evidence, the moment that the base lacks, and the residuals from several sides.
 
-use ::trace::diagnostics::{Line, Series, autocorrelation, spectrum};
 use ::trace::document::{BeforeAfter, ErrorsEntry, Outcome};
 use ::trace::replay_errors::{HORIZONS, replayed_zigzag};
 use campaign::curves::curve;
+use estimation::residuals::{GappedSeries, SpectralLine, autocorrelation, spectrum};
 use identify::replay::Replay;
 use report::figures::{
     AxisMark, Division, Layer, LayerKind, PanelRow, Panels, Pen, RowItem, RowKind, Rows, RowsColumn, Ruler, Stack,
@@ -249,7 +249,7 @@ fn residual(record: &TracedRecord, name: &str) -> Panels {
         let of = |replay: &Replay| thinned(x(replay), degrees(&replay.residual));
         stack(Ruler::decimal(x_title), Ruler::decimal("residual [°]"), false, &of)
     };
-    let series = |replay: &Replay| Series::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
+    let series = |replay: &Replay| GappedSeries::new(&replay.time, &degrees(&replay.residual), trial.sampling_period());
     let period = ZigZag::of(trial).ok().and_then(|zigzag| zigzag.period).map(|period| period.value);
     let rows = series(&record.replays[0]).values.len();
     let band = 1.96 / (rows as f64).sqrt();
@@ -287,12 +287,12 @@ fn thinned(x: Vec<f64>, y: Vec<f64>) -> Curve {
 }
 
 /// Power spectral density of a residual in degrees, neighbouring lines averaged.
-fn power(residual: &Series) -> Curve {
+fn power(residual: &GappedSeries) -> Curve {
     let count = residual.values.len().max(1) as f64;
     let square = residual.values.iter().map(|e| e * e).sum::<f64>() / count;
     let lines = spectrum(residual);
     let width = 1.0 / (count * residual.spacing);
-    let mut groups: Vec<&[Line]> = Vec::new();
+    let mut groups: Vec<&[SpectralLine]> = Vec::new();
     let mut rest = &lines[..];
     while let Some(first) = rest.first() {
         let (group, others) = rest.split_at(rest.partition_point(|line| line.frequency <= LINE * first.frequency));

@@ -8,11 +8,12 @@
 //!
 //! The band is that of Scheffé (1953): f(x) ± √(χ²₀.₉₅(p)) · se(x), which holds for all x at once.
 
+use estimation::column::dot;
+use estimation::minimum::minimum;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use super::smoother::{Column, Filter, Rows, STATES};
-use crate::minimum::minimum;
 
 /// Inner knots, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
@@ -96,16 +97,12 @@ impl Basis {
 }
 
 /// Normal equations of the coefficients of a curve under one filter.
-struct Normal {
+struct CurveEquations {
     columns: Vec<Vec<f64>>,
     inverse: DMatrix<f64>,
 }
 
-fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(x, y)| x * y).sum()
-}
-
-impl Normal {
+impl CurveEquations {
     fn new(filter: &Filter, splines: &[Column]) -> Option<Self> {
         let columns: Vec<Vec<f64>> = splines.iter().map(|spline| filter.whitened(spline)).collect();
         let matrix = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| dot(&columns[i], &columns[j]));
@@ -158,12 +155,12 @@ impl Curve {
         };
         let splines: Vec<Column> = (0..COEFFICIENTS).map(spline).collect();
         let value = |filter: &Filter| {
-            let (_, left) = Normal::new(filter, &splines)?.solve(&filter.whitened(record));
+            let (_, left) = CurveEquations::new(filter, &splines)?.solve(&filter.whitened(record));
             Some(deviance(left, filter, count))
         };
         let intensity = likeliest(rows, gain, value).exp();
         let filter = rows.filter(intensity);
-        let normal = Normal::new(&filter, &splines)?;
+        let normal = CurveEquations::new(&filter, &splines)?;
         let (coefficients, left) = normal.solve(&filter.whitened(record));
         let variance = variance(left, count, COEFFICIENTS);
         let width = ChiSquared::new(COEFFICIENTS as f64).ok()?.inverse_cdf(0.95).sqrt();

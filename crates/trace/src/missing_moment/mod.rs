@@ -120,7 +120,7 @@ impl MissingMoment {
         let rows = Rows::new(*base, time.clone(), variances, sd);
         let first = record.heading[record.observed[0]];
         let heading = record.observed.iter().map(|&row| record.heading[row] - first).collect();
-        let own = Column { heading, forced: rows.steered(record.rudder_signal()) };
+        let own = Column { heading, forced: rows.steered(&record.rudder) };
         let square = |filter: &Filter| filter.whitened(&own).iter().map(|nu| nu * nu).sum::<f64>();
         let gain = base.K_over_T;
         let intensity = likeliest(&rows, gain, |filter| Some(deviance(square(filter), filter, count))).exp();
@@ -131,12 +131,12 @@ impl MissingMoment {
 
         let mut channels = vec![
             (Over::YawRate, states.iter().map(|state| state[1]).collect()),
-            (Over::Rudder, at_rows(record.rudder_signal(), &time)),
+            (Over::Rudder, at_rows(&record.rudder, &time)),
             (Over::Heading, states.iter().map(|state| first + state[0]).collect::<Vec<f64>>()),
         ];
-        let signals =
-            [(Over::Speed, record.speed()), (Over::WindFrom, record.wind_from()), (Over::Sway, record.sway())];
-        channels.extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal?, &time)))));
+        let signals = [(Over::Speed, &record.speed), (Over::WindFrom, &record.wind_from), (Over::Sway, &record.sway)];
+        channels
+            .extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal.as_ref()?, &time)))));
 
         let still = vec![[0.0; 2]; count];
         let others: Vec<Column> =

@@ -10,8 +10,6 @@ use nalgebra::DMatrix;
 use ship::first_order::{State, Transition};
 use ship::{FirstOrder, Polyline};
 
-use crate::noise::{Matrix, van_loan};
-
 /// Standard deviations with which heading (rad), yaw rate (rad/s) and moment (rad of rudder) begin.
 const LARGE: f64 = 1.0;
 
@@ -41,10 +39,6 @@ pub(super) struct Rows {
     prior: f64,
 }
 
-fn three(matrix: &Matrix) -> [[f64; STATES]; STATES] {
-    std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j]))
-}
-
 impl Rows {
     /// Rows at increasing times (s) with the given variances; `sd` is about σ, rad.
     pub fn new(base: FirstOrder, time: Vec<f64>, variance: Vec<f64>, sd: f64) -> Self {
@@ -58,8 +52,7 @@ impl Rows {
             let h = pair[1] - pair[0];
             let known = steps.iter().rposition(|step| (step.0 - h).abs() <= 1e-9 * h);
             of_row.push(known.unwrap_or_else(|| {
-                let (f, q) = van_loan(&generator, 1.0, h);
-                steps.push((h, Step { transition: three(&f), added: three(&q) }));
+                steps.push((h, Step::over(&generator, 1.0, h)));
                 steps.len() - 1
             }));
         }
@@ -106,11 +99,7 @@ impl Rows {
 
     /// The filter for a moment that walks with λ, 1/s.
     pub fn filter(&self, intensity: f64) -> Filter {
-        let scaled = |(_, step): &(f64, Step<f64, STATES>)| Step {
-            added: step.added.map(|row| row.map(|x| x * intensity)),
-            ..*step
-        };
-        let steps = self.steps.iter().map(scaled).collect();
+        let steps = self.steps.iter().map(|(_, step)| step.scaled(intensity)).collect();
         let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
         Filter(Smoother::new(System::of_rows(steps, initial, (&self.of_row, &self.variance), None)))
     }

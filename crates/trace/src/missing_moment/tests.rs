@@ -7,7 +7,7 @@ use ship::effects::NonlinearDamping;
 use ship::first_order::{State, Transition};
 
 use super::*;
-use crate::synthetic::{BASE, Plan, of_columns, record, ship};
+use crate::testing::{BASE, Plan, of_columns, record, ship};
 
 fn base() -> FirstOrder {
     FirstOrder { inverse_T: BASE[0], K_over_T: BASE[1], rudder_bias: BASE[2] }
@@ -81,8 +81,8 @@ fn a_known_input_acts_between_rows() {
     let record = Record::whole(&record(&ship(Vec::new()), Plan { noise_deg: 0.0, ..Plan::default() }));
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
     let rows = Rows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
-    let steered = rows.steered(record.rudder_signal());
-    let rudder: Vec<f64> = at_rows(record.rudder_signal(), &time).iter().map(|delta| delta + BASE[2]).collect();
+    let steered = rows.steered(&record.rudder);
+    let rudder: Vec<f64> = at_rows(&record.rudder, &time).iter().map(|delta| delta + BASE[2]).collect();
     for (one, other) in steered.iter().zip(rows.pushed(&rudder)) {
         assert_relative_eq!(one[0], other[0], epsilon = 1e-14);
         assert_relative_eq!(one[1], other[1], epsilon = 1e-14);

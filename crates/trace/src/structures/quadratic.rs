@@ -1,10 +1,11 @@
 //! A quadratic approximation of the posterior of the full model, from which any terms may be taken.
 
+use estimation::levenberg_marquardt::Normal;
+use estimation::subsets::{MOST_TERMS, Removable, condition, conditional, subsets};
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::evidence::{MOST, Removable, conditional, subsets};
-use crate::fit::{System, deviation, log_normaliser};
+use crate::fit::{deviation, log_normaliser};
 use crate::model::Structure;
 
 /// Structures that are refitted a round, and the log of the odds against the best beyond which none is.
@@ -36,18 +37,18 @@ pub(super) struct Quadratic {
 
 impl Quadratic {
     /// Round a point of the full structure.
-    pub fn new(system: &System, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
+    pub fn new(normal: &Normal, structure: &Structure, theta: &[f64], log_odds: &[f64]) -> Option<Self> {
         let unknown = structure.unknowns();
-        let count = system.gradient.len();
+        let count = normal.gradient.len();
         let mut at = DVector::zeros(count);
         unknown.iter().zip(theta).for_each(|(place, value)| {
             if let Some(place) = place {
                 at[*place] = *value;
             }
         });
-        let factor = system.precision.clone().cholesky()?;
+        let factor = normal.matrix.clone().cholesky()?;
         let mut covariance = factor.inverse();
-        let mut mean = &at + factor.solve(&system.gradient);
+        let mut mean = &at + factor.solve(&normal.gradient);
         let ranges = structure.ranges();
         let mut pinned = vec![false; ranges.len()];
         let removable = |mean: &DVector<f64>, number: usize| {
@@ -135,7 +136,7 @@ impl Quadratic {
         (0..self.removable.len()).map(of).collect()
     }
 
-    /// The terms that are weighed, at most [`MOST`], and the log weights of all their subsets.
+    /// The terms that are weighed, at most [`MOST_TERMS`], and the log weights of all their subsets.
     fn weighed(&self) -> (Vec<usize>, Vec<f64>) {
         let free: Vec<usize> = (0..self.removable.len()).filter(|&k| !self.pinned[k]).collect();
         let (kept, covariance, removable) = self.fewer(free);
@@ -175,7 +176,7 @@ impl Quadratic {
         let mut covariance = self.covariance.clone();
         let mut mean = self.mean.clone();
         let mut removable = self.removable.clone();
-        while kept.len() > MOST {
+        while kept.len() > MOST_TERMS {
             let loss =
                 |&k: &usize| subsets(&covariance, std::slice::from_ref(&removable[k]))[0] - removable[k].log_odds;
             let place = (0..kept.len()).max_by(|&i, &j| loss(&kept[i]).total_cmp(&loss(&kept[j]))).expect("many");
@@ -192,17 +193,5 @@ impl Quadratic {
         }
         let own = kept.iter().map(|&k| removable[k].clone()).collect();
         (kept, covariance, own)
-    }
-}
-
-/// Takes what the sizes of a candidate leave open from a covariance.
-fn condition(covariance: &mut DMatrix<f64>, out: &Removable) {
-    for &(unknown, _) in &out.sizes {
-        let column: DVector<f64> = covariance.column(unknown).into();
-        let variance = column[unknown];
-        if variance > 0.0 {
-            *covariance -= &column * column.transpose() / variance;
-            covariance[(unknown, unknown)] = 1e-12 * variance;
-        }
     }
 }

@@ -76,8 +76,7 @@ impl Structures {
 
     /// Probability of an effect in any form, in all records or in one.
     pub fn of_effect(&self, id: &str, only: Option<usize>) -> f64 {
-        let has = |names: &[TermName]| names.iter().any(|name| name.0 == id && name.2 == only);
-        self.weighed_names().filter(|(_, names)| has(names)).map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
+        self.of_any(|name| name.0 == id && name.2 == only)
     }
 
     /// Mean square of what the most probable structure leaves that has nothing but the ship in it, rad².
@@ -102,14 +101,14 @@ impl Structures {
         best
     }
 
-    /// Probability of an effect in any form and any record.
-    pub fn anywhere(&self, id: &str) -> f64 {
-        let has = |names: &[TermName]| names.iter().any(|name| name.0 == id);
-        self.weighed_names().filter(|(_, names)| has(names)).map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
+    /// Probability that one of the terms of which something is true is there.
+    pub fn of_any(&self, is_one: impl Fn(&TermName) -> bool) -> f64 {
+        let there = self.weighed_names().filter(|(_, names)| names.iter().any(&is_one));
+        there.map(|(weight, _)| weight).sum::<f64>().clamp(0.0, 1.0)
     }
 
     /// Weights of all structures with the names of their terms.
-    pub fn weighed_names(&self) -> impl Iterator<Item = (f64, Vec<TermName>)> + '_ {
+    fn weighed_names(&self) -> impl Iterator<Item = (f64, Vec<TermName>)> + '_ {
         let own = self.all.iter().map(|one| (one.weight, names(&one.fit.structure)));
         own.chain(self.others.iter().cloned())
     }

@@ -1,11 +1,11 @@
-//! What can be said of a residual alone: is it white, and if not, where does it live.
+//! What can be said of a residual alone: whether it is white and of one variance, and its spectrum. Values may be missing.
 
-use estimation::transform::{Complex, power, transform};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use crate::transform::{Complex, power, transform};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 /// A residual with the steps of an even clock at which its values stand; steps without a value are holes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Series {
+pub struct GappedSeries {
     /// Time between steps, s: the usual one between headings.
     pub spacing: f64,
     /// Step of every value, the first 0.
@@ -14,7 +14,7 @@ pub struct Series {
     pub values: Vec<f64>,
 }
 
-impl Series {
+impl GappedSeries {
     /// Takes a residual, NaN where there is none, at times (s) whose rows are usually `period` seconds apart.
     pub fn new(time: &[f64], residual: &[f64], period: f64) -> Self {
         let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
@@ -57,7 +57,7 @@ const LAGS: usize = 20;
 /// Tests the residuals of several records together.
 ///
 /// Q = n (n + 2) Σ ρ²/(n − k); where values are missing, every ρ counts by its pairs (Stoffer and Toloi 1992).
-pub fn whiteness(residuals: &[Series]) -> Whiteness {
+pub fn whiteness(residuals: &[GappedSeries]) -> Whiteness {
     let (mut square, mut cross, mut statistic, mut freedom) = (0.0, 0.0, 0.0, 0.0);
     for residual in residuals {
         let n = residual.values.len();
@@ -81,7 +81,7 @@ pub fn whiteness(residuals: &[Series]) -> Whiteness {
 
 /// Autocorrelation at one lag.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Correlation {
+pub struct Autocorrelation {
     /// Lag in steps of the series.
     pub lag: usize,
     /// Autocorrelation about zero.
@@ -93,8 +93,8 @@ pub struct Correlation {
 /// Autocorrelations at lags 1, 2, …, `lags` that occur: products of values at their true distance in time.
 ///
 /// ρ_k = Σ x_i x_j / Σ x²; with n values on N steps and m pairs times n (N − k)/(N m), which is 1 without holes.
-pub fn autocorrelation(series: &Series, lags: usize) -> Vec<Correlation> {
-    let Series { steps, values, .. } = series;
+pub fn autocorrelation(series: &GappedSeries, lags: usize) -> Vec<Autocorrelation> {
+    let GappedSeries { steps, values, .. } = series;
     let square: f64 = values.iter().map(|e| e * e).sum();
     let (mut cross, mut pairs) = (vec![0.0; lags], vec![0_usize; lags]);
     for (first, (&from, x)) in steps.iter().zip(values).enumerate() {
@@ -110,14 +110,14 @@ pub fn autocorrelation(series: &Series, lags: usize) -> Vec<Correlation> {
             let lag = k + 1;
             let holes = (n * (span - lag as f64)) / (span * pairs[k] as f64);
             let value = if square > 0.0 { cross[k] / square * holes } else { 0.0 };
-            Correlation { lag, value, pairs: pairs[k] }
+            Autocorrelation { lag, value, pairs: pairs[k] }
         })
         .collect()
 }
 
 /// One line of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Line {
+pub struct SpectralLine {
     /// Frequency, Hz.
     pub frequency: f64,
     /// Share of the mean square.
@@ -132,13 +132,13 @@ const SPARSEST: usize = 16;
 /// Where values are missing it is that of Lomb (1976) and Scargle (1982), the share that a sine at the values alone
 /// explains. All its sums are Fourier transforms, of the values and of where they stand, because the clock is even.
 /// Empty for fewer than four values and when nearly all steps are holes.
-pub fn spectrum(series: &Series) -> Vec<Line> {
+pub fn spectrum(series: &GappedSeries) -> Vec<SpectralLine> {
     let (n, span) = (series.values.len(), series.span());
     if n < 4 || span > SPARSEST * n {
         return Vec::new();
     }
     let frequency = |k: usize| k as f64 / (span as f64 * series.spacing);
-    let line = |k: usize, power: f64, total: f64| Line {
+    let line = |k: usize, power: f64, total: f64| SpectralLine {
         frequency: frequency(k),
         share: if total > 0.0 { power / total } else { 0.0 },
     };
@@ -174,74 +174,32 @@ fn explained(sum: Complex<f64>, twice: Complex<f64>, n: f64) -> f64 {
     part(by_cos * cos + by_sin * sin, 0.5 * (n + length)) + part(by_sin * cos - by_cos * sin, 0.5 * (n - length))
 }
 
-/// Where a residual lives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Signature {
-    /// Number of the record.
-    pub record: usize,
-    /// Span of time, s, that holds most of it for its length, and its share of the sum of squares.
-    pub span: ([f64; 2], f64),
-    /// Strongest line of its spectrum; `None` where it has none.
-    pub line: Option<Line>,
-    /// Band of headings, rad, in which it is largest, and the root mean square there, rad.
-    pub heading: ([f64; 2], f64),
-    /// Root mean square while the rudder is to port and to starboard, rad.
-    pub side: [f64; 2],
-    /// Root mean square of all of it, rad.
-    pub all: f64,
+/// Probability that normal numbers of one variance have sums of squares that stray as far from a straight line (Brown,
+/// Durbin and Evans 1975), or one number as large among them.
+pub fn evenness(numbers: &[f64]) -> f64 {
+    let n = numbers.len() as f64;
+    let total: f64 = numbers.iter().map(|x| x * x).sum();
+    if total <= 0.0 || !total.is_finite() {
+        return 1.0;
+    }
+    let (mut sum, mut strays, mut largest) = (0.0, 0.0_f64, 0.0_f64);
+    for (k, x) in numbers.iter().enumerate() {
+        sum += x * x;
+        strays = strays.max((sum / total - (k + 1) as f64 / n).abs());
+        largest = largest.max(x.abs());
+    }
+    let stray = kolmogorov(strays * (0.5 * n).sqrt());
+    let single = n * 2.0 * Normal::standard().sf(largest / (total / n).sqrt());
+    (2.0 * stray.min(single)).min(1.0)
 }
 
-/// Parts of a record among which the fullest is looked for, and bands of headings.
-const PARTS: usize = 8;
-const BANDS: usize = 4;
-
-/// Describes the residual of one record, row by row.
-pub fn signature(
-    number: usize,
-    time: &[f64],
-    residual: &[f64],
-    heading: &[f64],
-    rudder: &[f64],
-    spacing: f64,
-) -> Signature {
-    let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
-    let rms = |rows: &[usize]| {
-        if rows.is_empty() {
-            return 0.0;
-        }
-        (rows.iter().map(|&row| residual[row].powi(2)).sum::<f64>() / rows.len() as f64).sqrt()
-    };
-    let all = rms(&rows);
-    let total = all * all * rows.len() as f64;
-    let length = (rows.len() / PARTS).max(1);
-    // Σ e² up to every row, so that no window is added up anew.
-    let mut sums = vec![0.0];
-    sums.extend(rows.iter().scan(0.0, |sum, &row| {
-        *sum += residual[row].powi(2);
-        Some(*sum)
-    }));
-    let fullest = rows
-        .windows(length)
-        .enumerate()
-        .max_by(|(one, _), (other, _)| {
-            (sums[one + length] - sums[*one]).total_cmp(&(sums[other + length] - sums[*other]))
-        })
-        .map(|(_, part)| (rms(part).powi(2) * part.len() as f64, part));
-    let span = match fullest {
-        Some((square, part)) => ([time[part[0]], time[part[part.len() - 1]]], square / total.max(f64::MIN_POSITIVE)),
-        None => ([f64::NAN; 2], 0.0),
-    };
-    let series = Series::new(time, residual, spacing);
-    let line = spectrum(&series).into_iter().max_by(|one, other| one.share.total_cmp(&other.share));
-    let mut by_heading = rows.clone();
-    by_heading.sort_by(|&one, &other| heading[one].total_cmp(&heading[other]));
-    let largest = by_heading
-        .chunks(rows.len().div_ceil(BANDS).max(1))
-        .map(|band| ([heading[band[0]], heading[band[band.len() - 1]]], rms(band)))
-        .max_by(|one, other| one.1.total_cmp(&other.1))
-        .unwrap_or(([0.0; 2], 0.0));
-    let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
-    Signature { record: number, span, line, heading: largest, side: [on(-1.0), on(1.0)], all }
+/// Probability that a Brownian bridge strays further than x anywhere: 2 Σ (−1)^(k+1) exp(−2 k² x²).
+fn kolmogorov(x: f64) -> f64 {
+    if x < 0.3 {
+        return 1.0;
+    }
+    let term = |k: i32| f64::from(1 - 2 * ((k + 1) % 2)) * (-2.0 * (f64::from(k) * x).powi(2)).exp();
+    (2.0 * (1..=20).map(term).sum::<f64>()).clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -254,14 +212,14 @@ mod tests {
     use std::f64::consts::TAU;
 
     /// A sine of 20 s on rows of 1 s, where a row is recorded.
-    fn sine(recorded: impl Fn(usize) -> bool) -> Series {
+    fn sine(recorded: impl Fn(usize) -> bool) -> GappedSeries {
         let time: Vec<f64> = (0..600).map(f64::from).collect();
         let residual: Vec<f64> =
             (0..600).map(|k| if recorded(k) { (TAU * time[k] / 20.0).sin() } else { f64::NAN }).collect();
-        Series::new(&time, &residual, 1.0)
+        GappedSeries::new(&time, &residual, 1.0)
     }
 
-    fn strongest(series: &Series) -> Line {
+    fn strongest(series: &GappedSeries) -> SpectralLine {
         spectrum(series).into_iter().max_by(|x, y| x.share.total_cmp(&y.share)).expect("lines")
     }
 
@@ -314,7 +272,7 @@ mod tests {
                 .map(|_| {
                     let mut draw = |k| if pattern(k) { StandardNormal.sample(&mut generator) } else { f64::NAN };
                     let residual: Vec<f64> = (0..300).map(&mut draw).collect();
-                    whiteness(&[Series::new(&time, &residual, 1.0)]).p_value
+                    whiteness(&[GappedSeries::new(&time, &residual, 1.0)]).p_value
                 })
                 .collect();
             let mean = p_values.iter().sum::<f64>() / 40.0;
@@ -322,14 +280,24 @@ mod tests {
         }
     }
 
-    /// Also in a record so long that no window could be added up anew for every row.
+    /// Quantiles of the Kolmogorov distribution as printed by Smirnov (1948).
     #[test]
-    fn the_fullest_part_of_a_long_record_is_found() {
-        let rows = 400_000;
-        let time: Vec<f64> = (0..rows).map(f64::from).collect();
-        let residual: Vec<f64> = (0..rows).map(|k| if (100_000..150_000).contains(&k) { 2.0 } else { 1.0 }).collect();
-        let described = signature(0, &time, &residual, &time, &time, 1.0);
-        assert_eq!(described.span.0, [100_000.0, 149_999.0]);
-        assert!((described.span.1 - 200.0 / 550.0).abs() < 1e-9);
+    fn the_bridge_has_its_tabulated_quantiles() {
+        for (x, probability) in [(0.5, 0.963_945), (1.0, 0.270_000), (1.36, 0.049_486), (1.63, 0.009_843)] {
+            assert!((kolmogorov(x) - probability).abs() < 1e-5, "{x}: {}", kolmogorov(x));
+        }
+    }
+
+    /// Normal numbers of one variance fail as often as they may; with a louder half or one of eight they do not pass.
+    #[test]
+    fn uneven_numbers_are_found() {
+        let mut generator = ChaCha8Rng::seed_from_u64(3);
+        let mut draw = || -> Vec<f64> { (0..300).map(|_| StandardNormal.sample(&mut generator)).collect() };
+        let low = (0..400).filter(|_| evenness(&draw()) < 0.05).count();
+        assert!(low <= 30, "{low} of 400 below 0.05");
+        let (mut louder, mut single) = (draw(), draw());
+        louder[150..].iter_mut().for_each(|x| *x *= 2.0);
+        single[100] = 8.0;
+        assert!(evenness(&louder) < 1e-4 && evenness(&single) < 1e-4);
     }
 }

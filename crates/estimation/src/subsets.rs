@@ -1,18 +1,18 @@
-//! The evidence of every subset of the candidates at once, from the posterior of the full model.
+//! The evidence of every subset of some terms at once, from the posterior of the model that has them all.
 //!
-//! Where log-density is quadratic, a structure without the candidates R has against the full model the evidence
+//! Where the log-density is quadratic, a model without the terms R has against the full model the evidence
 //!
 //! log Z_R − log Z = −½ Δᵀ Σ_ss⁻¹ Δ − log p(R neutral) − ½ log |2π Σ_RR|,
 //!
 //! with the distance Δ of the sizes of R from their neutral values, the posterior covariance Σ of all that was fitted,
-//! and the prior density p. It is the density ratio of Dickey (1971) for sizes; parameters that only shape an effect
+//! and the prior density p. It is the density ratio of Dickey (1971) for sizes; parameters that only shape a term
 //! are free while its size is taken away and pay with their prior range.
 //!
-//! All 2^m subsets share their factors: one row of a Cholesky factor is added for every candidate that is left out.
+//! All 2^m subsets share their factors: one row of a Cholesky factor is added for every term that is left out.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A candidate as the evidence sees it.
+/// A term that may be taken away.
 #[derive(Debug, Clone)]
 pub struct Removable {
     /// Unknowns of its sizes, and how far they are from neutral.
@@ -25,11 +25,11 @@ pub struct Removable {
     pub log_odds: f64,
 }
 
-/// Most candidates whose subsets are all weighed.
-pub const MOST: usize = 12;
+/// Most terms whose subsets are all weighed.
+pub const MOST_TERMS: usize = 12;
 
 /// A Cholesky factor that grows by a row, with the solution of L z = Δ.
-struct Factor<'a> {
+struct GrowingFactor<'a> {
     covariance: &'a DMatrix<f64>,
     unknowns: Vec<usize>,
     rows: Vec<Vec<f64>>,
@@ -38,7 +38,7 @@ struct Factor<'a> {
     square: Vec<f64>,
 }
 
-impl<'a> Factor<'a> {
+impl<'a> GrowingFactor<'a> {
     fn new(covariance: &'a DMatrix<f64>) -> Self {
         let (unknowns, rows) = (Vec::new(), Vec::new());
         Self { covariance, unknowns, rows, solution: Vec::new(), log_determinant: Vec::new(), square: Vec::new() }
@@ -73,29 +73,33 @@ impl<'a> Factor<'a> {
 }
 
 /// Log evidence plus log prior odds of every subset against that of the full model with even odds; bit k of the place
-/// says that candidate k is in.
+/// says that term k is in.
 ///
-/// `covariance` is that of the unknowns. At most [`MOST`] candidates.
-pub fn subsets(covariance: &DMatrix<f64>, candidates: &[Removable]) -> Vec<f64> {
-    let mut weights = vec![0.0; 1 << candidates.len()];
-    let mut walk =
-        Walk { candidates, sizes: Factor::new(covariance), all: Factor::new(covariance), weights: &mut weights };
+/// `covariance` is that of the unknowns. At most [`MOST_TERMS`] terms.
+pub fn subsets(covariance: &DMatrix<f64>, terms: &[Removable]) -> Vec<f64> {
+    let mut weights = vec![0.0; 1 << terms.len()];
+    let mut walk = SubsetWalk {
+        terms,
+        sizes: GrowingFactor::new(covariance),
+        all: GrowingFactor::new(covariance),
+        weights: &mut weights,
+    };
     walk.descend(0, 0, 0.0, 0.0);
     weights
 }
 
-struct Walk<'a> {
-    candidates: &'a [Removable],
+struct SubsetWalk<'a> {
+    terms: &'a [Removable],
     /// Sizes of what is left out.
-    sizes: Factor<'a>,
+    sizes: GrowingFactor<'a>,
     /// Everything of what is left out.
-    all: Factor<'a>,
+    all: GrowingFactor<'a>,
     weights: &'a mut [f64],
 }
 
-impl Walk<'_> {
+impl SubsetWalk<'_> {
     fn descend(&mut self, next: usize, subset: usize, log_prior: f64, log_odds: f64) {
-        let Some(candidate) = self.candidates.get(next) else {
+        let Some(term) = self.terms.get(next) else {
             let count = self.all.unknowns.len() as f64;
             let square = self.sizes.square.last().unwrap_or(&0.0);
             let determinant = self.all.log_determinant.last().unwrap_or(&0.0);
@@ -103,16 +107,16 @@ impl Walk<'_> {
             self.weights[subset] = evidence + log_odds;
             return;
         };
-        self.descend(next + 1, subset | 1 << next, log_prior, log_odds + candidate.log_odds);
+        self.descend(next + 1, subset | 1 << next, log_prior, log_odds + term.log_odds);
         let [sizes, all] = [self.sizes.unknowns.len(), self.all.unknowns.len()];
-        for &(unknown, distance) in &candidate.sizes {
+        for &(unknown, distance) in &term.sizes {
             self.sizes.push(unknown, distance);
             self.all.push(unknown, 0.0);
         }
-        for &unknown in &candidate.shapes {
+        for &unknown in &term.shapes {
             self.all.push(unknown, 0.0);
         }
-        self.descend(next + 1, subset, log_prior + candidate.log_prior, log_odds);
+        self.descend(next + 1, subset, log_prior + term.log_prior, log_odds);
         self.sizes.truncate(sizes);
         self.all.truncate(all);
     }
@@ -136,6 +140,18 @@ pub fn conditional(covariance: &DMatrix<f64>, at: &DVector<f64>, removed: &[&Rem
     })
 }
 
+/// Takes what the sizes of a term leave open from a covariance.
+pub fn condition(covariance: &mut DMatrix<f64>, out: &Removable) {
+    for &(unknown, _) in &out.sizes {
+        let column: DVector<f64> = covariance.column(unknown).into();
+        let variance = column[unknown];
+        if variance > 0.0 {
+            *covariance -= &column * column.transpose() / variance;
+            covariance[(unknown, unknown)] = 1e-12 * variance;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -144,14 +160,14 @@ mod tests {
     use super::*;
 
     /// y = X θ + e with unit noise, one unknown that is always there and some candidates with normal priors.
-    struct Linear {
+    struct LinearModel {
         x: DMatrix<f64>,
         y: DVector<f64>,
         mean: Vec<f64>,
         sd: Vec<f64>,
     }
 
-    impl Linear {
+    impl LinearModel {
         fn drawn(generator: &mut ChaCha8Rng, candidates: usize) -> Self {
             let mut draw = || -> f64 { generator.sample(StandardNormal) };
             let mut x = DMatrix::from_fn(40, candidates + 1, |_, _| draw());
@@ -206,7 +222,7 @@ mod tests {
         let mut generator = ChaCha8Rng::seed_from_u64(29);
         for number in 0..200 {
             let count = 2 + number % 5;
-            let problem = Linear::drawn(&mut generator, count);
+            let problem = LinearModel::drawn(&mut generator, count);
             let all: Vec<usize> = (0..count).collect();
             let (precision, mean) = problem.posterior(&all);
             let covariance = precision.cholesky().expect("positive").inverse();
@@ -225,7 +241,7 @@ mod tests {
     #[test]
     fn what_is_left_moves_to_its_own_fit() {
         let mut generator = ChaCha8Rng::seed_from_u64(3);
-        let problem = Linear::drawn(&mut generator, 4);
+        let problem = LinearModel::drawn(&mut generator, 4);
         let (precision, mean) = problem.posterior(&[0, 1, 2, 3]);
         let covariance = precision.cholesky().expect("positive").inverse();
         let out = [problem.removable(&mean, 1), problem.removable(&mean, 3)];

@@ -1,31 +1,28 @@
-//! Quantities that are averages over structures: each structure has a normal law, and a weight.
+//! Quantities that are averages over models: each model has a normal law, and a weight.
 
 use statrs::distribution::{ContinuousCDF, Normal};
-use trial::Quantity;
 
 /// Halvings of an interval in which a quantile lies.
 const HALVINGS: usize = 100;
 
+/// A number, and where it is known its standard deviation with the interval between its 2.5 % and 97.5 % quantiles.
+pub type Summary = (f64, Option<(f64, [f64; 2])>);
+
 /// Normal laws with their weights, which sum to one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Mixture {
+pub struct NormalMixture {
     /// Weight, mean and standard deviation.
     pub parts: Vec<(f64, f64, f64)>,
 }
 
-impl Mixture {
-    /// Mean and standard deviation of the mixture, with the interval between its 2.5 % and 97.5 % quantiles. Without an
-    /// error where one of the parts has none.
-    pub fn quantity(&self) -> Quantity {
+impl NormalMixture {
+    /// Mean and standard deviation of the mixture with its interval. Without an error where one of the parts has none.
+    pub fn summary(&self) -> Summary {
         let total: f64 = self.parts.iter().map(|(weight, ..)| weight).sum();
         let mean = self.parts.iter().map(|(weight, mean, _)| weight * mean).sum::<f64>() / total;
         let square = |(weight, own, sd): &(f64, f64, f64)| weight * (sd * sd + (own - mean).powi(2));
         let sd = (self.parts.iter().map(square).sum::<f64>() / total).sqrt();
-        if !sd.is_finite() {
-            return Quantity::bare(mean);
-        }
-        let interval = [0.025, 0.975].map(|probability| self.quantile(probability));
-        Quantity { value: mean, sd: Some(sd), ci95: Some(interval) }
+        (mean, sd.is_finite().then(|| (sd, [0.025, 0.975].map(|probability| self.quantile(probability)))))
     }
 
     /// Value below which the mixture lies with a probability.
@@ -58,9 +55,9 @@ fn bisect(mut low: f64, mut high: f64, is_below: impl Fn(f64) -> bool) -> f64 {
     0.5 * (low + high)
 }
 
-/// A pair (denominator, numerator) in one structure: weight, values, variances and covariance.
+/// A pair (denominator, numerator) in one model: weight, values, variances and covariance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub struct NormalPair {
     /// Weight.
     pub weight: f64,
     /// Denominator and its variance.
@@ -71,34 +68,35 @@ pub struct Pair {
     pub covariance: f64,
 }
 
-/// The ratio numerator over denominator of the most probable structure, with the interval over all of them.
+impl NormalPair {
+    /// Variance of numerator − k denominator.
+    fn variance_at(&self, k: f64) -> f64 {
+        (self.numerator.1 - 2.0 * k * self.covariance + k * k * self.denominator.1).max(0.0)
+    }
+}
+
+/// The ratio numerator over denominator of the most probable model, with the interval over all of them.
 ///
-/// P(b/a < k) is that of b − k a < 0, which is normal in every structure (Fieller 1954). There is no interval where the
+/// P(b/a < k) is that of b − k a < 0, which is normal in every model (Fieller 1954). There is no interval where the
 /// denominator may be zero: where its own 95 % interval holds zero.
-pub fn ratio(pairs: &[Pair]) -> Quantity {
+pub fn ratio(pairs: &[NormalPair]) -> Summary {
     let best = pairs.iter().max_by(|one, other| one.weight.total_cmp(&other.weight));
-    let Some(best) = best else { return Quantity::bare(f64::NAN) };
+    let Some(best) = best else { return (f64::NAN, None) };
     let value = best.numerator.0 / best.denominator.0;
-    let parts =
-        pairs.iter().map(|pair| (pair.weight, pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).collect();
-    let denominator = Mixture { parts };
-    let below = denominator.below(0.0);
+    let of = |part: &dyn Fn(&NormalPair) -> (f64, f64)| NormalMixture {
+        parts: pairs.iter().map(|pair| (pair.weight, part(pair).0, part(pair).1)).collect(),
+    };
+    let below = of(&|pair| (pair.denominator.0, pair.denominator.1.max(0.0).sqrt())).below(0.0);
     if (0.025..=0.975).contains(&below) || pairs.iter().any(|pair| !pair.denominator.1.is_finite()) {
-        return Quantity::bare(value);
+        return (value, None);
     }
     let sign = if below < 0.5 { 1.0 } else { -1.0 };
     let is_below = |k: f64| {
-        let part = |pair: &Pair| {
-            let mean = sign * (pair.numerator.0 - k * pair.denominator.0);
-            let variance = pair.numerator.1 - 2.0 * k * pair.covariance + k * k * pair.denominator.1;
-            (pair.weight, mean, variance.max(0.0).sqrt())
-        };
-        Mixture { parts: pairs.iter().map(part).collect() }.below(0.0)
+        of(&|pair| (sign * (pair.numerator.0 - k * pair.denominator.0), pair.variance_at(k).sqrt())).below(0.0)
     };
-    let spread = |pair: &Pair| {
+    let spread = |pair: &NormalPair| {
         let own = pair.numerator.0 / pair.denominator.0;
-        let variance = pair.numerator.1 - 2.0 * own * pair.covariance + own * own * pair.denominator.1;
-        (own, variance.max(0.0).sqrt() / pair.denominator.0.abs())
+        (own, pair.variance_at(own).sqrt() / pair.denominator.0.abs())
     };
     let total: f64 = pairs.iter().map(|pair| pair.weight).sum();
     let mean = pairs.iter().map(|pair| pair.weight * spread(pair).0).sum::<f64>() / total;
@@ -106,7 +104,7 @@ pub fn ratio(pairs: &[Pair]) -> Quantity {
     let sd = (square.sum::<f64>() / total).sqrt();
     let reach = 40.0 * sd + 1e-12;
     let interval = [0.025, 0.975].map(|probability| bisect(mean - reach, mean + reach, |k| is_below(k) < probability));
-    Quantity { value, sd: Some(sd), ci95: Some(interval) }
+    (value, Some((sd, interval)))
 }
 
 #[cfg(test)]
@@ -115,24 +113,24 @@ mod tests {
 
     #[test]
     fn a_mixture_of_one_is_normal() {
-        let one = Mixture { parts: vec![(1.0, 2.0, 0.5)] }.quantity();
-        let [low, high] = one.ci95.expect("a law");
-        assert!((low - 1.02).abs() < 1e-3 && (high - 2.98).abs() < 1e-3 && one.sd == Some(0.5));
-        let two = Mixture { parts: vec![(0.5, 0.0, 0.1), (0.5, 1.0, 0.1)] }.quantity();
-        let [low, high] = two.ci95.expect("a law");
-        assert!(low < -0.1 && high > 1.1 && (two.value - 0.5).abs() < 1e-12);
+        let (_, error) = NormalMixture { parts: vec![(1.0, 2.0, 0.5)] }.summary();
+        let (sd, [low, high]) = error.expect("a law");
+        assert!((low - 1.02).abs() < 1e-3 && (high - 2.98).abs() < 1e-3 && sd == 0.5);
+        let (mean, error) = NormalMixture { parts: vec![(0.5, 0.0, 0.1), (0.5, 1.0, 0.1)] }.summary();
+        let (_, [low, high]) = error.expect("a law");
+        assert!(low < -0.1 && high > 1.1 && (mean - 0.5).abs() < 1e-12);
     }
 
     /// Far from zero the interval of a ratio is that of the delta method; near zero there is none.
     #[test]
     fn a_ratio_has_an_interval_away_from_zero() {
-        let pair = |a: f64| Pair { weight: 1.0, denominator: (a, 1e-6), numerator: (0.5, 4e-6), covariance: 0.0 };
-        let found = ratio(&[pair(1.0)]);
+        let pair = |a: f64| NormalPair { weight: 1.0, denominator: (a, 1e-6), numerator: (0.5, 4e-6), covariance: 0.0 };
+        let (value, error) = ratio(&[pair(1.0)]);
         let sd = (4e-6 + 0.25e-6_f64).sqrt();
-        let [low, high] = found.ci95.expect("a = 1 ± 0.001");
-        assert!((found.value - 0.5).abs() < 1e-12 && ((high - low) / (2.0 * 1.96 * sd) - 1.0).abs() < 1e-2);
-        assert_eq!(ratio(&[pair(0.001)]).ci95, None);
-        let negative = ratio(&[pair(-1.0)]).ci95.expect("a = −1 ± 0.001");
+        let (_, [low, high]) = error.expect("a = 1 ± 0.001");
+        assert!((value - 0.5).abs() < 1e-12 && ((high - low) / (2.0 * 1.96 * sd) - 1.0).abs() < 1e-2);
+        assert_eq!(ratio(&[pair(0.001)]).1, None);
+        let (_, negative) = ratio(&[pair(-1.0)]).1.expect("a = −1 ± 0.001");
         assert!((negative[0] + high).abs() < 1e-6 && (negative[1] + low).abs() < 1e-6);
     }
 }

@@ -1,0 +1,93 @@
+//! Linear systems that white noise drives: exact steps in time, and sample paths.
+
+use nalgebra::DMatrix;
+
+use crate::kalman::{Filter, MOST, Sensor, Step, System, Whitener};
+use crate::with_states;
+
+impl<const N: usize> Step<f64, N> {
+    /// The step over `h` of x' = G x + w with white w of the given intensity on the last state of G (Van Loan 1978). States
+    /// beyond those of G are zero.
+    pub fn over(generator: &DMatrix<f64>, intensity: f64, h: f64) -> Self {
+        let m = generator.nrows();
+        let mut block = DMatrix::<f64>::zeros(2 * m, 2 * m);
+        block.view_mut((0, 0), (m, m)).copy_from(&(-generator * h));
+        block[(m - 1, 2 * m - 1)] = h;
+        block.view_mut((m, m), (m, m)).copy_from(&(generator.transpose() * h));
+        let exponential = block.exp();
+        let transition = exponential.view((m, m), (m, m)).transpose();
+        let added = &transition * exponential.view((0, m), (m, m)) * intensity;
+        let mut step = Self { transition: [[0.0; N]; N], added: [[0.0; N]; N] };
+        for i in 0..m {
+            for j in 0..m {
+                step.transition[i][j] = transition[(i, j)];
+                step.added[i][j] = 0.5 * (added[(i, j)] + added[(j, i)]);
+            }
+        }
+        step
+    }
+
+    /// The same step with noise of so many times the variance.
+    pub fn scaled(&self, level: f64) -> Self {
+        Self { added: self.added.map(|row| row.map(|x| level * x)), ..*self }
+    }
+}
+
+impl<const N: usize> System<f64, N> {
+    /// What its sensors would read without their own noise along a sample path, from standard normal numbers.
+    pub fn sample(&self, normal: &mut impl FnMut() -> f64) -> Vec<f64> {
+        let roots: Vec<[[f64; N]; N]> = self.steps.iter().map(|step| root(&step.added)).collect();
+        let mut draw = |root: &[[f64; N]; N]| -> [f64; N] {
+            let numbers: [f64; N] = std::array::from_fn(|_| normal());
+            std::array::from_fn(|i| (0..N).map(|j| root[i][j] * numbers[j]).sum())
+        };
+        let mut state = draw(&root(&self.initial));
+        let read = self.readings.iter().map(|reading| {
+            if let Some(step) = reading.step {
+                let (added, f) = (draw(&roots[step]), &self.steps[step].transition);
+                state = std::array::from_fn(|i| added[i] + (0..N).map(|j| f[i][j] * state[j]).sum::<f64>());
+            }
+            let Sensor { state: first, beside, .. } = self.sensors[reading.sensor];
+            state[first] + beside.map_or(0.0, |beside| state[beside])
+        });
+        read.collect()
+    }
+}
+
+impl System<f64, MOST> {
+    /// The filter of its first `states` states; all others are zero.
+    pub fn whitener(&self, states: usize) -> Whitener {
+        with_states!(states, N => {
+            let first = |wide: &[[f64; MOST]; MOST]| -> [[f64; N]; N] {
+                std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j]))
+            };
+            let steps = self.steps.iter().map(|step| Step {
+                transition: first(&step.transition),
+                added: first(&step.added),
+            });
+            Filter::new(System {
+                steps: steps.collect(),
+                sensors: self.sensors.clone(),
+                readings: self.readings.clone(),
+                initial: first(&self.initial),
+            })
+            .whitener()
+        })
+    }
+}
+
+/// A lower triangle L with L Lᵀ = a covariance that may be singular.
+fn root<const N: usize>(covariance: &[[f64; N]; N]) -> [[f64; N]; N] {
+    let mut l = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..=i {
+            let sum: f64 = covariance[i][j] - (0..j).map(|k| l[i][k] * l[j][k]).sum::<f64>();
+            l[i][j] = match (i == j, l[j][j] > 0.0) {
+                (true, _) => sum.max(0.0).sqrt(),
+                (false, true) => sum / l[j][j],
+                (false, false) => 0.0,
+            };
+        }
+    }
+    l
+}

@@ -1,0 +1,89 @@
+//! Where in a record a residual lives: time, frequency, heading, side of the rudder.
+
+use estimation::residuals::{GappedSeries, SpectralLine, spectrum};
+
+/// Where a residual lives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Signature {
+    /// Number of the record.
+    pub record: usize,
+    /// Span of time, s, that holds most of it for its length, and its share of the sum of squares.
+    pub span: ([f64; 2], f64),
+    /// Strongest line of its spectrum; `None` where it has none.
+    pub line: Option<SpectralLine>,
+    /// Band of headings, rad, in which it is largest, and the root mean square there, rad.
+    pub heading: ([f64; 2], f64),
+    /// Root mean square while the rudder is to port and to starboard, rad.
+    pub side: [f64; 2],
+    /// Root mean square of all of it, rad.
+    pub all: f64,
+}
+
+/// Parts of a record among which the fullest is looked for, and bands of headings.
+const PARTS: usize = 8;
+const BANDS: usize = 4;
+
+/// Describes the residual of one record, row by row.
+pub fn signature(
+    number: usize,
+    time: &[f64],
+    residual: &[f64],
+    heading: &[f64],
+    rudder: &[f64],
+    spacing: f64,
+) -> Signature {
+    let rows: Vec<usize> = (0..time.len()).filter(|&row| residual[row].is_finite()).collect();
+    let rms = |rows: &[usize]| {
+        if rows.is_empty() {
+            return 0.0;
+        }
+        (rows.iter().map(|&row| residual[row].powi(2)).sum::<f64>() / rows.len() as f64).sqrt()
+    };
+    let all = rms(&rows);
+    let total = all * all * rows.len() as f64;
+    let length = (rows.len() / PARTS).max(1);
+    // Σ e² up to every row, so that no window is added up anew.
+    let mut sums = vec![0.0];
+    sums.extend(rows.iter().scan(0.0, |sum, &row| {
+        *sum += residual[row].powi(2);
+        Some(*sum)
+    }));
+    let fullest = rows
+        .windows(length)
+        .enumerate()
+        .max_by(|(one, _), (other, _)| {
+            (sums[one + length] - sums[*one]).total_cmp(&(sums[other + length] - sums[*other]))
+        })
+        .map(|(_, part)| (rms(part).powi(2) * part.len() as f64, part));
+    let span = match fullest {
+        Some((square, part)) => ([time[part[0]], time[part[part.len() - 1]]], square / total.max(f64::MIN_POSITIVE)),
+        None => ([f64::NAN; 2], 0.0),
+    };
+    let series = GappedSeries::new(time, residual, spacing);
+    let line = spectrum(&series).into_iter().max_by(|one, other| one.share.total_cmp(&other.share));
+    let mut by_heading = rows.clone();
+    by_heading.sort_by(|&one, &other| heading[one].total_cmp(&heading[other]));
+    let largest = by_heading
+        .chunks(rows.len().div_ceil(BANDS).max(1))
+        .map(|band| ([heading[band[0]], heading[band[band.len() - 1]]], rms(band)))
+        .max_by(|one, other| one.1.total_cmp(&other.1))
+        .unwrap_or(([0.0; 2], 0.0));
+    let on = |sign: f64| rms(&rows.iter().copied().filter(|&row| sign * rudder[row] > 0.0).collect::<Vec<_>>());
+    Signature { record: number, span, line, heading: largest, side: [on(-1.0), on(1.0)], all }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Also in a record so long that no window could be added up anew for every row.
+    #[test]
+    fn the_fullest_part_of_a_long_record_is_found() {
+        let rows = 400_000;
+        let time: Vec<f64> = (0..rows).map(f64::from).collect();
+        let residual: Vec<f64> = (0..rows).map(|k| if (100_000..150_000).contains(&k) { 2.0 } else { 1.0 }).collect();
+        let described = signature(0, &time, &residual, &time, &time, 1.0);
+        assert_eq!(described.span.0, [100_000.0, 149_999.0]);
+        assert!((described.span.1 - 200.0 / 550.0).abs() < 1e-9);
+    }
+}
