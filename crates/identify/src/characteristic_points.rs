@@ -25,7 +25,7 @@ use crate::identifier::{Identifier, NoiseFreeAccuracy};
 use crate::samples::Samples;
 use crate::settings::{SettingsError, check_condition_limit, require};
 use found::Analysed;
-use points::{BaseCourseSource, Points};
+use points::{BaseHeadingOrigin, Points};
 
 /// Which points are used, and how.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
@@ -192,9 +192,9 @@ fn to_base([gain, gain_bias, time]: [f64; 3]) -> Matrix3<f64> {
 fn warnings(trials: &[Trial], analysed: &[Analysed]) -> Vec<String> {
     let told = |(trial, analysed): (&Trial, &Analysed)| {
         let taken = match analysed.points.base_from {
-            BaseCourseSource::Given | BaseCourseSource::Approach => return None,
-            BaseCourseSource::Zero => "heading 0",
-            BaseCourseSource::Middle => "the middle of its headings",
+            BaseHeadingOrigin::Given | BaseHeadingOrigin::Approach => return None,
+            BaseHeadingOrigin::Zero => "heading 0",
+            BaseHeadingOrigin::Middle => "the middle of its headings",
         };
         Some(format!(
             "{} has no straight approach: {taken} was taken for the base course; give base-course-deg if it is known",

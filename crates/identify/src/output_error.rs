@@ -124,7 +124,7 @@ const SCANNED_ROWS: usize = 200;
 pub(crate) const SIGNIFICANT: f64 = 2.0;
 
 /// A polished minimum of the profiled sum of squares.
-struct Minimum {
+struct PolishedMinimum {
     inverse_time: f64,
     rss: f64,
     stop: StopReason,
@@ -156,11 +156,11 @@ impl OutputError {
     ///
     /// Ends when a step is below the tolerance, promises less than the sum of squares can tell, or leaves no hope to
     /// get below the bar.
-    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<Minimum> {
+    fn polish(&self, profile: &mut Profile, start: f64, resolution: f64, goal: &Goal) -> Option<PolishedMinimum> {
         let mut inverse_time = start;
         let mut rss = profile.evaluate(inverse_time)?;
         for iterations in 1..=goal.iterations {
-            let converged = Minimum { inverse_time, rss, stop: StopReason::Converged, iterations };
+            let converged = PolishedMinimum { inverse_time, rss, stop: StopReason::Converged, iterations };
             let NewtonStep { by: mut step, decrease } = profile.newton_step(inverse_time);
             let hopeless = iterations > TRIED && rss - BOLD * decrease > goal.bar;
             if step.abs() <= goal.tolerance * (inverse_time.abs() + resolution) || hopeless {
@@ -169,7 +169,7 @@ impl OutputError {
             if decrease <= ROUNDING * rss {
                 // The score is known to more digits than the sum of squares: the step is right, whatever the sum does.
                 let last = profile.evaluate(inverse_time + step);
-                return last.map(|rss| Minimum { inverse_time: inverse_time + step, rss, ..converged });
+                return last.map(|rss| PolishedMinimum { inverse_time: inverse_time + step, rss, ..converged });
             }
             let lower = (0..MOST_HALVINGS).find_map(|_| {
                 let lower = profile.evaluate(inverse_time + step).filter(|&lower| lower < rss);
@@ -182,7 +182,7 @@ impl OutputError {
             let Some(lower) = lower else { return Some(converged) };
             (inverse_time, rss) = (inverse_time + step, lower);
         }
-        Some(Minimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
+        Some(PolishedMinimum { inverse_time, rss, stop: StopReason::IterationLimit, iterations: goal.iterations })
     }
 }
 
@@ -217,7 +217,7 @@ impl OutputError {
         let (mut coarse, mut profile) = (Profile::new(thinned), Profile::new(tracks));
         let valleys = scan.valleys();
         let mut bar = f64::INFINITY;
-        let mut best: Option<Minimum> = None;
+        let mut best: Option<PolishedMinimum> = None;
         for &start in &valleys {
             let place = self.polish(&mut coarse, start, resolution, &Goal { bar, ..COARSE });
             if place.as_ref().is_some_and(|place| place.rss > bar) {
@@ -277,8 +277,8 @@ impl RangeScan {
     }
 
     /// The estimate at a minimum.
-    fn estimate(&self, mut profile: Profile, minimum: Minimum) -> Result<Estimate, IdentifyError> {
-        let Minimum { inverse_time, rss, stop, iterations } = minimum;
+    fn estimate(&self, mut profile: Profile, minimum: PolishedMinimum) -> Result<Estimate, IdentifyError> {
+        let PolishedMinimum { inverse_time, rss, stop, iterations } = minimum;
         profile.evaluate(inverse_time);
         let (gain, offset) = profile.steering();
         let response = FirstOrder { inverse_T: inverse_time, K_over_T: gain, rudder_bias: offset / gain };

@@ -276,9 +276,8 @@ fn ratio(name: &str, measured: Quantity, [full, trial]: [&Draws; 2], readings: &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing;
+    use crate::testing::{self, mixture};
     use ship::angle::from_deg;
-    use simulate::{Simulation, Vessel};
 
     /// The made-up ship, and the same at full load: heavier, and less stable on her course.
     fn ships() -> [IdentifiedShip; 2] {
@@ -292,21 +291,8 @@ mod tests {
         [full, ballast]
     }
 
-    fn mixture(known: IdentifiedShip) -> ShipMixture {
-        ShipMixture::new(vec![(known, 1.0)]).expect("made up")
-    }
-
-    /// A record of a drawn ship; with number 0 of the most probable one in a calm.
     fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64) -> Trial {
-        let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
-        let kind: Manoeuvre = kind.parse().expect("known");
-        let manoeuvre = crate::standard::steered(&kind, mixture.timescale()).expect("steered");
-        let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
-        simulation.gear = ship.gear;
-        simulation.disturbances = ship.disturbances;
-        simulation.sensors.heading_noise = noise;
-        simulation.recording.period = 0.5;
-        simulation.run(&StreamKey { seed: 5, cell: 0, replicate: number }).expect("a trial").trial
+        testing::record(mixture, kind, number, noise, 0.5)
     }
 
     /// Records of ballast ships are corrected to what ships at full load do, in nine of ten cases.

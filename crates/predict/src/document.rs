@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
+        let mixture = testing::mixture(testing::known());
         let manoeuvres: Vec<Prediction> =
             form::manoeuvres().iter().map(|kind| mixture.predict(kind, 20, true).expect("sails")).collect();
         let particulars = mixture.particulars();

@@ -307,24 +307,11 @@ mod tests {
     use crate::mixture::ShipMixture;
     use crate::testing;
     use ship::angle::from_deg;
-    use simulate::{Simulation, StreamKey, Vessel};
     use trial::Trial;
 
-    fn mixture() -> ShipMixture {
-        ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up")
-    }
-
     fn record(mixture: &ShipMixture, kind: &str, conditions: Conditions) -> Trial {
-        let ship = mixture.draw(5, &[]);
-        let kind: Manoeuvre = kind.parse().expect("known");
-        let manoeuvre = standard::steered(&kind, mixture.timescale()).expect("steered");
-        let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
-        simulation.gear = ship.gear;
-        simulation.recording.period = 0.5;
-        simulation.sensors.heading_noise = from_deg(0.05);
-        let trial = simulation.run(&StreamKey::default()).expect("a trial").trial;
-        let particulars = mixture.particulars().expect("made up");
-        trial.with_particulars(particulars).with_conditions(conditions)
+        let trial = testing::record(mixture, kind, 0, from_deg(0.05), 0.5);
+        trial.with_particulars(mixture.particulars().expect("made up")).with_conditions(conditions)
     }
 
     fn predictions(mixture: &ShipMixture) -> Vec<Prediction> {
@@ -365,7 +352,7 @@ mod tests {
     /// One side is measured, the other predicted; what nobody declared is missing.
     #[test]
     fn every_entry_names_its_source() {
-        let ship = mixture();
+        let ship = testing::mixture(testing::known());
         let trial = record(&ship, "zig-zag:-10/10", calm(Loading::Full));
         let records = [FormRecord { trial: &trial, correction: None, current: None }];
         let form = fill(&predictions(&ship), ship.particulars(), "fit.json", &records, None);
@@ -401,7 +388,7 @@ mod tests {
         let [full, ballast]: [IdentifiedShip; 2] = std::array::from_fn(|_| testing::known());
         let [full, ballast] = [(full, 0.9), (ballast, 1.0)].map(|(mut known, gain)| {
             known.members[0].parameters[1] *= gain;
-            ShipMixture::new(vec![(known, 1.0)]).expect("made up")
+            testing::mixture(known)
         });
         let trial = record(&ballast, "zig-zag:20/20", calm(Loading::Partial));
         let correction = correction::correct(&full, &ballast, &trial, 60).expect("both sail");
@@ -423,7 +410,7 @@ mod tests {
     /// A record that is another manoeuvre fills in nothing and says why.
     #[test]
     fn what_is_no_manoeuvre_of_the_form_is_said() {
-        let ship = mixture();
+        let ship = testing::mixture(testing::known());
         let said = |kind: &str| {
             let trial = record(&ship, kind, Conditions::default());
             let form = fill(

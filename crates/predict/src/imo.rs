@@ -22,12 +22,8 @@ pub struct PredictedCriterion {
     /// Unit of limit and interval.
     pub unit: String,
     /// Predicted value.
-    pub median: f64,
-    /// The interval of half of the draws.
-    #[serde(default)]
-    pub ci50: [f64; 2],
-    /// The interval of nine tenths of the draws.
-    pub ci90: [f64; 2],
+    #[serde(flatten)]
+    pub interval: PredictionInterval,
     /// Share of the drawn ships that keep within the limit; a ship without the figure does not.
     pub probability_of_passing: f64,
     /// Whether the manoeuvre is beyond what the records have seen.
@@ -37,7 +33,7 @@ pub struct PredictedCriterion {
 impl PredictedCriterion {
     /// The predicted value with its intervals.
     pub fn interval(&self) -> PredictionInterval {
-        PredictionInterval { median: self.median, ci50: self.ci50, ci90: self.ci90 }
+        self.interval
     }
 }
 
@@ -137,15 +133,12 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Pre
     let answer = |prediction: &Prediction, limit: &Limit| {
         let figure = prediction.figures.get(limit.figure)?;
         let most = (limit.of)(Some(particulars))?;
-        let PredictionInterval { median, ci50, ci90 } = figure.interval;
         Some(PredictedCriterion {
             criterion: limit.name.to_owned(),
             manoeuvre: prediction.kind.to_string(),
             limit: most,
             unit: limit.unit.symbol().to_owned(),
-            median,
-            ci50,
-            ci90,
+            interval: figure.interval,
             probability_of_passing: figure.share_within(most),
             extrapolated: figure.extrapolated,
         })
@@ -161,12 +154,11 @@ pub fn criteria(predictions: &[Prediction], particulars: Particulars) -> Vec<Pre
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mixture::ShipMixture;
     use crate::testing;
 
     #[test]
     fn probabilities_are_shares_of_the_draws() {
-        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
+        let mixture = testing::mixture(testing::known());
         let predictions: Vec<Prediction> = crate::standard::of_imo()
             .iter()
             .map(|kind| mixture.predict(kind, 100, false).expect("a manoeuvre"))
@@ -179,7 +171,7 @@ mod tests {
             "a response without speed and drift has no track"
         );
         for criterion in &found {
-            let passes = criterion.ci90[1] <= criterion.limit;
+            let passes = criterion.interval.ci90[1] <= criterion.limit;
             assert!(!passes || criterion.probability_of_passing >= 0.95, "{criterion:?}");
         }
         // L/V = 12.5 s.

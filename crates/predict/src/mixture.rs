@@ -289,14 +289,10 @@ mod tests {
     use super::*;
     use crate::testing;
 
-    fn mixture() -> ShipMixture {
-        ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up")
-    }
-
     /// Mean and covariance of the draws are those that are known.
     #[test]
     fn draws_have_the_law_that_is_known() {
-        let mixture = mixture();
+        let mixture = testing::mixture(testing::known());
         let known = &mixture.first().members[0];
         let count = 4000;
         let draws: Vec<Vec<f64>> = (0..count)
@@ -333,7 +329,7 @@ mod tests {
 
     #[test]
     fn one_number_is_one_ship() {
-        let mixture = mixture();
+        let mixture = testing::mixture(testing::known());
         let [one, again, other] = [7, 7, 8].map(|k| mixture.draw(k, &UncertaintySource::ALL));
         assert_eq!(one.response.parameters(), again.response.parameters());
         assert_ne!(one.response.parameters(), other.response.parameters());

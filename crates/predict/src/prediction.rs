@@ -250,7 +250,7 @@ mod tests {
     fn mixture(change: impl Fn(&mut crate::known::IdentifiedShip)) -> ShipMixture {
         let mut known = testing::known();
         change(&mut known);
-        ShipMixture::new(vec![(known, 1.0)]).expect("made up")
+        testing::mixture(known)
     }
 
     fn kind(text: &str) -> Manoeuvre {

@@ -240,30 +240,15 @@ mod tests {
     use super::*;
     use crate::testing;
     use ship::angle::from_deg;
-    use simulate::{Simulation, StreamKey, Vessel};
-
-    /// A record of the ship that is known, with the noise that is known.
-    fn record(mixture: &ShipMixture, manoeuvre: Manoeuvre, number: u64) -> Trial {
-        let ship = mixture.draw(number, &UncertaintySource::ALL);
-        let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
-        simulation.gear = ship.gear;
-        simulation.disturbances = ship.disturbances;
-        simulation.sensors.heading_noise = from_deg(0.1);
-        simulation.recording.period = 1.0;
-        let key = StreamKey { seed: 5, cell: 0, replicate: number };
-        simulation.run(&key).expect("a trial").trial
-    }
 
     /// Records of ships that are drawn as the prediction draws them lie in its intervals nine times out of ten.
     #[test]
     fn intervals_hold_the_records_of_such_ships() {
-        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
-        let kind: Manoeuvre = "zig-zag:20/20".parse().expect("known");
-        let manoeuvre = crate::standard::steered(&kind, mixture.timescale()).expect("steered");
+        let mixture = testing::mixture(testing::known());
         let (mut inside, mut all, mut band) = (0, 0, 0.0);
         let records = 40;
         for number in 0..records {
-            let trial = record(&mixture, manoeuvre.clone(), 1000 + number);
+            let trial = testing::record(&mixture, "zig-zag:20/20", 1000 + number, from_deg(0.1), 1.0);
             let replayed = mixture.replay(&trial, 100, None).expect("it sails").expect("it begins");
             let held = replayed.figures.values().filter(|figure| figure.inside90).count();
             inside += held;
@@ -287,9 +272,8 @@ mod tests {
 
     #[test]
     fn a_circle_has_the_figures_of_a_turn() {
-        let mixture = ShipMixture::new(vec![(testing::known(), 1.0)]).expect("made up");
-        let kind: Manoeuvre = "turning-circle:-15".parse().expect("known");
-        let trial = record(&mixture, crate::standard::steered(&kind, mixture.timescale()).expect("steered"), 3);
+        let mixture = testing::mixture(testing::known());
+        let trial = testing::record(&mixture, "turning-circle:-15", 3, from_deg(0.1), 1.0);
         let replayed = mixture.replay(&trial, 50, None).expect("it sails").expect("it begins");
         let names: Vec<&String> = replayed.figures.keys().collect();
         assert_eq!(names, ["time_to_90_s", "time_to_180_s", "steady_rate_deg_s"]);

@@ -1,8 +1,12 @@
 //! A ship that tests know.
 
 use ship::angle::from_deg;
+use simulate::{Manoeuvre, Simulation, StreamKey, Vessel};
+use trial::Trial;
 
 use crate::known::{IdentifiedShip, KnownGear, KnownNoise, Moment, StoredEffect, ValidityRange, WeightedStructure};
+use crate::mixture::{ShipMixture, UncertaintySource};
+use crate::standard;
 
 /// A ship of K = 0.1 1/s and T = 16.3 s whose damping grows with the cube of its yaw rate, 75 m long at 6 m/s.
 pub(crate) fn known() -> IdentifiedShip {
@@ -41,4 +45,23 @@ pub(crate) fn known() -> IdentifiedShip {
         motion: None,
         hull: None,
     }
+}
+
+/// The ships of what is known.
+pub(crate) fn mixture(known: IdentifiedShip) -> ShipMixture {
+    ShipMixture::new(vec![(known, 1.0)]).expect("made up")
+}
+
+/// A record of a drawn ship, a row every `period` s, with noise of the heading in rad; with number 0 of the most probable
+/// one in a calm.
+pub(crate) fn record(mixture: &ShipMixture, kind: &str, number: u64, noise: f64, period: f64) -> Trial {
+    let ship = if number == 0 { mixture.most_probable() } else { mixture.draw(number, &UncertaintySource::ALL) };
+    let asked: Manoeuvre = kind.parse().expect("known");
+    let manoeuvre = standard::steered(&asked, mixture.timescale()).expect("steered");
+    let mut simulation = Simulation::new(Vessel::response(ship.response), manoeuvre);
+    simulation.gear = ship.gear;
+    simulation.disturbances = ship.disturbances;
+    simulation.sensors.heading_noise = noise;
+    simulation.recording.period = period;
+    simulation.run(&StreamKey { seed: 5, cell: 0, replicate: number }).expect("a trial").trial
 }

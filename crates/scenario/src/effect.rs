@@ -1,12 +1,12 @@
-//! Effects of a scenario: their keys with units, declared once in [`FORMS`], and from them the parameters of
+//! Effects of a scenario: their keys with units, declared once in [`NUMBERS`], and from them the parameters of
 //! [`ship::effects`], each checked against the range its effect declares.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use schemars::{Schema, SchemaGenerator, json_schema};
-use serde_json::{Map, json};
-use ship::angle::{DEGREE, from_deg};
+use serde_json::{Map, Value, json};
+use ship::angle::DEGREE;
 use ship::effects::{
     Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetry, RudderDeadband, RudderSaturation, SecondOrder,
     SpeedLoss, SteeringLag, TransientDisturbance, WaveYaw, WindMoment,
@@ -20,164 +20,110 @@ use crate::{limits, reader};
 /// An effect as it is written: its id, and below it its numbers by their keys.
 pub type EffectEntry = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// A number of an effect in a scenario.
-struct EffectKey {
-    name: &'static str,
-    /// Size of its unit in SI.
-    unit: f64,
-    meaning: &'static str,
-    default: Option<f64>,
-}
+/// A number of an effect: the effect in its form, the key, whose end says the unit, and what it means.
+type Number = (fn() -> Arc<dyn Effect>, &'static str, &'static str);
 
-/// An effect in one of the forms in which a scenario adds it.
-struct EffectForm {
-    effect: fn() -> Arc<dyn Effect>,
-    meaning: &'static str,
-    keys: &'static [EffectKey],
-}
-
-const fn form(effect: fn() -> Arc<dyn Effect>, meaning: &'static str, keys: &'static [EffectKey]) -> EffectForm {
-    EffectForm { effect, meaning, keys }
-}
-
-const fn key(name: &'static str, unit: f64, meaning: &'static str) -> EffectKey {
-    EffectKey { name, unit, meaning, default: None }
-}
-
-const PER_DEGREE: f64 = 1.0 / DEGREE;
-const DAMPING: &str = "Damping that grows with the yaw rate; one of these.";
-const LAG: &str = "A rudder that acts later than the one recorded; one of these.";
-const PLAY: &str = "Play between the recorded rudder and the one that acts; one of these.";
-const ASYMMETRY: &str = "A ship that turns more readily to one side; one of these.";
-
-/// Every effect that a scenario can add, in the order of lists; of several forms of one effect one is given.
-static FORMS: [EffectForm; 16] = [
-    form(
-        || Arc::new(SecondOrder),
-        "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'.",
-        &[key("T2-s", 1.0, "Smaller time constant T2."), key("T3-s", 1.0, "Time constant T3 of the rudder rate.")],
-    ),
-    form(
-        || Arc::new(NonlinearDamping::Cubic),
-        DAMPING,
-        &[key("n3-s2-per-deg2", PER_DEGREE * PER_DEGREE, "+ n3 r³ on the left (Norrbin, Bech).")],
-    ),
-    form(
-        || Arc::new(NonlinearDamping::Quadratic),
-        DAMPING,
-        &[key("n2-s-per-deg", PER_DEGREE, "+ n2 r|r| on the left.")],
-    ),
-    form(|| Arc::new(NonlinearDamping::Square), DAMPING, &[key("n11-s-per-deg", PER_DEGREE, "+ n11 r² on the left.")]),
-    form(
-        || Arc::new(WindMoment::Steady),
-        "A yaw moment of steady wind, by the heading.",
-        &[
-            key("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
-            key("from-deg", DEGREE, "Direction the wind comes from, clockwise from north."),
-        ],
-    ),
-    form(
-        || Arc::new(SpeedLoss::Modelled),
-        "Speed that falls in the turn: K ~ U, T ~ 1/U.",
-        &[
-            key("loss-s-per-deg2", PER_DEGREE * PER_DEGREE, "Rate of loss for a squared yaw rate of 1 deg²/s²."),
-            key("recovery-s", 1.0, "Time in which the speed comes back."),
-            EffectKey {
-                default: Some(2.0),
-                ..key("gain-exponent", 1.0, "Power of the speed in the gain of the rudder.")
-            },
-        ],
-    ),
-    form(|| Arc::new(SteeringLag::DeadTime), LAG, &[key("dead-time-s", 1.0, "Dead time.")]),
-    form(
-        || Arc::new(SteeringLag::FirstOrder),
-        LAG,
-        &[key("first-order-s", 1.0, "Time constant of a first-order lag.")],
-    ),
-    form(
-        || Arc::new(RudderSaturation),
-        "Stall: the rudder acts as δ − c3 δ³.",
-        &[key("c3-per-deg2", PER_DEGREE * PER_DEGREE, "Coefficient c3.")],
-    ),
-    form(|| Arc::new(RudderDeadband::Backlash), PLAY, &[key("backlash-deg", DEGREE, "Width of a backlash.")]),
-    form(|| Arc::new(RudderDeadband::DeadBand), PLAY, &[key("dead-band-deg", DEGREE, "Width of a dead band.")]),
-    form(
-        || Arc::new(PortStarboardAsymmetry::Gain),
-        ASYMMETRY,
-        &[key("gain-share", 1.0, "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard.")],
-    ),
-    form(
-        || Arc::new(PortStarboardAsymmetry::Drift),
-        ASYMMETRY,
-        &[key(
-            "moment-by-drift-s",
-            1.0,
-            "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn.",
-        )],
-    ),
-    form(
-        || Arc::new(MomentDrift { reference_time: 0.0 }),
-        "A slow trend of the yaw moment.",
-        &[key("rudder-deg-per-s", DEGREE, "Change of the moment, as rudder angle.")],
-    ),
-    form(
-        || Arc::new(TransientDisturbance::Passing),
-        "A moment for a part of the record.",
-        &[
-            key("rudder-deg", DEGREE, "Largest moment, as rudder angle."),
-            key("centre-s", 1.0, "Time of its middle."),
-            key("duration-s", 1.0, "How long it lasts."),
-        ],
-    ),
-    form(
-        || Arc::new(WaveYaw),
-        "Narrow-band yaw from waves.",
-        &[
-            key("sd-deg", DEGREE, "Standard deviation of the heading they add."),
-            key("frequency-rad-s", 1.0, "Frequency of encounter."),
-            key("damping", 1.0, "Relative damping: the smaller, the narrower the band."),
-        ],
-    ),
+/// Every number of every effect that a scenario can add, in the order of lists and of the parameters.
+#[rustfmt::skip]
+const NUMBERS: [Number; 24] = [
+    (|| Arc::new(SecondOrder), "T2-s", "Smaller time constant T2."),
+    (|| Arc::new(SecondOrder), "T3-s", "Time constant T3 of the rudder rate."),
+    (|| Arc::new(NonlinearDamping::Cubic), "n3-s2-per-deg2", "+ n3 r³ on the left (Norrbin, Bech)."),
+    (|| Arc::new(NonlinearDamping::Quadratic), "n2-s-per-deg", "+ n2 r|r| on the left."),
+    (|| Arc::new(NonlinearDamping::Square), "n11-s-per-deg", "+ n11 r² on the left."),
+    (|| Arc::new(WindMoment::Steady), "rudder-deg", "Largest moment, as rudder angle."),
+    (|| Arc::new(WindMoment::Steady), "from-deg", "Direction the wind comes from, clockwise from north."),
+    (|| Arc::new(SpeedLoss::Modelled), "loss-s-per-deg2", "Rate of loss for a squared yaw rate of 1 deg²/s²."),
+    (|| Arc::new(SpeedLoss::Modelled), "recovery-s", "Time in which the speed comes back."),
+    (|| Arc::new(SpeedLoss::Modelled), "gain-exponent", "Power of the speed in the gain of the rudder."),
+    (|| Arc::new(SteeringLag::DeadTime), "dead-time-s", "Dead time."),
+    (|| Arc::new(SteeringLag::FirstOrder), "first-order-s", "Time constant of a first-order lag."),
+    (|| Arc::new(RudderSaturation), "c3-per-deg2", "Coefficient c3."),
+    (|| Arc::new(RudderDeadband::Backlash), "backlash-deg", "Width of a backlash."),
+    (|| Arc::new(RudderDeadband::DeadBand), "dead-band-deg", "Width of a dead band."),
+    (|| Arc::new(PortStarboardAsymmetry::Gain), "gain-share",
+     "Share a of K (δ + a |δ|); above 0 the rudder acts more to starboard."),
+    (|| Arc::new(PortStarboardAsymmetry::Drift), "moment-by-drift-s",
+     "Time c_r of K (δ + c_r |r|); above 0 the moment is to starboard in any turn."),
+    (|| Arc::new(MomentDrift { reference_time: 0.0 }), "rudder-deg-per-s", "Change of the moment, as rudder angle."),
+    (|| Arc::new(TransientDisturbance::Passing), "rudder-deg", "Largest moment, as rudder angle."),
+    (|| Arc::new(TransientDisturbance::Passing), "centre-s", "Time of its middle."),
+    (|| Arc::new(TransientDisturbance::Passing), "duration-s", "How long it lasts."),
+    (|| Arc::new(WaveYaw), "sd-deg", "Standard deviation of the heading they add."),
+    (|| Arc::new(WaveYaw), "frequency-rad-s", "Frequency of encounter."),
+    (|| Arc::new(WaveYaw), "damping", "Relative damping: the smaller, the narrower the band."),
 ];
 
-impl EffectForm {
-    fn names(&self) -> Vec<&'static str> {
-        self.keys.iter().map(|key| key.name).collect()
-    }
+/// What the effects are; of several forms one is given.
+const MEANINGS: [(&str, &str); 11] = [
+    ("second_order", "Sway coupling: T1 T2 r'' + (T1 + T2) r' + r = K (δ + δ_r) + K T3 δ'."),
+    ("nonlinear_damping", "Damping that grows with the yaw rate; one of these."),
+    ("wind_moment", "A yaw moment of steady wind, by the heading."),
+    ("speed_loss", "Speed that falls in the turn: K ~ U, T ~ 1/U."),
+    ("steering_lag", "A rudder that acts later than the one recorded; one of these."),
+    ("rudder_saturation", "Stall: the rudder acts as δ − c3 δ³."),
+    ("rudder_deadband", "Play between the recorded rudder and the one that acts; one of these."),
+    ("port_starboard_asymmetry", "A ship that turns more readily to one side; one of these."),
+    ("moment_drift", "A slow trend of the yaw moment."),
+    ("transient_disturbance", "A moment for a part of the record."),
+    ("wave_yaw", "Narrow-band yaw from waves."),
+];
 
-    fn takes(&self, name: &str) -> bool {
-        self.keys.iter().any(|key| key.name == name)
-    }
+/// An effect in one of the forms in which a scenario adds it, with the keys of its numbers and what they mean.
+struct EffectForm {
+    effect: Arc<dyn Effect>,
+    keys: Vec<(&'static str, &'static str)>,
 }
 
-/// The ids of effects in the order of [`FORMS`], each with its forms.
-fn by_id() -> Vec<(&'static str, Vec<&'static EffectForm>)> {
-    let mut list: Vec<(&str, Vec<&EffectForm>)> = Vec::new();
-    for form in &FORMS {
-        let id = (form.effect)().id();
-        match list.last_mut().filter(|(last, _)| *last == id) {
-            Some((_, forms)) => forms.push(form),
-            None => list.push((id, vec![form])),
+/// The forms in the order of [`NUMBERS`].
+static FORMS: LazyLock<Vec<EffectForm>> = LazyLock::new(|| {
+    let mut forms: Vec<EffectForm> = Vec::new();
+    for (effect, key, meaning) in NUMBERS {
+        let effect = effect();
+        match forms.last_mut().filter(|last| is_same(last.effect.as_ref(), effect.as_ref())) {
+            Some(form) => form.keys.push((key, meaning)),
+            None => forms.push(EffectForm { effect, keys: vec![(key, meaning)] }),
         }
     }
-    list
+    forms
+});
+
+fn is_same(one: &dyn Effect, other: &dyn Effect) -> bool {
+    (one.id(), one.form()) == (other.id(), other.form())
+}
+
+/// The forms of an effect; none where there is no such effect.
+fn forms_of(id: &str) -> Vec<&'static EffectForm> {
+    FORMS.iter().filter(|form| form.effect.id() == id).collect()
+}
+
+/// What holds when a key is left out.
+fn default(key: &str) -> Option<f64> {
+    (key == "gain-exponent").then_some(2.0)
+}
+
+/// Size in SI of the unit of a key.
+fn unit(key: &str) -> f64 {
+    const PER_DEGREE: f64 = 1.0 / DEGREE;
+    match key {
+        key if key.ends_with("-per-deg2") => PER_DEGREE * PER_DEGREE,
+        key if key.ends_with("-per-deg") => PER_DEGREE,
+        key => simulate::numbers::unit(key),
+    }
 }
 
 /// The keys a scenario has for an effect in one of its forms; `None` for a form that needs a measured record.
 pub fn keys(effect: &dyn Effect) -> Option<String> {
-    let form = FORMS.iter().find(|form| {
-        let own = (form.effect)();
-        (own.id(), own.form()) == (effect.id(), effect.form())
-    });
-    form.map(|form| form.names().join(", "))
+    let form = FORMS.iter().find(|form| is_same(form.effect.as_ref(), effect))?;
+    Some(form.keys.iter().map(|(key, _)| *key).collect::<Vec<_>>().join(", "))
 }
 
 /// The effects with nothing left out.
 pub fn complete(entries: &mut [EffectEntry]) {
-    for (id, forms) in by_id() {
-        for numbers in entries.iter_mut().filter_map(|entry| entry.get_mut(id)) {
-            for (key, default) in forms[0].keys.iter().filter_map(|key| Some((key, key.default?))) {
-                numbers.entry(key.name.to_owned()).or_insert(default);
+    for (id, numbers) in entries.iter_mut().flatten() {
+        for (key, _) in forms_of(id).iter().flat_map(|form| &form.keys) {
+            if let Some(default) = default(key) {
+                numbers.entry((*key).to_owned()).or_insert(default);
             }
         }
     }
@@ -188,30 +134,30 @@ fn asked<'a>(
     entry: &'a EffectEntry,
     place: &KeyPath,
 ) -> Result<(&'static EffectForm, KeyPath, &'a BTreeMap<String, f64>), KeyFault> {
-    let all = by_id();
-    let ids: Vec<&str> = all.iter().map(|(id, _)| *id).collect();
+    let ids = MEANINGS.map(|(id, _)| id);
     let mut names = entry.iter();
     let (Some((id, numbers)), None) = (names.next(), names.next()) else {
         return Err(reader::not_one_name(place.clone(), entry.keys(), &ids));
     };
     let key = place.child(id);
-    let Some((_, forms)) = all.iter().find(|(known, _)| known == id) else {
+    let forms = forms_of(id);
+    if forms.is_empty() {
         return Err(KeyFault::name(key, format!("no effect is called `{id}`"), "no such name", suggestion(id, &ids)));
-    };
-    let known: Vec<&str> = forms.iter().flat_map(|form| form.names()).collect();
+    }
+    let known: Vec<&str> = forms.iter().flat_map(|form| form.keys.iter().map(|(key, _)| *key)).collect();
     if let Some(name) = numbers.keys().find(|name| !known.contains(&name.as_str())) {
         let found = format!("`{key}` has no key `{name}`");
         return Err(KeyFault::name(key.child(name), found, "no such key here", suggestion(name, &known)));
     }
-    let form = match forms.as_slice() {
-        [form] => form,
-        forms => match numbers.keys().collect::<Vec<_>>().as_slice() {
-            [name] => forms.iter().find(|form| form.takes(name)).expect("it is known"),
-            _ => return Err(reader::not_one_name(key, numbers.keys(), &known)),
-        },
-    };
-    let missing = form.keys.iter().find(|key| key.default.is_none() && !numbers.contains_key(key.name));
-    missing.map_or(Ok((*form, key.clone(), numbers)), |missing| Err(reader::missing(&key, missing.name)))
+    if forms.len() > 1 && numbers.len() != 1 {
+        return Err(reader::not_one_name(key, numbers.keys(), &known));
+    }
+    let has_all = |form: &&EffectForm| numbers.keys().all(|name| form.keys.iter().any(|(key, _)| key == name));
+    let form = forms.into_iter().find(has_all).expect("every key is known");
+    match form.keys.iter().find(|(key, _)| default(key).is_none() && !numbers.contains_key(*key)) {
+        Some((missing, _)) => Err(reader::missing(&key, missing)),
+        None => Ok((form, key, numbers)),
+    }
 }
 
 /// The ship with effects added to its response.
@@ -238,7 +184,7 @@ pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
     let mut effects = response.model().effects().to_vec();
     let mut parameters = response.parameters().to_vec();
     for (form, key, numbers) in asked {
-        let effect = (form.effect)();
+        let effect = Arc::clone(&form.effect);
         if effect.id() == "second_order" && effects.iter().any(|other| other.id() == effect.id()) {
             return Err(KeyFault::name(
                 key,
@@ -247,7 +193,7 @@ pub fn added(ship: Ship, entries: &[EffectEntry]) -> Result<Ship, KeyFault> {
                 "leave it out, or use a first-order ship",
             ));
         }
-        let settings = settings(form, effect.as_ref(), numbers, inverse_time);
+        let settings = settings(form, numbers, inverse_time);
         for (description, setting) in effect.parameters().iter().zip(&settings) {
             if !description.holds(setting.value) {
                 let key = key.child(setting.key);
@@ -283,67 +229,51 @@ struct EffectNumber {
 }
 
 /// The parameters of an effect; nonlinear damping is written for T r' + r and stored for r', divided by T.
-fn settings(
-    form: &EffectForm,
-    effect: &dyn Effect,
-    numbers: &BTreeMap<String, f64>,
-    inverse_time: f64,
-) -> Vec<EffectNumber> {
-    let one = |key: &EffectKey| {
-        let written = numbers.get(key.name).copied().or(key.default).unwrap_or(f64::NAN);
-        let unit = if effect.id() == "nonlinear_damping" { key.unit * inverse_time } else { key.unit };
-        EffectNumber { value: written * unit, key: key.name, written, unit }
+fn settings(form: &EffectForm, numbers: &BTreeMap<String, f64>, inverse_time: f64) -> Vec<EffectNumber> {
+    let one = |&(key, _): &(&'static str, &str)| {
+        let written = numbers.get(key).copied().or(default(key)).unwrap_or(f64::NAN);
+        let unit = unit(key) * if form.effect.id() == "nonlinear_damping" { inverse_time } else { 1.0 };
+        EffectNumber { value: written * unit, key, written, unit }
     };
-    let mut settings: Vec<EffectNumber> = form.keys.iter().map(one).collect();
-    if let ("wind_moment", [moment, from]) = (effect.id(), settings.as_mut_slice()) {
+    let settings: Vec<EffectNumber> = form.keys.iter().map(one).collect();
+    if let ("wind_moment", [moment, from]) = (form.effect.id(), settings.as_slice()) {
         // w sin 2(ψ_w − ψ) by its components along sin and cos of 2ψ.
-        let (largest, twice) = (moment.value, 2.0 * from_deg(from.written));
-        let number = |share: f64| match from.written.is_finite() {
-            true => EffectNumber { value: largest * share, ..*moment },
+        let twice = 2.0 * from.value;
+        let component = |share: f64| match from.written.is_finite() {
+            true => EffectNumber { value: moment.value * share, ..*moment },
             false => EffectNumber { ..*from },
         };
-        return vec![number(twice.sin()), number(-twice.cos())];
+        return vec![component(twice.sin()), component(-twice.cos())];
     }
     settings
 }
 
 /// The effects: a list, each with one key, its id.
 pub fn schema(_: &mut SchemaGenerator) -> Schema {
-    let table = |form: &EffectForm, description: Option<&str>| {
-        let number = |key: &EffectKey| {
-            let mut number = json!({ "type": "number", "format": "double", "description": key.meaning });
-            if let Some(default) = key.default {
+    let closed = |properties: Map<String, Value>, required: Vec<&str>| {
+        json!({
+            "type": "object", "properties": properties, "required": required, "additionalProperties": false,
+        })
+    };
+    let table = |form: &EffectForm| {
+        let number = |&(key, meaning): &(&str, &str)| {
+            let mut number = json!({ "type": "number", "format": "double", "description": meaning });
+            if let Some(default) = default(key) {
                 number["default"] = default.into();
             }
-            (key.name.to_owned(), number)
+            (key.to_owned(), number)
         };
-        let required = form.keys.iter().filter(|key| key.default.is_none()).map(|key| key.name);
-        let mut table = json!({
-            "type": "object",
-            "properties": form.keys.iter().map(number).collect::<Map<_, _>>(),
-            "required": required.collect::<Vec<_>>(),
-            "additionalProperties": false,
-        });
-        if let Some(description) = description {
-            table["description"] = description.into();
-        }
-        table
+        let required = form.keys.iter().map(|(key, _)| *key).filter(|key| default(key).is_none());
+        closed(form.keys.iter().map(number).collect(), required.collect())
     };
-    let effects = by_id().into_iter().map(|(id, forms)| {
-        let below = match forms.as_slice() {
-            [form] => table(form, None),
-            forms => {
-                let choice = forms.iter().map(|form| table(form, Some(form.keys[0].meaning)));
-                json!({ "oneOf": choice.collect::<Vec<_>>() })
-            }
+    let effects = MEANINGS.into_iter().map(|(id, meaning)| {
+        let below = match forms_of(id).as_slice() {
+            [form] => table(form),
+            forms => json!({ "oneOf": forms.iter().map(|form| table(form)).collect::<Vec<_>>() }),
         };
-        json!({
-            "type": "object",
-            "description": forms[0].meaning,
-            "properties": { id: below },
-            "required": [id],
-            "additionalProperties": false,
-        })
+        let mut effect = closed(Map::from_iter([(id.to_owned(), below)]), vec![id]);
+        effect["description"] = meaning.into();
+        effect
     });
     json_schema!({ "type": "array", "items": { "oneOf": effects.collect::<Vec<_>>() } })
 }

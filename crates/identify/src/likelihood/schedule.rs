@@ -4,7 +4,7 @@ use super::track::{Track, differs};
 
 /// What is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Instrument {
+pub enum ReadingKind {
     /// The compass.
     Heading,
     /// The gyro.
@@ -17,7 +17,7 @@ pub struct ScheduledReading {
     /// The kind of step that leads to it; `None` when no time passes.
     pub step: Option<usize>,
     /// The instrument.
-    pub of: Instrument,
+    pub of: ReadingKind,
 }
 
 /// Time from one reading to the next, in pieces between rows of the rudder.
@@ -74,12 +74,12 @@ impl Schedule {
             last = Some(row);
             let both = headings.peek() == rates.peek();
             if headings.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(ScheduledReading { step, of: Instrument::Heading });
+                schedule.readings.push(ScheduledReading { step, of: ReadingKind::Heading });
                 schedule.numbers.push(heading);
                 heading += 1;
             }
             if rates.next_if(|&&next| next == row).is_some() {
-                schedule.readings.push(ScheduledReading { step: step.filter(|_| !both), of: Instrument::YawRate });
+                schedule.readings.push(ScheduledReading { step: step.filter(|_| !both), of: ReadingKind::YawRate });
                 schedule.numbers.push(rate);
                 rate += 1;
             }
@@ -103,8 +103,8 @@ impl Schedule {
             return heading.to_vec();
         }
         let of = |(reading, &number): (&ScheduledReading, &usize)| match reading.of {
-            Instrument::Heading => heading[number],
-            Instrument::YawRate => yaw_rate[number],
+            ReadingKind::Heading => heading[number],
+            ReadingKind::YawRate => yaw_rate[number],
         };
         self.readings.iter().zip(&self.numbers).map(of).collect()
     }

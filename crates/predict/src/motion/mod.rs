@@ -1,7 +1,7 @@
 //! Speed and drift of a turning ship: what a yaw response lacks before a track can be drawn from it.
 //!
 //! A response model says how a ship turns. Where it goes depends on how much speed it loses and how far it slips
-//! sideways, and records of zig-zag trials and turning circles tell both. This crate fits two equations in surge and
+//! sideways, and records of zig-zag trials and turning circles tell both. This module fits two equations in surge and
 //! sway to such records, joins them with a yaw response to a ship that can be steered, draws tracks, and reads the
 //! figures of a turning circle off them. Where a record has drift the yaw equation can be fitted beside them: a hull of
 //! three degrees of freedom. It identifies no yaw response and simulates no manoeuvre.

@@ -49,7 +49,7 @@ pub struct Residual {
     pub output: MotionOutput,
     /// Readings; of a position, those of north and east together.
     pub readings: usize,
-    /// Root of their mean square, in the [`unit`](MotionOutput::unit) of the output.
+    /// Root of their mean square, m/s, or m of a position.
     pub rms: f64,
 }
 

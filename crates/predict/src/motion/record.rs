@@ -26,14 +26,6 @@ impl MotionOutput {
     /// All kinds.
     pub const ALL: [MotionOutput; 4] =
         [MotionOutput::Surge, MotionOutput::Sway, MotionOutput::Speed, MotionOutput::Position];
-
-    /// Unit of its residuals.
-    pub fn unit(self) -> &'static str {
-        match self {
-            MotionOutput::Surge | MotionOutput::Sway | MotionOutput::Speed => "m/s",
-            MotionOutput::Position => "m",
-        }
-    }
 }
 
 /// Half width of the window in which the slope of the heading is taken for the yaw rate, in units of L/U₀.

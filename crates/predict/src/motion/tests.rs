@@ -5,6 +5,8 @@ mod measured;
 mod measured_hull;
 mod steered;
 
+use trial::{Channel, Columns, Trial};
+
 use super::{IdentifiedHull, SYMBOLS, YAW_SYMBOLS};
 
 /// Standard deviation of a coefficient.
@@ -16,4 +18,20 @@ fn sd(covariance: &[impl AsRef<[f64]>], place: usize) -> f64 {
 fn coefficients(hull: &IdentifiedHull) -> Vec<(&'static str, f64)> {
     let symbols = SYMBOLS.into_iter().chain(YAW_SYMBOLS);
     symbols.zip(hull.planar.coefficients.to_array().into_iter().chain(hull.yaw.to_array())).collect()
+}
+
+/// A record with its channels changed.
+fn changed(trial: &Trial, change: impl Fn(Channel, &[f64]) -> Vec<f64>) -> Trial {
+    let channels = trial.channels().chain([(Channel::Rudder, trial.rudder())]);
+    let channels = channels.map(|(channel, values)| (channel, change(channel, values))).collect();
+    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
+    Trial::new("changed", trial.origin().clone(), columns).expect("a record")
+}
+
+/// The record of the ship in the mirror.
+fn mirrored(trial: &Trial) -> Trial {
+    changed(trial, |channel, values| {
+        let is_ahead = [Channel::Surge, Channel::Speed, Channel::North].contains(&channel);
+        values.iter().map(|value| if is_ahead { *value } else { -value }).collect()
+    })
 }

@@ -11,7 +11,7 @@ use ship::{Dynamics, FirstOrder, Particulars, Polyline, Response, ResponseModel}
 use std::sync::Arc;
 use trial::{Channel, Columns, Origin, Trial};
 
-use super::sd;
+use super::{changed, mirrored, sd};
 use crate::motion::planar::pooled;
 use crate::motion::{
     COEFFICIENTS, MotionError, MotionOutput, Planar, PlanarCoefficients, PlanarShip, SYMBOLS, fit, track,
@@ -172,30 +172,16 @@ fn a_yaw_rate_that_is_missing_is_the_slope_of_the_heading() {
 #[test]
 fn missing_rows_do_no_harm() {
     let gaps = |trial: &Trial| {
-        let mut channels: std::collections::BTreeMap<_, _> =
-            trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
-        for values in channels.values_mut() {
-            values.iter_mut().skip(11).step_by(3).for_each(|value| *value = f64::NAN);
-        }
-        channels.insert(Channel::Rudder, trial.rudder().to_vec());
-        let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-        Trial::new("gaps", trial.origin().clone(), columns).expect("a record")
+        changed(trial, |channel, values| {
+            let is_missing = |row: usize| channel != Channel::Rudder && row >= 11 && (row - 11).is_multiple_of(3);
+            values.iter().enumerate().map(|(row, value)| if is_missing(row) { f64::NAN } else { *value }).collect()
+        })
     };
     assert_found(&fit(&zig_zags(1.0).iter().map(gaps).collect::<Vec<_>>(), LENGTH).expect("a fit"), 0.1);
 }
 
 #[test]
 fn the_mirrored_records_give_the_mirrored_answer() {
-    let mirrored = |trial: &Trial| {
-        let side =
-            |channel| if [Channel::Surge, Channel::Speed, Channel::North].contains(&channel) { 1.0 } else { -1.0 };
-        let turned = |channel, values: &[f64]| values.iter().map(|value| side(channel) * value).collect::<Vec<_>>();
-        let mut channels: std::collections::BTreeMap<_, _> =
-            trial.channels().map(|(channel, values)| (channel, turned(channel, values))).collect();
-        channels.insert(Channel::Rudder, turned(Channel::Rudder, trial.rudder()));
-        let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-        Trial::new("mirror", trial.origin().clone(), columns).expect("a record")
-    };
     let trials = zig_zags(1.0);
     let (one, other) = (fit(&trials, LENGTH), fit(&trials.iter().map(mirrored).collect::<Vec<_>>(), LENGTH));
     let (one, other) = (one.expect("a fit"), other.expect("a fit"));
@@ -307,12 +293,7 @@ fn records_that_tell_nothing_are_refused() {
 
 /// A record with one value in a whole channel.
 fn replaced(trial: &Trial, channel: Channel, value: f64) -> Trial {
-    let mut channels: std::collections::BTreeMap<_, _> =
-        trial.channels().map(|(channel, values)| (channel, values.to_vec())).collect();
-    channels.insert(Channel::Rudder, trial.rudder().to_vec());
-    channels.insert(channel, vec![value; trial.len()]);
-    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-    Trial::new("replaced", trial.origin().clone(), columns).expect("a record")
+    changed(trial, |own, values| if own == channel { vec![value; values.len()] } else { values.to_vec() })
 }
 
 #[test]
@@ -356,7 +337,7 @@ fn a_record_at_rest_has_no_approach_speed() {
     let trial = replaced(trial, Channel::Surge, 0.0);
     assert_eq!(
         fit(std::slice::from_ref(&trial), LENGTH),
-        Err(MotionError::NoApproachSpeed { record: "replaced".into() })
+        Err(MotionError::NoApproachSpeed { record: "changed".into() })
     );
 }
 

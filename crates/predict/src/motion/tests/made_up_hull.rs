@@ -1,7 +1,5 @@
 //! Records made of a known hull: what the fit finds again, and what it refuses.
 
-use std::collections::BTreeMap;
-
 use approx::assert_relative_eq;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -11,7 +9,7 @@ use ship::{Dynamics, Input};
 use trial::{Channel, Columns, Origin, Trial};
 
 use super::steered::{Helm, steer};
-use super::{coefficients, sd};
+use super::{changed, coefficients, mirrored, sd};
 use crate::motion::{
     HULL_COEFFICIENTS, IdentifiedHull, MotionError, Planar, PlanarCoefficients, Spread, Yaw, fit_hull,
 };
@@ -53,15 +51,6 @@ fn zig_zags() -> Vec<Trial> {
         .into()
 }
 
-/// A record with its channels changed.
-fn changed(trial: &Trial, change: impl Fn(Channel, &[f64]) -> Vec<f64>) -> Trial {
-    let mut channels: BTreeMap<_, _> =
-        trial.channels().map(|(channel, values)| (channel, change(channel, values))).collect();
-    channels.insert(Channel::Rudder, change(Channel::Rudder, trial.rudder()));
-    let columns = Columns { time: trial.time().to_vec(), channels, unknown: Vec::new() };
-    Trial::new("changed", trial.origin().clone(), columns).expect("a record")
-}
-
 #[test]
 fn zig_zags_give_all_coefficients_back() {
     let found = fit_hull(&zig_zags(), LENGTH).expect("a fit");
@@ -92,13 +81,8 @@ fn few_records_and_no_yaw_rate_are_enough() {
 /// All but the moment of the propeller, which changes its side.
 #[test]
 fn the_mirrored_records_give_the_mirrored_hull() {
-    let ahead = [Channel::Surge, Channel::Speed, Channel::North];
-    let mirrored = |channel: Channel, values: &[f64]| {
-        let side = if ahead.contains(&channel) { 1.0 } else { -1.0 };
-        values.iter().map(|value| side * value).collect()
-    };
     let trials = &zig_zags()[1..3];
-    let other: Vec<Trial> = trials.iter().map(|trial| changed(trial, mirrored)).collect();
+    let other: Vec<Trial> = trials.iter().map(mirrored).collect();
     let (one, other) = (fit_hull(trials, LENGTH).expect("a fit"), fit_hull(&other, LENGTH).expect("a fit"));
     for ((symbol, one), (_, other)) in coefficients(&one).into_iter().zip(coefficients(&other)) {
         let side = if symbol == "N_0" { -1.0 } else { 1.0 };
