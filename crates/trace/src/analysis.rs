@@ -3,6 +3,7 @@
 //! prepare → base → full fit → noise → structures → judge → document
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use estimation::residuals::{self, GappedSeries, Whiteness};
 use identify::{Estimate, maximum_likelihood};
@@ -13,13 +14,14 @@ use trial::Trial;
 
 use crate::average::{After, Average};
 use crate::base::Base;
-use crate::candidates::{self, Candidate};
+use crate::candidates;
 use crate::document::Document;
 use crate::empirical;
 use crate::fit::{Fit, Problem};
 use crate::full::{self, Full};
 use crate::judge::{RecordComparison, ReplayResult, before, starts};
 use crate::left_out::leave_one_out;
+use crate::model::Term;
 use crate::record::Record;
 use crate::remainder::{Remainder, squares};
 use crate::report;
@@ -47,7 +49,7 @@ pub struct Analysis {
     /// The full model and the noise that it leaves.
     pub full: Full,
     pub(crate) problem: Problem,
-    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) candidates: Vec<Arc<Term>>,
 }
 
 /// Records without the readings of their compass that belong to no ship, and the times, s, of these.
@@ -64,8 +66,8 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
 }
 
 /// Why an effect that was asked for cannot be in the model.
-fn refuse_lacking(candidates: &[Candidate], selection: &Selection) -> Result<(), TraceError> {
-    let is_there = |id: &&EffectId| candidates.iter().any(|one| one.term.effect.id() == id.as_str());
+fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
+    let is_there = |id: &&EffectId| candidates.iter().any(|one| one.effect.id() == id.as_str());
     let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
     let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));

@@ -22,15 +22,6 @@ pub const PROBABILITY_OF_MOTION: f64 = 0.5;
 /// The same of a moment that depends on time, in one record: it resembles chance.
 pub const PROBABILITY_OF_TIME: f64 = 0.001;
 
-/// An effect in one form that records may lack.
-#[derive(Debug, Clone)]
-pub struct Candidate {
-    /// The term.
-    pub term: Arc<Term>,
-    /// Log of the prior odds that it is there.
-    pub log_odds: f64,
-}
-
 /// Time of a ship L/U, s: from its particulars, else (K/T)^(−1/2), which is about that.
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
     let known = trials.iter().find_map(|trial| trial.particulars().map(|own| own.time()).filter(|t| t.is_normal()));
@@ -66,7 +57,7 @@ pub fn manoeuvres<'a>(records: &'a [Record], trials: &[Trial], time: f64, of: &R
 
 /// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
 /// depends on time alone is one of every record.
-pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Candidate> {
+pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
     for effect in effects::all().iter().filter(|effect| selection.allows(effect.id())) {
         let places: Vec<Option<usize>> = match effect.is_of_time() && records.len() > 1 {
@@ -76,7 +67,7 @@ pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selectio
         for only in places {
             let about = manoeuvres(records, trials, time, &records[only.unwrap_or(0)]);
             let Some(Proposal { effect, priors }) = effect.proposal(&about) else { continue };
-            candidates.push(Term { effect, only, priors });
+            candidates.push(Term { effect, only, priors, log_odds: 0.0 });
         }
     }
     let forms = |id: &str, only: Option<usize>| {
@@ -89,7 +80,7 @@ pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selectio
             (false, _) => PROBABILITY,
         };
         let probability = own / forms(term.effect.id(), term.only);
-        Candidate { term: Arc::new(term.clone()), log_odds: (probability / (1.0 - probability)).ln() }
+        Arc::new(Term { log_odds: (probability / (1.0 - probability)).ln(), ..term.clone() })
     };
     candidates.iter().map(weighed).collect()
 }

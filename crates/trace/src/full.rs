@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use ship::FirstOrder;
 
 use crate::base::Base;
-use crate::candidates::{Candidate, is_variant};
+use crate::candidates::is_variant;
 use crate::fit::{Effort, Fit, Problem};
 use crate::law::{self, Found};
 use crate::model::{Structure, Term};
@@ -26,20 +26,16 @@ pub struct Full {
     pub law: Law,
     /// How much better waves explain what is left, in −2 log of the likelihood with the price of their parameters.
     pub waves_gain: f64,
-    /// Log of the prior odds of every term.
-    pub log_odds: Vec<f64>,
 }
 
 /// Fits the full model, once for every noise that may be the right one: that of all which stands still in time, that
 /// beside moments that come at an instant, where one of these is a random moment that of an error of the heading, and
 /// that of a base to which nothing is added.
-pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves: bool) -> Vec<Full> {
-    let (late, known): (Vec<&Candidate>, Vec<&Candidate>) = candidates
-        .iter()
-        .filter(|one| !is_variant(one.term.effect.as_ref()))
-        .partition(|one| one.term.effect.has_instant());
+pub fn fit(problem: &Problem, base: &Base, candidates: &[Arc<Term>], with_waves: bool) -> Vec<Full> {
+    let (late, known): (Vec<&Arc<Term>>, Vec<&Arc<Term>>) =
+        candidates.iter().filter(|one| !is_variant(one.effect.as_ref())).partition(|one| one.effect.has_instant());
     let own = Structure::base(problem.records.len(), problem.time);
-    let structure = own.of(known.iter().map(|one| Arc::clone(&one.term)).collect());
+    let structure = own.of(known.into_iter().cloned().collect());
     let first = Law::white(problem.records.len(), (FIRST * FIRST) * base.mean_square());
     let fit = physics(problem, base, &structure, &problem.weights(&first));
     let all: Vec<Wander> = Wander::all().collect();
@@ -47,15 +43,13 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
     let lasting = ask(&fit, &first, &all);
 
     // Moments that come at an instant enter where they explain most beside everything else.
-    let mut log_odds: Vec<f64> = known.iter().map(|one| one.log_odds).collect();
     let (mut theta, mut terms) = (fit.theta.clone(), structure.terms.clone());
     let weights = problem.weights(&lasting.law);
-    let moments: Vec<&Term> = late.iter().map(|one| one.term.as_ref()).collect();
+    let moments: Vec<&Term> = late.iter().map(|one| one.as_ref()).collect();
     for (candidate, place) in late.iter().zip(transient::places(problem, &fit, &weights, &moments)) {
         if let Some(place) = place {
             theta.extend(place);
-            terms.push(Arc::clone(&candidate.term));
-            log_odds.push(candidate.log_odds);
+            terms.push(Arc::clone(candidate));
         }
     }
     let structure = own.of(terms);
@@ -73,10 +67,8 @@ pub fn fit(problem: &Problem, base: &Base, candidates: &[Candidate], with_waves:
         laws.push(ask(&whole, &laws[0].law, &of_heading));
     }
     let fitted = |law: &Law| if law.is_alike(&known_law) { whole.clone() } else { of(law) };
-    let mut fulls: Vec<Full> = laws
-        .into_par_iter()
-        .map(|Found { law, waves_gain, .. }| Full { fit: fitted(&law), law, waves_gain, log_odds: log_odds.clone() })
-        .collect();
+    let mut fulls: Vec<Full> =
+        laws.into_par_iter().map(|Found { law, waves_gain, .. }| Full { fit: fitted(&law), law, waves_gain }).collect();
     let nothing = nothing(problem, base, with_waves, &all);
     if fulls.iter().all(|full| !full.law.is_alike(&nothing.law)) {
         fulls.push(nothing);
@@ -94,7 +86,7 @@ fn nothing(problem: &Problem, base: &Base, with_waves: bool, kinds: &[Wander]) -
     };
     let fit = of(theta, base.initial(), &law);
     let Found { law, waves_gain, .. } = law::of(problem, &fit, &law.variance, with_waves, kinds);
-    Full { fit: of(fit.theta, fit.initial, &law), law, waves_gain, log_odds: Vec::new() }
+    Full { fit: of(fit.theta, fit.initial, &law), law, waves_gain }
 }
 
 /// The full model without moments that come at an instant, from two starts.

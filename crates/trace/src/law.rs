@@ -10,7 +10,7 @@
 
 use estimation::levenberg_marquardt::Normal;
 use estimation::minimum::minimum;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DVector, Dyn};
 use rayon::prelude::*;
 
 use crate::fit::{Fit, Problem, curvature, deviation};
@@ -87,14 +87,19 @@ impl<'a> Ground<'a> {
 
     /// Factor of the precision of all unknowns under weights, and their step from where they stand.
     pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
-        let (Normal { mut matrix, mut gradient }, _) = self.linear.normal(weights);
-        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
-            matrix[(k, k)] += precision;
-            gradient[k] -= precision * beside;
-        }
-        let factor = matrix.cholesky()?;
-        let step = factor.solve(&gradient);
+        let (mut normal, _) = self.linear.normal(weights);
+        self.add_prior(&mut normal);
+        let factor = normal.matrix.cholesky()?;
+        let step = factor.solve(&normal.gradient);
         Some((factor, step))
+    }
+
+    /// Adds what is expected of the unknowns.
+    fn add_prior(&self, normal: &mut Normal) {
+        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
+            normal.matrix[(k, k)] += precision;
+            normal.gradient[k] -= precision * beside;
+        }
     }
 
     /// The sizes of the noise of all records under a colour, from `start`.
@@ -122,18 +127,14 @@ impl<'a> Ground<'a> {
 
     /// New sizes and the height at the old ones.
     fn round(&self, law: &Law, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
-        let n = self.linear.unknowns;
-        let (mut matrix, mut gradient) = (DMatrix::zeros(n, n), DVector::zeros(n));
+        let mut normal = Normal::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
-            matrix += &block.matrix / *variance;
-            gradient += &block.gradient / *variance;
+            normal.matrix += &block.matrix / *variance;
+            normal.gradient += &block.gradient / *variance;
         }
-        let mut penalty = 0.0;
-        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
-            matrix[(k, k)] += precision;
-            gradient[k] -= precision * beside;
-            penalty += precision * beside * beside;
-        }
+        self.add_prior(&mut normal);
+        let Normal { matrix, gradient } = normal;
+        let penalty = self.prior.iter().fold(0.0, |sum, &(precision, beside)| sum + precision * beside * beside);
         let factor = matrix.cholesky()?;
         let step = factor.solve(&gradient);
         let inverse = factor.inverse();

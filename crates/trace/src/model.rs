@@ -34,6 +34,8 @@ pub struct Term {
     pub only: Option<usize>,
     /// What is expected of its parameters.
     pub priors: Vec<Prior>,
+    /// Log of the prior odds that it is there.
+    pub log_odds: f64,
 }
 
 /// Identifier, form and record of a term.

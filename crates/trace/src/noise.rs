@@ -35,6 +35,11 @@ pub enum Wander {
     Smooth(usize),
 }
 
+/// A gain of the filter that changes by less than this share has settled. Which structures are refitted, and with them
+/// what is said of a record between two structures, may hang on the last digits: this is the share with which the
+/// published traces were made.
+const SETTLED: f64 = 1e-9;
+
 /// Correlation times of gusts that are told apart, as shares of the longest record.
 pub const GUSTS: [f64; 3] = [0.02, 0.05, 0.12];
 
@@ -198,7 +203,7 @@ impl RecordNoise {
     /// The filter that makes noise of this colour white, in units of the white noise of a full row.
     pub fn whitener(&self, colour: &Colour) -> Whitener {
         let (system, states) = self.system(colour);
-        system.whitener(states)
+        system.whitener(states, SETTLED)
     }
 
     /// Random moment and waves of this colour as one linear system, and the number of its states.

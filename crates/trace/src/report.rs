@@ -1,6 +1,7 @@
 //! The document of a trace, from what its stages made. Nothing is fitted here.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use estimation::mixture::{NormalMixture, NormalPair, Summary, ratio};
 use estimation::residuals::Whiteness;
@@ -11,12 +12,12 @@ use ship::{Particulars, Regressor};
 use trial::{Quantity, Trial};
 
 use crate::base::Base;
-use crate::candidates::{Candidate, PROBABILITY, PROBABILITY_OF_TIME};
+use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
 use crate::document::*;
 use crate::fit::{Fit, Problem};
 use crate::full::Full;
 use crate::judge::RecordComparison;
-use crate::model::{Entry, TermName};
+use crate::model::{Entry, Term, TermName};
 use crate::naming::{Named, named};
 use crate::noise::Wander;
 use crate::remainder::Remainder;
@@ -39,7 +40,7 @@ pub struct Said<'a> {
     /// Structures.
     pub structures: &'a Structures,
     /// Candidates.
-    pub candidates: &'a [Candidate],
+    pub candidates: &'a [Arc<Term>],
     /// Comparisons on fitted records.
     pub identification: &'a [RecordComparison],
     /// Held-out records with their comparisons.
@@ -125,7 +126,7 @@ impl Said<'_> {
     }
 
     fn equation(&self, id: &str, form: &str) -> &'static str {
-        let own = self.candidates.iter().map(|one| &one.term.effect).find(|own| own.id() == id && own.form() == form);
+        let own = self.candidates.iter().map(|one| &one.effect).find(|own| own.id() == id && own.form() == form);
         own.map_or("", |own| own.equation())
     }
 
@@ -256,8 +257,8 @@ impl Said<'_> {
     }
 
     fn candidate(&self, id: &'static str, named: &[Named]) -> CandidateEntry {
-        let own = self.candidates.iter().filter(|one| one.term.effect.id() == id);
-        let forms: Vec<FormEntry> = own.map(|one| self.form(one.term.name(), named)).collect();
+        let own = self.candidates.iter().filter(|one| one.effect.id() == id);
+        let forms: Vec<FormEntry> = own.map(|one| self.form(one.name(), named)).collect();
         let is_sea = id == effects::WaveYaw.id();
         let sea = self.full.law.colour.waves.is_some();
         let excluded = !self.settings.selection.allows(id);

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use estimation::subsets::{Removable, conditional};
 use rayon::prelude::*;
 
-use crate::candidates::{Candidate, is_delay, is_variant};
+use crate::candidates::{is_delay, is_variant};
 use crate::fit::{Effort, Fit, Problem};
 use crate::full::Full;
 use crate::model::{Entry, Structure, Term, TermName};
@@ -37,7 +37,7 @@ struct Stage<'a> {
     problem: &'a Problem,
     weights: Weights,
     full: &'a Full,
-    variants: Vec<&'a Candidate>,
+    variants: Vec<&'a Arc<Term>>,
     selection: &'a Selection,
     rule: Rule,
     known: BTreeMap<Vec<TermName>, Member>,
@@ -51,7 +51,7 @@ struct Stage<'a> {
 pub fn choose(
     problem: &Problem,
     fulls: Vec<Full>,
-    candidates: &[Candidate],
+    candidates: &[Arc<Term>],
     selection: &Selection,
     rule: Rule,
     base: f64,
@@ -94,12 +94,12 @@ const PARTLY: f64 = 0.7;
 const ASTRAY: f64 = 2.0;
 
 /// Weighs the structures of a full model.
-fn weigh(problem: &Problem, full: &Full, candidates: &[Candidate], selection: &Selection, rule: Rule) -> Structures {
+fn weigh(problem: &Problem, full: &Full, candidates: &[Arc<Term>], selection: &Selection, rule: Rule) -> Structures {
     let mut stage = Stage {
         problem,
         weights: problem.weights(&full.law),
         full,
-        variants: candidates.iter().filter(|one| is_variant(one.term.effect.as_ref())).collect(),
+        variants: candidates.iter().filter(|one| is_variant(one.effect.as_ref())).collect(),
         selection,
         rule,
         known: BTreeMap::new(),
@@ -136,7 +136,8 @@ impl Stage<'_> {
     fn look(&mut self, at: (Vec<f64>, Vec<[f64; 2]>), about: &[bool]) {
         let structure = &self.full.fit.structure;
         let normal = self.problem.posterior(structure, &at.0, &at.1, &self.weights);
-        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &self.log_odds()) else { return };
+        let odds: Vec<f64> = structure.terms.iter().map(|term| self.odds(term, 1e6)).collect();
+        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &odds) else { return };
         if self.visibility.is_empty() {
             self.visibility = self.visibility(&quadratic);
         }
@@ -148,7 +149,7 @@ impl Stage<'_> {
     /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike,
     /// and only a fit tells them apart.
     fn swap(&mut self, top: &Fit) {
-        let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().map(|one| &one.term));
+        let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().copied());
         let delays: Vec<Arc<Term>> = known.filter(|term| is_delay(term.effect.as_ref())).cloned().collect();
         let mut fresh = Vec::new();
         for (place, term) in top.structure.terms.iter().enumerate().filter(|(_, term)| is_delay(term.effect.as_ref())) {
@@ -211,10 +212,9 @@ impl Stage<'_> {
         self.problem.fit(&top.structure.of(terms), theta, top.initial.clone(), &self.weights, Effort::COARSE)
     }
 
-    fn log_odds(&self) -> Vec<f64> {
-        let required = |term: &Arc<Term>| self.selection.asks_for(term.effect.id());
-        let terms = self.full.fit.structure.terms.iter().zip(&self.full.log_odds);
-        terms.map(|(term, odds)| if required(term) { 1e6 } else { *odds }).collect()
+    /// Log odds that count for a term; `required` are those of one that was asked for.
+    fn odds(&self, term: &Term, required: f64) -> f64 {
+        if self.selection.asks_for(term.effect.id()) { required } else { term.log_odds }
     }
 
     /// Expected squared size of every term over its posterior variance beside all others.
@@ -265,7 +265,7 @@ impl Stage<'_> {
 
     /// Log of evidence and prior odds of a fit.
     fn height(&self, fit: &Fit) -> f64 {
-        let odds: f64 = fit.structure.terms.iter().map(|term| self.odds_of(term)).sum();
+        let odds: f64 = fit.structure.terms.iter().map(|term| self.odds(term, 0.0)).sum();
         odds + match self.rule {
             Rule::Posterior => fit.evidence,
             Rule::Bic => {
@@ -273,16 +273,6 @@ impl Stage<'_> {
                 -0.5 * (fit.misfit + free * (self.problem.observations() as f64).ln())
             }
         }
-    }
-
-    fn odds_of(&self, term: &Arc<Term>) -> f64 {
-        if self.selection.asks_for(term.effect.id()) {
-            return 0.0;
-        }
-        let name = term.name();
-        let known = self.full.fit.structure.terms.iter().zip(&self.full.log_odds);
-        let variants = self.variants.iter().map(|one| (&one.term, &one.log_odds));
-        known.chain(variants).find(|(other, _)| other.name() == name).map_or(0.0, |(_, odds)| *odds)
     }
 
     fn top(&self) -> Option<&Member> {

@@ -130,7 +130,7 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let problem = Problem::new(vec![Record::whole(&trials[0])], base.inverse_T, time);
     let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
     let all = candidates::all(&problem.records, &trials, time, &selection);
-    let term = all.into_iter().map(|one| one.term).find(|term| term.effect.form() == line.effect.form());
+    let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());
     let term = term.expect("a candidate");
     let own = Structure::base(1, time);
     let structure = own.of(vec![Arc::clone(&term)]);
