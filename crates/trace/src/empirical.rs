@@ -10,7 +10,7 @@ use trial::Trial;
 
 use crate::candidates::{manoeuvres, mean_square};
 use crate::model::Term;
-use crate::record::Record;
+use crate::record::PreparedRecord;
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ pub fn plain() -> &'static [Powers] {
 const LOG_ODDS: f64 = -4.0;
 
 /// The monomials as candidates, where the records have the channels that they need.
-pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
+pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
     let about = manoeuvres(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
         let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
