@@ -11,7 +11,7 @@ use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetr
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
-use trace::fit::{Effort, StructureFit, PreparedRecords};
+use trace::fit::{Effort, PreparedRecords, StructureFit};
 use trace::full::start;
 use trace::model::Structure;
 use trace::record::PreparedRecord;
