@@ -168,11 +168,16 @@ pub struct Filter<R, const N: usize> {
 impl<R: Real, const N: usize> Filter<R, N> {
     /// The filter of a system.
     pub fn new(system: System<R, N>) -> Self {
-        Self::visiting(system, |_| ())
+        Self::settling(system, SETTLED)
+    }
+
+    /// The same, whose gains count as settled when they change by less than this share.
+    pub fn settling(system: System<R, N>, share: f64) -> Self {
+        Self::visiting(system, share, |_| ())
     }
 
     /// The same, visiting the predicted covariance of every new gain.
-    fn visiting(system: System<R, N>, mut visit: impl FnMut(&[[R; N]; N])) -> Self {
+    fn visiting(system: System<R, N>, share: f64, mut visit: impl FnMut(&[[R; N]; N])) -> Self {
         let readings = &system.readings;
         let mut filter = (Vec::<Gain<R, N>>::new(), Vec::<u32>::with_capacity(readings.len()));
         let (gains, of) = (&mut filter.0, &mut filter.1);
@@ -192,7 +197,7 @@ impl<R: Real, const N: usize> Filter<R, N> {
             after[number % PATTERN] = covariance;
             let settled = repeats && {
                 let before = &gains[of[number - PATTERN] as usize];
-                gain.gain.iter().zip(&before.gain).all(|(one, other)| has_settled(*one, *other))
+                gain.gain.iter().zip(&before.gain).all(|(one, other)| has_settled(*one, *other, share))
             };
             alike = if settled { alike + 1 } else { 0 };
             of.push(gains.len() as u32);
@@ -252,10 +257,10 @@ fn correct<R: Real, const N: usize>(covariance: &mut [[R; N]; N], sensor: &Senso
 }
 
 /// Whether a number hardly changed, nor its derivatives.
-fn has_settled<R: Real>(now: R, before: R) -> bool {
+fn has_settled<R: Real>(now: R, before: R, share: f64) -> bool {
     let size = now.value().abs();
     let near = |(now, before): (&f64, &f64)| (now - before).abs() <= SETTLED_SLOPE * now.abs().max(1e-3 * size);
-    (now.value() - before.value()).abs() <= SETTLED * size && now.slopes().iter().zip(before.slopes()).all(near)
+    (now.value() - before.value()).abs() <= share * size && now.slopes().iter().zip(before.slopes()).all(near)
 }
 
 /// Picks the number of states when the program runs.
@@ -437,7 +442,7 @@ impl<const N: usize> Smoother<N> {
     /// The smoother of a system.
     pub fn new(system: System<f64, N>) -> Self {
         let mut predicted = Vec::new();
-        let filter = Filter::visiting(system, |covariance| predicted.push(*covariance));
+        let filter = Filter::visiting(system, SETTLED, |covariance| predicted.push(*covariance));
         Self { filter, predicted }
     }
 

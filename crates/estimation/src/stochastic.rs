@@ -55,8 +55,8 @@ impl<const N: usize> System<f64, N> {
 }
 
 impl System<f64, MOST> {
-    /// The filter of its first `states` states; all others are zero.
-    pub fn whitener(&self, states: usize) -> Whitener {
+    /// The filter of its first `states` states, all others being zero; its gains settle within a share.
+    pub fn whitener(&self, states: usize, share: f64) -> Whitener {
         with_states!(states, N => {
             let first = |wide: &[[f64; MOST]; MOST]| -> [[f64; N]; N] {
                 std::array::from_fn(|i| std::array::from_fn(|j| wide[i][j]))
@@ -65,13 +65,13 @@ impl System<f64, MOST> {
                 transition: first(&step.transition),
                 added: first(&step.added),
             });
-            Filter::new(System {
+            let system = System {
                 steps: steps.collect(),
                 sensors: self.sensors.clone(),
                 readings: self.readings.clone(),
                 initial: first(&self.initial),
-            })
-            .whitener()
+            };
+            Filter::settling(system, share).whitener()
         })
     }
 }

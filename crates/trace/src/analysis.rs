@@ -3,6 +3,7 @@
 //! prepare → base → full fit → noise → structures → judge → document
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use estimation::residuals::{self, GappedSeries, Whiteness};
 use identify::{Estimate, maximum_likelihood};
@@ -13,20 +14,21 @@ use trial::Trial;
 
 use crate::average::{After, Average};
 use crate::base::Base;
-use crate::candidates::{self, Candidate};
+use crate::candidates;
 use crate::document::Document;
 use crate::empirical;
-use crate::fit::{Fit, Problem};
+use crate::fit::{PreparedRecords, StructureFit};
 use crate::full::{self, Full};
 use crate::judge::{RecordComparison, ReplayResult, before, starts};
 use crate::left_out::leave_one_out;
-use crate::record::Record;
+use crate::model::Term;
+use crate::record::PreparedRecord;
 use crate::remainder::{Remainder, squares};
 use crate::report;
 use crate::selection::{EffectId, Selection};
 use crate::settings::{Settings, TraceError};
 use crate::structures::{self, Structures};
-use crate::weights::Law;
+use crate::weights::NoiseLaw;
 
 /// The result: what is said of the records, and what it was said from.
 #[derive(Debug, Clone)]
@@ -46,8 +48,8 @@ pub struct Analysis {
     pub structures: Structures,
     /// The full model and the noise that it leaves.
     pub full: Full,
-    pub(crate) problem: Problem,
-    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) problem: PreparedRecords,
+    pub(crate) candidates: Vec<Arc<Term>>,
 }
 
 /// Records without the readings of their compass that belong to no ship, and the times, s, of these.
@@ -64,8 +66,8 @@ fn without_spikes(trials: &[Trial]) -> (Cow<'_, [Trial]>, Vec<Vec<f64>>) {
 }
 
 /// Why an effect that was asked for cannot be in the model.
-fn refuse_lacking(candidates: &[Candidate], selection: &Selection) -> Result<(), TraceError> {
-    let is_there = |id: &&EffectId| candidates.iter().any(|one| one.term.effect.id() == id.as_str());
+fn refuse_lacking(candidates: &[Arc<Term>], selection: &Selection) -> Result<(), TraceError> {
+    let is_there = |id: &&EffectId| candidates.iter().any(|one| one.effect.id() == id.as_str());
     let Some(&effect) = selection.with.iter().find(|id| !is_there(id)) else { return Ok(()) };
     let forms: Vec<_> = effects::all().into_iter().filter(|form| form.id() == effect.as_str()).collect();
     let lacking = forms.iter().find_map(|form| form.needs().map(Regressor::lacking));
@@ -110,11 +112,11 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
     let base = Base::of(&trials)?;
     let response = base.estimate.response;
     let time = candidates::ship_time(&trials, response.K_over_T);
-    let records: Vec<Record> = trials.iter().map(|trial| Record::averaged(trial, time)).collect();
+    let records: Vec<PreparedRecord> = trials.iter().map(|trial| PreparedRecord::averaged(trial, time)).collect();
     let mut candidates = candidates::all(&records, &trials, time, &settings.selection);
     refuse_lacking(&candidates, &settings.selection)?;
     candidates.extend(empirical::candidates(&records, &trials, time).take(settings.monomials));
-    let problem = Problem::new(records, response.inverse_T, time);
+    let problem = PreparedRecords::new(records, response.inverse_T, time);
     let with_waves = settings.selection.allows("wave_yaw");
     let fulls = full::fit(&problem, &base, &candidates, with_waves);
     let (full, structures) =
@@ -132,7 +134,7 @@ pub fn trace(trials: &[Trial], validation: &[Trial], settings: &Settings) -> Res
         whiteness(identification.iter().map(|one| &one.before), &trials),
         whiteness(identification.iter().map(|one| &one.after), &trials),
     ];
-    let said = report::Said {
+    let said = report::TraceParts {
         trials: &trials,
         settings,
         base: &base,
@@ -167,13 +169,13 @@ fn fitted(
     trials: &[Trial],
     base: &Base,
     full: &Full,
-    members: &[(f64, &Fit)],
+    members: &[(f64, &StructureFit)],
     thorough: bool,
     time: f64,
 ) -> Result<Vec<RecordComparison>, TraceError> {
     let response = &base.estimate.response;
     let of = |(number, trial): (usize, &Trial)| {
-        let record = Record::whole(trial);
+        let record = PreparedRecord::whole(trial);
         let before = before(trial, &record, response, thorough)?;
         let is_base = members.iter().all(|(_, fit)| fit.structure.terms.is_empty());
         let after = After { members, law: &full.law, known: Some(number), time };
@@ -225,7 +227,7 @@ pub struct Plausible {
 impl Analysis {
     /// The members of the average as predictions take them.
     pub fn plausible(&self) -> Vec<Plausible> {
-        let of = |(weight, fit): (f64, &Fit)| {
+        let of = |(weight, fit): (f64, &StructureFit)| {
             let (structure, theta) = fit.structure.alone(None, &fit.theta);
             let fitted = structure.fitted();
             let covariance = fit.kept_covariance(None).map(|kept| {
@@ -265,8 +267,8 @@ impl Analysis {
     /// band is that of the errors of parameters and structures alone. `None` when no replay is finite.
     pub fn in_a_calm(&self, trial: &Trial, start: [f64; 2]) -> Option<ReplayResult> {
         let members = self.structures.members();
-        let calm = Law::white(1, 1e-16);
+        let calm = NoiseLaw::white(1, 1e-16);
         let after = After { members: &members, law: &calm, known: None, time: self.problem.time };
-        after.on(trial, &Record::whole(trial), &[start], true).ok()
+        after.on(trial, &PreparedRecord::whole(trial), &[start], true).ok()
     }
 }

@@ -6,10 +6,10 @@ use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetr
 use trial::Trial;
 
 use crate::document::Verdict;
-use crate::testing::{Plan, record, ship, wandering};
+use crate::testing::{TrialPlan, record, ship, wandering};
 use crate::{Analysis, EffectId, Rule, Selection, Settings, trace};
 
-fn of(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>, plan: Plan) -> Trial {
+fn of(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>, plan: TrialPlan) -> Trial {
     record(&ship(effects), plan)
 }
 
@@ -24,7 +24,7 @@ fn traced(trials: &[Trial]) -> Analysis {
 #[test]
 fn a_first_order_ship_lacks_nothing() {
     for seed in 1..6 {
-        let analysis = traced(&[of(Vec::new(), Plan { seed, ..Plan::default() })]);
+        let analysis = traced(&[of(Vec::new(), TrialPlan { seed, ..TrialPlan::default() })]);
         assert_eq!((analysis.document.verdict, named(&analysis)), (Verdict::Clean, vec![]), "seed {seed}");
         let one = &analysis.identification[0];
         assert!(one.after.errors.heading <= 1.0001 * one.before.errors.heading);
@@ -40,7 +40,7 @@ fn one_effect_is_named_and_its_size_found() {
     ];
     for (effect, value, symbol, tolerance) in cases {
         let id = effect.id();
-        let analysis = traced(&[of(vec![(effect, vec![value])], Plan::default())]);
+        let analysis = traced(&[of(vec![(effect, vec![value])], TrialPlan::default())]);
         assert_eq!((analysis.document.verdict, named(&analysis)), (Verdict::Traced, vec![id]));
         let parameters = &analysis.document.effects[0].parameters;
         if let Some(found) = parameters.get(symbol) {
@@ -56,7 +56,7 @@ fn one_effect_is_named_and_its_size_found() {
 fn two_effects_are_named_together() {
     let both: Vec<(Arc<dyn Effect>, Vec<f64>)> =
         vec![(Arc::new(SpeedLoss::Modelled), vec![13.0, 100.0, 2.0]), (Arc::new(SteeringLag::DeadTime), vec![1.0])];
-    let analysis = traced(&[of(both, Plan::default())]);
+    let analysis = traced(&[of(both, TrialPlan::default())]);
     let all: Vec<String> =
         analysis.document.effects.iter().flat_map(|one| [vec![one.id.clone()], one.aliases.clone()].concat()).collect();
     for id in ["speed_loss", "steering_lag"] {
@@ -77,10 +77,10 @@ fn a_random_moment_is_no_effect_of_the_ship() {
 #[test]
 fn held_out_records_judge_and_nothing_else() {
     let damping = || -> Vec<(Arc<dyn Effect>, Vec<f64>)> { vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])] };
-    let own = [of(damping(), Plan::default())];
+    let own = [of(damping(), TrialPlan::default())];
     let others = [
-        of(damping(), Plan { rudder_deg: 15.0, seed: 7, ..Plan::default() }),
-        of(Vec::new(), Plan { rudder_deg: 20.0, seed: 8, ..Plan::default() }),
+        of(damping(), TrialPlan { rudder_deg: 15.0, seed: 7, ..TrialPlan::default() }),
+        of(Vec::new(), TrialPlan { rudder_deg: 20.0, seed: 8, ..TrialPlan::default() }),
     ];
     let swapped = [others[1].clone(), others[0].clone()];
     let stripped = |validation: &[Trial]| {
@@ -100,7 +100,7 @@ fn held_out_records_judge_and_nothing_else() {
 fn several_records_are_left_out_in_turn() {
     let damping: Arc<dyn Effect> = Arc::new(NonlinearDamping::Cubic);
     let trials = [10.0, 15.0, 20.0]
-        .map(|rudder_deg| of(vec![(damping.clone(), vec![80.0])], Plan { rudder_deg, ..Plan::default() }));
+        .map(|rudder_deg| of(vec![(damping.clone(), vec![80.0])], TrialPlan { rudder_deg, ..TrialPlan::default() }));
     let analysis = traced(&trials);
     assert_eq!(analysis.left_out.len(), 3);
     for fold in analysis.left_out.iter().flatten() {
@@ -112,7 +112,7 @@ fn several_records_are_left_out_in_turn() {
 #[test]
 fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
     let id = |name: &str| EffectId::find(name).expect("on the list");
-    let trial = of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], Plan::default());
+    let trial = of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], TrialPlan::default());
     let with = |selection: Selection| {
         let settings = Settings { selection, ..Settings::default() };
         trace(std::slice::from_ref(&trial), &[], &settings)
@@ -127,7 +127,7 @@ fn what_is_asked_for_is_in_the_model_and_what_is_excluded_is_not() {
 
 #[test]
 fn both_rules_name_what_is_clear() {
-    let trial = of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], Plan::default());
+    let trial = of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], TrialPlan::default());
     for rule in Rule::ALL {
         let settings = Settings { rule, thorough: false, ..Settings::default() };
         let analysis = trace(std::slice::from_ref(&trial), &[], &settings).expect("a base");
@@ -138,10 +138,10 @@ fn both_rules_name_what_is_clear() {
 /// The band of a record holds most of it, and is no wider than the noise asks for.
 #[test]
 fn bands_hold_the_record() {
-    let trial = of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], Plan::default());
+    let trial = of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], TrialPlan::default());
     let other = of(
         vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])],
-        Plan { seed: 5, rudder_deg: 12.0, ..Plan::default() },
+        TrialPlan { seed: 5, rudder_deg: 12.0, ..TrialPlan::default() },
     );
     let analysis = trace(&[trial], &[other], &Settings::default()).expect("a base");
     for one in analysis.identification.iter().chain(&analysis.validation) {
@@ -153,7 +153,7 @@ fn bands_hold_the_record() {
 
 #[test]
 fn a_document_is_read_as_it_was_written() {
-    let analysis = traced(&[of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], Plan::default())]);
+    let analysis = traced(&[of(vec![(Arc::new(NonlinearDamping::Cubic), vec![80.0])], TrialPlan::default())]);
     let text = serde_json::to_string(&analysis.document).expect("plain data");
     let again: crate::Document = serde_json::from_str(&text).expect("the same");
     assert_eq!(serde_json::to_string(&again).expect("plain data"), text);

@@ -4,10 +4,10 @@
 use identify::replay::Replay;
 use ship::Response;
 
-use crate::fit::Fit;
-use crate::record::Record;
+use crate::fit::StructureFit;
+use crate::record::PreparedRecord;
 use crate::replay_errors::{HORIZONS, full, restarted};
-use crate::weights::Law;
+use crate::weights::NoiseLaw;
 
 /// A replay this many times as far from the record as the median of all runs away.
 const RUNS_AWAY: f64 = 3.0;
@@ -22,9 +22,9 @@ pub struct Average {
 /// Members of an average on a record, `known` being its number among those that were fitted.
 pub struct After<'a> {
     /// Structures with their weights.
-    pub members: &'a [(f64, &'a Fit)],
+    pub members: &'a [(f64, &'a StructureFit)],
     /// The noise.
-    pub law: &'a Law,
+    pub law: &'a NoiseLaw,
     /// Number of the record among the fitted ones.
     pub known: Option<usize>,
     /// Time of the ship L/U, s.
@@ -33,7 +33,7 @@ pub struct After<'a> {
 
 /// What an average does on a record.
 #[derive(Debug, Clone)]
-pub struct Replayed {
+pub struct AverageReplay {
     /// The full replay.
     pub replay: Replay,
     /// The full replay of every member.
@@ -44,7 +44,7 @@ pub struct Replayed {
 
 impl Average {
     /// Replays every member from its best initial state near one of the `starts`. `None` when none is finite.
-    pub fn replay(&self, record: &Record, starts: &[[f64; 2]], with_windows: bool) -> Option<Replayed> {
+    pub fn replay(&self, record: &PreparedRecord, starts: &[[f64; 2]], with_windows: bool) -> Option<AverageReplay> {
         let found: Vec<(f64, &Response, Replay)> = self
             .members
             .iter()
@@ -73,7 +73,7 @@ impl Average {
             Some(record.heading.iter().zip(mean).map(|(measured, own)| measured - own).collect())
         });
         let replay = Replay { time: record.time.clone(), heading, yaw_rate, residual };
-        Some(Replayed { replay, members: found.into_iter().map(|(.., replay)| replay).collect(), windows })
+        Some(AverageReplay { replay, members: found.into_iter().map(|(.., replay)| replay).collect(), windows })
     }
 }
 

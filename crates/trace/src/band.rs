@@ -17,8 +17,8 @@ use ship::Polyline;
 use trial::Trial;
 
 use crate::average::After;
-use crate::fit::{Fit, Problem};
-use crate::record::Record;
+use crate::fit::{PreparedRecords, StructureFit};
+use crate::record::PreparedRecord;
 
 /// Standard deviations on either side of 95 % of a normal error.
 const QUANTILE: f64 = 1.959_963_984_540_054;
@@ -28,16 +28,16 @@ const DRAWS: usize = 100;
 
 /// Half the width of the band at every row of a replay, rad; `None` where the records do not tell the parameters apart.
 pub fn of(after: &After, trial: &Trial, mean: &Replay, members: &[Replay]) -> Option<Vec<f64>> {
-    let record = Record::averaged(trial, after.time);
+    let record = PreparedRecord::averaged(trial, after.time);
     let first = after.members.first()?.1;
-    let problem = Problem::new(vec![record], first.theta[0], after.time);
+    let problem = PreparedRecords::new(vec![record], first.theta[0], after.time);
     let (law_variance, white) = size(after, &problem);
     let record = &problem.records[0];
     let rows = record.observed.len();
     let mut variance = vec![0.0; rows];
     let mut generator = ChaCha8Rng::seed_from_u64(1);
     for ((weight, fit), replay) in after.members.iter().zip(members) {
-        let own = Drawn::new(after, &problem, fit, replay.initial(), law_variance)?;
+        let own = ResidualSampler::new(after, &problem, fit, replay.initial(), law_variance)?;
         for _ in 0..DRAWS {
             let residual = own.draw(&mut generator);
             variance.iter_mut().zip(residual).for_each(|(sum, e)| *sum += weight * e * e / DRAWS as f64);
@@ -56,7 +56,7 @@ pub fn of(after: &After, trial: &Trial, mean: &Replay, members: &[Replay]) -> Op
 
 /// Variance of the white noise of a row of a record under a law, and of one reading, rad²: its own where it was fitted,
 /// elsewhere the mean.
-fn size(after: &After, problem: &Problem) -> (f64, f64) {
+fn size(after: &After, problem: &PreparedRecords) -> (f64, f64) {
     let all = &after.law.variance;
     let own = after.known.map_or_else(|| all.iter().sum::<f64>() / all.len() as f64, |number| all[number]);
     (own, own * problem.records[0].full_readings as f64)
@@ -73,7 +73,7 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
 }
 
 /// What is drawn of one structure on one record.
-struct Drawn {
+struct ResidualSampler {
     system: System<f64, MOST>,
     deviation: f64,
     /// Standard deviation of the white noise of every row, rad.
@@ -83,18 +83,24 @@ struct Drawn {
     /// Sensitivities to the initial state, and the inverse of their products.
     state: [Vec<f64>; 2],
     inverse: Matrix2<f64>,
-    errors: Errors,
+    errors: ParameterErrors,
 }
 
-enum Errors {
+enum ParameterErrors {
     /// Weights of the noise of the record in the errors of the parameters, by parameter.
     OfRecord(DMatrix<f64>),
     /// A root of the covariance of the parameters.
     Own(DMatrix<f64>),
 }
 
-impl Drawn {
-    fn new(after: &After, problem: &Problem, fit: &Fit, initial: [f64; 2], variance: f64) -> Option<Self> {
+impl ResidualSampler {
+    fn new(
+        after: &After,
+        problem: &PreparedRecords,
+        fit: &StructureFit,
+        initial: [f64; 2],
+        variance: f64,
+    ) -> Option<Self> {
         let (structure, theta) = fit.structure.alone(after.known, &fit.theta);
         let linear = problem.linear(&structure, &theta, &[initial]);
         let rows = linear.blocks[0].residual.len();
@@ -107,7 +113,7 @@ impl Drawn {
         let state = [column(count), column(count + 1)];
         let inverse = Matrix2::from_fn(|i, j| dot(&state[i], &state[j])).try_inverse()?;
         let covariance = fit.kept_covariance(after.known)?;
-        let law = crate::weights::Law {
+        let law = crate::weights::NoiseLaw {
             colour: after.law.colour,
             variance: vec![variance],
             power: vec![after.known.map_or(1.0, |number| after.law.power[number])],
@@ -123,9 +129,9 @@ impl Drawn {
                     weights.whiteners[0].apply_transposed(column);
                     column.iter_mut().for_each(|x| *x *= weights.scale[0]);
                 }
-                Errors::OfRecord(&covariance * DMatrix::from_fn(count, rows, |i, row| whitened[i][row]))
+                ParameterErrors::OfRecord(&covariance * DMatrix::from_fn(count, rows, |i, row| whitened[i][row]))
             }
-            None => Errors::Own(root(&covariance)),
+            None => ParameterErrors::Own(root(&covariance)),
         };
         let full = record.full_readings as f64;
         Some(Self {
@@ -144,14 +150,14 @@ impl Drawn {
         let coloured: Vec<f64> = self.system.sample(&mut normal).into_iter().map(|x| x * self.deviation).collect();
         let mut residual = coloured.clone();
         let change = match &self.errors {
-            Errors::OfRecord(weights) => {
+            ParameterErrors::OfRecord(weights) => {
                 let noise = DVector::from_iterator(
                     residual.len(),
                     coloured.iter().zip(&self.white).map(|(x, sd)| x + sd * normal()),
                 );
                 -(weights * noise)
             }
-            Errors::Own(root) => root * DVector::from_fn(root.ncols(), |_, _| normal()),
+            ParameterErrors::Own(root) => root * DVector::from_fn(root.ncols(), |_, _| normal()),
         };
         for (column, change) in self.columns.iter().zip(change.iter()) {
             residual.iter_mut().zip(column).for_each(|(e, c)| *e += change * c);

@@ -7,7 +7,7 @@ use ship::{Polyline, Regressor};
 use trial::Trial;
 
 use crate::model::Term;
-use crate::record::Record;
+use crate::record::PreparedRecord;
 use crate::selection::Selection;
 
 /// Smallest change of the propeller revolutions, as a share, that makes them worth a look.
@@ -22,15 +22,6 @@ pub const PROBABILITY_OF_MOTION: f64 = 0.5;
 /// The same of a moment that depends on time, in one record: it resembles chance.
 pub const PROBABILITY_OF_TIME: f64 = 0.001;
 
-/// An effect in one form that records may lack.
-#[derive(Debug, Clone)]
-pub struct Candidate {
-    /// The term.
-    pub term: Arc<Term>,
-    /// Log of the prior odds that it is there.
-    pub log_odds: f64,
-}
-
 /// Time of a ship L/U, s: from its particulars, else (K/T)^(−1/2), which is about that.
 pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
     let known = trials.iter().find_map(|trial| trial.particulars().map(|own| own.time()).filter(|t| t.is_normal()));
@@ -38,8 +29,8 @@ pub fn ship_time(trials: &[Trial], gain: f64) -> f64 {
 }
 
 /// The manoeuvres of some records, with the span of one of them.
-pub fn manoeuvres<'a>(records: &'a [Record], trials: &[Trial], time: f64, of: &Record) -> Manoeuvres {
-    let own_speed = |record: &'a Record| record.speed.as_ref();
+pub fn manoeuvres<'a>(records: &'a [PreparedRecord], trials: &[Trial], time: f64, of: &PreparedRecord) -> Manoeuvres {
+    let own_speed = |record: &'a PreparedRecord| record.speed.as_ref();
     let approach = trials.iter().find_map(|trial| trial.particulars().map(|own| own.speed));
     let mean_speed = mean_square(records, own_speed);
     // The speed is needed where a channel is there that counts in it.
@@ -54,7 +45,7 @@ pub fn manoeuvres<'a>(records: &'a [Record], trials: &[Trial], time: f64, of: &R
     Manoeuvres {
         time,
         rudder: angles.fold(1e-3_f64, |most, delta| most.max(delta.abs())),
-        duration: records.iter().map(Record::duration).fold(0.0, f64::max),
+        duration: records.iter().map(PreparedRecord::duration).fold(0.0, f64::max),
         spacing: records.iter().map(|record| record.spacing).fold(0.0, f64::max),
         speed: mean_speed.map(speed),
         sway: mean_square(records, |record| record.sway.as_ref()).map(speed),
@@ -66,7 +57,7 @@ pub fn manoeuvres<'a>(records: &'a [Record], trials: &[Trial], time: f64, of: &R
 
 /// Every candidate these records allow, waves excepted, which are a kind of noise and no response. A moment that
 /// depends on time alone is one of every record.
-pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Candidate> {
+pub fn all(records: &[PreparedRecord], trials: &[Trial], time: f64, selection: &Selection) -> Vec<Arc<Term>> {
     let mut candidates = Vec::new();
     for effect in effects::all().iter().filter(|effect| selection.allows(effect.id())) {
         let places: Vec<Option<usize>> = match effect.is_of_time() && records.len() > 1 {
@@ -76,7 +67,7 @@ pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selectio
         for only in places {
             let about = manoeuvres(records, trials, time, &records[only.unwrap_or(0)]);
             let Some(Proposal { effect, priors }) = effect.proposal(&about) else { continue };
-            candidates.push(Term { effect, only, priors });
+            candidates.push(Term { effect, only, priors, log_odds: 0.0 });
         }
     }
     let forms = |id: &str, only: Option<usize>| {
@@ -89,7 +80,7 @@ pub fn all(records: &[Record], trials: &[Trial], time: f64, selection: &Selectio
             (false, _) => PROBABILITY,
         };
         let probability = own / forms(term.effect.id(), term.only);
-        Candidate { term: Arc::new(term.clone()), log_odds: (probability / (1.0 - probability)).ln() }
+        Arc::new(Term { log_odds: (probability / (1.0 - probability)).ln(), ..term.clone() })
     };
     candidates.iter().map(weighed).collect()
 }
@@ -108,7 +99,10 @@ pub fn is_delay(effect: &dyn Effect) -> bool {
 }
 
 /// Mean square of a channel over all records; `None` when one of them lacks it, or when it is zero throughout.
-pub fn mean_square<'a>(records: &'a [Record], signal: impl Fn(&'a Record) -> Option<&'a Polyline>) -> Option<f64> {
+pub fn mean_square<'a>(
+    records: &'a [PreparedRecord],
+    signal: impl Fn(&'a PreparedRecord) -> Option<&'a Polyline>,
+) -> Option<f64> {
     let mut sum = 0.0;
     let mut count = 0usize;
     for record in records {

@@ -8,9 +8,9 @@ use std::sync::{Arc, LazyLock};
 
 use trial::Trial;
 
-use crate::candidates::{Candidate, manoeuvres, mean_square};
+use crate::candidates::{manoeuvres, mean_square};
 use crate::model::Term;
-use crate::record::Record;
+use crate::record::PreparedRecord;
 
 /// c r^i δ^j ψ^k U^l as an addition to the yaw acceleration; every factor in units of its own size in the records.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,7 +86,7 @@ pub fn plain() -> &'static [Powers] {
 const LOG_ODDS: f64 = -4.0;
 
 /// The monomials as candidates, where the records have the channels that they need.
-pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Iterator<Item = Candidate> {
+pub fn candidates(records: &[PreparedRecord], trials: &[Trial], time: f64) -> impl Iterator<Item = Arc<Term>> {
     let about = manoeuvres(records, trials, time, &records[0]);
     let rms = |values: &mut dyn Iterator<Item = f64>| {
         let (square, count) = values.fold((0.0, 0usize), |(sum, n), x| (sum + x * x, n + 1));
@@ -97,7 +97,7 @@ pub fn candidates(records: &[Record], trials: &[Trial], time: f64) -> impl Itera
     let size = [0.2 / time, about.rudder, heading, speed.unwrap_or(1.0)];
     all().iter().filter(move |powers| speed.is_some() || powers.of[3] == 0).filter_map(move |powers| {
         let Proposal { effect, priors } = Monomial { powers, size }.proposal(&about)?;
-        Some(Candidate { term: Arc::new(Term { effect, only: None, priors }), log_odds: LOG_ODDS })
+        Some(Arc::new(Term { effect, only: None, priors, log_odds: LOG_ODDS }))
     })
 }
 

@@ -13,8 +13,8 @@ use statrs::distribution::{self, ContinuousCDF};
 use crate::linear::{Linear, tangents};
 use crate::model::{Structure, headings};
 use crate::noise::RecordNoise;
-use crate::record::Record;
-use crate::weights::{Law, Weights};
+use crate::record::PreparedRecord;
+use crate::weights::{NoiseLaw, Weights};
 
 /// How far a fit is driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,19 +49,19 @@ impl Effort {
 
 /// The records that are fitted together.
 #[derive(Debug, Clone)]
-pub struct Problem {
+pub struct PreparedRecords {
     /// The records.
-    pub records: Vec<Record>,
+    pub records: Vec<PreparedRecord>,
     /// What is the same for every intensity of the noise of a record.
     pub noise: Vec<RecordNoise>,
     /// Time of the ship L/U, s.
     pub time: f64,
 }
 
-impl Problem {
+impl PreparedRecords {
     /// Prepares records of a ship whose base has about this 1/T (1/s) and which sails its length in `time` seconds.
-    pub fn new(records: Vec<Record>, inverse_time: f64, time: f64) -> Self {
-        let longest = records.iter().map(Record::duration).fold(0.0, f64::max);
+    pub fn new(records: Vec<PreparedRecord>, inverse_time: f64, time: f64) -> Self {
+        let longest = records.iter().map(PreparedRecord::duration).fold(0.0, f64::max);
         let full = records.iter().map(|record| record.full_readings).max().unwrap_or(1);
         let noise = records.iter().map(|record| RecordNoise::new(record, inverse_time, longest, full)).collect();
         Self { records, noise, time }
@@ -74,13 +74,13 @@ impl Problem {
 
     /// Length of the longest record, s.
     pub fn longest(&self) -> f64 {
-        self.records.iter().map(Record::duration).fold(0.0, f64::max)
+        self.records.iter().map(PreparedRecord::duration).fold(0.0, f64::max)
     }
 
     /// −½ (Σ n log σ² + Σ log S): log of the density of the noise of a law but for its exponent.
-    pub fn log_normaliser(&self, law: &Law) -> f64 {
+    pub fn log_normaliser(&self, law: &NoiseLaw) -> f64 {
         let whiteners = self.weights(law).whiteners;
-        let of = |(number, record): (usize, &Record)| {
+        let of = |(number, record): (usize, &PreparedRecord)| {
             let rows = record.observed.len() as f64;
             law.power[number] * (rows * law.variance[number].ln() + whiteners[number].log_variance)
         };
@@ -88,7 +88,7 @@ impl Problem {
     }
 
     /// The filters of all records under a law.
-    pub fn weights(&self, law: &Law) -> Weights {
+    pub fn weights(&self, law: &NoiseLaw) -> Weights {
         let whiteners = self.noise.iter().map(|noise| noise.whitener(&law.colour)).collect();
         let scale = law.variance.iter().zip(&law.power).map(|(variance, power)| (power / variance).sqrt());
         Weights { whiteners, scale: scale.collect() }
@@ -96,7 +96,7 @@ impl Problem {
 
     /// Measured less replayed headings of every record, rad.
     pub fn residual(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Vec<Vec<f64>> {
-        let of = |(number, record): (usize, &Record)| {
+        let of = |(number, record): (usize, &PreparedRecord)| {
             let response = structure.response(Some(number), theta);
             let mut out = vec![0.0; record.observed.len()];
             headings(&response, record, initial[number], |row, heading| {
@@ -111,7 +111,7 @@ impl Problem {
     pub fn linear(&self, structure: &Structure, theta: &[f64], initial: &[[f64; 2]]) -> Linear {
         let (entries, fitted) = (structure.entries(), structure.fitted());
         let unknowns = fitted.len() + 2 * self.records.len();
-        let of = |(number, record): (usize, &Record)| {
+        let of = |(number, record): (usize, &PreparedRecord)| {
             let state = fitted.len() + 2 * number;
             // Unknown and place in θ, behind which stand the initial heading and yaw rate.
             let acting = fitted.iter().enumerate().filter(|(_, place)| Structure::acts(&entries[**place], number));
@@ -138,15 +138,15 @@ impl Problem {
         initial: Vec<[f64; 2]>,
         weights: &Weights,
         effort: Effort,
-    ) -> Fit {
+    ) -> StructureFit {
         let priors = structure.entries().into_iter().map(|entry| entry.prior).collect();
-        let (last, kept) = (Point::default(), Point::default());
-        let mut search = Search { problem: self, structure, weights, priors, last, kept };
+        let (last, kept) = (FitPoint::default(), FitPoint::default());
+        let mut search = PosteriorSearch { problem: self, structure, weights, priors, last, kept };
         let start = search.unknowns(&theta, &initial);
         search.last = search.point(theta, initial);
         let Minimum { normal, .. } = minimise(&mut search, start, &effort.rules());
         let kept = search.kept;
-        Fit {
+        StructureFit {
             evidence: evidence(structure, &kept, &normal),
             structure: structure.clone(),
             misfit: kept.misfit,
@@ -166,7 +166,7 @@ impl Problem {
 
 /// Where a fit stands.
 #[derive(Clone, Default, PartialEq)]
-struct Point {
+struct FitPoint {
     theta: Vec<f64>,
     initial: Vec<[f64; 2]>,
     residual: Vec<Vec<f64>>,
@@ -176,17 +176,17 @@ struct Point {
 }
 
 /// A fit on its way.
-struct Search<'a> {
-    problem: &'a Problem,
+struct PosteriorSearch<'a> {
+    problem: &'a PreparedRecords,
     structure: &'a Structure,
     weights: &'a Weights,
     priors: Vec<Prior>,
     /// The last point that was looked at, and the last that was accepted.
-    last: Point,
-    kept: Point,
+    last: FitPoint,
+    kept: FitPoint,
 }
 
-impl Search<'_> {
+impl PosteriorSearch<'_> {
     /// The unknowns: fitted entries of θ, then the initial states.
     fn unknowns(&self, theta: &[f64], initial: &[[f64; 2]]) -> DVector<f64> {
         let fitted = theta.iter().zip(&self.priors).filter(|(_, prior)| prior.is_fitted()).map(|(value, _)| *value);
@@ -194,16 +194,16 @@ impl Search<'_> {
         DVector::from_vec(all)
     }
 
-    fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> Point {
+    fn point(&self, theta: Vec<f64>, initial: Vec<[f64; 2]>) -> FitPoint {
         let residual = self.problem.residual(self.structure, &theta, &initial);
         let misfit = self.weights.misfit(&residual);
         let penalty: f64 = self.priors.iter().zip(&theta).map(|(prior, &x)| deviation(*prior, x).powi(2)).sum();
         let value = misfit + penalty;
-        Point { theta, initial, residual, misfit, value: if value.is_finite() { value } else { f64::INFINITY } }
+        FitPoint { theta, initial, residual, misfit, value: if value.is_finite() { value } else { f64::INFINITY } }
     }
 }
 
-impl Objective for Search<'_> {
+impl Objective for PosteriorSearch<'_> {
     fn bounds(&self, unknown: usize) -> [f64; 2] {
         let prior = self.priors.iter().filter(|prior| prior.is_fitted()).nth(unknown);
         prior.map_or([f64::NEG_INFINITY, f64::INFINITY], |prior| [prior.lowest, prior.highest])
@@ -222,7 +222,7 @@ impl Objective for Search<'_> {
 
     fn linearise(&mut self, _: &[f64], normal: &mut Normal) -> f64 {
         self.kept.clone_from(&self.last);
-        let Point { theta, initial, .. } = &self.kept;
+        let FitPoint { theta, initial, .. } = &self.kept;
         *normal = self.problem.posterior(self.structure, theta, initial, self.weights);
         self.kept.value
     }
@@ -263,7 +263,7 @@ pub fn log_normaliser(prior: Prior) -> f64 {
 
 /// Log of the marginal likelihood up to what all structures share (Laplace). The part of a normal law that lies beyond the
 /// end of a range is left out.
-fn evidence(structure: &Structure, at: &Point, normal: &Normal) -> f64 {
+fn evidence(structure: &Structure, at: &FitPoint, normal: &Normal) -> f64 {
     let Some(factor) = normal.matrix.clone().cholesky() else { return f64::NEG_INFINITY };
     let priors = structure.fitted_priors(&at.theta);
     let of_terms = structure.entries()[structure.base_count()..].iter().filter(|entry| entry.prior.is_fitted()).count();
@@ -289,7 +289,7 @@ fn evidence(structure: &Structure, at: &Point, normal: &Normal) -> f64 {
 
 /// A fitted structure.
 #[derive(Debug, Clone)]
-pub struct Fit {
+pub struct StructureFit {
     /// The structure.
     pub structure: Structure,
     /// Parameters, in the order of [`Structure::entries`].
@@ -308,7 +308,7 @@ pub struct Fit {
     pub evidence: f64,
 }
 
-impl Fit {
+impl StructureFit {
     /// Covariance of all entries of θ; zero for those that are not fitted. `None` when they cannot be told apart.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = self.precision.clone().cholesky()?.inverse();

@@ -5,10 +5,10 @@ use identify::replay::{Replay, replay};
 use ship::{FirstOrder, Response};
 use trial::Trial;
 
-use crate::average::{After, Average, Replayed};
+use crate::average::{After, Average, AverageReplay};
 use crate::band;
-use crate::record::Record;
-use crate::replay_errors::{Errors, HORIZONS, overshoot_error, root_mean_square};
+use crate::record::PreparedRecord;
+use crate::replay_errors::{HORIZONS, ReplayErrors, overshoot_error, root_mean_square};
 use crate::settings::TraceError;
 
 /// A model on one record.
@@ -17,7 +17,7 @@ pub struct ReplayResult {
     /// Replay.
     pub replay: Replay,
     /// Errors.
-    pub errors: Errors,
+    pub errors: ReplayErrors,
     /// Half the width of the 95 % band of a reading at every row of the replay, rad; `None` where it was not asked for
     /// and where the records do not tell the parameters apart.
     pub band: Option<Vec<f64>>,
@@ -62,7 +62,12 @@ pub fn starts(trial: &Trial, base: &FirstOrder) -> Vec<[f64; 2]> {
 }
 
 /// The base on a record: in closed form, which neither sign of T disturbs.
-pub fn before(trial: &Trial, record: &Record, base: &FirstOrder, thorough: bool) -> Result<ReplayResult, TraceError> {
+pub fn before(
+    trial: &Trial,
+    record: &PreparedRecord,
+    base: &FirstOrder,
+    thorough: bool,
+) -> Result<ReplayResult, TraceError> {
     let refuse = || TraceError::Replay { trial: trial.name().to_owned() };
     let replay = replay(trial, base).ok_or_else(refuse)?;
     let average = Average { members: vec![(1.0, Response::first_order_ship(*base))] };
@@ -76,7 +81,7 @@ pub fn before(trial: &Trial, record: &Record, base: &FirstOrder, thorough: bool)
 impl After<'_> {
     /// Base and average on a record that neither was fitted to.
     pub fn compared(&self, trial: &Trial, base: &FirstOrder) -> Result<RecordComparison, TraceError> {
-        let record = Record::whole(trial);
+        let record = PreparedRecord::whole(trial);
         let before = before(trial, &record, base, true)?;
         let mut starts = starts(trial, base);
         starts.push(before.replay.initial());
@@ -88,7 +93,7 @@ impl After<'_> {
     pub fn on(
         &self,
         trial: &Trial,
-        record: &Record,
+        record: &PreparedRecord,
         starts: &[[f64; 2]],
         thorough: bool,
     ) -> Result<ReplayResult, TraceError> {
@@ -100,7 +105,7 @@ impl After<'_> {
         if let Some(number) = self.known {
             all.extend(self.members.iter().map(|(_, fit)| fit.initial[number]));
         }
-        let Replayed { replay, windows, members } = average.replay(record, &all, thorough).ok_or_else(refuse)?;
+        let AverageReplay { replay, windows, members } = average.replay(record, &all, thorough).ok_or_else(refuse)?;
         let band = band::of(self, trial, &replay, &members);
         Ok(ReplayResult { band, ..result(trial, replay, windows, thorough) })
     }
@@ -116,7 +121,7 @@ fn result(trial: &Trial, replay: Replay, windows: [Option<Vec<f64>>; HORIZONS.le
             measured[first..].iter().zip(&replay.yaw_rate).map(|(one, own)| one - own).collect();
         root_mean_square(&finite(&differences))
     });
-    let errors = Errors {
+    let errors = ReplayErrors {
         heading: replay.rms(),
         rows,
         yaw_rate,

@@ -10,14 +10,14 @@
 
 use estimation::levenberg_marquardt::Normal;
 use estimation::minimum::minimum;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{Cholesky, DVector, Dyn};
 use rayon::prelude::*;
 
-use crate::fit::{Fit, Problem, curvature, deviation};
+use crate::fit::{PreparedRecords, StructureFit, curvature, deviation};
 use crate::linear::Linear;
-use crate::noise::{Colour, Wander};
+use crate::noise::{CorrelatedNoise, NoiseColour};
 use crate::waves;
-use crate::weights::{Law, Weights};
+use crate::weights::{NoiseLaw, Weights};
 
 /// No heading is believed to be better than this, rad: a thousandth of a degree.
 const FINEST: f64 = 1.75e-5;
@@ -38,8 +38,8 @@ const ROUNDS: usize = 2;
 
 /// Variance, rad², that a rudder sampled at rows leaves: a corner between two rows is cut, which changes the integral
 /// of the rudder by up to an eighth of its second difference times the step, and the heading by that times K.
-fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
-    let of = |record: &crate::record::Record| {
+fn floors(problem: &PreparedRecords, gain: f64) -> Vec<f64> {
+    let of = |record: &crate::record::PreparedRecord| {
         let mut bends: Vec<f64> =
             record.rudder.values().windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
         bends.sort_by(|one, other| other.total_cmp(one));
@@ -54,7 +54,7 @@ fn floors(problem: &Problem, gain: f64) -> Vec<f64> {
 #[derive(Debug, Clone)]
 pub struct Ground<'a> {
     /// The records.
-    pub problem: &'a Problem,
+    pub problem: &'a PreparedRecords,
     /// Residual and sensitivities.
     pub linear: Linear,
     /// Precision of what is expected of the unknowns, and where they stand beside it; none for those at the end.
@@ -64,7 +64,7 @@ pub struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     /// That of a fit. States at the beginning stand behind the fitted parameters.
-    pub fn of(problem: &'a Problem, fit: &Fit) -> Self {
+    pub fn of(problem: &'a PreparedRecords, fit: &StructureFit) -> Self {
         let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
         let prior = fit.structure.fitted_priors(&fit.theta).into_iter().map(|(prior, value)| {
             let precision = curvature(prior);
@@ -76,32 +76,37 @@ impl<'a> Ground<'a> {
     }
 
     /// The law of largest marginal likelihood beside the waves of a law, from its sizes.
-    pub fn law(&self, start: &Law, kinds: &[Wander]) -> Found {
-        let white = self.judge(Colour { wander: None, ..start.colour }, &start.variance);
+    pub fn law(&self, start: &NoiseLaw, kinds: &[CorrelatedNoise]) -> ChosenLaw {
+        let white = self.judge(NoiseColour { wander: None, ..start.colour }, &start.variance);
         let log_n = (self.problem.observations() as f64).ln();
         let coloured = self.levels(kinds, &white.law);
-        let priced = |own: Found| Found { height: own.height + own.law.colour.freedom() as f64 * log_n, ..own };
+        let priced = |own: ChosenLaw| ChosenLaw { height: own.height + own.law.colour.freedom() as f64 * log_n, ..own };
         let all = [white].into_iter().chain(coloured).map(priced);
         all.min_by(|one, other| one.height.total_cmp(&other.height)).expect("white noise is one")
     }
 
     /// Factor of the precision of all unknowns under weights, and their step from where they stand.
     pub fn solved(&self, weights: &Weights) -> Option<(Cholesky<f64, Dyn>, DVector<f64>)> {
-        let (Normal { mut matrix, mut gradient }, _) = self.linear.normal(weights);
-        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
-            matrix[(k, k)] += precision;
-            gradient[k] -= precision * beside;
-        }
-        let factor = matrix.cholesky()?;
-        let step = factor.solve(&gradient);
+        let (mut normal, _) = self.linear.normal(weights);
+        self.add_prior(&mut normal);
+        let factor = normal.matrix.cholesky()?;
+        let step = factor.solve(&normal.gradient);
         Some((factor, step))
     }
 
+    /// Adds what is expected of the unknowns.
+    fn add_prior(&self, normal: &mut Normal) {
+        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
+            normal.matrix[(k, k)] += precision;
+            normal.gradient[k] -= precision * beside;
+        }
+    }
+
     /// The sizes of the noise of all records under a colour, from `start`.
-    fn judge(&self, colour: Colour, start: &[f64]) -> Found {
+    fn judge(&self, colour: NoiseColour, start: &[f64]) -> ChosenLaw {
         let ones = vec![1.0; start.len()];
-        let mut law = Law { colour, variance: start.to_vec(), power: ones.clone() };
-        let unit = Law { colour, variance: ones.clone(), power: ones };
+        let mut law = NoiseLaw { colour, variance: start.to_vec(), power: ones.clone() };
+        let unit = NoiseLaw { colour, variance: ones.clone(), power: ones };
         let weights = self.problem.weights(&unit);
         // Of every record by itself, under unit variance: the sums for other sizes follow.
         let blocks: Vec<(Normal, Vec<f64>)> = (0..start.len()).map(|record| self.of_record(record, &weights)).collect();
@@ -111,7 +116,7 @@ impl<'a> Ground<'a> {
             law.variance = next;
             height = value;
         }
-        Found { law, height, waves_gain: 0.0 }
+        ChosenLaw { law, height, waves_gain: 0.0 }
     }
 
     fn of_record(&self, record: usize, weights: &Weights) -> (Normal, Vec<f64>) {
@@ -121,19 +126,15 @@ impl<'a> Ground<'a> {
     }
 
     /// New sizes and the height at the old ones.
-    fn round(&self, law: &Law, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
-        let n = self.linear.unknowns;
-        let (mut matrix, mut gradient) = (DMatrix::zeros(n, n), DVector::zeros(n));
+    fn round(&self, law: &NoiseLaw, blocks: &[(Normal, Vec<f64>)], weights: &Weights) -> Option<(Vec<f64>, f64)> {
+        let mut normal = Normal::zeros(self.linear.unknowns);
         for ((block, _), variance) in blocks.iter().zip(&law.variance) {
-            matrix += &block.matrix / *variance;
-            gradient += &block.gradient / *variance;
+            normal.matrix += &block.matrix / *variance;
+            normal.gradient += &block.gradient / *variance;
         }
-        let mut penalty = 0.0;
-        for (k, &(precision, beside)) in self.prior.iter().enumerate() {
-            matrix[(k, k)] += precision;
-            gradient[k] -= precision * beside;
-            penalty += precision * beside * beside;
-        }
+        self.add_prior(&mut normal);
+        let Normal { matrix, gradient } = normal;
+        let penalty = self.prior.iter().fold(0.0, |sum, &(precision, beside)| sum + precision * beside * beside);
         let factor = matrix.cholesky()?;
         let step = factor.solve(&gradient);
         let inverse = factor.inverse();
@@ -151,17 +152,17 @@ impl<'a> Ground<'a> {
     }
 
     /// Some kinds of colour at their best levels: all are tried roughly, the best few finely.
-    fn levels(&self, kinds: &[Wander], white: &Law) -> Vec<Found> {
-        let at = |kind: Wander, log: f64| {
-            let colour = Colour { wander: Some((kind, log.exp())), ..white.colour };
+    fn levels(&self, kinds: &[CorrelatedNoise], white: &NoiseLaw) -> Vec<ChosenLaw> {
+        let at = |kind: CorrelatedNoise, log: f64| {
+            let colour = NoiseColour { wander: Some((kind, log.exp())), ..white.colour };
             self.judge(colour, &white.variance)
         };
         let [low, high] = LEVELS.map(f64::ln);
-        let roughly = |&kind: &Wander| {
+        let roughly = |&kind: &CorrelatedNoise| {
             let levels = (0..ROUGH).map(|k| low + (high - low) * (f64::from(k) + 0.5) / f64::from(ROUGH));
             (levels.map(|log| at(kind, log).height).fold(f64::INFINITY, f64::min), kind)
         };
-        let mut all: Vec<(f64, Wander)> = kinds.par_iter().map(roughly).collect();
+        let mut all: Vec<(f64, CorrelatedNoise)> = kinds.par_iter().map(roughly).collect();
         all.sort_by(|one, other| one.0.total_cmp(&other.0));
         all.truncate(FINALISTS);
         all.into_par_iter().map(|(_, kind)| at(kind, minimum(low, high, GRID, |log| at(kind, log).height).0)).collect()
@@ -170,9 +171,9 @@ impl<'a> Ground<'a> {
 
 /// A law, and the fall of −2 log p with the waves in it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct ChosenLaw {
     /// The law.
-    pub law: Law,
+    pub law: NoiseLaw,
     /// −2 log p; of the law that is chosen with the price of its colour.
     pub height: f64,
     /// How much better waves explain what is left, with the price of their parameters.
@@ -180,25 +181,31 @@ pub struct Found {
 }
 
 /// The law of what a fit leaves, of some kinds of colour; `variance` are sizes to begin with, rad².
-pub fn of(problem: &Problem, fit: &Fit, variance: &[f64], with_waves: bool, kinds: &[Wander]) -> Found {
+pub fn of(
+    problem: &PreparedRecords,
+    fit: &StructureFit,
+    variance: &[f64],
+    with_waves: bool,
+    kinds: &[CorrelatedNoise],
+) -> ChosenLaw {
     let ground = Ground::of(problem, fit);
-    let start = Law { variance: variance.to_vec(), ..Law::white(variance.len(), 1.0) };
+    let start = NoiseLaw { variance: variance.to_vec(), ..NoiseLaw::white(variance.len(), 1.0) };
     let mut best = ground.law(&start, kinds);
     if with_waves && let Some(sea) = waves::find(problem, &fit.residual, &best.law) {
         let log_n = (problem.observations() as f64).ln();
         let colours = [
-            Some(Colour { waves: Some(sea), wander: None }),
-            best.law.colour.wander.map(|_| Colour { waves: Some(sea), ..best.law.colour }),
+            Some(NoiseColour { waves: Some(sea), wander: None }),
+            best.law.colour.wander.map(|_| NoiseColour { waves: Some(sea), ..best.law.colour }),
         ];
         for colour in colours.into_iter().flatten() {
-            let Found { law, height, .. } = ground.judge(colour, &best.law.variance);
+            let ChosenLaw { law, height, .. } = ground.judge(colour, &best.law.variance);
             let height = height + colour.freedom() as f64 * log_n;
             if height < best.height {
-                best = Found { law, height, waves_gain: best.waves_gain + best.height - height };
+                best = ChosenLaw { law, height, waves_gain: best.waves_gain + best.height - height };
             }
         }
     }
-    Found { law: best.law.of_model(problem), ..best }
+    ChosenLaw { law: best.law.of_model(problem), ..best }
 }
 
 /// Smallest smooth error of a model, as a share of the standard deviation of the heading: no response is nearer to a
@@ -208,10 +215,10 @@ const OF_MODEL: f64 = 0.02;
 /// Independent readings for every length that the ship sails, where the noise holds the error of a model.
 const TOLD_PER_TIME: f64 = 3.0;
 
-impl Law {
+impl NoiseLaw {
     /// A smooth error that is no smaller than that of any model.
-    fn of_model(mut self, problem: &Problem) -> Self {
-        let Some((Wander::Smooth(_), level)) = self.colour.wander else { return self };
+    fn of_model(mut self, problem: &PreparedRecords) -> Self {
+        let Some((CorrelatedNoise::Smooth(_), level)) = self.colour.wander else { return self };
         for ((variance, power), record) in self.variance.iter_mut().zip(&mut self.power).zip(&problem.records) {
             let rows = record.observed.len() as f64;
             let heading = || record.observed.iter().map(|&row| record.heading[row]);

@@ -6,12 +6,12 @@ use trial::Trial;
 
 use crate::average::After;
 use crate::base::Base;
-use crate::fit::{Effort, Fit, Problem};
+use crate::fit::{Effort, PreparedRecords, StructureFit};
 use crate::full::Full;
 use crate::judge::RecordComparison;
 use crate::model::Structure;
-use crate::structures::{Member, Structures};
-use crate::weights::Law;
+use crate::structures::{Structures, WeighedStructure};
+use crate::weights::NoiseLaw;
 
 /// Structures that take part.
 const MOST: usize = 4;
@@ -19,14 +19,15 @@ const MOST: usize = 4;
 /// Comparisons on every record that its fold has not seen.
 pub fn leave_one_out(
     trials: &[Trial],
-    problem: &Problem,
+    problem: &PreparedRecords,
     full: &Full,
     structures: &Structures,
 ) -> Vec<Option<RecordComparison>> {
     let fold = |left: usize| -> Option<RecordComparison> {
         let base = Base::of(&without(trials, left)).ok()?;
-        let others = Problem::new(without(&problem.records, left), base.estimate.response.inverse_T, problem.time);
-        let law = Law {
+        let others =
+            PreparedRecords::new(without(&problem.records, left), base.estimate.response.inverse_T, problem.time);
+        let law = NoiseLaw {
             variance: without(&full.law.variance, left),
             power: without(&full.law.power, left),
             ..full.law.clone()
@@ -36,11 +37,11 @@ pub fn leave_one_out(
             let (structure, theta) = on_others(&member.fit, left);
             others.fit(&structure, theta, without(&member.fit.initial, left), &weights, Effort::FINE)
         });
-        let fits: Vec<(f64, Fit)> =
+        let fits: Vec<(f64, StructureFit)> =
             refitted.zip(&structures.all).map(|(fit, member)| (height(&fit, member), fit)).collect();
         let highest = fits.iter().map(|(height, _)| *height).fold(f64::NEG_INFINITY, f64::max);
         let total: f64 = fits.iter().map(|(height, _)| (height - highest).exp()).sum();
-        let members: Vec<(f64, &Fit)> = fits
+        let members: Vec<(f64, &StructureFit)> = fits
             .iter()
             .map(|(height, fit)| ((height - highest).exp() / total, fit))
             .filter(|(weight, _)| *weight > 0.02)
@@ -52,7 +53,7 @@ pub fn leave_one_out(
 }
 
 /// Log of evidence and prior odds on the others.
-fn height(fit: &Fit, member: &Member) -> f64 {
+fn height(fit: &StructureFit, member: &WeighedStructure) -> f64 {
     fit.evidence + (member.height - member.fit.evidence)
 }
 
@@ -61,7 +62,7 @@ fn without<T: Clone>(all: &[T], left: usize) -> Vec<T> {
 }
 
 /// A structure with its parameters on all records but one, without what belongs to that one alone.
-fn on_others(fit: &Fit, left: usize) -> (Structure, Vec<f64>) {
+fn on_others(fit: &StructureFit, left: usize) -> (Structure, Vec<f64>) {
     let structure = &fit.structure;
     let mut theta = fit.theta[..3].to_vec();
     if structure.records > 2 {

@@ -8,19 +8,19 @@ use ship::DIRECTIONS;
 use ship::{Real, Tangent};
 
 use crate::model::{Structure, headings};
-use crate::record::Record;
+use crate::record::PreparedRecord;
 use crate::weights::Weights;
 
 /// Residual and sensitivities of one record.
 #[derive(Debug, Clone)]
-pub struct Block {
+pub struct HeadingSensitivities {
     /// Measured less replayed heading, rad.
     pub residual: Vec<f64>,
     /// Unknowns that act, each with the change of the heading.
     pub columns: Vec<(usize, Vec<f64>)>,
 }
 
-impl Block {
+impl HeadingSensitivities {
     /// The same, made white and of unit variance.
     pub fn white(&self, record: usize, weights: &Weights) -> Self {
         let mut white = self.clone();
@@ -39,12 +39,12 @@ impl Block {
 /// Replays one record with derivatives by some variables: their unknown, and their place in θ and behind it.
 pub fn tangents(
     structure: &Structure,
-    record: &Record,
+    record: &PreparedRecord,
     number: usize,
     theta: &[f64],
     initial: [f64; 2],
     variables: &[(usize, usize)],
-) -> Block {
+) -> HeadingSensitivities {
     let rows = record.observed.len();
     let constant: Vec<Tangent> = theta.iter().chain(&initial).map(|&value| Tangent::from(value)).collect();
     let pass = |variables: &[(usize, usize)]| {
@@ -64,14 +64,14 @@ pub fn tangents(
     let passes: Vec<_> = variables.par_chunks(DIRECTIONS).map(pass).collect();
     let residual = passes[0].0.clone();
     let columns = passes.into_iter().flat_map(|(_, columns)| columns);
-    Block { residual, columns: variables.iter().map(|(unknown, _)| *unknown).zip(columns).collect() }
+    HeadingSensitivities { residual, columns: variables.iter().map(|(unknown, _)| *unknown).zip(columns).collect() }
 }
 
 /// Residual and sensitivities of all records.
 #[derive(Debug, Clone)]
 pub struct Linear {
     /// One block a record.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<HeadingSensitivities>,
     /// Number of unknowns.
     pub unknowns: usize,
 }
@@ -81,7 +81,7 @@ impl Linear {
     pub fn normal(&self, weights: &Weights) -> (Normal, Vec<f64>) {
         let (mut normal, mut squares) = (Normal::zeros(self.unknowns), Vec::with_capacity(self.blocks.len()));
         for (record, block) in self.blocks.iter().enumerate() {
-            let Block { residual, columns } = block.white(record, weights);
+            let HeadingSensitivities { residual, columns } = block.white(record, weights);
             for (k, (i, one)) in columns.iter().enumerate() {
                 for (j, other) in &columns[..=k] {
                     let product = dot(one, other);

@@ -30,16 +30,16 @@ impl Analysis {
         let theta = |values: &mut dyn Iterator<Item = f64>| start(&own, &self.base.response, values);
         let base = self.problem.residual(&own, &theta(&mut std::iter::empty()), &initial);
         let probable = |name: &TermName| self.structures.probabilities.get(name).copied().unwrap_or(0.0);
-        let mut alone: Vec<_> = self.candidates.iter().filter(|one| !is_variant(one.term.effect.as_ref())).collect();
-        alone.sort_by(|one, other| probable(&other.term.name()).total_cmp(&probable(&one.term.name())));
+        let mut alone: Vec<_> = self.candidates.iter().filter(|one| !is_variant(one.effect.as_ref())).collect();
+        alone.sort_by(|one, other| probable(&other.name()).total_cmp(&probable(&one.name())));
         let fits: Vec<(TermName, Vec<Vec<f64>>)> = alone
             .par_iter()
-            .filter(|one| !one.term.effect.has_instant())
+            .filter(|one| !one.effect.has_instant())
             .map(|one| {
-                let structure = own.of(vec![Arc::clone(&one.term)]);
-                let mut values = one.term.priors.iter().map(|prior: &Prior| prior.mean);
+                let structure = own.of(vec![Arc::clone(one)]);
+                let mut values = one.priors.iter().map(|prior: &Prior| prior.mean);
                 let fit = self.problem.fit(&structure, theta(&mut values), initial.clone(), &weights, Effort::COARSE);
-                (one.term.name(), fit.residual)
+                (one.name(), fit.residual)
             })
             .collect();
         let model = self.structures.members();

@@ -13,7 +13,7 @@ use ship::replay::replay_states;
 use ship::response::{BASE, BASE_PARAMETERS};
 use ship::{EffectReal, Response, ResponseModel};
 
-use crate::record::Record;
+use crate::record::PreparedRecord;
 
 /// Most steps of the solver between two rows, which bounds the work for a trial point with an absurd time constant.
 const MOST_STEPS: f64 = 8.0;
@@ -34,6 +34,8 @@ pub struct Term {
     pub only: Option<usize>,
     /// What is expected of its parameters.
     pub priors: Vec<Prior>,
+    /// Log of the prior odds that it is there.
+    pub log_odds: f64,
 }
 
 /// Identifier, form and record of a term.
@@ -58,7 +60,7 @@ impl Term {
 
 /// What is said of one entry of θ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Entry {
+pub struct ModelParameter {
     /// What it is called and measured in.
     pub parameter: &'static Parameter,
     /// What is expected of it.
@@ -70,7 +72,7 @@ pub struct Entry {
 /// A value counts as the end of a range within this share of its size: a step that ends there adds a rounding.
 const AT_END: f64 = 1e-9;
 
-impl Entry {
+impl ModelParameter {
     /// Whether a value was fitted and lies at an end of the range.
     pub fn ends_at(&self, value: f64) -> bool {
         let near = |end: f64| (value - end).abs() <= AT_END * end.abs().max(1e-6);
@@ -128,15 +130,18 @@ impl Structure {
     }
 
     /// Every entry of θ.
-    pub fn entries(&self) -> Vec<Entry> {
-        let base =
-            |k: usize, sd: f64, only| Entry { parameter: &BASE[k], prior: Prior::normal(&BASE[k], 0.0, sd), only };
+    pub fn entries(&self) -> Vec<ModelParameter> {
+        let base = |k: usize, sd: f64, only| ModelParameter {
+            parameter: &BASE[k],
+            prior: Prior::normal(&BASE[k], 0.0, sd),
+            only,
+        };
         let scale = [BASE_SD[0] / self.time, BASE_SD[1] / (self.time * self.time), BIAS_SD];
-        let mut entries: Vec<Entry> = (0..BASE_PARAMETERS).map(|k| base(k, scale[k], None)).collect();
+        let mut entries: Vec<ModelParameter> = (0..BASE_PARAMETERS).map(|k| base(k, scale[k], None)).collect();
         entries.extend((0..self.deviations()).map(|record| base(2, OWN_BIAS_SD, Some(record))));
         for term in &self.terms {
             let own = term.effect.parameters().iter().zip(&term.priors);
-            entries.extend(own.map(|(parameter, &prior)| Entry { parameter, prior, only: term.only }));
+            entries.extend(own.map(|(parameter, &prior)| ModelParameter { parameter, prior, only: term.only }));
         }
         entries
     }
@@ -178,7 +183,7 @@ impl Structure {
     }
 
     /// Whether an entry of θ moves the heading of a record.
-    pub fn acts(entry: &Entry, record: usize) -> bool {
+    pub fn acts(entry: &ModelParameter, record: usize) -> bool {
         entry.only.is_none_or(|only| only == record)
     }
 
@@ -260,7 +265,7 @@ const STEPS: f64 = 2.0;
 /// Replays a response along a record, from its first row, and visits the heading at every observed row.
 pub fn headings<R: EffectReal>(
     response: &Response<R>,
-    record: &Record,
+    record: &PreparedRecord,
     initial: [R; 2],
     mut visit: impl FnMut(usize, R),
 ) {

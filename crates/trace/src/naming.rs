@@ -15,7 +15,7 @@ const GROUP: f64 = 0.6;
 
 /// An effect that is named, or a group of which one is there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Named {
+pub struct NamedEffect {
     /// Its most probable form.
     pub term: TermName,
     /// The other effects of its group, each in its most probable form.
@@ -27,11 +27,11 @@ pub struct Named {
 }
 
 /// An effect with the one record in which it acts.
-type Key = (&'static str, Option<usize>);
+type EffectKey = (&'static str, Option<usize>);
 
 /// The effects that are named, the most probable first; those that were asked for are.
-pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<Named> {
-    let mut keys: Vec<(Key, f64)> = Vec::new();
+pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> Vec<NamedEffect> {
+    let mut keys: Vec<(EffectKey, f64)> = Vec::new();
     for name in structures.probabilities.keys() {
         let key = (name.0, name.2);
         if keys.iter().all(|(other, _)| *other != key) {
@@ -39,11 +39,11 @@ pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> 
         }
     }
     keys.sort_by(|(one, p), (other, q)| q.total_cmp(p).then(one.cmp(other)));
-    let is_named = |(key, p): &(Key, f64)| *p >= threshold || selection.asks_for(key.0) && *p > 0.0;
+    let is_named = |(key, p): &(EffectKey, f64)| *p >= threshold || selection.asks_for(key.0) && *p > 0.0;
     let (certain, open): (Vec<_>, Vec<_>) = keys.into_iter().partition(is_named);
-    let mut all: Vec<Named> =
-        certain.iter().map(|(key, p)| Named { aliases: Vec::new(), ..one(structures, *key, *p) }).collect();
-    let mut open: Vec<Key> = open.into_iter().filter(|(_, p)| *p >= SMALLEST).map(|(key, _)| key).collect();
+    let mut all: Vec<NamedEffect> =
+        certain.iter().map(|(key, p)| NamedEffect { aliases: Vec::new(), ..one(structures, *key, *p) }).collect();
+    let mut open: Vec<EffectKey> = open.into_iter().filter(|(_, p)| *p >= SMALLEST).map(|(key, _)| key).collect();
     while let Some((group, probability)) = group(structures, &open, threshold) {
         open.retain(|key| !group.contains(key));
         let mut named = one(structures, group[0], probability);
@@ -54,22 +54,22 @@ pub fn named(structures: &Structures, threshold: f64, selection: &Selection) -> 
 }
 
 /// An effect in its most probable form.
-fn one(structures: &Structures, (id, only): Key, probability: f64) -> Named {
+fn one(structures: &Structures, (id, only): EffectKey, probability: f64) -> NamedEffect {
     let of = |name: &&TermName| name.0 == id && name.2 == only;
     let mut forms: Vec<(TermName, f64)> =
         structures.probabilities.keys().filter(of).map(|name| (*name, structures.probabilities[name])).collect();
     forms.sort_by(|(one, p), (other, q)| q.total_cmp(p).then(one.cmp(other)));
     let others = forms[1..].iter().filter(|(_, p)| *p >= SMALLEST).map(|(name, _)| *name).collect();
-    Named { term: forms[0].0, aliases: Vec::new(), forms: others, probability }
+    NamedEffect { term: forms[0].0, aliases: Vec::new(), forms: others, probability }
 }
 
 /// The smallest group of effects of which one is there, the most probable of them first.
-fn group(structures: &Structures, open: &[Key], threshold: f64) -> Option<(Vec<Key>, f64)> {
-    let union = |group: &[Key]| structures.of_any(|name| group.contains(&(name.0, name.2)));
+fn group(structures: &Structures, open: &[EffectKey], threshold: f64) -> Option<(Vec<EffectKey>, f64)> {
+    let union = |group: &[EffectKey]| structures.of_any(|name| group.contains(&(name.0, name.2)));
     let mut group = vec![*open.first()?];
     while group.len() < LARGEST_GROUP {
         let own = union(&group);
-        let with = |key: &Key| union(&[group.as_slice(), &[*key]].concat());
+        let with = |key: &EffectKey| union(&[group.as_slice(), &[*key]].concat());
         let others = open.iter().filter(|key| !group.contains(key));
         let next = others.max_by(|one, other| with(one).total_cmp(&with(other)))?;
         let probability = with(next);

@@ -16,11 +16,11 @@ use estimation::kalman::{MOST, Step, System, Whitener};
 use nalgebra::DMatrix;
 use ship::narrow_band::NarrowBand;
 
-use crate::record::Record;
+use crate::record::PreparedRecord;
 
 /// What wanders beside the white heading noise: a random yaw moment, or an error of the compass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wander {
+pub enum CorrelatedNoise {
     /// r' = −a r + w: the yaw rate of a ship in a white moment wanders.
     White,
     /// r' = −a r + d, d' = −d/τ + w: gusts, whose correlation time τ is this one of [`GUSTS`].
@@ -35,6 +35,11 @@ pub enum Wander {
     Smooth(usize),
 }
 
+/// A gain of the filter that changes by less than this share has settled. Which structures are refitted, and with them
+/// what is said of a record between two structures, may hang on the last digits: this is the share with which the
+/// published traces were made.
+const SETTLED: f64 = 1e-9;
+
 /// Correlation times of gusts that are told apart, as shares of the longest record.
 pub const GUSTS: [f64; 3] = [0.02, 0.05, 0.12];
 
@@ -44,7 +49,7 @@ pub const COMPASS: [f64; 4] = [0.01, 0.03, 0.06, 0.128];
 /// Correlation times of a smooth error that are told apart, as shares of the longest record.
 pub const SMOOTH: [f64; 3] = [0.01, 0.03, 0.08];
 
-impl Wander {
+impl CorrelatedNoise {
     /// Every kind: random moments, then errors of the heading.
     pub fn all() -> impl Iterator<Item = Self> {
         let gusts = (0..GUSTS.len()).map(Self::OrnsteinUhlenbeck);
@@ -112,15 +117,15 @@ impl Wander {
 
 /// Colour of the noise beside the white heading noise, whose variance is the unit of everything here.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Colour {
+pub struct NoiseColour {
     /// What wanders, and the variance of the heading it leaves: of a random moment that at the end of the longest
     /// record of a ship without damping.
-    pub wander: Option<(Wander, f64)>,
+    pub wander: Option<(CorrelatedNoise, f64)>,
     /// Waves; `sd` in units of the white noise.
     pub waves: Option<NarrowBand>,
 }
 
-impl Colour {
+impl NoiseColour {
     /// White heading noise alone.
     pub const WHITE: Self = Self { wander: None, waves: None };
 
@@ -137,7 +142,7 @@ impl Colour {
 
 /// Transitions of what wanders over every step of a record, for level 1.
 #[derive(Debug, Clone)]
-struct Drift {
+struct NoiseTransition {
     states: usize,
     /// Variance of the states at the beginning.
     beginning: [f64; 3],
@@ -147,13 +152,13 @@ struct Drift {
     of_row: Vec<usize>,
 }
 
-impl Drift {
-    fn new(kind: Wander, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
+impl NoiseTransition {
+    fn new(kind: CorrelatedNoise, inverse_time: f64, durations: &[f64], longest: f64) -> Self {
         let intensity = kind.intensity(longest);
         let generator = kind.generator(inverse_time, longest);
         let beginning = match (kind, kind.correlation(longest)) {
-            (Wander::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0],
-            (Wander::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity],
+            (CorrelatedNoise::Smooth(_), Some(time)) => [1.0, time.powi(-2), 0.0],
+            (CorrelatedNoise::OrnsteinUhlenbeck(_), Some(time)) => [0.0, 0.0, 0.5 * time * intensity],
             (_, Some(time)) => [0.5 * time * intensity, 0.0, 0.0],
             (_, None) => [0.0; 3],
         };
@@ -178,34 +183,40 @@ pub struct RecordNoise {
     variances: Vec<f64>,
     longest: f64,
     damping: f64,
-    /// What wanders, of every kind that was asked for, in the order of [`Wander::all`].
-    drifts: Vec<OnceLock<Drift>>,
+    /// What wanders, of every kind that was asked for, in the order of [`CorrelatedNoise::all`].
+    drifts: Vec<OnceLock<NoiseTransition>>,
 }
 
 impl RecordNoise {
     /// Prepares the observed rows of a record for a ship of the given 1/T; `longest` is the length of the longest
     /// record, s, and a full row is the mean of `full_readings`.
-    pub fn new(record: &Record, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
+    pub fn new(record: &PreparedRecord, inverse_time: f64, longest: f64, full_readings: usize) -> Self {
         let time = |number: usize| record.time[record.observed[number]];
         let durations = (0..record.observed.len()).map(|k| if k == 0 { 0.0 } else { time(k) - time(k - 1) }).collect();
         let variance = |&row: &usize| full_readings as f64 / record.readings[row] as f64;
         let variances = record.observed.iter().map(variance).collect();
         // A course-unstable ship is steered: what a random moment does is over after a rudder order.
         let damping = inverse_time.max(0.0);
-        Self { durations, variances, longest, damping, drifts: Wander::all().map(|_| OnceLock::new()).collect() }
+        Self {
+            durations,
+            variances,
+            longest,
+            damping,
+            drifts: CorrelatedNoise::all().map(|_| OnceLock::new()).collect(),
+        }
     }
 
     /// The filter that makes noise of this colour white, in units of the white noise of a full row.
-    pub fn whitener(&self, colour: &Colour) -> Whitener {
+    pub fn whitener(&self, colour: &NoiseColour) -> Whitener {
         let (system, states) = self.system(colour);
-        system.whitener(states)
+        system.whitener(states, SETTLED)
     }
 
     /// Random moment and waves of this colour as one linear system, and the number of its states.
-    pub(crate) fn system(&self, colour: &Colour) -> (System<f64, MOST>, usize) {
+    pub(crate) fn system(&self, colour: &NoiseColour) -> (System<f64, MOST>, usize) {
         let drift = colour.wander.map(|(kind, level)| {
-            let place = Wander::all().position(|other| other == kind).expect("a kind of the list");
-            let new = || Drift::new(kind, self.damping, &self.durations, self.longest);
+            let place = CorrelatedNoise::all().position(|other| other == kind).expect("a kind of the list");
+            let new = || NoiseTransition::new(kind, self.damping, &self.durations, self.longest);
             (self.drifts[place].get_or_init(new), level)
         });
         let own = drift.map_or(0, |(drift, _)| drift.states);

@@ -9,10 +9,10 @@ use trial::Trial;
 
 use crate::analysis::Analysis;
 use crate::document::Outcome;
-use crate::fit::Problem;
+use crate::fit::PreparedRecords;
 use crate::model::Term;
-use crate::record::Record;
-use crate::weights::Law;
+use crate::record::PreparedRecord;
+use crate::weights::NoiseLaw;
 
 /// Expected square of a size over its error from which an effect can be told from all others.
 const TOLD: f64 = 20.0;
@@ -72,10 +72,10 @@ impl Analysis {
     fn seen_with(&self, trial: &Trial) -> Option<Vec<(String, f64)>> {
         let full = &self.full.fit;
         let (structure, theta) = full.structure.alone(None, &full.theta);
-        let record = Record::averaged(trial, self.problem.time);
-        let problem = Problem::new(vec![record], theta[0], self.problem.time);
+        let record = PreparedRecord::averaged(trial, self.problem.time);
+        let problem = PreparedRecords::new(vec![record], theta[0], self.problem.time);
         let variance = self.full.law.variance.iter().sum::<f64>() / self.full.law.variance.len() as f64;
-        let law = Law { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
+        let law = NoiseLaw { variance: vec![variance], power: vec![1.0], ..self.full.law.clone() };
         let initial = [trial.heading()[trial.observed_rows().next()?], 0.0];
         let (normal, _) = problem.linear(&structure, &theta, &[initial]).normal(&problem.weights(&law));
         let known = full.kept_covariance(None)?.try_inverse()?;

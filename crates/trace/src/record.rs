@@ -32,7 +32,7 @@ const SMALLEST_SHARE: f64 = 0.5;
 
 /// One record, ready to be replayed.
 #[derive(Debug, Clone)]
-pub struct Record {
+pub struct PreparedRecord {
     /// Name of the trial.
     pub name: String,
     /// Times of the rows, s.
@@ -63,7 +63,7 @@ pub struct Record {
     pub propeller: Option<Polyline>,
 }
 
-impl Record {
+impl PreparedRecord {
     /// Takes a trial with its headings averaged down to twenty per `time` (s, the time constant of the base), but to no
     /// fewer than 400 and no more than 4000.
     pub fn averaged(trial: &Trial, time: f64) -> Self {
@@ -236,7 +236,7 @@ mod tests {
         let time: Vec<f64> = (0..6000).map(|k| 0.1 * f64::from(k)).collect();
         let heading = time.iter().enumerate().map(|(k, t)| if k % 4 == 1 { f64::NAN } else { 0.01 * t }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
-        let record = Record::averaged(&of_columns(time, heading, rudder), 10.0);
+        let record = PreparedRecord::averaged(&of_columns(time, heading, rudder), 10.0);
         assert_eq!((record.full_readings, record.readings.iter().sum::<usize>()), (9, 4500));
         for (&time, &heading) in record.time.iter().zip(&record.heading) {
             assert!((heading - 0.01 * time).abs() < 1e-12);
@@ -249,7 +249,7 @@ mod tests {
         let time: Vec<f64> = (0..6001).map(|k| 0.1 * f64::from(k)).collect();
         let heading = time.iter().enumerate().map(|(k, t)| if k % 10 == 0 { 0.01 * t } else { f64::NAN }).collect();
         let rudder = time.iter().map(|t| 0.1 * (0.1 * t).sin()).collect();
-        let record = Record::averaged(&of_columns(time, heading, rudder), 16.0);
+        let record = PreparedRecord::averaged(&of_columns(time, heading, rudder), 16.0);
         assert_eq!((record.full_readings, record.observed.len(), record.rudder.values().len()), (1, 601, 2001));
         assert!(record.observed.iter().all(|&row| record.readings[row] == 1));
     }

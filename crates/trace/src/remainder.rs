@@ -3,18 +3,18 @@
 use estimation::residuals::{GappedSeries, evenness, whiteness};
 use trial::Trial;
 
-use crate::fit::Problem;
+use crate::fit::PreparedRecords;
 use crate::full::Full;
 use crate::judge::{RecordComparison, ReplayResult};
-use crate::replay_errors::Errors;
+use crate::replay_errors::ReplayErrors;
 use crate::shapes::{self, Empirical};
 use crate::signature::{Signature, signature};
 use crate::structures::Structures;
-use crate::weights::Law;
+use crate::weights::NoiseLaw;
 
 /// Errors of all records together, squared, before and after.
 pub fn squares(all: &[RecordComparison]) -> [f64; 2] {
-    let square = |errors: &Errors| errors.heading.powi(2) * errors.rows as f64;
+    let square = |errors: &ReplayErrors| errors.heading.powi(2) * errors.rows as f64;
     let before = all.iter().map(|one| square(&one.before.errors)).sum();
     [before, all.iter().map(|one| square(&one.after.errors)).sum()]
 }
@@ -39,7 +39,7 @@ const SMALL: f64 = 1.5;
 impl Remainder {
     /// Looks at what is left.
     pub fn new(
-        problem: &Problem,
+        problem: &PreparedRecords,
         full: &Full,
         structures: &Structures,
         identification: &[RecordComparison],
@@ -81,7 +81,7 @@ const IMPROBABLE: f64 = 1e-4;
 
 /// Whether a law describes the residual (rad) of every record: what is new in every heading, given those before it, is
 /// white (Ljung and Box 1978), of one variance, and without a single surprise.
-fn holds(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> bool {
+fn holds(problem: &PreparedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> bool {
     let weights = problem.weights(law);
     let (mut even, mut series) = (1.0_f64, Vec::new());
     for (number, (record, residual)) in problem.records.iter().zip(residual).enumerate() {

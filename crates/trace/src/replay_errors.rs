@@ -14,7 +14,7 @@ use trial::zigzag::Overshoot;
 use trial::{Channel, Columns, Trial, ZigZag};
 
 use crate::model::step;
-use crate::record::Record;
+use crate::record::PreparedRecord;
 
 /// Steps of the solver per shortest time constant: the heading is then exact to 10⁻⁵ of the response.
 const SOLVER_STEPS: f64 = 4.0;
@@ -37,7 +37,7 @@ const NEGLIGIBLE: f64 = 1e-7;
 
 /// Errors of a response on one record.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Errors {
+pub struct ReplayErrors {
     /// Root mean square heading error of the full replay, rad.
     pub heading: f64,
     /// Headings compared.
@@ -52,7 +52,7 @@ pub struct Errors {
 }
 
 /// Replays a record whole from the best initial state near one of the `starts`. `None` when no replay is finite.
-pub fn full(response: &Response, record: &Record, starts: &[[f64; 2]]) -> Option<Replay> {
+pub fn full(response: &Response, record: &PreparedRecord, starts: &[[f64; 2]]) -> Option<Replay> {
     let rows = 0..record.time.len();
     let mut found: Vec<(f64, [f64; 2])> = Vec::new();
     for &start in starts {
@@ -113,7 +113,7 @@ pub fn overshoot_error(trial: &Trial, replayed: &Replay) -> Option<f64> {
 
 /// Headings (rad) of a replay that is restarted every `length` seconds from the best heading and yaw rate of the
 /// window; the memory of the effects goes on. `None` when a window holds too few headings.
-pub fn restarted(response: &Response, record: &Record, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
+pub fn restarted(response: &Response, record: &PreparedRecord, initial: [f64; 2], length: f64) -> Option<Vec<f64>> {
     let count = record.time.len();
     let mut state = vec![0.0; response.dimension()];
     enter(response, record, 0, initial, None, &mut state);
@@ -151,7 +151,7 @@ pub fn restarted(response: &Response, record: &Record, initial: [f64; 2], length
 /// The state at a row: at rest there but for heading and yaw rate, or with the `memory` that the effects have by then.
 fn enter<R: EffectReal>(
     response: &Response<R>,
-    record: &Record,
+    record: &PreparedRecord,
     row: usize,
     start: [R; 2],
     memory: Option<&[f64]>,
@@ -172,7 +172,7 @@ fn enter<R: EffectReal>(
 /// Replays some rows of a record and visits heading and yaw rate at each of them.
 fn run<R: EffectReal>(
     response: &Response<R>,
-    record: &Record,
+    record: &PreparedRecord,
     rows: Range<usize>,
     state: &mut [R],
     mut visit: impl FnMut(usize, R, R),
@@ -186,7 +186,7 @@ fn run<R: EffectReal>(
 
 /// Residual of some rows, and how the heading there changes with its first value and with the first yaw rate times the
 /// length of the rows.
-struct Point {
+struct InitialStateFit {
     initial: [f64; 2],
     residual: Vec<f64>,
     by: [Vec<f64>; 2],
@@ -197,7 +197,7 @@ struct Point {
 /// and the sum of squares they leave; `None` when it is not finite, or when the way leads to one that is `known`.
 fn settle(
     response: &Response,
-    record: &Record,
+    record: &PreparedRecord,
     rows: Range<usize>,
     start: [f64; 2],
     memory: Option<&[f64]>,
@@ -217,7 +217,7 @@ fn settle(
                 by[1].push(heading.by[1] / span);
             }
         });
-        Point { initial, square: dot(&residual, &residual), residual, by }
+        InitialStateFit { initial, square: dot(&residual, &residual), residual, by }
     };
     let mut now = at(start);
     for _ in 0..STEPS {

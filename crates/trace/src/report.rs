@@ -1,6 +1,7 @@
 //! The document of a trace, from what its stages made. Nothing is fitted here.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use estimation::mixture::{NormalMixture, NormalPair, Summary, ratio};
 use estimation::residuals::Whiteness;
@@ -11,14 +12,14 @@ use ship::{Particulars, Regressor};
 use trial::{Quantity, Trial};
 
 use crate::base::Base;
-use crate::candidates::{Candidate, PROBABILITY, PROBABILITY_OF_TIME};
+use crate::candidates::{PROBABILITY, PROBABILITY_OF_TIME};
 use crate::document::*;
-use crate::fit::{Fit, Problem};
+use crate::fit::{PreparedRecords, StructureFit};
 use crate::full::Full;
 use crate::judge::RecordComparison;
-use crate::model::{Entry, TermName};
-use crate::naming::{Named, named};
-use crate::noise::Wander;
+use crate::model::{ModelParameter, Term, TermName};
+use crate::naming::{NamedEffect, named};
+use crate::noise::CorrelatedNoise;
 use crate::remainder::Remainder;
 use crate::selection::EffectId;
 use crate::settings::Settings;
@@ -27,7 +28,7 @@ use crate::structures::Structures;
 use crate::words;
 
 /// Everything that is said something about.
-pub struct Said<'a> {
+pub struct TraceParts<'a> {
     /// Fitted records.
     pub trials: &'a [Trial],
     /// Settings.
@@ -39,7 +40,7 @@ pub struct Said<'a> {
     /// Structures.
     pub structures: &'a Structures,
     /// Candidates.
-    pub candidates: &'a [Candidate],
+    pub candidates: &'a [Arc<Term>],
     /// Comparisons on fitted records.
     pub identification: &'a [RecordComparison],
     /// Held-out records with their comparisons.
@@ -55,7 +56,7 @@ pub struct Said<'a> {
     /// Whether the structures replay the fitted records no nearer than the base.
     pub no_nearer: bool,
     /// The records as they were fitted.
-    pub problem: &'a Problem,
+    pub problem: &'a PreparedRecords,
 }
 
 /// Squared size over its error below which a candidate cannot be seen.
@@ -64,7 +65,7 @@ const SEEN: f64 = 4.0;
 /// Structures that are listed.
 const LISTED: usize = 20;
 
-impl Said<'_> {
+impl TraceParts<'_> {
     /// The document.
     pub fn document(&self) -> Document {
         let named = named(self.structures, self.settings.probability, &self.settings.selection);
@@ -125,7 +126,7 @@ impl Said<'_> {
     }
 
     fn equation(&self, id: &str, form: &str) -> &'static str {
-        let own = self.candidates.iter().map(|one| &one.term.effect).find(|own| own.id() == id && own.form() == form);
+        let own = self.candidates.iter().map(|one| &one.effect).find(|own| own.id() == id && own.form() == form);
         own.map_or("", |own| own.equation())
     }
 
@@ -143,7 +144,7 @@ impl Said<'_> {
     /// K, T and δ_r averaged over the structures.
     fn indices(&self) -> Indices {
         let members = self.structures.members();
-        let pair = |(weight, fit): &(f64, &Fit)| {
+        let pair = |(weight, fit): &(f64, &StructureFit)| {
             let covariance = fit.covariance();
             let of = |i, j| covariance.as_ref().map_or(f64::INFINITY, |all| all[(i, j)]);
             let (denominator, numerator) = ((fit.theta[0], of(0, 0)), (fit.theta[1], of(1, 1)));
@@ -157,13 +158,13 @@ impl Said<'_> {
     }
 
     /// All parameters of a structure as its effects take them.
-    fn parameters(&self, fit: &Fit) -> Vec<ParameterEntry> {
+    fn parameters(&self, fit: &StructureFit) -> Vec<ParameterEntry> {
         let values = fit.structure.entries().into_iter().zip(fit.physical()).zip(&fit.theta);
         values.map(|((entry, (value, sd)), &own)| self.parameter(&entry, vec![(1.0, value, sd)], own)).collect()
     }
 
     /// An entry of θ from its weights, values and standard deviations in some structures; `own` is that of the first.
-    fn parameter(&self, entry: &Entry, parts: Vec<(f64, f64, f64)>, own: f64) -> ParameterEntry {
+    fn parameter(&self, entry: &ModelParameter, parts: Vec<(f64, f64, f64)>, own: f64) -> ParameterEntry {
         let quantity = match entry.prior.is_fitted() {
             true => quantity(NormalMixture { parts }.summary()),
             false => Quantity::bare(parts[0].1),
@@ -190,7 +191,7 @@ impl Said<'_> {
             let values = fit.physical()[range.clone()].to_vec();
             Some((weight, values, fit.structure.entries()[range.clone()].to_vec(), fit.theta[range].to_vec()))
         });
-        let fits: Vec<(f64, Vec<(f64, f64)>, Vec<Entry>, Vec<f64>)> = with.collect();
+        let fits: Vec<(f64, Vec<(f64, f64)>, Vec<ModelParameter>, Vec<f64>)> = with.collect();
         let Some((_, _, entries, own)) = fits.first() else { return BTreeMap::new() };
         let of = |k: usize| {
             let parts = fits.iter().map(|(weight, values, ..)| (*weight, values[k].0, values[k].1));
@@ -200,8 +201,8 @@ impl Said<'_> {
         (0..own.len()).map(of).collect()
     }
 
-    fn effects(&self, named: &[Named]) -> Vec<EffectEntry> {
-        let entry = |one: &Named| {
+    fn effects(&self, named: &[NamedEffect]) -> Vec<EffectEntry> {
+        let entry = |one: &NamedEffect| {
             let (id, form, only) = one.term;
             let support = self.structures.support_of(id, only);
             let mut aliases: Vec<String> = one.aliases.iter().map(|(id, ..)| String::from(*id)).collect();
@@ -255,9 +256,9 @@ impl Said<'_> {
         })
     }
 
-    fn candidate(&self, id: &'static str, named: &[Named]) -> CandidateEntry {
-        let own = self.candidates.iter().filter(|one| one.term.effect.id() == id);
-        let forms: Vec<FormEntry> = own.map(|one| self.form(one.term.name(), named)).collect();
+    fn candidate(&self, id: &'static str, named: &[NamedEffect]) -> CandidateEntry {
+        let own = self.candidates.iter().filter(|one| one.effect.id() == id);
+        let forms: Vec<FormEntry> = own.map(|one| self.form(one.name(), named)).collect();
         let is_sea = id == effects::WaveYaw.id();
         let sea = self.full.law.colour.waves.is_some();
         let excluded = !self.settings.selection.allows(id);
@@ -292,7 +293,7 @@ impl Said<'_> {
         }
     }
 
-    fn form(&self, name: TermName, named: &[Named]) -> FormEntry {
+    fn form(&self, name: TermName, named: &[NamedEffect]) -> FormEntry {
         let (_, form, only) = name;
         let visibility = self.structures.visibility.get(&name).copied();
         let outcome = if named.iter().any(|one| one.term == name) {
@@ -319,7 +320,7 @@ impl Said<'_> {
     fn listed(&self) -> Vec<StructureEntry> {
         let members = self.structures.members().len();
         let term = |(id, form, only): TermName| TermEntry { id: id.into(), form: form.into(), only: self.only(only) };
-        let of = |(number, one): (usize, &crate::structures::Member)| StructureEntry {
+        let of = |(number, one): (usize, &crate::structures::WeighedStructure)| StructureEntry {
             effects: one.fit.structure.terms.iter().map(|own| term(own.name())).collect(),
             weight: one.weight,
             parameters: self.parameters(&one.fit),
@@ -375,9 +376,9 @@ impl Said<'_> {
                 heading_correlation_s: heading.and(correlation),
                 heading_wander: heading.map(|_| if law.is_of_model() { "model" } else { "compass" }.into()),
                 moment: match moment {
-                    Some((Wander::White, _)) => "white",
-                    Some((Wander::OrnsteinUhlenbeck(_), _)) => "ornstein-uhlenbeck",
-                    Some((Wander::Walk, _)) => "walk",
+                    Some((CorrelatedNoise::White, _)) => "white",
+                    Some((CorrelatedNoise::OrnsteinUhlenbeck(_), _)) => "ornstein-uhlenbeck",
+                    Some((CorrelatedNoise::Walk, _)) => "walk",
                     _ => "none",
                 }
                 .into(),

@@ -15,14 +15,14 @@ use ship::replay::replay_states;
 use estimation::column::dot;
 
 use crate::empirical::{PRIOR_SD, plain};
-use crate::fit::{Fit, Problem};
+use crate::fit::{PreparedRecords, StructureFit};
 use crate::full::Full;
-use crate::law::{Found, Ground};
-use crate::linear::Block;
+use crate::law::{ChosenLaw, Ground};
+use crate::linear::HeadingSensitivities;
 use crate::model::step;
-use crate::noise::{Colour, Wander};
-use crate::structures::Member;
-use crate::weights::Law;
+use crate::noise::{CorrelatedNoise, NoiseColour};
+use crate::structures::WeighedStructure;
+use crate::weights::NoiseLaw;
 
 /// Log of the prior odds that there is anything of each kind.
 const LOG_ODDS: f64 = -7.0;
@@ -49,7 +49,7 @@ const STEPS: f64 = 2.0;
 
 /// A moment, or two that come together, with what the heading answers.
 #[derive(Debug, Clone)]
-struct Shape {
+struct MomentShape {
     form: String,
     log_odds: f64,
     /// Prior standard deviation of the coefficients, rad.
@@ -72,8 +72,8 @@ pub struct Empirical {
 }
 
 /// One record as the best structure replays it.
-struct Motion<'a> {
-    problem: &'a Problem,
+struct ReplayedMotion<'a> {
+    problem: &'a PreparedRecords,
     number: usize,
     base: [f64; 2],
     rate: Vec<f64>,
@@ -81,8 +81,8 @@ struct Motion<'a> {
     rudder: Vec<f64>,
 }
 
-impl<'a> Motion<'a> {
-    fn of(problem: &'a Problem, fit: &Fit, number: usize) -> Self {
+impl<'a> ReplayedMotion<'a> {
+    fn of(problem: &'a PreparedRecords, fit: &StructureFit, number: usize) -> Self {
         let record = &problem.records[number];
         let response = fit.structure.response(Some(number), &fit.theta);
         let recorded = record.recorded(&response);
@@ -144,36 +144,36 @@ impl<'a> Motion<'a> {
 }
 
 /// One coefficient of a shape that all records share, in units of the root mean square of its moment.
-fn shared(motions: &[Motion], form: &str, log_odds: f64, moments: &[Vec<f64>]) -> Option<Shape> {
+fn shared(motions: &[ReplayedMotion], form: &str, log_odds: f64, moments: &[Vec<f64>]) -> Option<MomentShape> {
     let (square, rows) = moments.iter().flatten().fold((0.0, 0.0), |(sum, n), m| (sum + m * m, n + 1.0));
     let size = (square / rows).sqrt();
     if !(size.is_finite() && size > 0.0) {
         return None;
     }
-    let column = |(motion, own): (&Motion, &Vec<f64>)| (motion.number, motion.answer(|row| own[row] / size));
+    let column = |(motion, own): (&ReplayedMotion, &Vec<f64>)| (motion.number, motion.answer(|row| own[row] / size));
     let columns = vec![motions.iter().zip(moments).map(column).collect()];
-    Some(Shape { form: form.into(), log_odds, sd: PRIOR_SD, columns })
+    Some(MomentShape { form: form.into(), log_odds, sd: PRIOR_SD, columns })
 }
 
 /// Every shape.
-fn library(motions: &[Motion]) -> Vec<Shape> {
+fn library(motions: &[ReplayedMotion]) -> Vec<MomentShape> {
     let odds = LOG_ODDS - (plain().len() as f64).ln();
     let monomial = |powers: &crate::empirical::Powers| {
-        let of = |motion: &Motion| -> Vec<f64> {
+        let of = |motion: &ReplayedMotion| -> Vec<f64> {
             let value = |row: usize| powers.at([motion.rate[row], motion.rudder[row], motion.heading[row]]);
             (0..motion.rate.len()).map(value).collect()
         };
         shared(motions, powers.form, odds, &motions.iter().map(of).collect::<Vec<_>>())
     };
-    let mut all: Vec<Shape> = plain().iter().filter(|powers| powers.of[3] == 0).filter_map(monomial).collect();
-    let aside: Vec<Vec<f64>> = motions.iter().map(Motion::aside).collect();
+    let mut all: Vec<MomentShape> = plain().iter().filter(|powers| powers.of[3] == 0).filter_map(monomial).collect();
+    let aside: Vec<Vec<f64>> = motions.iter().map(ReplayedMotion::aside).collect();
     all.extend(shared(motions, "distance to one side", LOG_ODDS, &aside));
     all.extend(motions.iter().flat_map(of_time));
     all
 }
 
 /// Shapes that belong to an instant of one record.
-fn of_time(motion: &Motion) -> Vec<Shape> {
+fn of_time(motion: &ReplayedMotion) -> Vec<MomentShape> {
     let time = motion.time();
     let (start, duration) = (time[0], time[time.len() - 1] - time[0]);
     let odds = |places: usize| LOG_ODDS - (places as f64).ln();
@@ -186,7 +186,7 @@ fn of_time(motion: &Motion) -> Vec<Shape> {
         // 1/T times 1 + a, K/T times 1 + b: moments −a r/b₀ and b (δ + δ_r).
         let slower = motion.answer(|row| after(row) * motion.rate[row] * motion.base[0] / motion.base[1]);
         let weaker = motion.answer(|row| after(row) * motion.rudder[row]);
-        all.push(Shape {
+        all.push(MomentShape {
             form: format!("another K and T from {at:.0} s on"),
             log_odds: odds(instants),
             sd: CHANGE_SD,
@@ -204,7 +204,7 @@ fn of_time(motion: &Motion) -> Vec<Shape> {
                 false => format!("moment from {from:.0} to {:.0} s", from + length),
             };
             let column = motion.answer(|row| if (from..from + length).contains(&time[row]) { 1.0 } else { 0.0 });
-            all.push(Shape {
+            all.push(MomentShape {
                 form,
                 log_odds: odds(places * LENGTHS.len()),
                 sd: PRIOR_SD,
@@ -219,22 +219,22 @@ fn of_time(motion: &Motion) -> Vec<Shape> {
 #[derive(Clone)]
 struct Stand<'a> {
     ground: Ground<'a>,
-    shapes: Vec<Shape>,
-    law: Law,
+    shapes: Vec<MomentShape>,
+    law: NoiseLaw,
     /// −2 log of the evidence, odds counted.
     height: f64,
 }
 
 impl<'a> Stand<'a> {
-    fn new(ground: Ground<'a>, shapes: Vec<Shape>, start: &Law) -> Self {
-        let Found { law, height, .. } = ground.law(start, &Wander::all().collect::<Vec<_>>());
-        let of = |shape: &Shape| 2.0 * (shape.columns.len() as f64 * shape.sd.ln() - shape.log_odds);
+    fn new(ground: Ground<'a>, shapes: Vec<MomentShape>, start: &NoiseLaw) -> Self {
+        let ChosenLaw { law, height, .. } = ground.law(start, &CorrelatedNoise::all().collect::<Vec<_>>());
+        let of = |shape: &MomentShape| 2.0 * (shape.columns.len() as f64 * shape.sd.ln() - shape.log_odds);
         let height = height + shapes.iter().map(of).sum::<f64>();
         Self { ground, shapes, law, height }
     }
 
     /// The same with one more shape.
-    fn with(&self, shape: &Shape) -> Self {
+    fn with(&self, shape: &MomentShape) -> Self {
         let mut ground = self.ground.clone();
         for column in &shape.columns {
             for (record, values) in column {
@@ -247,12 +247,12 @@ impl<'a> Stand<'a> {
     }
 
     /// Places of the shapes that explain most under a law.
-    fn scan(&self, law: &Law, library: &[Shape]) -> Vec<usize> {
+    fn scan(&self, law: &NoiseLaw, library: &[MomentShape]) -> Vec<usize> {
         let weights = self.ground.problem.weights(law);
         let Some((factor, step)) = self.ground.solved(&weights) else { return Vec::new() };
         let blocks = self.ground.linear.blocks.iter().enumerate();
-        let white: Vec<Block> = blocks.map(|(record, block)| block.white(record, &weights)).collect();
-        let gain = |shape: &Shape| {
+        let white: Vec<HeadingSensitivities> = blocks.map(|(record, block)| block.white(record, &weights)).collect();
+        let gain = |shape: &MomentShape| {
             let mut own = shape.columns.clone();
             own.iter_mut().flatten().for_each(|(record, column)| weights.apply(*record, &mut [column]));
             let cross = own.iter().map(|column| {
@@ -280,8 +280,8 @@ impl<'a> Stand<'a> {
 
     /// The best with one more shape, and those that are alike: shapes are looked for under the noise as it stands, and
     /// under white noise, which hides none.
-    fn next(&self, library: &[Shape]) -> Vec<Self> {
-        let white = Law { colour: Colour { wander: None, ..self.law.colour }, ..self.law.clone() };
+    fn next(&self, library: &[MomentShape]) -> Vec<Self> {
+        let white = NoiseLaw { colour: NoiseColour { wander: None, ..self.law.colour }, ..self.law.clone() };
         let mut places = self.scan(&self.law, library);
         places.extend(self.scan(&white, library));
         places.sort_unstable();
@@ -293,9 +293,10 @@ impl<'a> Stand<'a> {
 }
 
 /// Shapes that explain what the best structure leaves better than any noise; `None` where none clearly does.
-pub fn explain(problem: &Problem, full: &Full, member: &Member) -> Option<Empirical> {
+pub fn explain(problem: &PreparedRecords, full: &Full, member: &WeighedStructure) -> Option<Empirical> {
     let fit = &member.fit;
-    let motions: Vec<Motion> = (0..problem.records.len()).map(|number| Motion::of(problem, fit, number)).collect();
+    let motions: Vec<ReplayedMotion> =
+        (0..problem.records.len()).map(|number| ReplayedMotion::of(problem, fit, number)).collect();
     let library = library(&motions);
     let first = Stand::new(Ground::of(problem, fit), Vec::new(), &full.law);
     // A second shape may pay only beside the first, and the first only beside the second.

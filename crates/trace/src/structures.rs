@@ -10,10 +10,10 @@ use std::sync::Arc;
 use estimation::subsets::{Removable, conditional};
 use rayon::prelude::*;
 
-use crate::candidates::{Candidate, is_delay, is_variant};
-use crate::fit::{Effort, Fit, Problem};
+use crate::candidates::{is_delay, is_variant};
+use crate::fit::{Effort, PreparedRecords, StructureFit};
 use crate::full::Full;
-use crate::model::{Entry, Structure, Term, TermName};
+use crate::model::{ModelParameter, Structure, Term, TermName};
 use crate::selection::Selection;
 use crate::settings::Rule;
 use crate::weights::Weights;
@@ -21,7 +21,7 @@ use quadratic::{HOPELESS, Quadratic};
 use result::names;
 
 pub use quadratic::Support;
-pub use result::{Member, Structures};
+pub use result::{Structures, WeighedStructure};
 
 /// Structures whose fit is driven to the end.
 const POLISHED: usize = 8;
@@ -34,13 +34,13 @@ const ROUNDS: usize = 2;
 
 /// The stage with what it needs.
 struct Stage<'a> {
-    problem: &'a Problem,
+    problem: &'a PreparedRecords,
     weights: Weights,
     full: &'a Full,
-    variants: Vec<&'a Candidate>,
+    variants: Vec<&'a Arc<Term>>,
     selection: &'a Selection,
     rule: Rule,
-    known: BTreeMap<Vec<TermName>, Member>,
+    known: BTreeMap<Vec<TermName>, WeighedStructure>,
     visibility: BTreeMap<TermName, f64>,
     /// The last approximation: what speaks for every term is read off it in the end.
     latest: Option<Quadratic>,
@@ -49,9 +49,9 @@ struct Stage<'a> {
 /// Weighs the structures under every law, and keeps the law that explains the records best: by the evidence of its
 /// structures; but where physics beside a smooth error of the model explains what the base leaves, no other law does.
 pub fn choose(
-    problem: &Problem,
+    problem: &PreparedRecords,
     fulls: Vec<Full>,
-    candidates: &[Candidate],
+    candidates: &[Arc<Term>],
     selection: &Selection,
     rule: Rule,
     base: f64,
@@ -94,12 +94,18 @@ const PARTLY: f64 = 0.7;
 const ASTRAY: f64 = 2.0;
 
 /// Weighs the structures of a full model.
-fn weigh(problem: &Problem, full: &Full, candidates: &[Candidate], selection: &Selection, rule: Rule) -> Structures {
+fn weigh(
+    problem: &PreparedRecords,
+    full: &Full,
+    candidates: &[Arc<Term>],
+    selection: &Selection,
+    rule: Rule,
+) -> Structures {
     let mut stage = Stage {
         problem,
         weights: problem.weights(&full.law),
         full,
-        variants: candidates.iter().filter(|one| is_variant(one.term.effect.as_ref())).collect(),
+        variants: candidates.iter().filter(|one| is_variant(one.effect.as_ref())).collect(),
         selection,
         rule,
         known: BTreeMap::new(),
@@ -136,7 +142,8 @@ impl Stage<'_> {
     fn look(&mut self, at: (Vec<f64>, Vec<[f64; 2]>), about: &[bool]) {
         let structure = &self.full.fit.structure;
         let normal = self.problem.posterior(structure, &at.0, &at.1, &self.weights);
-        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &self.log_odds()) else { return };
+        let odds: Vec<f64> = structure.terms.iter().map(|term| self.odds(term, 1e6)).collect();
+        let Some(quadratic) = Quadratic::new(&normal, structure, &at.0, &odds) else { return };
         if self.visibility.is_empty() {
             self.visibility = self.visibility(&quadratic);
         }
@@ -147,8 +154,8 @@ impl Stage<'_> {
 
     /// Refits a structure with every other effect that delays the rudder in the place of one: they are nearly alike,
     /// and only a fit tells them apart.
-    fn swap(&mut self, top: &Fit) {
-        let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().map(|one| &one.term));
+    fn swap(&mut self, top: &StructureFit) {
+        let known = self.full.fit.structure.terms.iter().chain(self.variants.iter().copied());
         let delays: Vec<Arc<Term>> = known.filter(|term| is_delay(term.effect.as_ref())).cloned().collect();
         let mut fresh = Vec::new();
         for (place, term) in top.structure.terms.iter().enumerate().filter(|(_, term)| is_delay(term.effect.as_ref())) {
@@ -165,7 +172,7 @@ impl Stage<'_> {
 
     /// Fits structures that are not known yet.
     fn fit_all(&mut self, fresh: Vec<(Structure, Vec<f64>, Vec<[f64; 2]>)>) {
-        let fits: Vec<Fit> = fresh
+        let fits: Vec<StructureFit> = fresh
             .into_par_iter()
             .filter(|(own, ..)| !self.known.contains_key(&names(own)))
             .map(|(own, theta, initial)| self.problem.fit(&own, theta, initial, &self.weights, Effort::COARSE))
@@ -174,23 +181,24 @@ impl Stage<'_> {
     }
 
     /// Keeps fits in the place of others of the same structures.
-    fn keep(&mut self, fits: Vec<Fit>) {
+    fn keep(&mut self, fits: Vec<StructureFit>) {
         for fit in fits {
             let height = self.height(&fit);
-            self.known.insert(names(&fit.structure), Member { fit, weight: 0.0, height });
+            self.known.insert(names(&fit.structure), WeighedStructure { fit, weight: 0.0, height });
         }
     }
 
     /// Drives the fits of the best structures to the end.
     fn polish(&mut self) {
         let highest = self.top().map_or(0.0, |top| top.height);
-        let mut best: Vec<&Member> = self.known.values().filter(|one| one.height > highest - HOPELESS).collect();
+        let mut best: Vec<&WeighedStructure> =
+            self.known.values().filter(|one| one.height > highest - HOPELESS).collect();
         best.sort_by(|one, other| other.height.total_cmp(&one.height));
-        let fits: Vec<Fit> = best
+        let fits: Vec<StructureFit> = best
             .into_par_iter()
             .take(POLISHED)
-            .map(|Member { fit, .. }| {
-                let Fit { structure, theta, initial, .. } = fit.clone();
+            .map(|WeighedStructure { fit, .. }| {
+                let StructureFit { structure, theta, initial, .. } = fit.clone();
                 self.problem.fit(&structure, theta, initial, &self.weights, Effort::FINE)
             })
             .collect();
@@ -198,23 +206,22 @@ impl Stage<'_> {
     }
 
     /// Which terms of the full model a fit has.
-    fn terms_of(&self, fit: &Fit) -> Vec<bool> {
+    fn terms_of(&self, fit: &StructureFit) -> Vec<bool> {
         let own = names(&fit.structure);
         self.full.fit.structure.terms.iter().map(|term| own.contains(&term.name())).collect()
     }
 
     /// A fit without one of its terms.
-    fn without(&self, top: &Fit, out: usize) -> Fit {
+    fn without(&self, top: &StructureFit, out: usize) -> StructureFit {
         let (mut terms, mut theta) = (top.structure.terms.clone(), top.theta.clone());
         theta.drain(top.structure.ranges()[out].clone());
         terms.remove(out);
         self.problem.fit(&top.structure.of(terms), theta, top.initial.clone(), &self.weights, Effort::COARSE)
     }
 
-    fn log_odds(&self) -> Vec<f64> {
-        let required = |term: &Arc<Term>| self.selection.asks_for(term.effect.id());
-        let terms = self.full.fit.structure.terms.iter().zip(&self.full.log_odds);
-        terms.map(|(term, odds)| if required(term) { 1e6 } else { *odds }).collect()
+    /// Log odds that count for a term; `required` are those of one that was asked for.
+    fn odds(&self, term: &Term, required: f64) -> f64 {
+        if self.selection.asks_for(term.effect.id()) { required } else { term.log_odds }
     }
 
     /// Expected squared size of every term over its posterior variance beside all others.
@@ -247,7 +254,7 @@ impl Stage<'_> {
         let moved = conditional(&quadratic.covariance, &quadratic.mean, &out);
         let mut moved = moved.iter();
         let mut next = || *moved.next().expect("an unknown for every fitted entry and state");
-        let value = |(entry, own): (Entry, &f64)| match entry.prior.is_fitted() {
+        let value = |(entry, own): (ModelParameter, &f64)| match entry.prior.is_fitted() {
             true => next().clamp(entry.prior.lowest, entry.prior.highest),
             false => *own,
         };
@@ -264,8 +271,8 @@ impl Stage<'_> {
     }
 
     /// Log of evidence and prior odds of a fit.
-    fn height(&self, fit: &Fit) -> f64 {
-        let odds: f64 = fit.structure.terms.iter().map(|term| self.odds_of(term)).sum();
+    fn height(&self, fit: &StructureFit) -> f64 {
+        let odds: f64 = fit.structure.terms.iter().map(|term| self.odds(term, 0.0)).sum();
         odds + match self.rule {
             Rule::Posterior => fit.evidence,
             Rule::Bic => {
@@ -275,17 +282,7 @@ impl Stage<'_> {
         }
     }
 
-    fn odds_of(&self, term: &Arc<Term>) -> f64 {
-        if self.selection.asks_for(term.effect.id()) {
-            return 0.0;
-        }
-        let name = term.name();
-        let known = self.full.fit.structure.terms.iter().zip(&self.full.log_odds);
-        let variants = self.variants.iter().map(|one| (&one.term, &one.log_odds));
-        known.chain(variants).find(|(other, _)| other.name() == name).map_or(0.0, |(_, odds)| *odds)
-    }
-
-    fn top(&self) -> Option<&Member> {
+    fn top(&self) -> Option<&WeighedStructure> {
         self.known
             .values()
             .filter(|one| one.height.is_finite())
@@ -293,7 +290,7 @@ impl Stage<'_> {
     }
 
     /// A point of the full model: that of a fit, with everything else neutral.
-    fn unfold(&self, fit: &Fit) -> (Vec<f64>, Vec<[f64; 2]>) {
+    fn unfold(&self, fit: &StructureFit) -> (Vec<f64>, Vec<[f64; 2]>) {
         let structure = &self.full.fit.structure;
         let mut theta = fit.theta[..structure.base_count()].to_vec();
         let own: BTreeMap<TermName, &[f64]> = fit
@@ -321,7 +318,7 @@ impl Stage<'_> {
         let support = self.latest.map_or_else(Vec::new, |latest| latest.support(&effects));
         let support = terms.iter().map(|term| term.name()).zip(support).collect();
         let visibility = self.visibility;
-        let mut all: Vec<Member> = self.known.into_values().filter(|one| one.height.is_finite()).collect();
+        let mut all: Vec<WeighedStructure> = self.known.into_values().filter(|one| one.height.is_finite()).collect();
         all.sort_by(|one, other| {
             other
                 .height

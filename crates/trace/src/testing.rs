@@ -23,7 +23,7 @@ pub fn ship(effects: Vec<(Arc<dyn Effect>, Vec<f64>)>) -> Response {
 
 /// How a record is made.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct TrialPlan {
     /// Rows.
     pub rows: usize,
     /// Time between rows, s.
@@ -38,7 +38,7 @@ pub struct Plan {
     pub seed: u64,
 }
 
-impl Default for Plan {
+impl Default for TrialPlan {
     fn default() -> Self {
         Self { rows: 301, period: 1.0, rudder_deg: 10.0, noise_deg: 0.05, every: 1, seed: 1 }
     }
@@ -51,7 +51,7 @@ const ORDERS: [f64; 9] = [4.0, 22.0, 60.0, 101.0, 139.0, 184.0, 220.0, 261.0, 30
 const LAP: f64 = 336.0;
 
 /// A record of a ship.
-pub fn record(ship: &Response, plan: Plan) -> Trial {
+pub fn record(ship: &Response, plan: TrialPlan) -> Trial {
     let time: Vec<f64> = (0..plan.rows).map(|row| row as f64 * plan.period).collect();
     let (mut corners, mut angles, mut angle) = (vec![-1.0], vec![0.0], 0.0);
     let travel = plan.rudder_deg / 2.5;
@@ -90,7 +90,7 @@ pub fn of_columns(time: Vec<f64>, heading: Vec<f64>, rudder: Vec<f64>) -> Trial 
 /// A base in a moment that walks: `level` is the standard deviation, deg, that a ship without damping would have at the
 /// end of 300 s.
 pub fn wandering(level: f64, seed: u64) -> Trial {
-    let calm = record(&ship(Vec::new()), Plan { seed, ..Plan::default() });
+    let calm = record(&ship(Vec::new()), TrialPlan { seed, ..TrialPlan::default() });
     let mut generator = ChaCha8Rng::seed_from_u64(seed + 1_000_000);
     let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
     let h = 0.02;

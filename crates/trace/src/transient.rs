@@ -6,7 +6,7 @@ use estimation::levenberg_marquardt::Normal;
 use nalgebra::{Cholesky, DVector, Dyn};
 use ship::first_order::Transition;
 
-use crate::fit::{Fit, Problem, posterior};
+use crate::fit::{PreparedRecords, StructureFit, posterior};
 use crate::linear::Linear;
 use crate::model::Term;
 use crate::weights::Weights;
@@ -19,7 +19,12 @@ const BETWEEN_STEPS: f64 = 1.0 / 80.0;
 
 /// The best place of every one of some moments on top of a fit, (m, t_c, d) of one that passes and (m, t₀) of one that
 /// stays; `None` where the unknowns of the fit cannot be told apart.
-pub fn places(problem: &Problem, fit: &Fit, weights: &Weights, terms: &[&Term]) -> Vec<Option<Vec<f64>>> {
+pub fn places(
+    problem: &PreparedRecords,
+    fit: &StructureFit,
+    weights: &Weights,
+    terms: &[&Term],
+) -> Vec<Option<Vec<f64>>> {
     let linear = problem.linear(&fit.structure, &fit.theta, &fit.initial);
     let normal = posterior(&linear, &fit.structure, &fit.theta, weights);
     let Some(factor) = normal.matrix.clone().cholesky() else { return vec![None; terms.len()] };
@@ -28,8 +33,8 @@ pub fn places(problem: &Problem, fit: &Fit, weights: &Weights, terms: &[&Term]) 
 
 /// The best place of one moment beside a linearised fit.
 fn place(
-    problem: &Problem,
-    fit: &Fit,
+    problem: &PreparedRecords,
+    fit: &StructureFit,
     weights: &Weights,
     term: &Term,
     (linear, normal, factor): (&Linear, &Normal, &Cholesky<f64, Dyn>),

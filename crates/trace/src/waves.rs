@@ -3,9 +3,9 @@
 
 use ship::narrow_band::NarrowBand;
 
-use crate::fit::Problem;
-use crate::noise::Colour;
-use crate::weights::Law;
+use crate::fit::PreparedRecords;
+use crate::noise::NoiseColour;
+use crate::weights::NoiseLaw;
 
 /// Waves are at least this many times as fast as the fundamental of the manoeuvre; below, a band is structure.
 const FASTER: f64 = 5.0;
@@ -22,11 +22,11 @@ const SMALLEST_SHARE: f64 = 0.05;
 const STRENGTHS: [f64; 4] = [0.6, 2.0, 6.0, 20.0];
 
 /// The waves that explain a residual best beside what wanders under a law; `None` when none can be resolved or helps.
-pub fn find(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Option<NarrowBand> {
-    let beside = &Colour { waves: None, ..law.colour };
+pub fn find(problem: &PreparedRecords, residual: &[Vec<f64>], law: &NoiseLaw) -> Option<NarrowBand> {
+    let beside = &NoiseColour { waves: None, ..law.colour };
     // −2 log L and whitened sum of squares of the residual under one colour.
-    let judge = |colour: &Colour| {
-        let weights = problem.weights(&Law {
+    let judge = |colour: &NoiseColour| {
+        let weights = problem.weights(&NoiseLaw {
             colour: *colour,
             variance: vec![1.0; residual.len()],
             power: vec![1.0; residual.len()],
@@ -36,7 +36,7 @@ pub fn find(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Option<Narro
         let n = problem.observations() as f64;
         (n * (rss / n).ln() + log_variance, rss)
     };
-    let value = |waves: NarrowBand| judge(&Colour { waves: Some(waves), ..*beside }).0;
+    let value = |waves: NarrowBand| judge(&NoiseColour { waves: Some(waves), ..*beside }).0;
     let slowest = FASTER * problem.records.iter().map(fundamental).fold(0.0, f64::max);
     let spacing = problem.records.iter().map(|record| record.spacing).fold(0.0, f64::max);
     let fastest = 0.8 * std::f64::consts::PI / spacing;
@@ -75,14 +75,14 @@ pub fn find(problem: &Problem, residual: &[Vec<f64>], law: &Law) -> Option<Narro
     }
     let (plain, _) = judge(beside);
     let (height, waves) = best?;
-    let (_, rss) = judge(&Colour { waves: Some(waves), ..*beside });
+    let (_, rss) = judge(&NoiseColour { waves: Some(waves), ..*beside });
     let all: f64 = residual.iter().flatten().map(|e| e * e).sum();
     let is_sea = waves.damping < WIDEST && waves.sd * waves.sd * rss > SMALLEST_SHARE * all;
     (height < plain && is_sea).then_some(waves)
 }
 
 /// Angular frequency of the manoeuvre, rad/s: the rudder changes its side twice a period.
-fn fundamental(record: &crate::record::Record) -> f64 {
+fn fundamental(record: &crate::record::PreparedRecord) -> f64 {
     let rudder = record.rudder.values();
     let largest = rudder.iter().fold(0.0_f64, |most, delta| most.max(delta.abs()));
     let mut side = 0.0;

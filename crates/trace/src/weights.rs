@@ -3,13 +3,13 @@
 use estimation::column::dot;
 use estimation::kalman::Whitener;
 
-use crate::noise::{Colour, Wander};
+use crate::noise::{CorrelatedNoise, NoiseColour};
 
 /// The law of the noise: one colour for all records, a size for each.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Law {
+pub struct NoiseLaw {
     /// Colour, in units of the white noise of a row.
-    pub colour: Colour,
+    pub colour: NoiseColour,
     /// Variance of the white noise of a full row of every record, rad².
     pub variance: Vec<f64>,
     /// Power to which the likelihood of every record is raised: below one where the noise holds the error of a model,
@@ -17,10 +17,10 @@ pub struct Law {
     pub power: Vec<f64>,
 }
 
-impl Law {
+impl NoiseLaw {
     /// Whether it holds a smooth error of a model that is not quite that of the ship.
     pub fn is_of_model(&self) -> bool {
-        matches!(self.colour.wander, Some((Wander::Smooth(_), _)))
+        matches!(self.colour.wander, Some((CorrelatedNoise::Smooth(_), _)))
     }
 
     /// Whether it holds a random moment.
@@ -37,7 +37,7 @@ impl Law {
 
     /// White noise of one variance, rad².
     pub fn white(records: usize, variance: f64) -> Self {
-        Self { colour: Colour::WHITE, variance: vec![variance; records], power: vec![1.0; records] }
+        Self { colour: NoiseColour::WHITE, variance: vec![variance; records], power: vec![1.0; records] }
     }
 }
 

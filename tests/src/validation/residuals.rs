@@ -11,11 +11,11 @@ use ship::effects::{Effect, MomentDrift, NonlinearDamping, PortStarboardAsymmetr
 use ship::{Response, ResponseModel};
 use simulate::{StreamKey, Vessel};
 use trace::candidates;
-use trace::fit::{Effort, Fit, Problem};
+use trace::fit::{Effort, PreparedRecords, StructureFit};
 use trace::full::start;
 use trace::model::Structure;
-use trace::record::Record;
-use trace::weights::Law;
+use trace::record::PreparedRecord;
+use trace::weights::NoiseLaw;
 use trace::{EffectId, Selection};
 
 use super::{Check, Section, Tolerance};
@@ -127,20 +127,20 @@ fn fitted(line: &Line) -> (f64, f64, f64, f64, Vec<f64>) {
     let replay = identify::replay::replay(&trial, &base).expect("finite");
     let trials = [trial];
     let time = candidates::ship_time(&trials, base.K_over_T);
-    let problem = Problem::new(vec![Record::whole(&trials[0])], base.inverse_T, time);
+    let problem = PreparedRecords::new(vec![PreparedRecord::whole(&trials[0])], base.inverse_T, time);
     let selection = Selection::only(vec![EffectId::find(line.effect.id()).expect("on the list")]);
     let all = candidates::all(&problem.records, &trials, time, &selection);
-    let term = all.into_iter().map(|one| one.term).find(|term| term.effect.form() == line.effect.form());
+    let term = all.into_iter().find(|term| term.effect.form() == line.effect.form());
     let term = term.expect("a candidate");
     let own = Structure::base(1, time);
     let structure = own.of(vec![Arc::clone(&term)]);
-    let weights = problem.weights(&Law::white(1, from_deg(NOISE).powi(2)));
+    let weights = problem.weights(&NoiseLaw::white(1, from_deg(NOISE).powi(2)));
     let starts = [term.priors.iter().map(|prior| prior.mean).collect(), term.neutral()];
     let fits = starts.map(|values: Vec<f64>| {
         let theta = start(&own, &base, values.into_iter());
         problem.fit(&structure, theta, vec![replay.initial()], &weights, EFFORT)
     });
-    let height = |fit: &Fit| fit.misfit + fit.penalty;
+    let height = |fit: &StructureFit| fit.misfit + fit.penalty;
     let best = fits.into_iter().min_by(|one, other| height(one).total_cmp(&height(other))).expect("two starts");
     let square: f64 = best.residual.iter().flatten().map(|e| e * e).sum();
     let rms = to_deg((square / problem.observations() as f64).sqrt());

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::statistics::Moments;
 use ::trace::document::EffectEntry;
-use ::trace::record::Record;
+use ::trace::record::PreparedRecord;
 use ::trace::{Analysis, TraceError};
 use identify::replay::{Replay, replay};
 use identify::{Estimate, Identifier, registry};
@@ -169,7 +169,7 @@ impl Model {
                 error_on(trial, &analysis.identification.get(number)?.after.replay)
             }
             (Self::Traced(analysis), None) => {
-                analysis.average().replay(&Record::whole(trial), &starts(trial), false)?.replay.rms()
+                analysis.average().replay(&PreparedRecord::whole(trial), &starts(trial), false)?.replay.rms()
             }
         };
         error.is_finite().then_some(error)

@@ -13,7 +13,7 @@ use estimation::minimum::minimum;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use super::smoother::{Column, Filter, Rows, STATES};
+use super::smoother::{HeadingColumn, MomentFilter, MomentRows, STATES};
 
 /// Inner knots, on a range from −1 to 1.
 const KNOTS: [f64; 2] = [-1.0 / 3.0, 1.0 / 3.0];
@@ -41,7 +41,7 @@ const LEVELS: [f64; 2] = [1e-3, 1e13];
 const GRID: usize = 12;
 
 /// The logarithm of λ of largest likelihood, by −2 log L of a filter.
-pub(super) fn likeliest(rows: &Rows, gain: f64, value: impl Fn(&Filter) -> Option<f64>) -> f64 {
+pub(super) fn likeliest(rows: &MomentRows, gain: f64, value: impl Fn(&MomentFilter) -> Option<f64>) -> f64 {
     let length = rows.time[rows.count() - 1] - rows.time[0];
     let unit = 20.0 / (length.powi(5) * gain * gain);
     let [low, high] = LEVELS.map(|level| (level * unit).ln());
@@ -49,7 +49,7 @@ pub(super) fn likeliest(rows: &Rows, gain: f64, value: impl Fn(&Filter) -> Optio
 }
 
 /// −2 log L up to a constant, with σ² at its best value.
-pub(super) fn deviance(square: f64, filter: &Filter, rows: usize) -> f64 {
+pub(super) fn deviance(square: f64, filter: &MomentFilter, rows: usize) -> f64 {
     let n = (rows - STATES) as f64;
     n * (square / n + FINEST * FINEST).ln() + filter.log_variance()
 }
@@ -63,13 +63,13 @@ pub(super) fn variance(square: f64, rows: usize, coefficients: usize) -> f64 {
 pub(super) const FEWEST: usize = 4 * (STATES + COEFFICIENTS);
 
 /// The splines on the range of a channel, each with mean zero over the rows.
-struct Basis {
+struct SplineBasis {
     middle: f64,
     half: f64,
     means: [f64; COEFFICIENTS],
 }
 
-impl Basis {
+impl SplineBasis {
     fn new(x: &[f64]) -> Option<Self> {
         let (low, high) = x.iter().fold((f64::MAX, f64::MIN), |(low, high), &x| (low.min(x), high.max(x)));
         let largest = low.abs().max(high.abs());
@@ -103,7 +103,7 @@ struct CurveEquations {
 }
 
 impl CurveEquations {
-    fn new(filter: &Filter, splines: &[Column]) -> Option<Self> {
+    fn new(filter: &MomentFilter, splines: &[HeadingColumn]) -> Option<Self> {
         let columns: Vec<Vec<f64>> = splines.iter().map(|spline| filter.whitened(spline)).collect();
         let matrix = DMatrix::from_fn(COEFFICIENTS, COEFFICIENTS, |i, j| dot(&columns[i], &columns[j]));
         let scale = DVector::from_fn(COEFFICIENTS, |i, _| matrix[(i, i)].sqrt().recip());
@@ -125,7 +125,7 @@ impl CurveEquations {
 
 /// A curve over one channel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct MomentCurve {
     /// Values of the channel, SI units and rad, over the range that the record visits.
     pub x: Vec<f64>,
     /// The moment there, rad of rudder, with mean zero over the rows of the record.
@@ -141,20 +141,26 @@ pub struct Curve {
     pub deviance: f64,
 }
 
-impl Curve {
+impl MomentCurve {
     /// The curve of a record over a channel, and what it makes of the headings (rad) that other explanations add to
     /// those of the base. `None` where the channel does not vary or the rows do not determine the curve.
-    pub(super) fn new(rows: &Rows, gain: f64, record: &Column, x: &[f64], others: &[Column]) -> Option<Self> {
+    pub(super) fn new(
+        rows: &MomentRows,
+        gain: f64,
+        record: &HeadingColumn,
+        x: &[f64],
+        others: &[HeadingColumn],
+    ) -> Option<Self> {
         let count = rows.count();
-        let basis = Basis::new(x).filter(|_| count >= FEWEST)?;
+        let basis = SplineBasis::new(x).filter(|_| count >= FEWEST)?;
         let values: Vec<[f64; COEFFICIENTS]> = x.iter().map(|&x| basis.at(x)).collect();
         // A moment adds to the heading as the record has it: with the opposite sign it would be an input.
         let spline = |k: usize| {
             let moment: Vec<f64> = values.iter().map(|values| -values[k]).collect();
-            Column { heading: vec![0.0; count], forced: rows.pushed(&moment) }
+            HeadingColumn { heading: vec![0.0; count], forced: rows.pushed(&moment) }
         };
-        let splines: Vec<Column> = (0..COEFFICIENTS).map(spline).collect();
-        let value = |filter: &Filter| {
+        let splines: Vec<HeadingColumn> = (0..COEFFICIENTS).map(spline).collect();
+        let value = |filter: &MomentFilter| {
             let (_, left) = CurveEquations::new(filter, &splines)?.solve(&filter.whitened(record));
             Some(deviance(left, filter, count))
         };
@@ -171,7 +177,7 @@ impl Curve {
             let values = DVector::from_row_slice(values);
             width * (variance * values.dot(&(&normal.inverse * &values))).max(0.0).sqrt()
         };
-        let other = |column: &Column| {
+        let other = |column: &HeadingColumn| {
             let (coefficients, _) = normal.solve(&filter.whitened(column));
             of_grid.iter().map(|values| along(&coefficients, values)).collect()
         };

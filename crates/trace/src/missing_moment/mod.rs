@@ -14,11 +14,11 @@ mod tests;
 
 use ship::{FirstOrder, Polyline};
 
-use crate::record::Record;
+use crate::record::PreparedRecord;
 use curve::{FEWEST, deviance, likeliest, variance};
-use smoother::{Column, Filter, Rows};
+use smoother::{HeadingColumn, MomentFilter, MomentRows};
 
-pub use curve::Curve;
+pub use curve::MomentCurve;
 
 /// A channel that a missing moment may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,7 +66,7 @@ pub struct Panel {
     /// The channel.
     pub over: Over,
     /// The curve with its band; the others are those of the explanations.
-    pub curve: Curve,
+    pub curve: MomentCurve,
     /// Share of the variance with which the moment wanders (that of its walk per second) that the curve takes away;
     /// `None` where the moment does not wander.
     pub share: Option<f64>,
@@ -109,7 +109,7 @@ const STILL: f64 = 1e-12;
 impl MissingMoment {
     /// The moment that a base with these parameters lacks on a record whose heading noise is about `sd`, rad; `None`
     /// for a record of too few headings, and for a rudder without effect.
-    pub fn new(record: &Record, base: &FirstOrder, sd: f64, explanations: Vec<Explanation>) -> Option<Self> {
+    pub fn new(record: &PreparedRecord, base: &FirstOrder, sd: f64, explanations: Vec<Explanation>) -> Option<Self> {
         let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
         let count = time.len();
         if count < FEWEST || !base.K_over_T.is_normal() {
@@ -117,11 +117,11 @@ impl MissingMoment {
         }
         let noise = |&row: &usize| record.full_readings as f64 / record.readings[row] as f64;
         let variances = record.observed.iter().map(noise).collect();
-        let rows = Rows::new(*base, time.clone(), variances, sd);
+        let rows = MomentRows::new(*base, time.clone(), variances, sd);
         let first = record.heading[record.observed[0]];
         let heading = record.observed.iter().map(|&row| record.heading[row] - first).collect();
-        let own = Column { heading, forced: rows.steered(&record.rudder) };
-        let square = |filter: &Filter| filter.whitened(&own).iter().map(|nu| nu * nu).sum::<f64>();
+        let own = HeadingColumn { heading, forced: rows.steered(&record.rudder) };
+        let square = |filter: &MomentFilter| filter.whitened(&own).iter().map(|nu| nu * nu).sum::<f64>();
         let gain = base.K_over_T;
         let intensity = likeliest(&rows, gain, |filter| Some(deviance(square(filter), filter, count))).exp();
         let filter = rows.filter(intensity);
@@ -139,13 +139,15 @@ impl MissingMoment {
             .extend(signals.into_iter().filter_map(|(over, signal)| Some((over, at_rows(signal.as_ref()?, &time)))));
 
         let still = vec![[0.0; 2]; count];
-        let others: Vec<Column> =
-            explanations.iter().map(|one| Column { heading: one.heading.clone(), forced: still.clone() }).collect();
+        let others: Vec<HeadingColumn> = explanations
+            .iter()
+            .map(|one| HeadingColumn { heading: one.heading.clone(), forced: still.clone() })
+            .collect();
         let wanders = spread(&moment) > STILL * count as f64;
         let mut panels: Vec<Panel> = channels
             .iter()
             .filter_map(|(over, x)| {
-                let curve = Curve::new(&rows, gain, &own, x, &others)?;
+                let curve = MomentCurve::new(&rows, gain, &own, x, &others)?;
                 let share = wanders.then(|| (1.0 - curve.left / (intensity * unit)).max(0.0));
                 let inside = match curve.holds_nothing() {
                     true => Vec::new(),

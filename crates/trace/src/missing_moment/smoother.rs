@@ -19,14 +19,14 @@ pub(super) const STATES: usize = 3;
 /// Headings of all rows, rad, and what a known input adds to heading (rad) and yaw rate (rad/s) in the step before
 /// each.
 #[derive(Debug, Clone)]
-pub(super) struct Column {
+pub(super) struct HeadingColumn {
     pub heading: Vec<f64>,
     pub forced: Vec<[f64; 2]>,
 }
 
 /// The rows of one record for a known base.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
+pub(super) struct MomentRows {
     base: FirstOrder,
     pub time: Vec<f64>,
     /// Variance of the noise of every row, in units of that of a full one.
@@ -39,7 +39,7 @@ pub(super) struct Rows {
     prior: f64,
 }
 
-impl Rows {
+impl MomentRows {
     /// Rows at increasing times (s) with the given variances; `sd` is about σ, rad.
     pub fn new(base: FirstOrder, time: Vec<f64>, variance: Vec<f64>, sd: f64) -> Self {
         let mut generator = DMatrix::<f64>::zeros(STATES, STATES);
@@ -98,30 +98,30 @@ impl Rows {
     }
 
     /// The filter for a moment that walks with λ, 1/s.
-    pub fn filter(&self, intensity: f64) -> Filter {
+    pub fn filter(&self, intensity: f64) -> MomentFilter {
         let steps = self.steps.iter().map(|(_, step)| step.scaled(intensity)).collect();
         let initial = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { self.prior } else { 0.0 }));
-        Filter(Smoother::new(System::of_rows(steps, initial, (&self.of_row, &self.variance), None)))
+        MomentFilter(Smoother::new(System::of_rows(steps, initial, (&self.of_row, &self.variance), None)))
     }
 }
 
 /// The filter for one size of the walk.
 #[derive(Debug, Clone)]
-pub(super) struct Filter(Smoother<STATES>);
+pub(super) struct MomentFilter(Smoother<STATES>);
 
-impl Filter {
+impl MomentFilter {
     /// Σ log S.
     pub fn log_variance(&self) -> f64 {
         self.0.log_variance()
     }
 
     /// The innovations in units of their standard deviation over σ.
-    pub fn whitened(&self, column: &Column) -> Vec<f64> {
+    pub fn whitened(&self, column: &HeadingColumn) -> Vec<f64> {
         self.0.whitened(&column.heading, forced(column))
     }
 
     /// Heading, yaw rate and moment of every row given all rows.
-    pub fn smoothed(&self, column: &Column) -> Vec<[f64; STATES]> {
+    pub fn smoothed(&self, column: &HeadingColumn) -> Vec<[f64; STATES]> {
         self.0.smoothed(&column.heading, forced(column))
     }
 
@@ -132,7 +132,7 @@ impl Filter {
 }
 
 /// What the known input of a column adds to the state before a row.
-fn forced(column: &Column) -> impl Fn(usize) -> [f64; STATES] {
+fn forced(column: &HeadingColumn) -> impl Fn(usize) -> [f64; STATES] {
     |row| {
         let [heading, rate] = column.forced[row];
         [heading, rate, 0.0]

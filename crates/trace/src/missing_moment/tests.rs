@@ -7,7 +7,7 @@ use ship::effects::NonlinearDamping;
 use ship::first_order::{State, Transition};
 
 use super::*;
-use crate::testing::{BASE, Plan, of_columns, record, ship};
+use crate::testing::{BASE, TrialPlan, of_columns, record, ship};
 
 fn base() -> FirstOrder {
     FirstOrder { inverse_T: BASE[0], K_over_T: BASE[1], rudder_bias: BASE[2] }
@@ -23,9 +23,9 @@ fn the_smoother_is_the_conditional_mean() {
         let n = time.len();
         let noise: Vec<f64> = (0..n).map(|k| if k % 4 == 0 { 2.0 } else { 1.0 }).collect();
         let (sd, intensity) = (0.05, 0.7);
-        let rows = Rows::new(ship, time.clone(), noise.clone(), sd);
+        let rows = MomentRows::new(ship, time.clone(), noise.clone(), sd);
         let heading: Vec<f64> = time.iter().map(|t| (0.21 * t).sin() + 0.02 * t).collect();
-        let column = Column { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
+        let column = HeadingColumn { heading: heading.clone(), forced: vec![[0.0; 2]; n] };
 
         // Heading a time after the state was one; the walk is integrated over.
         let slope = |t: f64| Transition::new(inverse, t);
@@ -78,9 +78,10 @@ fn integral(until: f64, value: impl Fn(f64) -> f64) -> f64 {
 #[test]
 fn a_known_input_acts_between_rows() {
     let truth = base();
-    let record = Record::whole(&record(&ship(Vec::new()), Plan { noise_deg: 0.0, ..Plan::default() }));
+    let record =
+        PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { noise_deg: 0.0, ..TrialPlan::default() }));
     let time: Vec<f64> = record.observed.iter().map(|&row| record.time[row]).collect();
-    let rows = Rows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
+    let rows = MomentRows::new(truth, time.clone(), vec![1.0; time.len()], 1e-3);
     let steered = rows.steered(&record.rudder);
     let rudder: Vec<f64> = at_rows(&record.rudder, &time).iter().map(|delta| delta + BASE[2]).collect();
     for (one, other) in steered.iter().zip(rows.pushed(&rudder)) {
@@ -94,7 +95,7 @@ fn a_known_input_acts_between_rows() {
 fn nothing_is_missing_where_nothing_is() {
     let (mut inside, mut all, mut shown) = (0, 0, 0);
     for seed in 1..=20 {
-        let record = Record::whole(&record(&ship(Vec::new()), Plan { seed, ..Plan::default() }));
+        let record = PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { seed, ..TrialPlan::default() }));
         let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
         let holds = |row: &usize| missing.interval(*row)[0] <= 0.0 && 0.0 <= missing.interval(*row)[1];
         inside += (0..missing.time.len()).filter(holds).count();
@@ -127,7 +128,7 @@ fn an_unstable_base_is_smoothed_as_well() {
         });
         state = ahead.advance(state, input(order), input(next) - input(order));
     }
-    let record = Record::whole(&of_columns(time, heading, rudder));
+    let record = PreparedRecord::whole(&of_columns(time, heading, rudder));
     let missing = MissingMoment::new(&record, &unstable, from_deg(0.02), Vec::new()).expect("enough rows");
     for (row, expected) in [(300, 0.0), (600, 0.0), (900, from_deg(2.0)), (1300, from_deg(2.0))] {
         assert!((missing.moment[row] - expected).abs() < 4.0 * missing.sd[row].min(from_deg(0.3)), "{row}");
@@ -139,7 +140,7 @@ fn an_unstable_base_is_smoothed_as_well() {
 fn cubic_damping_has_its_shape() {
     const CUBE: f64 = 80.0;
     let damped = ship(vec![(Arc::new(NonlinearDamping::Cubic), vec![CUBE])]);
-    let record = Record::whole(&record(&damped, Plan::default()));
+    let record = PreparedRecord::whole(&record(&damped, TrialPlan::default()));
     let missing = MissingMoment::new(&record, &base(), from_deg(0.05), Vec::new()).expect("enough rows");
     let panel = &missing.panels[0];
     assert_eq!(panel.over, Over::YawRate, "{:?}", missing.panels.iter().map(|p| (p.over, p.share)).collect::<Vec<_>>());
@@ -167,6 +168,6 @@ fn cubic_damping_has_its_shape() {
 
 #[test]
 fn few_rows_have_no_moment() {
-    let record = Record::whole(&record(&ship(Vec::new()), Plan { rows: 20, ..Plan::default() }));
+    let record = PreparedRecord::whole(&record(&ship(Vec::new()), TrialPlan { rows: 20, ..TrialPlan::default() }));
     assert_eq!(MissingMoment::new(&record, &base(), 1e-3, Vec::new()), None);
 }

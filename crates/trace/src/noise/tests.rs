@@ -2,19 +2,19 @@ use super::*;
 use nalgebra::DVector;
 use trial::{Channel, Columns, Origin, Trial};
 
-fn record(time: &[f64]) -> Record {
+fn record(time: &[f64]) -> PreparedRecord {
     let wave = |scale: f64| time.iter().map(|t| scale * (0.05 * t).sin()).collect::<Vec<_>>();
     let channels = [(Channel::Heading, wave(0.2)), (Channel::Rudder, wave(0.1))].into();
     let origin = Origin::Simulated { scenario: "noise".into(), cell: 0, replicate: 0 };
     let columns = Columns { time: time.to_vec(), channels, unknown: Vec::new() };
-    Record::whole(&Trial::new("noise", origin, columns).expect("a valid record"))
+    PreparedRecord::whole(&Trial::new("noise", origin, columns).expect("a valid record"))
 }
 
 /// Covariance of the heading that a random moment and waves leave, added up from small steps.
-fn covariance(time: &[f64], a: f64, colour: &Colour, longest: f64) -> DMatrix<f64> {
+fn covariance(time: &[f64], a: f64, colour: &NoiseColour, longest: f64) -> DMatrix<f64> {
     let n = time.len();
     let mut total = DMatrix::identity(n, n);
-    if let Some((kind @ Wander::Compass(_), level)) = colour.wander {
+    if let Some((kind @ CorrelatedNoise::Compass(_), level)) = colour.wander {
         let tau = kind.correlation(longest).expect("an error that lasts");
         total += DMatrix::from_fn(n, n, |i, j| level * (-(time[i] - time[j]).abs() / tau).exp());
     } else if let Some((kind, level)) = colour.wander {
@@ -22,14 +22,14 @@ fn covariance(time: &[f64], a: f64, colour: &Colour, longest: f64) -> DMatrix<f6
         let faded = |rate: f64, t: f64| (1.0 - (-rate * t).exp()) / rate;
         let tau = kind.correlation(longest).unwrap_or(f64::NAN);
         let impulse = |a: f64, t: f64| match kind {
-            Wander::White => faded(a, t),
-            Wander::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
+            CorrelatedNoise::White => faded(a, t),
+            CorrelatedNoise::OrnsteinUhlenbeck(_) => (faded(tau.recip(), t) - faded(a, t)) / (a - tau.recip()),
             _ => (t - faded(a, t)) / a,
         };
         let white = 3.0 / longest.powi(3);
         let intensity = match kind {
-            Wander::White => white,
-            Wander::OrnsteinUhlenbeck(_) => white / (tau * tau),
+            CorrelatedNoise::White => white,
+            CorrelatedNoise::OrnsteinUhlenbeck(_) => white / (tau * tau),
             _ => 20.0 / longest.powi(5),
         };
         if kind.correlation(longest).is_some() {
@@ -72,13 +72,13 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
         let a = 0.08;
         let noise = RecordNoise::new(&record, a, longest, 1);
         let colours = [
-            Colour { wander: Some((Wander::White, 50.0)), waves: None },
-            Colour { wander: Some((Wander::Walk, 400.0)), waves: None },
-            Colour { wander: Some((Wander::OrnsteinUhlenbeck(2), 80.0)), waves: None },
-            Colour { wander: Some((Wander::Compass(3), 9.0)), waves: None },
-            Colour { wander: Some((Wander::Compass(2), 2.0)), waves: Some(waves) },
-            Colour { wander: None, waves: Some(waves) },
-            Colour { wander: Some((Wander::Walk, 100.0)), waves: Some(waves) },
+            NoiseColour { wander: Some((CorrelatedNoise::White, 50.0)), waves: None },
+            NoiseColour { wander: Some((CorrelatedNoise::Walk, 400.0)), waves: None },
+            NoiseColour { wander: Some((CorrelatedNoise::OrnsteinUhlenbeck(2), 80.0)), waves: None },
+            NoiseColour { wander: Some((CorrelatedNoise::Compass(3), 9.0)), waves: None },
+            NoiseColour { wander: Some((CorrelatedNoise::Compass(2), 2.0)), waves: Some(waves) },
+            NoiseColour { wander: None, waves: Some(waves) },
+            NoiseColour { wander: Some((CorrelatedNoise::Walk, 100.0)), waves: Some(waves) },
         ];
         for colour in colours {
             let dense = covariance(&time, a, &colour, longest).cholesky().expect("positive definite");
@@ -107,7 +107,7 @@ fn rows_count_by_their_readings() {
     record.readings.fill(4);
     record.readings[7] = 1;
     let noise = RecordNoise::new(&record, 0.1, 19.0, 4);
-    for colour in [Colour::WHITE, Colour { wander: Some((Wander::White, 1e-12)), waves: None }] {
+    for colour in [NoiseColour::WHITE, NoiseColour { wander: Some((CorrelatedNoise::White, 1e-12)), waves: None }] {
         let whitener = noise.whitener(&colour);
         let mut column = vec![1.0; 20];
         whitener.apply(&mut [&mut column]);
@@ -119,7 +119,7 @@ fn rows_count_by_their_readings() {
 #[test]
 fn white_noise_is_left_alone() {
     let time: Vec<f64> = (0..20).map(f64::from).collect();
-    let whitener = RecordNoise::new(&record(&time), 0.1, 19.0, 1).whitener(&Colour::WHITE);
+    let whitener = RecordNoise::new(&record(&time), 0.1, 19.0, 1).whitener(&NoiseColour::WHITE);
     let mut column: Vec<f64> = time.clone();
     whitener.apply(&mut [&mut column]);
     assert_eq!((column, whitener.log_variance), (time, 0.0));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::quadratic::Support;
 use crate::candidates::PROBABILITY;
-use crate::fit::Fit;
+use crate::fit::StructureFit;
 use crate::model::{Structure, TermName};
 
 /// Odds against the best within which structures are members of the average.
@@ -12,9 +12,9 @@ const MEMBERS: f64 = 20.0;
 
 /// A refitted structure with its weight among all.
 #[derive(Debug, Clone)]
-pub struct Member {
+pub struct WeighedStructure {
     /// The fit.
-    pub fit: Fit,
+    pub fit: StructureFit,
     /// Probability.
     pub weight: f64,
     /// Log of evidence and prior odds.
@@ -25,7 +25,7 @@ pub struct Member {
 #[derive(Debug, Clone)]
 pub struct Structures {
     /// All that were refitted.
-    pub all: Vec<Member>,
+    pub all: Vec<WeighedStructure>,
     /// Probability of every candidate, by its name.
     pub probabilities: BTreeMap<TermName, f64>,
     /// Expected |size/error|² of every candidate beside all others: what cannot be seen is not observable.
@@ -43,9 +43,9 @@ pub(super) fn names(structure: &Structure) -> Vec<TermName> {
 
 impl Structures {
     /// The members of the average with their weights, which sum to one.
-    pub fn members(&self) -> Vec<(f64, &Fit)> {
+    pub fn members(&self) -> Vec<(f64, &StructureFit)> {
         let least = self.all.first().map_or(0.0, |one| one.weight) / MEMBERS;
-        let kept: Vec<&Member> = self.all.iter().filter(|one| one.weight >= least).collect();
+        let kept: Vec<&WeighedStructure> = self.all.iter().filter(|one| one.weight >= least).collect();
         let total: f64 = kept.iter().map(|one| one.weight).sum();
         kept.iter().map(|one| (one.weight / total, &one.fit)).collect()
     }
@@ -81,7 +81,7 @@ impl Structures {
 
     /// Mean square of what the most probable structure leaves that has nothing but the ship in it, rad².
     pub(super) fn mean_square_of_ship(&self) -> f64 {
-        let is_ship = |one: &&Member| one.fit.structure.terms.iter().all(|term| !term.effect.is_of_time());
+        let is_ship = |one: &&WeighedStructure| one.fit.structure.terms.iter().all(|term| !term.effect.is_of_time());
         let residual = self.all.iter().find(is_ship).into_iter().flat_map(|best| best.fit.residual.iter().flatten());
         let (sum, rows) = residual.fold((0.0, 0.0), |(sum, rows), e| (sum + e * e, rows + 1.0));
         if rows > 0.0 { sum / rows } else { f64::INFINITY }
