@@ -118,7 +118,6 @@ impl PredictDocument {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mixture::ShipMixture;
     use crate::testing;
     use crate::{form, imo};
 
