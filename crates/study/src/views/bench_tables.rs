@@ -40,22 +40,17 @@ pub fn board_name(board: &Board) -> String {
     format!("{}, {}", board.task.title(), board.field)
 }
 
-fn columns(reference: &str, indices: bool) -> Vec<Column> {
-    let mut columns = vec![
-        Column::left("method"),
-        Column::decimal("median"),
-        Column::left("95 %"),
-        Column::decimal("90 % within"),
-        Column::right("failed"),
-        Column::decimal(format!("over {reference}")),
-        Column::left("95 %"),
-        Column::decimal("better").unit("%"),
-        Column::decimal("mean rank"),
-    ];
-    if indices {
-        columns.extend(Column::all(".intervals hold K [%] | .hold T [%]"));
-    }
-    columns
+/// A number of things, empty where there are none.
+fn count(count: usize) -> String {
+    if count == 0 { String::new() } else { count.to_string() }
+}
+
+/// Columns of a board behind those of `first`.
+fn columns(first: &str, reference: &str, indices: bool) -> Vec<Column> {
+    let held = if indices { " | .intervals hold K [%] | .hold T [%]" } else { "" };
+    Column::all(&format!(
+        "{first} | .median | 95 % | .90 % within | >failed | .over {reference} | 95 % | .better [%] | .mean rank{held}"
+    ))
 }
 
 fn cells(standing: &Standing, indices: bool) -> Vec<String> {
@@ -65,7 +60,7 @@ fn cells(standing: &Standing, indices: bool) -> Vec<String> {
         value(standing.median),
         ends(standing.median),
         value(standing.high),
-        if standing.failed == 0 { String::new() } else { standing.failed.to_string() },
+        count(standing.failed),
         paired(standing.ratio, value),
         paired(standing.ratio, ends),
         paired(standing.better.map(percent), |figure| figure.value.map_or_else(String::new, |value| fixed(value, 0))),
@@ -83,16 +78,14 @@ fn cells(standing: &Standing, indices: bool) -> Vec<String> {
 /// One board.
 pub fn board(results: &Results, board: &Board) -> Table {
     let indices = board.task == Task::Indices;
-    let mut table = Table::new(columns(&results.reference, indices));
+    let mut table = Table::new(columns("method", &results.reference, indices));
     board.standings.iter().for_each(|standing| table.push(cells(standing, indices)));
     table
 }
 
 /// All boards below each other, for a person.
 pub fn leaderboard(results: &Results) -> Table {
-    let mut columns = columns(&results.reference, true);
-    columns.splice(0..0, [Column::left("task"), Column::left("records"), Column::right("n")]);
-    let mut table = Table::new(columns);
+    let mut table = Table::new(columns("task | records | >n | method", &results.reference, true));
     for board in &results.boards {
         for standing in &board.standings {
             let mut line = vec![board.task.id().to_owned(), board.field.clone(), board.cases.to_string()];
@@ -135,20 +128,19 @@ pub fn leaderboard_numbers(results: &Results) -> Table {
     table
 }
 
+/// The median of a set; of one that is not finite, what decides it.
+fn median(own: Option<(f64, usize)>) -> String {
+    own.map_or_else(|| MISSING.to_owned(), |(median, _)| score(Some(median).filter(|median| median.is_finite())))
+}
+
 /// Medians set by set, methods side by side.
 pub fn sets(results: &Results) -> Table {
-    let heads = [Column::left("task"), Column::left("set"), Column::right("n")];
-    let methods = results.methods.iter().map(Column::decimal);
-    let mut table = Table::new(heads.into_iter().chain(methods).collect::<Vec<_>>());
+    let mut columns = Column::all("task | set | >n");
+    columns.extend(results.methods.iter().map(Column::decimal));
+    let mut table = Table::new(columns);
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
-        let cell = |own: &Option<(f64, usize)>| {
-            own.map_or_else(
-                || MISSING.to_owned(),
-                |(median, _)| score(Some(median).filter(|median| median.is_finite())),
-            )
-        };
         let head = [task.id().to_owned(), set, cases.to_string()];
-        table.push(head.into_iter().chain(methods.iter().map(cell)));
+        table.push(head.into_iter().chain(methods.into_iter().map(median)));
     }
     table
 }
@@ -162,33 +154,16 @@ pub fn of_method(results: &Results, method: &str) -> Table {
     let mut table = Table::new(columns);
     let Some(own) = place(method) else { return table };
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
-        let Some((median, failed)) = methods[own] else { continue };
-        let count = if failed == 0 { String::new() } else { failed.to_string() };
-        let mut line = vec![
-            task.id().to_owned(),
-            set,
-            cases.to_string(),
-            score(Some(median).filter(|median| median.is_finite())),
-            count,
-        ];
-        let other = reference.map(|place| methods[place]);
-        line.extend(other.map(|other| {
-            other.map_or_else(
-                || MISSING.to_owned(),
-                |(median, _)| score(Some(median).filter(|median| median.is_finite())),
-            )
-        }));
-        table.push(line);
+        let Some((_, failed)) = methods[own] else { continue };
+        let line = [task.id().to_owned(), set, cases.to_string(), median(methods[own]), count(failed)];
+        table.push(line.into_iter().chain(reference.map(|place| median(methods[place]))));
     }
     table
 }
 
 /// One method on every board.
 pub fn standings_of(results: &Results, method: &str) -> Table {
-    let mut columns = columns(&results.reference, true);
-    columns[0] = Column::left("task");
-    columns.insert(1, Column::right("n"));
-    let mut table = Table::new(columns);
+    let mut table = Table::new(columns("task | >n", &results.reference, true));
     for board in &results.boards {
         for (place, standing) in board.standings.iter().enumerate().filter(|(_, own)| own.method == method) {
             let mut line = cells(standing, board.task == Task::Indices);
@@ -201,14 +176,11 @@ pub fn standings_of(results: &Results, method: &str) -> Table {
 }
 
 fn naming_table(first: &str) -> Table {
-    let said = Naming::ALL.map(|one| Column::right(one.words()));
-    let heads = [Column::left("method"), Column::left(first), Column::right("n")];
-    let rest = [Column::right("failed"), Column::decimal("named").unit("%")];
-    Table::new(heads.into_iter().chain(said).chain(rest).collect::<Vec<_>>())
+    let said = Naming::ALL.map(Naming::words).join(" | >");
+    Table::headed(&format!("method | {first} | >n | >{said} | >failed | .named [%]"))
 }
 
 fn push_naming(table: &mut Table, line: &NamingLine, set: &str) {
-    let count = |count: usize| if count == 0 { String::new() } else { count.to_string() };
     let head = [line.method.clone(), set.to_owned(), line.named.of.to_string()];
     let rest = [count(line.failed), share(line.named)];
     table.push(head.into_iter().chain(line.counts.map(count)).chain(rest));
@@ -246,9 +218,7 @@ pub fn overall(results: &Results) -> Table {
 
 /// The sets and their records.
 pub fn present(results: &Results) -> Table {
-    let heads = [Column::left("set"), Column::right("trials"), Column::left("record"), Column::left("manoeuvre")];
-    let files = [Column::left("file"), Column::left("SHA-256")];
-    let mut table = Table::new(heads.into_iter().chain(files).collect::<Vec<_>>());
+    let mut table = Table::headed("set | >trials | record | manoeuvre | file | SHA-256");
     for set in &results.sets {
         for (place, record) in set.records.iter().enumerate() {
             let first = |text: String| if place == 0 { text } else { String::new() };
