@@ -238,9 +238,9 @@ fn what_a_program_says_beside_its_answers_is_kept_within_bounds() {
 
 /// The commands that were told.
 #[derive(Default)]
-struct Told(Mutex<Vec<String>>);
+struct CommandOutput(Mutex<Vec<String>>);
 
-impl Observer for Told {
+impl Observer for CommandOutput {
     fn note(&self, line: &str) {
         self.0.lock().expect("nobody panics").push(line.to_owned());
     }
@@ -254,7 +254,7 @@ fn a_run_says_what_it_starts_and_starts_few_processes() {
     // Both cells and both methods have one command.
     let study = scenario_of(&[command, command], "", &desk.path().join("outside.toml"));
     assert!(!started.exists(), "a scenario that is read starts nothing");
-    let told = Told::default();
+    let told = CommandOutput::default();
     run(&study, 3, &desk.path().join("out"), &told);
     let told = told.0.into_inner().expect("nobody panics");
     assert!(told.len() == 1 && told[0].contains("estimator started") && told[0].contains("`mine 0`"), "{told:?}");

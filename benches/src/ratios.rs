@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use report::number::{self, MISSING, significant};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use serde::Deserialize;
 
 use crate::work::{Cores, Group, Reach, Row, Work};
@@ -159,13 +159,13 @@ fn estimate(path: &Path) -> Option<Measured> {
 /// The table of a group.
 pub fn table(lines: &[Line]) -> Table {
     let mut table = Table::new([
-        Column::left("work"),
-        Column::left("time"),
-        Column::left("beside it"),
-        Column::left("its time"),
-        Column::decimal("ratio"),
-        Column::left("reach"),
-        Column::left("verdict"),
+        TableColumn::left("work"),
+        TableColumn::left("time"),
+        TableColumn::left("beside it"),
+        TableColumn::left("its time"),
+        TableColumn::decimal("ratio"),
+        TableColumn::left("reach"),
+        TableColumn::left("verdict"),
     ]);
     for line in lines {
         let work = &line.row.work;

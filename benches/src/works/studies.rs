@@ -6,7 +6,7 @@ use std::sync::Arc;
 use campaign::collect::in_memory;
 use campaign::curves::zigzag_figure;
 use rayon::prelude::*;
-use report::{Figure, Theme};
+use report::{Drawing, Theme};
 use scenario::Scenario;
 use trial::ZigZag;
 
@@ -43,7 +43,7 @@ fn trials() -> impl Fn() -> usize + Send + Sync + 'static {
     move || in_memory(&scenario).1.len()
 }
 
-fn drawing() -> Figure {
+fn drawing() -> Drawing {
     let trial = record(&first_order_zig_zag(ROWS));
     let zigzag = ZigZag::of(&trial).expect("a zig-zag");
     report::figures::Plot::from(zigzag_figure(&trial, &zigzag)).draw(&Theme::screen())

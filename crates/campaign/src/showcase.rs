@@ -3,9 +3,9 @@
 
 use identify::{Estimate, IdentifierSettings};
 use report::figures::{
-    CurveFit, Derivatives, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays, ZigzagTrial,
+    CurveFit, DerivativeCurves, Intervals, MethodEstimate, MotionCurves, PointEstimate, Reference, Replays, ZigzagTrial,
 };
-use report::{Curve, Origin};
+use report::{CurveOrigin, PlotCurve};
 use serde::{Deserialize, Serialize};
 use ship::FirstOrder;
 use simulate::Truth;
@@ -27,7 +27,7 @@ pub struct Showcase {
     /// The Fourier fit with its residual.
     pub fourier_fit: Option<CurveFit>,
     /// Heading, yaw rate and yaw acceleration of the fits against the truth.
-    pub derivatives: Option<Derivatives>,
+    pub derivatives: Option<DerivativeCurves>,
     /// Every method's replay.
     pub replays: Replays,
     /// K and T of every method.
@@ -70,7 +70,7 @@ pub fn of_cell(scenario: &Scenario, index: usize) -> Option<Showcase> {
             ..zigzag_figure(trial, &zigzag)
         }),
         fourier_fit: fits.first().map(|fit| CurveFit { title: title("Fourier fit"), ..fit.curve_fit(trial) }),
-        derivatives: (!fits.0.is_empty()).then(|| Derivatives {
+        derivatives: (!fits.0.is_empty()).then(|| DerivativeCurves {
             title: title("heading and its derivatives"),
             curves: std::iter::once(truth_curves(truth)).chain(fits.0.iter().map(|fit| fit.motion(trial))).collect(),
         }),
@@ -112,7 +112,7 @@ fn intervals(
 
 fn truth_curves(truth: &Truth) -> MotionCurves {
     MotionCurves {
-        origin: Origin::Truth,
+        origin: CurveOrigin::Truth,
         name: None,
         heading: curve(&truth.time, &truth.heading),
         yaw_rate: curve(&truth.time, &truth.yaw_rate),
@@ -122,7 +122,7 @@ fn truth_curves(truth: &Truth) -> MotionCurves {
 
 /// A Fourier curve of the heading; its time runs from the first observed row.
 struct FourierFit {
-    origin: Origin,
+    origin: CurveOrigin,
     curve: identify::fourier::FourierFit,
     window: [f64; 2],
 }
@@ -170,7 +170,7 @@ impl FourierFit {
         (0..=points).map(|k| from + (to - from) * k as f64 / points as f64).collect()
     }
 
-    fn sampled(&self, trial: &Trial, value: impl Fn(f64) -> f64) -> Curve {
+    fn sampled(&self, trial: &Trial, value: impl Fn(f64) -> f64) -> PlotCurve {
         let start = start_of(trial);
         let times = self.times(trial);
         let values: Vec<f64> = times.iter().map(|&t| value(t)).collect();

@@ -56,12 +56,12 @@ mod scene;
 mod svg;
 mod ticks;
 
-pub use curve::Curve;
+pub use curve::PlotCurve;
 pub use error::ReportError;
-pub use figure::Figure;
+pub use figure::Drawing;
 pub use markup::symbol;
 pub use page::{Page, PageFigure};
-pub use palette::Origin;
+pub use palette::CurveOrigin;
 pub use style::Style;
-pub use table::{Alignment, Column, Table};
+pub use table::{Alignment, Table, TableColumn};
 pub use theme::Theme;

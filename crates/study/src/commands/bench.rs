@@ -13,7 +13,7 @@ use scenario::problem::suggestion;
 
 use crate::bench_options::BenchRequest;
 use crate::options::Common;
-use crate::screen::{self, Told};
+use crate::screen::{self, CommandOutput};
 use crate::terminal::Terminal;
 use crate::views::page_files::{REPORT, write_page};
 use crate::views::{bench_figures, bench_page, bench_tables};
@@ -64,13 +64,13 @@ pub fn run(request: &BenchRequest, common: &Common) -> Result<(), Failure> {
         false => format!("\n{}", bench_tables::naming_totals(&results).to_text()),
     };
     let head = format!("{}: {} questions\n", results.definition.name, results.cases.len());
-    let told = Told {
+    let output = CommandOutput {
         words: [&head, &naming],
         table: &bench_tables::leaderboard(&results),
         notes: &notes,
         document: &results.json().on("describe", &folder.path().join(BENCH))?,
     };
-    screen::tell(common, &told, &[])
+    screen::tell(common, &output, &[])
 }
 
 /// Who takes part: the methods of the project, or those of them that are named, and outside estimators behind them.

@@ -5,7 +5,7 @@ use campaign::benchmark::cases::{Case, Naming};
 use campaign::benchmark::naming::{NamingLine, total};
 use campaign::benchmark::{Results, Task};
 use report::number::{MISSING, fixed, significant};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 /// What stands for a figure that an answer which failed decides.
 const FAILED: &str = "failed";
@@ -46,9 +46,9 @@ fn count(count: usize) -> String {
 }
 
 /// Columns of a board behind those of `first`.
-fn columns(first: &str, reference: &str, indices: bool) -> Vec<Column> {
+fn columns(first: &str, reference: &str, indices: bool) -> Vec<TableColumn> {
     let held = if indices { " | .intervals hold K [%] | .hold T [%]" } else { "" };
-    Column::all(&format!(
+    TableColumn::all(&format!(
         "{first} | .median | 95 % | .90 % within | >failed | .over {reference} | 95 % | .better [%] | .mean rank{held}"
     ))
 }
@@ -135,8 +135,8 @@ fn median(own: Option<(f64, usize)>) -> String {
 
 /// Medians set by set, methods side by side.
 pub fn sets(results: &Results) -> Table {
-    let mut columns = Column::all("task | set | >n");
-    columns.extend(results.methods.iter().map(Column::decimal));
+    let mut columns = TableColumn::all("task | set | >n");
+    columns.extend(results.methods.iter().map(TableColumn::decimal));
     let mut table = Table::new(columns);
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {
         let head = [task.id().to_owned(), set, cases.to_string()];
@@ -147,10 +147,10 @@ pub fn sets(results: &Results) -> Table {
 
 /// One method on every set, beside the reference.
 pub fn of_method(results: &Results, method: &str) -> Table {
-    let mut columns = Column::all("task | set | >n | .median | >failed");
+    let mut columns = TableColumn::all("task | set | >n | .median | >failed");
     let place = |label: &str| results.methods.iter().position(|own| own == label);
     let reference = place(&results.reference).filter(|_| method != results.reference);
-    columns.extend(reference.map(|_| Column::decimal(format!("median of {}", results.reference))));
+    columns.extend(reference.map(|_| TableColumn::decimal(format!("median of {}", results.reference))));
     let mut table = Table::new(columns);
     let Some(own) = place(method) else { return table };
     for SetLine { task, set, cases, methods } in by_set(&results.cases, &results.methods) {

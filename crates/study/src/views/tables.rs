@@ -2,7 +2,7 @@
 
 use report::figures::Reference;
 use report::number::{self, MISSING};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 use campaign::design::Design;
 use campaign::showcase::Showcase;
@@ -27,7 +27,7 @@ pub fn showcase(showcase: &Showcase) -> Table {
 /// Every figure of methods in cells, for other programs: `summary.csv`. An interval is two columns.
 pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     let mut columns = head(design);
-    columns.extend(["trials", "failed"].map(Column::right));
+    columns.extend(["trials", "failed"].map(TableColumn::right));
     for index in ["K", "T", "K/T"] {
         columns.extend(ERRORS.iter().flat_map(|(name, unit, _)| with_ends(&format!("{index} {name}"), unit)));
     }
@@ -37,7 +37,7 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
             .zip(["%", "deg", "deg", "deg"])
             .flat_map(|(name, unit)| with_ends(name, unit)),
     );
-    columns.push(Column::decimal("evaluations"));
+    columns.push(TableColumn::decimal("evaluations"));
     let mut table = Table::new(columns);
     for line in lines {
         let record = &line.record;
@@ -76,13 +76,13 @@ const ERRORS: [ErrorFigure; 14] = [
     ("sd/bound", "", |errors| errors.sd_over_bound),
 ];
 
-fn head(design: &Design) -> Vec<Column> {
-    head_of_cells(design).into_iter().chain([Column::left("method")]).collect()
+fn head(design: &Design) -> Vec<TableColumn> {
+    head_of_cells(design).into_iter().chain([TableColumn::left("method")]).collect()
 }
 
 /// One column for every axis.
-pub fn head_of_cells(design: &Design) -> Vec<Column> {
-    design.axes.iter().map(|axis| Column::left(axis.clone())).collect()
+pub fn head_of_cells(design: &Design) -> Vec<TableColumn> {
+    design.axes.iter().map(|axis| TableColumn::left(axis.clone())).collect()
 }
 
 fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
@@ -90,9 +90,9 @@ fn place(design: &Design, cell: usize, method: usize) -> Vec<String> {
     labels.chain([design.methods[method].label.clone()]).collect()
 }
 
-fn with_ends(name: &str, unit: &'static str) -> [Column; 3] {
+fn with_ends(name: &str, unit: &'static str) -> [TableColumn; 3] {
     ["", " lower 95", " upper 95"].map(|end| {
-        let column = Column::decimal(format!("{name}{end}"));
+        let column = TableColumn::decimal(format!("{name}{end}"));
         if unit.is_empty() { column } else { column.unit(unit) }
     })
 }
@@ -110,14 +110,14 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let records = || summary.methods.iter().map(|line| &line.record);
     let validated = records().any(|record| record.validation_rmse_deg.is_some());
     let mut columns = head(design);
-    columns.push(Column::right("failed"));
+    columns.push(TableColumn::right("failed"));
     for index in ["K", "T"] {
-        columns.push(Column::decimal(format!("{index} median")).unit("%"));
-        columns.push(Column::decimal(format!("{index} rms")).unit("%"));
-        columns.extend(Column::all("~95 % [%] | >coverage [%] | .sd/bound"));
+        columns.push(TableColumn::decimal(format!("{index} median")).unit("%"));
+        columns.push(TableColumn::decimal(format!("{index} rms")).unit("%"));
+        columns.extend(TableColumn::all("~95 % [%] | >coverage [%] | .sd/bound"));
     }
     if validated {
-        columns.push(Column::decimal("validation").unit("deg"));
+        columns.push(TableColumn::decimal("validation").unit("deg"));
     }
     let mut table = Table::new(columns);
     for line in &summary.methods {
@@ -145,12 +145,12 @@ fn brief(record: &Record) -> Vec<String> {
 
 /// One row per method over all cells.
 pub fn overall(summary: &Summary, design: &Design) -> Table {
-    let mut columns = Column::all("method | >failed");
+    let mut columns = TableColumn::all("method | >failed");
     for index in ["K", "T"] {
-        columns.push(Column::decimal(format!("{index} median size")).unit("%"));
-        columns.extend(Column::all("~95 % [%] | .90 % [%] | >coverage [%]"));
+        columns.push(TableColumn::decimal(format!("{index} median size")).unit("%"));
+        columns.extend(TableColumn::all("~95 % [%] | .90 % [%] | >coverage [%]"));
     }
-    columns.push(Column::decimal("validation").unit("deg"));
+    columns.push(TableColumn::decimal("validation").unit("deg"));
     let mut table = Table::new(columns);
     for (method, overall) in design.methods.iter().zip(&summary.overall) {
         let record = &overall.record;
@@ -182,7 +182,7 @@ pub fn for_paper(summary: &Summary, stored: &Stored) -> Table {
 /// Every method against the reference on the same trials: `pairs.csv`.
 pub fn pairs(lines: &[PairSummary], reference: &MethodName, design: &Design) -> Table {
     let mut columns = head(design);
-    columns.extend(Column::all("reference | >trials"));
+    columns.extend(TableColumn::all("reference | >trials"));
     for index in ["K", "T"] {
         columns.extend(with_ends(&format!("{index} rms difference"), "%"));
         columns.extend(with_ends(&format!("{index} rms ratio"), ""));

@@ -3,7 +3,7 @@
 use ::trace::document::{ErrorsEntry, Outcome, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 use ship::angle::to_deg;
 use trial::Quantity;
 
@@ -60,10 +60,10 @@ pub fn effects(document: &TraceDocument) -> Table {
 
 /// Errors before and after on some records.
 pub fn errors(records: &[RecordErrors]) -> Table {
-    let mut columns = ["record", "use", "model"].map(Column::left).to_vec();
-    columns.push(Column::decimal("heading").unit("deg"));
-    columns.extend(HORIZONS.map(|length| Column::decimal(format!("every {length:.0} s")).unit("deg")));
-    columns.extend(Column::all(
+    let mut columns = ["record", "use", "model"].map(TableColumn::left).to_vec();
+    columns.push(TableColumn::decimal("heading").unit("deg"));
+    columns.extend(HORIZONS.map(|length| TableColumn::decimal(format!("every {length:.0} s")).unit("deg")));
+    columns.extend(TableColumn::all(
         ".yaw rate [deg/s] | .overshoots [deg] | .after/before | .band covers [%] | \
             .band width [deg]",
     ));
@@ -105,10 +105,10 @@ pub fn parameters(document: &TraceDocument) -> Table {
     let model = &document.trace.model;
     let remarks = model.parameters.iter().any(|parameter| parameter.at_bound);
     let is_prime = model.indices.prime.is_some();
-    let mut columns = ["parameter", "value", "95 % interval", "unit"].map(Column::left).to_vec();
-    columns.extend(is_prime.then(|| ["prime", "value", "95 % interval"].map(Column::left)).into_iter().flatten());
-    columns.push(Column::left("record"));
-    columns.extend(remarks.then(|| Column::left("remark")));
+    let mut columns = ["parameter", "value", "95 % interval", "unit"].map(TableColumn::left).to_vec();
+    columns.extend(is_prime.then(|| ["prime", "value", "95 % interval"].map(TableColumn::left)).into_iter().flatten());
+    columns.push(TableColumn::left("record"));
+    columns.extend(remarks.then(|| TableColumn::left("remark")));
     let mut table = Table::new(columns);
     let mut push = |symbol: &str, (own, unit): (Quantity, String), prime: Option<Quantity>, rest: [&str; 2]| {
         let mut cells = vec![symbol.to_owned(), uncertain(own.value, own.sd), interval(own.ci95), unit];

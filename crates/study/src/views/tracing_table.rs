@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use report::number::{self, MISSING};
-use report::{Column, Table};
+use report::{Table, TableColumn};
 
 use super::tables::head_of_cells;
 use super::trace_charts::promised;
@@ -21,24 +21,24 @@ pub fn table(lines: &[TraceSummary], summary: &Summary, design: &Design, all_dig
     let several = has_several(design);
     let mut columns = head_of_cells(design);
     if several {
-        columns.push(Column::left("method"));
+        columns.push(TableColumn::left("method"));
     }
-    columns.extend(Column::all("missing | >trials"));
+    columns.extend(TableColumn::all("missing | >trials"));
     let shares = ["all named", "exact", "false names", "named where clear"];
     for name in shares {
-        columns.push(Column::decimal(name).unit("%"));
+        columns.push(TableColumn::decimal(name).unit("%"));
         if all_digits {
-            columns.extend(["low", "high"].map(|end| Column::decimal(format!("{name} {end}")).unit("%")));
+            columns.extend(["low", "high"].map(|end| TableColumn::decimal(format!("{name} {end}")).unit("%")));
         }
     }
-    columns.push(Column::right(format!("clear (margin above {CLEAR:.0})")));
-    columns.extend(["clean", "traced", "unexplained"].map(Column::right));
+    columns.push(TableColumn::right(format!("clear (margin above {CLEAR:.0})")));
+    columns.extend(["clean", "traced", "unexplained"].map(TableColumn::right));
     for what in ["heading", "validation"] {
-        columns.extend(["before", "after"].map(|when| Column::decimal(format!("{what} {when}")).unit("deg")));
+        columns.extend(["before", "after"].map(|when| TableColumn::decimal(format!("{what} {when}")).unit("deg")));
     }
-    columns.push(Column::decimal("expected likelihood ratio"));
-    columns.extend(["band covers", "band covers validation"].map(|name| Column::decimal(name).unit("%")));
-    columns.push(Column::left("named"));
+    columns.push(TableColumn::decimal("expected likelihood ratio"));
+    columns.extend(["band covers", "band covers validation"].map(|name| TableColumn::decimal(name).unit("%")));
+    columns.push(TableColumn::left("named"));
     let mut table = Table::new(columns);
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
@@ -106,15 +106,15 @@ pub fn has_several(design: &Design) -> bool {
 /// All cells of one kind together, a line each of every trace: nothing missing, one effect, several, a hull.
 pub fn kinds(lines: &[TraceSummary], design: &Design) -> Table {
     let several = has_several(design);
-    let method = several.then(|| Column::left("method"));
+    let method = several.then(|| TableColumn::left("method"));
     let mut table = Table::new(Vec::from_iter(method.into_iter().chain([
-        Column::left("cells"),
-        Column::right("number"),
-        Column::right("trials"),
-        Column::left("all named [%]"),
-        Column::left("exact [%]"),
-        Column::left("false names [%]"),
-        Column::left("named where clear [%]"),
+        TableColumn::left("cells"),
+        TableColumn::right("number"),
+        TableColumn::right("trials"),
+        TableColumn::left("all named [%]"),
+        TableColumn::left("exact [%]"),
+        TableColumn::left("false names [%]"),
+        TableColumn::left("named where clear [%]"),
     ])));
     let kind = |line: &TraceSummary| match line.missing.len() {
         0 => "nothing missing",
