@@ -104,7 +104,7 @@ impl PlotAxis {
     }
 
     /// Kind, ends and where the scale begins as a fraction, or the names: what a value is found with from its place.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn described(&self) -> String {
         let Self { lo, hi, .. } = self;
         match &self.scale {
             AxisScale::Linear(_) => format!("linear|{lo}|{hi}"),

@@ -174,8 +174,8 @@ impl Canvas {
     }
 
     /// Enters a line about a panel.
-    pub(crate) fn panel(&mut self, told: String) {
-        self.frames.push(told);
+    pub(crate) fn panel(&mut self, line: String) {
+        self.frames.push(line);
     }
 
     /// The lines about all panels.

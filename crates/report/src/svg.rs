@@ -160,7 +160,7 @@ fn opacity_of(ink: &str, opacity: f64) -> String {
 /// An empty group that says where a panel is, in units of the view box, and what its axes are: kind, ends, title.
 pub(crate) fn panel(rect: &Rect, x: (&PlotAxis, &str), y: (&PlotAxis, &str)) -> String {
     let [left, top, width, height] = [rect.x, rect.y, rect.w, rect.h].map(units);
-    let [x_axis, y_axis] = [x.0, y.0].map(|axis| escaped(&axis.shapes_by_series()));
+    let [x_axis, y_axis] = [x.0, y.0].map(|axis| escaped(&axis.described()));
     let [x_title, y_title] = [x.1, y.1].map(escaped);
     format!(
         "<g data-panel=\"{left} {top} {width} {height}\" data-x=\"{x_axis}\" data-y=\"{y_axis}\" \

@@ -12,8 +12,8 @@ use campaign::summary::PredictionSummary;
 pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut columns = head_of_cells(design);
     columns.extend(TableColumn::all("method | figure | unit | >trials"));
-    columns.extend(["inside 90 %", "lower 95", "upper 95"].map(|name| TableColumn::decimal(name).unit("%")));
-    columns.extend(["of the ship", "bias", "rms error", "width"].map(|name| TableColumn::decimal(name.to_owned())));
+    let heads = ".inside 90 % [%] | .lower 95 [%] | .upper 95 [%] | .of the ship | .bias | .rms error | .width";
+    columns.extend(TableColumn::all(heads));
     let mut table = Table::new(columns);
     for line in lines {
         let mut cells: Vec<String> = design.cells[line.cell].labels.clone();
@@ -30,8 +30,7 @@ pub fn table(lines: &[PredictionSummary], design: &Design) -> Table {
 pub fn pooled(lines: &[PredictionSummary], design: &Design) -> Table {
     let mut columns = head_of_cells(design);
     columns.extend(TableColumn::all("method | >figures | >trials"));
-    columns.extend(["inside 90 %", "lowest", "highest"].map(|name| TableColumn::decimal(name).unit("%")));
-    columns.extend(TableColumn::all("lowest of | highest of"));
+    columns.extend(TableColumn::all(".inside 90 % [%] | .lowest [%] | .highest [%] | lowest of | highest of"));
     let mut table = Table::new(columns);
     for group in lines.chunk_by(|one, other| (one.cell, one.method) == (other.cell, other.method)) {
         let [first, ..] = group else { continue };

@@ -112,20 +112,15 @@ pub fn summary_in_brief(summary: &Summary, design: &Design) -> Table {
     let mut columns = head(design);
     columns.push(TableColumn::right("failed"));
     for index in ["K", "T"] {
-        columns.push(TableColumn::decimal(format!("{index} median")).unit("%"));
-        columns.push(TableColumn::decimal(format!("{index} rms")).unit("%"));
-        columns.extend(TableColumn::all("~95 % [%] | >coverage [%] | .sd/bound"));
+        let heads = format!(".{index} median [%] | .{index} rms [%] | ~95 % [%] | >coverage [%] | .sd/bound");
+        columns.extend(TableColumn::all(&heads));
     }
-    if validated {
-        columns.push(TableColumn::decimal("validation").unit("deg"));
-    }
+    columns.extend(validated.then(|| TableColumn::decimal("validation").unit("deg")));
     let mut table = Table::new(columns);
     for line in &summary.methods {
         let mut cells = place(design, line.cell, line.method);
         cells.extend(brief(&line.record));
-        if validated {
-            cells.push(supported(line.record.validation_rmse_deg));
-        }
+        cells.extend(validated.then(|| supported(line.record.validation_rmse_deg)));
         table.push(cells);
     }
     table
@@ -145,13 +140,8 @@ fn brief(record: &Record) -> Vec<String> {
 
 /// One row per method over all cells.
 pub fn overall(summary: &Summary, design: &Design) -> Table {
-    let mut columns = TableColumn::all("method | >failed");
-    for index in ["K", "T"] {
-        columns.push(TableColumn::decimal(format!("{index} median size")).unit("%"));
-        columns.extend(TableColumn::all("~95 % [%] | .90 % [%] | >coverage [%]"));
-    }
-    columns.push(TableColumn::decimal("validation").unit("deg"));
-    let mut table = Table::new(columns);
+    let of = |index: &str| format!(".{index} median size [%] | ~95 % [%] | .90 % [%] | >coverage [%]");
+    let mut table = Table::headed(&format!("method | >failed | {} | {} | .validation [deg]", of("K"), of("T")));
     for (method, overall) in design.methods.iter().zip(&summary.overall) {
         let record = &overall.record;
         let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
