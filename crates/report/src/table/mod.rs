@@ -18,13 +18,7 @@ mod tests {
     use super::*;
 
     pub(super) fn sample() -> Table {
-        let mut table = Table::new([
-            TableColumn::left("method"),
-            TableColumn::decimal("K").unit("1/s"),
-            TableColumn::decimal("ψ rms").unit("°"),
-            TableColumn::right("n"),
-        ])
-        .titled("Estimates & errors");
+        let mut table = Table::headed("method | .K [1/s] | .ψ rms [°] | >n").titled("Estimates & errors");
         table.push(["output-error", "0.1003 ± 0.0007", "0.10", "271"]);
         table.push(["least_squares", "−0.25", "–", "12"]);
         table.push(["fourier|pub, \"5\"", "12.5", "100.5"]);

@@ -138,3 +138,25 @@ pub fn steady_turns(curves: &[SteadyCurve], seen: ValidityRange) -> Panels {
     let note = Some(String::from("Outside the grey field the curves are extrapolated."));
     Panels { note, ..plane(String::from("Steady turns"), Ruler::rudder(), 0.42, layers) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_solid_line_is_broken_between_the_ends_of_an_unstable_branch() {
+        let rates = (-4..=4).map(f64::from);
+        let own = SteadyCurve {
+            yaw_rate: rates.clone().map(|rate| 0.01 * rate).collect(),
+            rudder: rates.map(|rate| 0.02 * (0.25 * rate.powi(3) - rate)).collect(),
+        };
+        let data = steady_turns(&[own], ValidityRange { rudder_rad: 0.2, yaw_rate_rad_s: 0.03 });
+        let finite = |name: &str| -> Vec<usize> {
+            let layers = &data.stacks[0].panels[0].layers;
+            let layer = layers.iter().find(|layer| layer.name.as_deref() == Some(name)).expect("it is drawn");
+            (0..9).filter(|&row| layer.curve.x[row].is_finite()).collect()
+        };
+        assert_eq!(finite("most probable ship"), [0, 1, 2, 3, 5, 6, 7, 8]);
+        assert_eq!(finite("unstable branch"), [3, 4, 5]);
+    }
+}
