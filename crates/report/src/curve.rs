@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_curve_that_can_be_shown_is_kept_to_the_bit() {
-        let x: Vec<f64> = (0..Curve::MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
+        let x: Vec<f64> = (0..PlotCurve::MOST_PAIRS).map(|k| 0.1 * k as f64).collect();
         let y: Vec<f64> = x.iter().map(|x| x.sin()).collect();
         assert_eq!(PlotCurve::new(x.as_slice(), y.as_slice()), PlotCurve { x, y });
     }

@@ -93,7 +93,7 @@ impl Sheet {
             let size = theme.title_font;
             for line in wrap(title, size, true, theme.width - 2.0 * theme.small_font) {
                 sheet.y += 1.2 * size;
-                let text = TextLine { bold: true, ..Text::new(line, size).anchor(Anchor::Middle) };
+                let text = TextLine { bold: true, ..TextLine::new(line, size).anchor(Anchor::Middle) };
                 sheet.scene.text(Layer::Note, (theme.width / 2.0, sheet.y), text);
             }
             sheet.y += 0.35 * size;
@@ -319,7 +319,7 @@ impl Sheet {
         let theme = self.theme;
         for (i, line) in lines.into_iter().enumerate() {
             let x = self.edge + 0.5 * theme.small_font + (0.85 + 1.2 * i as f64) * theme.label_font;
-            let text = TextLine { turned: true, ..Text::new(line, theme.label_font).anchor(Anchor::Middle) };
+            let text = TextLine { turned: true, ..TextLine::new(line, theme.label_font).anchor(Anchor::Middle) };
             self.scene.text(Layer::Frame, (x, middle), text);
         }
     }
@@ -332,7 +332,8 @@ impl Sheet {
             // Names too long to stand side by side are turned and end at their tick.
             let top = rect.bottom() + self.tick_length() + 0.3 * theme.tick_font;
             for (f, label) in &ticks.major {
-                let text = TextLine { turned: true, ..Text::new(label.as_str(), theme.tick_font).anchor(Anchor::End) };
+                let text =
+                    TextLine { turned: true, ..TextLine::new(label.as_str(), theme.tick_font).anchor(Anchor::End) };
                 let x = rect.x + f * rect.w + text.centring();
                 self.scene.text(Layer::Frame, (x, top), text);
             }

@@ -12,7 +12,7 @@ const GAP: f64 = 0.8;
 
 fn text(layer: &Layer, line: &str, theme: &Theme) -> TextLine {
     let colour = if layer.is_quiet() { RECORD } else { layer.colour() };
-    TextLine { bold: !layer.is_quiet(), ..Text::new(line, theme.small_font).colour(colour) }
+    TextLine { bold: !layer.is_quiet(), ..TextLine::new(line, theme.small_font).colour(colour) }
 }
 
 /// Width of the names with what keeps them clear of the frame, points.

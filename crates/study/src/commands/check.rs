@@ -73,7 +73,7 @@ fn summary(path: &Path, scenario: &Scenario) -> String {
     );
     let mut defaults = scenario.defaults_that_matter().into_iter();
     let instant = defaults.find(|(assumption, _)| *assumption == Assumption::InstantRudder);
-    let notes = outside::output(scenario).into_iter().chain(instant.map(|(_, sentence)| sentence));
+    let notes = outside::told(scenario).into_iter().chain(instant.map(|(_, sentence)| sentence));
     size + &notes.map(|note| format!("\n  note: {note}")).collect::<String>()
 }
 

@@ -136,7 +136,7 @@ fn single_records(title: String, all: &SingleRecords, document: &FitDocument) ->
     let ship = document.particulars();
     let joint = document.methods.iter().find(|entry| entry.method == all.method).and_then(|entry| entry.parameters);
     // Points are not joined: a cross or a star would hide its bar.
-    let look = Look { marker: Marker::Circle, ..Origin::Method(all.method.clone()).look() };
+    let look = Look { marker: Marker::Circle, ..CurveOrigin::Method(all.method.clone()).look() };
     let name = format!("{}, every record alone, 95 %", all.method);
     let panel = |of: Of, factor: f64, amplitude: fn(&SingleRecord) -> f64| {
         let point = |own: &SingleRecord| {

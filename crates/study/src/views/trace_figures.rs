@@ -212,7 +212,7 @@ pub fn overshoots(document: &TraceDocument, curves: &TraceCurves) -> Option<Page
                 let item = RowItem::new(origin.label(), RowKind::Mark(origin.look(), value, None)).softly();
                 Some(RowItem { aside: Some(aside), ..item })
             };
-            let measured = Look { marker: Marker::Square, ..Origin::Record.look() };
+            let measured = Look { marker: Marker::Square, ..CurveOrigin::Record.look() };
             let items = [
                 Some(RowItem::new("measured", RowKind::Bar(measured, angle))),
                 limit.map(|limit| RowItem::new("IMO limit", RowKind::Limit(limit.limit))),

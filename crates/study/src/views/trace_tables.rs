@@ -2,8 +2,8 @@
 
 use ::trace::document::{ErrorsEntry, Outcome, ParameterEntry, RecordNoiseEntry, TermEntry};
 use ::trace::replay_errors::HORIZONS;
+use report::Table;
 use report::number::{self, MISSING, fixed, optional, significant, uncertain};
-use report::{Table, TableColumn};
 use ship::angle::to_deg;
 use trial::Quantity;
 
