@@ -18,10 +18,10 @@ use crate::files::{MANIFEST, ROWS};
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
-use crate::plan::Plan;
+use crate::plan::TrialPlan;
 use crate::rows::{Layout, Reader, Row, Sequence, Writer};
 use crate::task::Task;
-use crate::timings::{self, Timings};
+use crate::timings::{TimingLine, Timings};
 use scenario::failure::{Failure, OnPath};
 use scenario::hex;
 
@@ -60,12 +60,12 @@ pub struct Unfinished<'a> {
 /// The description of a part.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Part {
+struct PartDescription {
     first: Task,
     last: Task,
     trials: u64,
     rows_sha256: String,
-    timings: Vec<timings::Line>,
+    timings: Vec<TimingLine>,
 }
 
 /// Whether a result folder holds a study in progress. What else may be in its folder `unfinished` is left of one that
@@ -188,7 +188,7 @@ impl<'a> Unfinished<'a> {
     /// Fails when a part cannot be read; then nothing is thrown away.
     pub fn resume(
         &mut self,
-        plan: &mut Plan,
+        plan: &mut TrialPlan,
         mut check: impl FnMut(Row) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let names = disk::names(self.folder.path()).on("list", self.folder.path())?;
@@ -250,7 +250,7 @@ impl<'a> Unfinished<'a> {
             return Ok(Err(format!("{}: {} is missing", rows.display(), about.display())));
         };
         let whole = || {
-            let about: Part = serde_json::from_slice(&description).map_err(|error| error.to_string())?;
+            let about: PartDescription = serde_json::from_slice(&description).map_err(|error| error.to_string())?;
             if hex(&Sha256::digest(&bytes)) != about.rows_sha256 {
                 return Err("it is damaged, its SHA-256 is another".to_owned());
             }
@@ -319,7 +319,7 @@ impl<'a> Unfinished<'a> {
         let mut writer = Writer::create(&self.folder, &rows_of(self.parts), self.layout)?;
         writer.push(rows.drain(..))?;
         let (file, rows_sha256) = writer.finish()?;
-        let part = Part { first, last, trials, rows_sha256, timings: timings.lines(&self.design).collect() };
+        let part = PartDescription { first, last, trials, rows_sha256, timings: timings.lines(&self.design).collect() };
         let name = about(self.parts);
         self.folder.keep(&name, serde_json::to_string(&part).on("describe", &self.path(&name))?)?;
         file.put()?;
@@ -375,7 +375,7 @@ fn task(trial: &[Row]) -> Task {
 }
 
 /// Moves a plan behind a trial. Fails when that is not the next one, whole.
-fn follows(plan: &mut Plan, trial: &[Row]) -> Result<(), String> {
+fn follows(plan: &mut TrialPlan, trial: &[Row]) -> Result<(), String> {
     let expected = plan.next(1).pop();
     let is_row = |(method, row): (usize, &Row)| row.method == method && task(std::slice::from_ref(row)) == task(trial);
     if expected != Some(task(trial)) || !trial.iter().enumerate().all(is_row) {

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::Share;
-use crate::benchmark::cases::{Case, Naming};
-use crate::benchmark::task::Task;
+use crate::benchmark::cases::{BenchTask, Case, Naming};
+use crate::benchmark::statistics::grouped;
 
 /// What a method said of the ships of one set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,38 +24,14 @@ pub struct NamingLine {
     pub named: Share,
 }
 
-impl Naming {
-    /// All of them, the best first.
-    pub const ALL: [Self; 5] = [Self::Right, Self::Alias, Self::More, Self::Wrong, Self::Nothing];
-
-    /// In words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Right => "right",
-            Self::Alias => "among aliases",
-            Self::More => "and more",
-            Self::Wrong => "wrong",
-            Self::Nothing => "nothing",
-        }
-    }
-}
-
 /// The lines of all methods, set by set.
 pub fn lines(cases: &[Case], methods: &[String]) -> Vec<NamingLine> {
-    let own: Vec<&Case> = cases.iter().filter(|case| case.task == Task::Name).collect();
-    let mut sets: Vec<&str> = own.iter().map(|case| case.set.as_str()).collect();
-    sets.dedup();
-    let mut lines = Vec::new();
-    for method in methods {
-        for set in &sets {
-            let of_set: Vec<&&Case> = own.iter().filter(|case| case.set == *set).collect();
-            lines.extend(line(method, set, &of_set));
-        }
-    }
-    lines
+    let own = cases.iter().filter(|case| case.task == BenchTask::Name);
+    let sets = grouped(own, |case| case.set.as_str());
+    methods.iter().flat_map(|method| sets.iter().filter_map(|(set, cases)| line(method, set, cases))).collect()
 }
 
-fn line(method: &str, set: &str, cases: &[&&Case]) -> Option<NamingLine> {
+fn line(method: &str, set: &str, cases: &[&Case]) -> Option<NamingLine> {
     let answers = || cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let counts = Naming::ALL.map(|one| answers().filter(|answer| answer.naming == Some(one)).count());
     Some(NamingLine {

@@ -16,5 +16,5 @@ mod tests;
 pub use columns::{COLUMNS, Column, OWN_COLUMNS, PREDICT_COLUMNS, TRACE_COLUMNS};
 pub use file::{Reader, Writer};
 pub use layout::Layout;
-pub use row::{Bound, Foretold, NamedEffect, Row, TraceAnswer};
+pub use row::{NamedEffect, PredictedFigure, Row, TraceAnswer};
 pub use sequence::Sequence;

@@ -48,7 +48,7 @@ impl Resamples {
         batches: &[BatchSums],
         statistics: impl Fn(&BatchSums) -> [Option<f64>; N],
     ) -> [Option<Statistic>; N] {
-        let whole = batches.iter().fold(BatchSums::default(), plus);
+        let whole = batches.iter().copied().sum::<BatchSums>();
         let values = statistics(&whole);
         if whole.count < FEWEST as f64 || batches.len() > self.batches {
             return values.map(|value| value.map(|value| Statistic { value, ci95: None }));
@@ -88,10 +88,6 @@ impl Resamples {
         }
         counts.into_iter().zip(firsts).zip(seconds).map(|((count, first), second)| BatchSums { count, first, second })
     }
-}
-
-fn plus(sum: BatchSums, batch: &BatchSums) -> BatchSums {
-    BatchSums { count: sum.count + batch.count, first: sum.first + batch.first, second: sum.second + batch.second }
 }
 
 #[cfg(test)]

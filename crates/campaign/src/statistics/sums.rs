@@ -2,6 +2,8 @@
 //! for every function of moments; with no more than 256 replicates each batch is one trial, and it is the ordinary
 //! bootstrap.
 
+use std::iter::Sum;
+
 /// Number of batches.
 pub const BATCHES: usize = 256;
 
@@ -14,6 +16,16 @@ pub struct BatchSums {
     pub first: f64,
     /// Sum of squares of the same.
     pub second: f64,
+}
+
+impl Sum for BatchSums {
+    fn sum<I: Iterator<Item = Self>>(batches: I) -> Self {
+        batches.fold(Self::default(), |sum, batch| Self {
+            count: sum.count + batch.count,
+            first: sum.first + batch.first,
+            second: sum.second + batch.second,
+        })
+    }
 }
 
 /// The batch of a replicate.
@@ -97,6 +109,11 @@ impl PairSums {
         &self.batches
     }
 
+    /// Trials in which both are known.
+    pub fn trials(&self) -> u64 {
+        self.batches.iter().map(|batch| batch.count).sum::<f64>() as u64
+    }
+
     /// Difference of the root mean squares of a total.
     pub fn difference(total: &BatchSums) -> Option<f64> {
         (total.count > 0.0).then(|| (total.first / total.count).sqrt() - (total.second / total.count).sqrt())
@@ -113,11 +130,7 @@ mod tests {
     use super::*;
 
     fn total(batches: &[BatchSums]) -> BatchSums {
-        batches.iter().fold(BatchSums::default(), |sum, batch| BatchSums {
-            count: sum.count + batch.count,
-            first: sum.first + batch.first,
-            second: sum.second + batch.second,
-        })
+        batches.iter().copied().sum()
     }
 
     #[test]

@@ -1,10 +1,12 @@
 //! Whether the intervals of predictions hold, figure by figure.
 
+use serde::{Deserialize, Serialize};
+
 use crate::rows::Row;
 use crate::statistics::{Statistic, share};
 
 /// One figure of a manoeuvre in one cell, predicted from the answers of one method.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct PredictionSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -92,12 +94,13 @@ impl PredictionTally {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::Foretold;
+    use crate::rows::PredictedFigure;
 
     #[test]
     fn intervals_are_counted_where_they_hold() {
         let row = |truth: f64| {
-            let figure = Foretold { name: "zig-zag 10/10 period_s".into(), truth, median: 100.0, ci90: [98.0, 103.0] };
+            let figure =
+                PredictedFigure { name: "zig-zag 10/10 period_s".into(), truth, median: 100.0, ci90: [98.0, 103.0] };
             Row { predicted: Some([figure].into()), ..Row::default() }
         };
         let mut tally = PredictionTally::default();

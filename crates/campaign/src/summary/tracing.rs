@@ -1,12 +1,14 @@
 //! What traces said, cell by cell: was everything named that was missing, and anything that was not.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::AddAssign;
 use std::sync::LazyLock;
 
 use ::trace::Verdict;
+use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
-use crate::rows::{NamedEffect, Row};
+use crate::rows::Row;
 use crate::statistics::{Statistic, share};
 use scenario::HULL;
 
@@ -15,7 +17,7 @@ use scenario::HULL;
 pub const CLEAR: f64 = 10.0;
 
 /// What traces said in one cell.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TraceSummary {
     /// Index of the cell.
     pub cell: usize,
@@ -47,15 +49,15 @@ pub struct TraceSummary {
     /// Mean share of the headings inside the band: of the trial, and of the validation manoeuvre.
     pub band: [Option<f64>; 2],
     /// Effects by the probability that was given to them; empty for a hull, of which nobody knows what it lacks.
-    pub promised: [Promised; PROMISED.len() - 1],
+    pub calibration: [CalibrationBin; CALIBRATION.len() - 1],
 }
 
-/// Ends of the ranges of probability that are told apart.
-pub const PROMISED: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
+/// Ends of the bins of probability.
+pub const CALIBRATION: [f64; 9] = [0.0, 0.01, 0.05, 0.2, 0.5, 0.8, 0.95, 0.99, 1.0];
 
-/// Effects whose probabilities are in one range.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Promised {
+/// Effects whose probabilities are in one bin.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct CalibrationBin {
     /// Effects on the list, one for every trial.
     pub effects: u64,
     /// Those of them that were there.
@@ -64,9 +66,8 @@ pub struct Promised {
     pub sum: f64,
 }
 
-impl Promised {
-    /// Adds those of other trials.
-    pub fn join(&mut self, other: &Self) {
+impl AddAssign for CalibrationBin {
+    fn add_assign(&mut self, other: Self) {
         self.effects += other.effects;
         self.present += other.present;
         self.sum += other.sum;
@@ -84,18 +85,22 @@ pub fn effect_ids() -> impl Iterator<Item = &'static str> {
 impl TraceSummary {
     /// Share of trials in which all that is missing was named.
     pub fn complete_share(&self) -> Option<Statistic> {
-        if self.missing.is_empty() || self.is_hull() { None } else { share(self.complete, self.trials) }
+        if self.missing.is_empty() { None } else { self.share_of(self.complete) }
     }
 
     /// Share of trials in which exactly what is missing was named; `None` for a hull.
     pub fn exact_share(&self) -> Option<Statistic> {
-        if self.is_hull() { None } else { share(self.exact, self.trials) }
+        self.share_of(self.exact)
     }
 
-    /// Share of trials in which something was named that is not missing; `None` for a hull, of which nobody knows what
-    /// it lacks.
+    /// Share of trials in which something was named that is not missing; `None` for a hull.
     pub fn wrong_share(&self) -> Option<Statistic> {
-        if self.is_hull() { None } else { share(self.wrong, self.trials) }
+        self.share_of(self.wrong)
+    }
+
+    /// A share of the trials; `None` for a hull, of which nobody knows what it lacks.
+    fn share_of(&self, count: u64) -> Option<Statistic> {
+        if self.is_hull() { None } else { share(count, self.trials) }
     }
 
     /// Share of clear trials in which the right effect was named.
@@ -115,23 +120,18 @@ pub struct TraceTally {
     missing: Vec<Vec<String>>,
     cells: Vec<TraceSummary>,
     /// Means of every line: of the expected likelihood ratio, and of the coverage of the two bands.
-    means: Vec<[Mean; 3]>,
+    means: Vec<[RunningMean; 3]>,
 }
 
-/// The mean of the numbers that there are.
+/// Sum and number of the numbers that there are.
 #[derive(Debug, Default, Clone, Copy)]
-struct Mean {
-    sum: f64,
-    count: u64,
-}
+struct RunningMean(f64, u64);
 
-impl Mean {
+impl RunningMean {
+    /// The mean with one more.
     fn add(&mut self, value: Option<f64>) -> Option<f64> {
-        if let Some(value) = value {
-            self.sum += value;
-            self.count += 1;
-        }
-        (self.count > 0).then(|| self.sum / self.count as f64)
+        *self = Self(self.0 + value.unwrap_or(0.0), self.1 + u64::from(value.is_some()));
+        (self.1 > 0).then(|| self.0 / self.1 as f64)
     }
 }
 
@@ -162,16 +162,15 @@ impl TraceTally {
         summary.silent += u64::from(answer.named.is_empty());
         let ids: BTreeSet<&str> = answer.named.iter().map(|effect| &*effect.id).collect();
         ids.into_iter().for_each(|id| *summary.named.entry(id.to_owned()).or_default() += 1);
-        let is_missing = |effect: &NamedEffect| summary.missing.iter().any(|id| effect.holds(id));
-        let stands_for =
-            |effect: &&NamedEffect| is_missing(effect) && summary.missing.iter().all(|id| **id != *effect.id);
-        let aliases: Vec<String> = answer.named.iter().filter(stands_for).map(|effect| effect.id.to_string()).collect();
-        let wrong = !answer.named.iter().all(is_missing);
-        summary.wrong += u64::from(wrong);
-        summary.aliases.extend(aliases);
-        let complete = summary.missing.iter().all(|id| answer.named.iter().any(|effect| effect.holds(id)));
-        summary.complete += u64::from(complete && !summary.missing.is_empty());
-        summary.exact += u64::from(complete && !wrong);
+        let missing = &summary.missing;
+        let (right, wrong): (Vec<_>, Vec<_>) =
+            answer.named.iter().partition(|effect| missing.iter().any(|id| effect.holds(id)));
+        let aliases = right.iter().filter(|effect| missing.iter().all(|id| **id != *effect.id));
+        summary.aliases.extend(aliases.map(|effect| effect.id.to_string()));
+        let complete = missing.iter().all(|id| right.iter().any(|effect| effect.holds(id)));
+        summary.wrong += u64::from(!wrong.is_empty());
+        summary.complete += u64::from(complete && !missing.is_empty());
+        summary.exact += u64::from(complete && wrong.is_empty());
         if answer.margin.is_some_and(|margin| margin > CLEAR) {
             summary.clear[0] += 1;
             summary.clear[1] += u64::from(complete);
@@ -179,10 +178,10 @@ impl TraceTally {
         let known = !summary.is_hull();
         for id in effect_ids().filter(|_| known) {
             let own = answer.probabilities.iter().find(|(other, _)| **other == *id);
-            let probability = own.map_or(0.0, |(_, probability)| *probability);
-            let range = PROMISED[1..].partition_point(|end| *end <= probability).min(summary.promised.len() - 1);
+            let sum = own.map_or(0.0, |(_, probability)| *probability);
+            let bin = CALIBRATION[1..].partition_point(|end| *end <= sum).min(summary.calibration.len() - 1);
             let present = u64::from(summary.missing.iter().any(|missing| missing == id));
-            summary.promised[range].join(&Promised { effects: 1, present, sum: probability });
+            summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
         }
         let [expected, fitted, held_out] = &mut self.means[at];
         summary.expected = expected.add(answer.expected);
@@ -198,7 +197,7 @@ impl TraceTally {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::TraceAnswer;
+    use crate::rows::{NamedEffect, TraceAnswer};
 
     /// A row that names effects, each with its aliases.
     fn row(groups: &[&[&str]], margin: Option<f64>) -> Row {
@@ -234,14 +233,14 @@ mod tests {
 
     /// Of the effects on the list one is there and was given 97 %, the others are not and were given nothing.
     #[test]
-    fn effects_are_counted_by_what_was_promised() {
+    fn effects_are_counted_by_their_probability() {
         let mut tally = TraceTally { missing: vec![vec!["wind_moment".into()]], ..TraceTally::default() };
         tally.add(&row(&[], None));
         let [summary] = tally.finish().try_into().expect("one cell");
         let others = effect_ids().count() as u64 - 1;
-        assert_eq!(summary.promised[0], Promised { effects: others, present: 0, sum: 0.0 });
-        assert_eq!(summary.promised[6], Promised { effects: 1, present: 1, sum: 0.97 });
-        assert_eq!(summary.promised.iter().map(|range| range.effects).sum::<u64>(), others + 1);
+        assert_eq!(summary.calibration[0], CalibrationBin { effects: others, present: 0, sum: 0.0 });
+        assert_eq!(summary.calibration[6], CalibrationBin { effects: 1, present: 1, sum: 0.97 });
+        assert_eq!(summary.calibration.iter().map(|range| range.effects).sum::<u64>(), others + 1);
     }
 
     #[test]
