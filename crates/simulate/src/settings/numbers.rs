@@ -64,26 +64,3 @@ macro_rules! numbers {
         $crate::numbers!($($rest)*);
     };
 }
-
-numbers! {
-    super::ManoeuvreSettings = ZigZag TurningCircle PullOut;
-    super::ZigZagSettings: rudder_deg heading_deg duration_s;
-    super::TurningCircleSettings: rudder_deg duration_s heading_change_deg;
-    super::PullOutSettings: rudder_deg hold_s duration_s;
-    super::GearSettings: rate_deg_s lag_s dead_time_s dead_band_deg maximum_deg;
-    super::HelmsmanSettings: reads_display_every_s reaction_time_s;
-    super::ApproachSettings: heading_deg yaw_rate_deg_s rudder_deg lead_in_s;
-    super::RecordingSettings: sampling_s duration_s offset_s assumed_rudder_rate_deg_s;
-    super::SensorSettings: heading_noise_deg heading_quantum_deg heading_lag_s heading_bias_deg heading_wander
-        heading_spikes yaw_rate_noise_deg_s yaw_rate_bias_deg_s yaw_rate_scale_error rudder_noise_deg
-        rudder_quantum_deg jitter_s heading_delay_s drop_out;
-    super::HeadingWanderSettings: sd_deg correlation_s;
-    super::HeadingSpikesSettings: probability size_deg;
-    super::DropOutSettings: probability burst_probability burst_mean_rows;
-    super::DisturbanceSettings: wind gusts drift_deg_per_s squall random_walk_deg_per_root_s waves;
-    super::WindSettings: moment_deg from_deg speed_m_s gusting;
-    super::GustingSettings: sd correlation_s;
-    super::GustSettings: sd_deg correlation_s;
-    super::SquallSettings: moment_deg start_s duration_s edge_s;
-    super::WavesSettings: sd_deg frequency_rad_s damping;
-}
