@@ -44,7 +44,7 @@ pub mod prelude {
     pub use campaign::collect::{collect, in_memory};
     pub use campaign::folder::ResultFolder;
     pub use campaign::summary::summarise;
-    pub use campaign::{Observer, Unwatched};
+    pub use campaign::{NoObserver, Observer};
     pub use identify::{
         Estimate, Identifier, IdentifierSettings, IdentifyError, StopReason, Uncertainty, output_error, registry,
     };

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::commands::{merge, report};
 use crate::options::{Common, FigureChoice, Format, StudyStyle, Style};
-use campaign::Unwatched;
+use campaign::NoObserver;
 use campaign::collect::collect;
 use campaign::disk::faults;
 use campaign::files;
@@ -45,7 +45,7 @@ const STYLE: StudyStyle =
 
 /// Runs a scenario into a folder.
 fn run(scenario: &Scenario, shard: Shard, folder: &Path) -> Result<(), Failure> {
-    collect(scenario, shard, &ResultFolder::hold(folder)?, false, &Unwatched).map(drop)
+    collect(scenario, shard, &ResultFolder::hold(folder)?, false, &NoObserver).map(drop)
 }
 
 /// All files of a folder with their bytes; but times differ from run to run.

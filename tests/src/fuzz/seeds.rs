@@ -28,7 +28,7 @@ static STUDY: LazyLock<Seed> = LazyLock::new(|| {
         Scenario::parse(&path, "small", include_str!("../../fuzz/corpus/scenario/small.toml").to_owned(), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
     ResultFolder::hold(folder.path())
-        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, &campaign::Unwatched))
+        .and_then(|held| collect(&scenario, Shard::WHOLE, &held, false, &campaign::NoObserver))
         .unwrap_or_else(|failure| panic!("{failure}"));
     let stored = Stored::read(folder.path()).unwrap_or_else(|failure| panic!("{failure}"));
     let Stored { design, manifest, .. } = stored;

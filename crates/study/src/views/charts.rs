@@ -116,7 +116,7 @@ impl<'a> Measure<'a> {
         let is_bounded = quantity == Quantity::Rms && cells().all(|cell| cell.bound_percent2.is_some());
         let over_bound = is_bounded && !cells().any(|cell| cell.is_nearest);
         if quantity == Quantity::Failures {
-            methods.retain(|&method| summary.overall[method].record.failed() > 0);
+            methods.retain(|&method| summary.overall[method].failed() > 0);
         }
         Some(Self { design, summary, quantity, over_bound, to_nearest, methods })
     }

@@ -8,7 +8,7 @@ use campaign::design::Design;
 use campaign::showcase::Showcase;
 use campaign::statistics::Statistic;
 use campaign::store::Stored;
-use campaign::summary::{Errors, MethodSummary, PairSummary, Record, Summary};
+use campaign::summary::{IndexErrors, MethodSummary, PairSummary, Record, Summary};
 use scenario::MethodName;
 
 /// The table of a showcase: the methods, and below them the truth and the published values.
@@ -56,8 +56,8 @@ pub fn summary(lines: &[MethodSummary], design: &Design) -> Table {
     table
 }
 
-/// A figure of [`Errors`]: its name, unit, and how to get it.
-type ErrorFigure = (&'static str, &'static str, fn(&Errors) -> Option<Statistic>);
+/// A figure of [`IndexErrors`]: its name, unit, and how to get it.
+type ErrorFigure = (&'static str, &'static str, fn(&IndexErrors) -> Option<Statistic>);
 
 const ERRORS: [ErrorFigure; 14] = [
     ("mean error", "%", |errors| errors.mean),
@@ -156,8 +156,7 @@ pub fn overall(summary: &Summary, design: &Design) -> Table {
     }
     columns.push(Column::decimal("validation").unit("deg"));
     let mut table = Table::new(columns);
-    for (method, overall) in design.methods.iter().zip(&summary.overall) {
-        let record = &overall.record;
+    for (method, record) in design.methods.iter().zip(&summary.overall) {
         let mut cells = vec![method.label.clone(), format!("{}/{}", record.failed(), record.trials)];
         for errors in [&record.k, &record.t] {
             cells.push(supported(errors.median_size));

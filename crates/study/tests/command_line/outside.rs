@@ -136,7 +136,7 @@ fn answers_from_the_truth_have_no_error() {
     assert_eq!(scored.len(), 18);
     for row in &scored {
         let is_ours = row.method == 2;
-        let error = row.t_error().expect("all answered").abs();
+        let error = row.errors()[1].expect("all answered").abs();
         assert!(if is_ours { error < 1e-12 } else { error > 1e-6 }, "{row:?}");
     }
     // Among the records of the folder neither their list nor the answers are taken for one.
