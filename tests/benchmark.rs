@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use campaign::benchmark::board::boards;
-use campaign::benchmark::cases::Case;
+use campaign::benchmark::cases::BenchCase;
 use campaign::benchmark::overall::overall;
 use campaign::benchmark::{BenchDocument, BenchTask, Definition, naming};
 
@@ -42,7 +42,7 @@ fn the_published_leaderboards_follow_from_the_stored_answers() {
     assert_eq!(results.overall, overall(&results.cases, &results.methods));
     // The figures themselves, by another way: half of the scores are not larger, half are not smaller.
     for board in &results.boards {
-        let cases: Vec<&Case> =
+        let cases: Vec<&BenchCase> =
             results.cases.iter().filter(|case| case.task == board.task && case.field == board.field).collect();
         for standing in &board.standings {
             let scores: Vec<f64> = cases.iter().filter_map(|case| case.score_of(&standing.method)).collect();

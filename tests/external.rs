@@ -7,8 +7,8 @@ use std::sync::Mutex;
 
 use campaign::collect::collect;
 use campaign::folder::ResultFolder;
-use campaign::rows::Row;
-use campaign::store::Stored;
+use campaign::rows::StudyRow;
+use campaign::store::StoredStudy;
 use campaign::task::Shard;
 use campaign::{NoObserver, Observer};
 use identify::external::{External, Settings};
@@ -153,13 +153,13 @@ fn run(scenario: &Scenario, threads: usize, folder: &Path, observer: &dyn Observ
     fs::read(folder.join("rows.parquet")).expect("rows")
 }
 
-fn rows(folder: &Path) -> Vec<Row> {
+fn rows(folder: &Path) -> Vec<StudyRow> {
     let mut rows = Vec::new();
     let keep = |row| {
         rows.push(row);
         Ok(())
     };
-    Stored::read(folder).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
+    StoredStudy::read(folder).and_then(|stored| stored.rows(keep)).unwrap_or_else(|failure| panic!("{failure}"));
     rows
 }
 

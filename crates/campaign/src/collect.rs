@@ -12,16 +12,16 @@ use scenario::Scenario;
 
 use crate::design::Design;
 use crate::disk;
-use crate::engine::{self, Outcome, TrialRunner};
+use crate::engine::{self, TrialOutcome, TrialRunner};
 use crate::files;
 use crate::folder::ResultFolder;
 use crate::manifest::Manifest;
 use crate::observer::Observer;
 use crate::outside::RunningEstimators;
 use crate::plan::TrialPlan;
-use crate::rows::{Layout, Row};
+use crate::rows::{RowLayout, StudyRow};
 use crate::showcase;
-use crate::store::{self, Stored};
+use crate::store::{self, StoredStudy};
 use crate::task::{Shard, Task};
 use crate::unfinished::{self, Unfinished};
 use scenario::failure::{Failure, OnPath};
@@ -32,7 +32,7 @@ const BATCH_TIME: Duration = Duration::from_millis(250);
 /// Most trials of a batch: they are in memory.
 const MOST_BATCH: usize = 2048;
 
-/// Stored trials that are run again before a study goes on, to see that this program computes the same.
+/// StoredStudy trials that are run again before a study goes on, to see that this program computes the same.
 const SPOT_CHECKS: usize = 32;
 
 /// Runs a shard of a scenario into a folder, or what is missing of it; returns what is stored.
@@ -45,7 +45,7 @@ pub fn collect(
     folder: &ResultFolder,
     restart: bool,
     observer: &dyn Observer,
-) -> Result<Stored, Failure> {
+) -> Result<StoredStudy, Failure> {
     let manifest = Manifest::new(scenario, shard);
     if restart {
         discard(folder, observer)?;
@@ -56,7 +56,7 @@ pub fn collect(
         return look_again(scenario, manifest, folder, observer);
     }
     let design = Design::of(scenario);
-    let layout = Layout::of(&design);
+    let layout = RowLayout::of(&design);
     let rows = folder.path().join(files::ROWS);
     if let Some(stored) = unfinished::manifest_in(folder.path())? {
         is_same(&stored, &manifest, folder.path())?;
@@ -87,8 +87,8 @@ fn look_again(
     manifest: Manifest,
     folder: &ResultFolder,
     observer: &dyn Observer,
-) -> Result<Stored, Failure> {
-    let study = Stored::held(folder)?;
+) -> Result<StoredStudy, Failure> {
+    let study = StoredStudy::held(folder)?;
     let mut spots = SpotCheck::new(scenario, folder.path());
     study.rows(|row| spots.see(row))?;
     spots.finish()?;
@@ -131,7 +131,7 @@ pub fn is_same(stored: &Manifest, own: &Manifest, folder: &Path) -> Result<(), F
 
 /// How a run of trials ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum RunEnd {
     /// All were run, or nobody takes more.
     Done,
     /// It was asked to stop, and no trial is under way.
@@ -151,7 +151,7 @@ fn run_all(
     observer.begin(plan.most(), plan.most() - plan.left());
     std::thread::scope(|scope| {
         // One batch may wait while one is written and one runs: memory stays what it is.
-        let (send, receive) = sync_channel::<Vec<Outcome>>(1);
+        let (send, receive) = sync_channel::<Vec<TrialOutcome>>(1);
         let writer = scope.spawn(move || unfinished.store(receive));
         let take = |outcomes| send.send(outcomes).is_ok();
         let end = run_batches(plan, |tasks| watched(scope, scenario, tasks, observer), take);
@@ -167,9 +167,9 @@ fn run_all(
             ))
         };
         match end {
-            End::Done => written,
-            End::Interrupted => written.and_then(|()| Err(stopped())),
-            End::Stuck => {
+            RunEnd::Done => written,
+            RunEnd::Interrupted => written.and_then(|()| Err(stopped())),
+            RunEnd::Stuck => {
                 let failure = written.err().unwrap_or_else(stopped);
                 observer.give_up(&failure);
                 Err(failure)
@@ -187,15 +187,15 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Runs batch after batch by `run` until the plan is done, a batch is not whole, or `take` wants no more.
 fn run_batches(
     plan: &mut TrialPlan,
-    mut run: impl FnMut(Vec<Task>) -> (Vec<Outcome>, End),
-    mut take: impl FnMut(Vec<Outcome>) -> bool,
-) -> End {
+    mut run: impl FnMut(Vec<Task>) -> (Vec<TrialOutcome>, RunEnd),
+    mut take: impl FnMut(Vec<TrialOutcome>) -> bool,
+) -> RunEnd {
     let least = (4 * rayon::current_num_threads()).min(MOST_BATCH);
     let mut size = least;
     loop {
         let tasks = plan.next(size as u64);
         if tasks.is_empty() {
-            return End::Done;
+            return RunEnd::Done;
         }
         let start = Instant::now();
         let (outcomes, end) = run(tasks.clone());
@@ -203,7 +203,7 @@ fn run_batches(
         if let Some(&next) = tasks.get(outcomes.len()) {
             plan.go_back_to(next);
         }
-        if !take(outcomes) || end != End::Done {
+        if !take(outcomes) || end != RunEnd::Done {
             return end;
         }
         let wanted = size as f64 * BATCH_TIME.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
@@ -223,8 +223,8 @@ fn watched<'scope>(
     scenario: &'scope Scenario,
     tasks: Vec<Task>,
     observer: &'scope dyn Observer,
-) -> (Vec<Outcome>, End) {
-    let mut outcomes: Vec<Option<Outcome>> = tasks.iter().map(|_| None).collect();
+) -> (Vec<TrialOutcome>, RunEnd) {
+    let mut outcomes: Vec<Option<TrialOutcome>> = tasks.iter().map(|_| None).collect();
     let (send, receive) = channel();
     scope.spawn(move || {
         let runner = runner(scenario, &tasks);
@@ -259,27 +259,27 @@ fn watched<'scope>(
     };
     let is_whole = outcomes.iter().all(Option::is_some);
     let end = match (is_stuck, is_whole) {
-        (true, _) => End::Stuck,
-        (false, false) => End::Interrupted,
-        (false, true) => End::Done,
+        (true, _) => RunEnd::Stuck,
+        (false, false) => RunEnd::Interrupted,
+        (false, true) => RunEnd::Done,
     };
     (outcomes.into_iter().map_while(|outcome| outcome).collect(), end)
 }
 
 /// All rows of a small study, in their order, without a folder; and its design.
-pub fn in_memory(scenario: &Scenario) -> (Design, Vec<Row>) {
+pub fn in_memory(scenario: &Scenario) -> (Design, Vec<StudyRow>) {
     let mut rows = Vec::new();
     let run = |tasks: Vec<Task>| {
         let runner = runner(scenario, &tasks);
-        (tasks.par_iter().map(|&task| runner.run(task)).collect(), End::Done)
+        (tasks.par_iter().map(|&task| runner.run(task)).collect(), RunEnd::Done)
     };
-    let take = |outcomes: Vec<Outcome>| {
+    let take = |outcomes: Vec<TrialOutcome>| {
         rows.extend(outcomes.into_iter().flat_map(|outcome| outcome.rows));
         true
     };
     run_batches(&mut TrialPlan::new(scenario, Shard::WHOLE), run, take);
     let mut design = Design::of(scenario);
-    rows.iter().for_each(|row: &Row| design.cells[row.cell as usize].trials.end = row.replicate + 1);
+    rows.iter().for_each(|row: &StudyRow| design.cells[row.cell as usize].trials.end = row.replicate + 1);
     add_bounds(scenario, &mut design, |_| true);
     (design, rows)
 }
@@ -296,15 +296,15 @@ fn finish(
     plan: &TrialPlan,
     unfinished: Unfinished,
     folder: &ResultFolder,
-) -> Result<Stored, Failure> {
+) -> Result<StoredStudy, Failure> {
     let rows_sha256 = unfinished.join(folder)?;
     let own = |cell: usize| plan.holds(Task { cell, replicate: 0 });
-    let mut design = unfinished.design().clone();
+    let mut design = unfinished.design.clone();
     add_bounds(scenario, &mut design, own);
     let shown = if scenario.showcase { scenario.cells.len() } else { 0 };
     let shown = (0..shown).into_par_iter().filter(|&cell| own(cell));
     let showcases: Vec<_> = shown.filter_map(|cell| showcase::of_cell(scenario, cell)).collect();
-    let stored = store::finish(folder, unfinished.manifest(), rows_sha256, design, showcases, unfinished.timings())?;
+    let stored = store::finish(folder, &unfinished.manifest, rows_sha256, design, showcases, &unfinished.timings)?;
     unfinished.remove()?;
     Ok(stored)
 }
@@ -315,7 +315,7 @@ struct SpotCheck<'a> {
     scenario: &'a Scenario,
     folder: &'a Path,
     every: usize,
-    kept: BTreeMap<Task, Vec<Row>>,
+    kept: BTreeMap<Task, Vec<StudyRow>>,
 }
 
 impl<'a> SpotCheck<'a> {
@@ -325,7 +325,7 @@ impl<'a> SpotCheck<'a> {
     }
 
     /// Keeps the first trial of some cells.
-    fn see(&mut self, row: Row) -> Result<(), Failure> {
+    fn see(&mut self, row: StudyRow) -> Result<(), Failure> {
         let task = Task { cell: row.cell as usize, replicate: row.replicate };
         if task.cell.is_multiple_of(self.every) && (task.replicate == 0 || self.kept.is_empty())
             || self.kept.contains_key(&task)

@@ -19,16 +19,16 @@ use crate::answer::pooled_rmse_deg;
 use crate::known::{self, RecordFacts};
 use crate::prediction_check::PredictionCheck;
 use crate::reference::{TrialReference, nearest_first_order};
-use crate::rows::{NamedEffect, Row, TraceAnswer};
+use crate::rows::{NamedEffect, StudyRow, TraceAnswer};
 use crate::summary::effect_ids;
 use crate::task::Task;
 use crate::timings::Timing;
 use scenario::{Procedure, Scenario, Specification, Specimen};
 
 /// Rows of one trial, and what they took.
-pub struct Outcome {
+pub struct TrialOutcome {
     /// One row per method, in the order of the scenario.
-    pub rows: Vec<Row>,
+    pub rows: Vec<StudyRow>,
     /// Time to simulate, and of every method.
     pub timing: Timing,
 }
@@ -105,11 +105,11 @@ impl<'a> TrialRunner<'a> {
     }
 
     /// Runs one trial. One that cannot be made has a row for every method all the same.
-    pub fn run(&self, task: Task) -> Outcome {
+    pub fn run(&self, task: Task) -> TrialOutcome {
         let cell = &self.scenario.cells[task.cell];
         let key = key(self.scenario, task);
         let start = Instant::now();
-        let mut blank = Row { cell: task.cell as u64, replicate: task.replicate, ..Row::default() };
+        let mut blank = StudyRow { cell: task.cell as u64, replicate: task.replicate, ..StudyRow::default() };
         let made = cell.specimen(&key).map_err(|refusal| format!("specification: {refusal}")).and_then(|specimen| {
             blank.drawn = (!specimen.drawn.is_empty()).then(|| specimen.drawn.as_slice().into());
             let simulated = self.simulate(task.cell, &specimen, &key);
@@ -119,11 +119,11 @@ impl<'a> TrialRunner<'a> {
         let (rows, methods) = match made {
             Ok((simulated, specimen)) => self.answers(task.cell, &key, blank, simulated, &specimen),
             Err(reason) => {
-                let blank = Row { failure: Some(reason.into()), ..blank };
-                ((0..cell.methods.len()).map(|method| Row { method, ..blank.clone() }).collect(), Vec::new())
+                let blank = StudyRow { failure: Some(reason.into()), ..blank };
+                ((0..cell.methods.len()).map(|method| StudyRow { method, ..blank.clone() }).collect(), Vec::new())
             }
         };
-        Outcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
+        TrialOutcome { rows, timing: Timing { cell: task.cell as u64, simulation, methods } }
     }
 
     /// The answers of all methods to a trial, and the times they took.
@@ -131,10 +131,10 @@ impl<'a> TrialRunner<'a> {
         &self,
         index: usize,
         key: &StreamKey,
-        blank: Row,
+        blank: StudyRow,
         simulated: Vec<Simulated>,
         specimen: &Specimen,
-    ) -> (Vec<Row>, Vec<Duration>) {
+    ) -> (Vec<StudyRow>, Vec<Duration>) {
         let cell = &self.scenario.cells[index];
         let own;
         let reference = if cell.is_fixed() {
@@ -143,7 +143,7 @@ impl<'a> TrialRunner<'a> {
             own = TrialReference::of(specimen, &simulated, key, cell.traces());
             &own
         };
-        let blank = Row {
+        let blank = StudyRow {
             true_k_per_s: reference.nearest.map(|nearest| nearest.K()),
             true_t_s: reference.nearest.map(|nearest| nearest.T()),
             own_k_per_s: reference.own.map(|own| own.K()),
@@ -157,7 +157,9 @@ impl<'a> TrialRunner<'a> {
         let check = check.map(|asked| PredictionCheck::new(asked, &specification.simulation, key, &trials));
         let question = TrialQuestion { trials: &trials, key, reference, missing: &specification.missing, check };
         let methods = cell.methods.iter().enumerate();
-        methods.map(|(index, method)| question.ask(&method.procedure, Row { method: index, ..blank.clone() })).unzip()
+        methods
+            .map(|(index, method)| question.ask(&method.procedure, StudyRow { method: index, ..blank.clone() }))
+            .unzip()
     }
 
     /// The reference of a cell whose trials all have one specification: made with its first trial, whichever trial
@@ -183,7 +185,7 @@ struct TrialQuestion<'a> {
 
 impl TrialQuestion<'_> {
     /// The row of a method, and the time it took.
-    fn ask(&self, procedure: &Procedure, blank: Row) -> (Row, Duration) {
+    fn ask(&self, procedure: &Procedure, blank: StudyRow) -> (StudyRow, Duration) {
         let start = Instant::now();
         let (row, time) = match procedure {
             Procedure::Trace(settings) => {
@@ -200,19 +202,19 @@ impl TrialQuestion<'_> {
                 )
             }
         };
-        (row.unwrap_or_else(|reason| Row { failure: Some(reason), ..blank }), time)
+        (row.unwrap_or_else(|reason| StudyRow { failure: Some(reason), ..blank }), time)
     }
 
-    fn estimated(&self, blank: &Row, estimate: &Estimate) -> Row {
+    fn estimated(&self, blank: &StudyRow, estimate: &Estimate) -> StudyRow {
         let error = |trials: &[Trial]| pooled_rmse_deg(trials, estimate);
-        Row {
+        StudyRow {
             heading_rmse_deg: error(self.trials),
             validation_rmse_deg: self
                 .reference
                 .validation
                 .as_ref()
                 .and_then(|trial| error(std::slice::from_ref(trial))),
-            evaluations: Some(estimate.evaluations as u64),
+            evaluations: Some(estimate.evaluations as f64),
             stop: Some(estimate.stop.as_str()),
             predicted: self.check.as_ref().map(|check| check.figures(|facts| known::of_estimate(estimate, facts))),
             ..with_indices(blank, [estimate.K(), estimate.T(), estimate.rudder_bias()])
@@ -220,7 +222,7 @@ impl TrialQuestion<'_> {
     }
 
     /// The row of a trace: K, T and δ_r of the augmented model, its errors, and what was named.
-    fn traced(&self, blank: &Row, analysis: &Analysis) -> Row {
+    fn traced(&self, blank: &StudyRow, analysis: &Analysis) -> StudyRow {
         let validation = self.reference.validation.as_ref();
         let validation = validation.and_then(|trial| analysis.in_a_calm(trial, [trial.heading()[0], 0.0]));
         let document = &analysis.document;
@@ -233,7 +235,7 @@ impl TrialQuestion<'_> {
         let indices = &document.model.indices;
         // Effects may ask for a speed and a sway.
         let known = |facts: &RecordFacts| Some(known::of_analysis(analysis, &facts.clone().with_motion()));
-        Row {
+        StudyRow {
             heading_rmse_deg: finite(to_deg(misfit(analysis, self.trials))),
             validation_rmse_deg: validation.as_ref().and_then(|on| finite(to_deg(on.errors.heading))),
             stop: Some(StopReason::Converged.as_str()),
@@ -297,8 +299,8 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 /// A row with K (1/s), T (s) and δ_r (rad) and their intervals.
-fn with_indices(blank: &Row, [k, t, bias]: [Quantity; 3]) -> Row {
-    Row {
+fn with_indices(blank: &StudyRow, [k, t, bias]: [Quantity; 3]) -> StudyRow {
+    StudyRow {
         k_per_s: finite(k.value),
         k_ci95_per_s: k.ci95,
         t_s: finite(t.value),
@@ -344,7 +346,7 @@ heading-noise-deg = 0.1
 method.output-error = {}
 "#;
 
-    fn rows(more: &str) -> Vec<Row> {
+    fn rows(more: &str) -> Vec<StudyRow> {
         let scenario = Scenario::parse(Path::new("s.toml"), "s", format!("{TEXT}{more}"), None)
             .unwrap_or_else(|failure| panic!("{failure}"));
         TrialRunner::new(&scenario, 0..=0).run(Task { cell: 0, replicate: 0 }).rows
@@ -356,16 +358,16 @@ method.output-error = {}
     fn further_records_of_the_ship_are_identified_together() {
         let further = "[[also]]\nmanoeuvre.zig-zag = { rudder-deg = 20.0, heading-deg = 20.0 }\n";
         let linear = TEXT.replace("[[effect]]\nnonlinear_damping.n3-s2-per-deg2 = 1.0\n", "");
-        let of = |text: &str, trials: u64| -> Vec<Row> {
+        let of = |text: &str, trials: u64| -> Vec<StudyRow> {
             let scenario = Scenario::parse(Path::new("s.toml"), "s", text.to_owned(), None).expect("it is right");
             let runner = TrialRunner::new(&scenario, 0..=0);
             (0..trials).map(|replicate| runner.run(Task { cell: 0, replicate }).rows.remove(0)).collect()
         };
         let (one, both) = (of(&linear, 60), of(&format!("{linear}{further}"), 60));
-        let bound = |rows: &[Row]| rows[0].bound.expect("white noise")[0];
+        let bound = |rows: &[StudyRow]| rows[0].bound.expect("white noise")[0];
         let share = bound(&both) / bound(&one);
         assert!((share - 0.5f64.sqrt()).abs() < 0.01, "two records of one manoeuvre: {share}");
-        let spread = |rows: &[Row]| {
+        let spread = |rows: &[StudyRow]| {
             let square = rows.iter().map(|row| row.errors()[0].expect("an answer").powi(2)).sum::<f64>();
             (square / rows.len() as f64).sqrt() * 0.1
         };

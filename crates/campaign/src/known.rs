@@ -265,34 +265,31 @@ const FEWEST_STEPS: usize = 4;
 /// as long as a sampling interval both ends of a reversal lie somewhere between two rows, which is the error of its
 /// duration.
 fn gear(trials: &[Trial], zigzags: &[Option<ZigZag>]) -> Option<KnownGear> {
-    let (mut rates, mut variances) = (Vec::new(), Vec::new());
-    for (trial, zigzag) in trials.iter().zip(zigzags) {
-        let Some(zigzag) = zigzag else { continue };
-        let Some(rate) = zigzag.rudder_rate.filter(|rate| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate)))
-        else {
-            continue;
-        };
-        let inside = inside_movements(trial, rate);
-        if inside.len() >= FEWEST_STEPS {
-            let count = inside.len() as f64;
-            let mean = inside.iter().sum::<f64>() / count;
-            let square: f64 = inside.iter().map(|rate| (rate - mean).powi(2)).sum();
-            rates.push(mean);
-            variances.push(square / (count - 1.0) / count);
-            continue;
-        }
-        let reversals = zigzag.executes.len().max(1) as f64;
-        let throw = zigzag.executes.iter().map(|execute| (execute.rudder_after - execute.rudder_before).abs());
-        let duration = throw.fold(0.0, f64::max) / rate;
-        let doubt = BETWEEN_ROWS * std::f64::consts::SQRT_2 * trial.sampling_period() / duration;
-        rates.push(rate);
-        variances.push((rate * doubt).powi(2) / reversals);
-    }
+    let records = trials.iter().zip(zigzags).filter_map(|(trial, zigzag)| rudder_rate(trial, zigzag.as_ref()?));
+    let (rates, variances): (Vec<f64>, Vec<f64>) = records.unzip();
     let count = rates.len() as f64;
     let mean = rates.iter().sum::<f64>() / count;
     let spread = rates.iter().map(|rate| (rate - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let read = variances.iter().sum::<f64>() / count;
     (count > 0.0).then(|| KnownGear { rate_rad_s: mean, sd_rad_s: (spread.max(read) / count).sqrt() })
+}
+
+/// Rate of the rudder on a record, rad/s, and its variance.
+fn rudder_rate(trial: &Trial, zigzag: &ZigZag) -> Option<(f64, f64)> {
+    let is_sound = |rate: &f64| (RATES_DEG_S[0]..=RATES_DEG_S[1]).contains(&to_deg(*rate));
+    let rate = zigzag.rudder_rate.filter(is_sound)?;
+    let inside = inside_movements(trial, rate);
+    if inside.len() >= FEWEST_STEPS {
+        let count = inside.len() as f64;
+        let mean = inside.iter().sum::<f64>() / count;
+        let square: f64 = inside.iter().map(|rate| (rate - mean).powi(2)).sum();
+        return Some((mean, square / (count - 1.0) / count));
+    }
+    let reversals = zigzag.executes.len().max(1) as f64;
+    let throw = zigzag.executes.iter().map(|execute| (execute.rudder_after - execute.rudder_before).abs());
+    let duration = throw.fold(0.0, f64::max) / rate;
+    let doubt = BETWEEN_ROWS * std::f64::consts::SQRT_2 * trial.sampling_period() / duration;
+    Some((rate, (rate * doubt).powi(2) / reversals))
 }
 
 /// Rates (rad/s) of the steps of a rudder that lie inside movements of about `rate` rad/s.

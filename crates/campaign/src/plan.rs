@@ -7,7 +7,7 @@
 
 use scenario::Scenario;
 
-use crate::rows::Row;
+use crate::rows::StudyRow;
 use crate::stopping::StopCheck;
 use crate::task::{Shard, Task};
 
@@ -78,7 +78,7 @@ impl<'a> TrialPlan<'a> {
     }
 
     /// Takes note of a row, in order: of a trial handed out, or stored by an earlier run.
-    pub fn saw(&mut self, row: &Row) {
+    pub fn saw(&mut self, row: &StudyRow) {
         if let Some(verdict) = &mut self.verdict {
             verdict.see(row);
         }

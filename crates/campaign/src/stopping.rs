@@ -1,6 +1,6 @@
 //! The stopping rule: whether a figure of a cell is known well enough. It keeps running sums and no rows.
 
-use crate::rows::Row;
+use crate::rows::StudyRow;
 use crate::statistics::Moments;
 use scenario::{Index, StopFigure, StopRule};
 
@@ -19,7 +19,7 @@ impl StopCheck {
     }
 
     /// Takes note of a row; one of another cell begins anew.
-    pub fn see(&mut self, row: &Row) {
+    pub fn see(&mut self, row: &StudyRow) {
         if row.cell != self.cell {
             self.cell = row.cell;
             self.methods.fill(FigureSums::default());

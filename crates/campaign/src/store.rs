@@ -14,7 +14,7 @@ use crate::disk;
 use crate::files::{DESIGN, MANIFEST, ROWS, SHOWCASES, TIMINGS};
 use crate::folder::{ReadLock, ResultFolder, sha256_of};
 use crate::manifest::Manifest;
-use crate::rows::{Layout, Reader, Row, Sequence};
+use crate::rows::{RowLayout, RowReader, Sequence, StudyRow};
 use crate::showcase::Showcase;
 use crate::timings::Timings;
 use crate::unfinished;
@@ -23,7 +23,7 @@ use crate::unfinished;
 const LARGEST_TEXT: u64 = 1 << 29;
 
 /// A finished study: everything but its rows, which are read a few at a time.
-pub struct Stored {
+pub struct StoredStudy {
     folder: PathBuf,
     /// What ran, and on what.
     pub manifest: Manifest,
@@ -36,7 +36,7 @@ pub struct Stored {
     _lock: Option<ReadLock>,
 }
 
-impl Stored {
+impl StoredStudy {
     /// Reads a finished study and keeps others from writing there. Fails as wrong input when the folder holds none.
     pub fn read(folder: &Path) -> Result<Self, Failure> {
         // A folder that is not there is not worth a lock.
@@ -78,11 +78,11 @@ impl Stored {
     }
 
     /// Hands every row to `take`, in order. Fails when one is missing or is not of this study.
-    pub fn rows(&self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+    pub fn rows(&self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         let path = self.folder.join(ROWS);
         let refuse = |problem: String| refused(&path, &problem);
         let mut sequence = Sequence::new(&self.design);
-        Reader::open(&path, &Layout::of(&self.design))?.for_each(|row| {
+        RowReader::open(&path, &RowLayout::of(&self.design))?.for_each(|row| {
             sequence.see(&row).map_err(refuse)?;
             take(row)
         })?;
@@ -163,7 +163,7 @@ pub fn finish(
     design: Design,
     showcases: Vec<Showcase>,
     timings: &Timings,
-) -> Result<Stored, Failure> {
+) -> Result<StoredStudy, Failure> {
     let mut sha256 = BTreeMap::from([(ROWS.to_owned(), rows_sha256)]);
     for (name, text) in [(DESIGN, serde_json::to_string(&design)), (SHOWCASES, serde_json::to_string(&showcases))] {
         let text = text.on("describe", &folder.path().join(name))?;
@@ -182,5 +182,5 @@ pub fn finish(
     // As they are written: to the nanosecond.
     let timings = Timings::of_text(&times, &design).map_err(Failure::work)?;
     let design = Design { words: manifest.words(), ..design };
-    Ok(Stored { folder: folder.path().to_owned(), manifest, design, showcases, timings, _lock: None })
+    Ok(StoredStudy { folder: folder.path().to_owned(), manifest, design, showcases, timings, _lock: None })
 }

@@ -4,7 +4,7 @@
 use crate::statistics::{Statistic, share};
 use serde::{Deserialize, Serialize};
 
-use crate::benchmark::cases::{BenchTask, Case};
+use crate::benchmark::cases::{BenchCase, BenchTask};
 use crate::benchmark::statistics::{grouped, mean, middle_and_high, ranks, ratio, resampled};
 
 pub use crate::benchmark::statistics::{FEWEST, ScoreFigure};
@@ -40,18 +40,18 @@ pub struct LeaderboardRow {
     /// Median of the score over that of the reference in the same case; none of the reference itself, and where it
     /// takes no part.
     pub ratio: Option<ScoreFigure>,
-    /// Share of cases in which the score is smaller than that of the reference, equal ones counted half.
+    /// WilsonShare of cases in which the score is smaller than that of the reference, equal ones counted half.
     pub better: Option<ScoreFigure>,
     /// Mean rank among all methods.
     pub rank: f64,
     /// How often 95 % intervals of K and of T hold the truth; none without intervals.
-    pub holds: Option<[Share; 2]>,
+    pub holds: Option<[WilsonShare; 2]>,
 }
 
 /// A share with Wilson's 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Share {
+pub struct WilsonShare {
     /// How many.
     pub count: usize,
     /// Of how many.
@@ -60,7 +60,7 @@ pub struct Share {
     pub ci95: [f64; 2],
 }
 
-impl Share {
+impl WilsonShare {
     /// A share; `None` of nothing.
     pub fn new(count: usize, of: usize) -> Option<Self> {
         let Statistic { ci95, .. } = share(count as u64, of as u64)?;
@@ -69,13 +69,16 @@ impl Share {
 }
 
 /// The boards of all tasks that have a score.
-pub fn boards(cases: &[Case], methods: &[String], reference: &str) -> Vec<Board> {
+pub fn boards(cases: &[BenchCase], methods: &[String], reference: &str) -> Vec<Board> {
     let scored = by_field(cases, |task| task.score().is_some());
     scored.into_iter().map(|(place, own)| board(place, &own, methods, reference)).collect()
 }
 
 /// The cases of some tasks, field by field.
-pub(super) fn by_field(cases: &[Case], is_wanted: impl Fn(BenchTask) -> bool) -> Vec<((BenchTask, &str), Vec<&Case>)> {
+pub(super) fn by_field(
+    cases: &[BenchCase],
+    is_wanted: impl Fn(BenchTask) -> bool,
+) -> Vec<((BenchTask, &str), Vec<&BenchCase>)> {
     grouped(cases.iter().filter(|case| is_wanted(case.task)), |case| (case.task, case.field.as_str()))
 }
 
@@ -90,7 +93,7 @@ pub(super) struct Scores {
 }
 
 impl Scores {
-    pub(super) fn of(cases: &[&Case], methods: &[String]) -> Self {
+    pub(super) fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
         let of_method = |method: &String| {
             let own: Option<Vec<f64>> = cases.iter().map(|case| case.score_of(method)).collect();
             Some((method.clone(), own?))
@@ -111,7 +114,7 @@ impl Scores {
     }
 }
 
-fn board((task, field): (BenchTask, &str), cases: &[&Case], methods: &[String], reference: &str) -> Board {
+fn board((task, field): (BenchTask, &str), cases: &[&BenchCase], methods: &[String], reference: &str) -> Board {
     let scores = Scores::of(cases, methods);
     let other = scores.methods.iter().find(|(method, _)| method == reference).map(|(_, scores)| scores.as_slice());
     let row = |(place, (method, own)): (usize, &(String, Vec<f64>))| {
@@ -144,10 +147,10 @@ fn board((task, field): (BenchTask, &str), cases: &[&Case], methods: &[String], 
 }
 
 /// How often the intervals of a method hold K and T.
-fn holds(cases: &[&Case], method: &str) -> Option<[Share; 2]> {
+fn holds(cases: &[&BenchCase], method: &str) -> Option<[WilsonShare; 2]> {
     let answers = cases.iter().flat_map(|case| &case.answers).filter(|answer| answer.method == method);
     let held: Vec<[bool; 2]> = answers.filter_map(|answer| answer.holds).collect();
-    let of = |index: usize| Share::new(held.iter().filter(|both| both[index]).count(), held.len());
+    let of = |index: usize| WilsonShare::new(held.iter().filter(|both| both[index]).count(), held.len());
     Some([of(0)?, of(1)?])
 }
 
@@ -165,9 +168,9 @@ pub struct SetLine {
 }
 
 /// Medians set by set.
-pub fn by_set(cases: &[Case], methods: &[String]) -> Vec<SetLine> {
+pub fn by_set(cases: &[BenchCase], methods: &[String]) -> Vec<SetLine> {
     let scored = cases.iter().filter(|case| case.task.score().is_some());
-    let line = |((task, set), own): ((BenchTask, &str), Vec<&Case>)| {
+    let line = |((task, set), own): ((BenchTask, &str), Vec<&BenchCase>)| {
         let scores = Scores::of(&own, methods);
         let of = |method: &String| {
             let (_, own) = scores.methods.iter().find(|(known, _)| known == method)?;
@@ -184,12 +187,12 @@ mod tests {
     use super::*;
     use crate::benchmark::cases::CaseAnswer;
 
-    fn case(trial: u64, scores: [Option<f64>; 2]) -> Case {
+    fn case(trial: u64, scores: [Option<f64>; 2]) -> BenchCase {
         let answers = ["a", "b"].iter().zip(scores).map(|(method, score)| {
             let failure = score.is_none().then(|| "singular".to_owned());
             CaseAnswer { method: (*method).to_owned(), score, failure, ..CaseAnswer::default() }
         });
-        Case {
+        BenchCase {
             task: BenchTask::Circle,
             field: "made".into(),
             set: "s".into(),
@@ -204,7 +207,7 @@ mod tests {
     #[test]
     fn a_failed_answer_is_worse_than_any() {
         // b is twice as good wherever it answers, and fails in four of ten.
-        let cases: Vec<Case> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
+        let cases: Vec<BenchCase> = (0..10).map(|trial| case(trial, [Some(2.0), (trial < 6).then_some(1.0)])).collect();
         let methods = ["a", "b", "c"].map(str::to_owned);
         let boards = boards(&cases, &methods, "a");
         let [Board { standings, cases: 10, clusters: 10, .. }] = &boards[..] else { panic!("{boards:?}") };
@@ -219,8 +222,8 @@ mod tests {
 
     #[test]
     fn cases_of_one_trial_are_drawn_together() {
-        let cases: Vec<Case> = [0, 0, 1, 1, 1].map(|trial| case(trial, [Some(1.0); 2])).to_vec();
-        let all: Vec<&Case> = cases.iter().collect();
+        let cases: Vec<BenchCase> = [0, 0, 1, 1, 1].map(|trial| case(trial, [Some(1.0); 2])).to_vec();
+        let all: Vec<&BenchCase> = cases.iter().collect();
         assert_eq!(Scores::of(&all, &[]).clusters, [vec![0, 1], vec![2, 3, 4]]);
         assert_eq!(boards(&cases, &["a".to_owned()], "a")[0].standings[0].median.ci95, None, "two clusters");
     }

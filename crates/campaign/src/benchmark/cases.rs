@@ -70,7 +70,7 @@ pub const MEASURED: &str = "measured";
 /// One question with all answers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Case {
+pub struct BenchCase {
     /// What was asked.
     pub task: BenchTask,
     /// What the case is counted with: [`MEASURED`], or what the definition calls the simulated set.
@@ -167,7 +167,7 @@ impl Naming {
     }
 }
 
-impl Case {
+impl BenchCase {
     /// What is drawn together when intervals are made: all cases of one simulated trial, or all in which one measured
     /// record is scored.
     pub fn cluster(&self) -> (&str, String) {

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{ScoreFigure, Scores, by_field};
-use crate::benchmark::cases::{BenchTask, Case};
+use crate::benchmark::cases::{BenchCase, BenchTask};
 use crate::benchmark::statistics::{grouped, mean, resampled_by_set};
 
 /// The ranking.
@@ -18,7 +18,7 @@ pub struct OverallRanking {
 }
 
 /// Ranks methods over the tasks in which a record is predicted that was not fitted; `None` without such a task.
-pub fn overall(cases: &[Case], methods: &[String]) -> Option<OverallRanking> {
+pub fn overall(cases: &[BenchCase], methods: &[String]) -> Option<OverallRanking> {
     let fields = by_field(cases, BenchTask::is_prediction);
     let boards = fields.iter().map(|((task, field), _)| (*task, (*field).to_owned())).collect();
     // Every method is asked for every prediction.
@@ -45,7 +45,7 @@ struct MeanRanks {
 }
 
 impl MeanRanks {
-    fn of(cases: &[&Case], methods: &[String]) -> Self {
+    fn of(cases: &[&BenchCase], methods: &[String]) -> Self {
         let Scores { clusters, methods, ranks } = Scores::of(cases, methods);
         let means = |cases: &[usize]| -> Vec<f64> {
             (0..methods.len()).map(|place| mean(cases.iter().map(|&case| ranks[case][place]))).collect()

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::benchmark::board::{Board, boards};
-use crate::benchmark::cases::Case;
+use crate::benchmark::cases::BenchCase;
 use crate::benchmark::definition::{Definition, RecordSet, SetRecord, SetSource};
 use crate::benchmark::method::BenchMethod;
 use crate::benchmark::naming::{self, NamingLine};
@@ -41,7 +41,7 @@ pub struct BenchDocument {
     /// The ranking over all predictions.
     pub overall: Option<OverallRanking>,
     /// Every question with every answer.
-    pub cases: Vec<Case>,
+    pub cases: Vec<BenchCase>,
 }
 
 /// Which definition was run.
@@ -123,7 +123,7 @@ impl BenchDocument {
         methods: &[BenchMethod],
         sets: Vec<Present>,
         skipped: Vec<Skipped>,
-        cases: Vec<Case>,
+        cases: Vec<BenchCase>,
     ) -> Self {
         let Definition { name, about, reference, sha256, seed, .. } = definition;
         let labels: Vec<String> = methods.iter().map(|method| method.label().to_owned()).collect();

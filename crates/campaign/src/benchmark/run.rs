@@ -9,7 +9,7 @@ use simulate::StreamKey;
 use trial::{Scales, Trial};
 
 use crate::Observer;
-use crate::benchmark::cases::{BenchTask, Case, CaseAnswer, MEASURED, Naming, stored};
+use crate::benchmark::cases::{BenchCase, BenchTask, CaseAnswer, MEASURED, Naming, stored};
 use crate::benchmark::definition::{Definition, Question, RecordFile, RecordSet, SetRecord, SetSource};
 use crate::benchmark::method::{self, BenchMethod, BenchModel, Failed};
 use crate::benchmark::record_store::{RecordStore, UsedFile};
@@ -213,9 +213,9 @@ fn missing(trial: &BenchTrial) -> Option<String> {
     }
 }
 
-fn case(trial: &BenchTrial, question: &Question, answers: Vec<CaseAnswer>) -> Case {
+fn case(trial: &BenchTrial, question: &Question, answers: Vec<CaseAnswer>) -> BenchCase {
     let name = |record: usize| trial.set.records[record].name.clone();
-    Case {
+    BenchCase {
         task: question.task,
         field: if trial.trial.is_some() { trial.set.group.clone() } else { MEASURED.to_owned() },
         set: trial.set.name.clone(),

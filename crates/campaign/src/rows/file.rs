@@ -15,8 +15,8 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::ColumnPath;
 
 use super::decoding;
-use super::layout::{Layout, Values};
-use super::row::Row;
+use super::layout::{RowLayout, Values};
+use super::row::StudyRow;
 use crate::disk;
 use crate::folder::{ResultFolder, TemporaryFile};
 use scenario::failure::{Failure, OnPath};
@@ -37,20 +37,20 @@ const LARGEST_COLUMN: i64 = 1 << 28;
 const TAIL: u64 = 8;
 
 /// Writes rows in their order to a new file, which appears under its name whole or not at all.
-pub struct Writer<'a> {
-    layout: &'a Layout,
+pub struct RowWriter<'a> {
+    layout: &'a RowLayout,
     path: PathBuf,
     file: SerializedFileWriter<TemporaryFile>,
-    waiting: Vec<Row>,
+    waiting: Vec<StudyRow>,
 }
 
-impl<'a> Writer<'a> {
+impl<'a> RowWriter<'a> {
     /// Begins a file.
-    pub fn create(folder: &ResultFolder, name: &str, layout: &'a Layout) -> Result<Self, Failure> {
+    pub fn create(folder: &ResultFolder, name: &str, layout: &'a RowLayout) -> Result<Self, Failure> {
         let file = folder.create(name)?;
         let path = file.path().to_owned();
         let mut properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-        for name in layout.names().filter(|name| !Layout::repeats(name)) {
+        for name in layout.names().filter(|name| !RowLayout::repeats(name)) {
             properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![name]), false);
         }
         let file = SerializedFileWriter::new(file, Arc::new(layout.schema()), Arc::new(properties.build()))
@@ -59,7 +59,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Adds rows.
-    pub fn push(&mut self, rows: impl IntoIterator<Item = Row>) -> Result<(), Failure> {
+    pub fn push(&mut self, rows: impl IntoIterator<Item = StudyRow>) -> Result<(), Failure> {
         for row in rows {
             self.waiting.push(row);
             if self.waiting.len() == GROUP {
@@ -113,25 +113,25 @@ fn write<T: DataType>(
 
 /// Reads rows back in their order. What it reads may have been damaged, or made to do harm: sizes are looked at before
 /// anything is unpacked, and where the decoder gives up the reader fails.
-pub struct Reader<'a, B: ChunkReader + 'static> {
-    layout: &'a Layout,
+pub struct RowReader<'a, B: ChunkReader + 'static> {
+    layout: &'a RowLayout,
     path: PathBuf,
-    file: SerializedFileReader<Checked<B>>,
+    file: SerializedFileReader<CheckedPages<B>>,
     group: usize,
     columns: Vec<ColumnReader>,
     left: usize,
 }
 
 /// The bytes of a file, in which the heads of pages are looked at.
-struct Checked<B>(B);
+struct CheckedPages<B>(B);
 
-impl<B: ChunkReader> Length for Checked<B> {
+impl<B: ChunkReader> Length for CheckedPages<B> {
     fn len(&self) -> u64 {
         self.0.len()
     }
 }
 
-impl<B: ChunkReader> ChunkReader for Checked<B> {
+impl<B: ChunkReader> ChunkReader for CheckedPages<B> {
     type T = B::T;
 
     /// The decoder asks in this way for the tail of a file and for the head of every page.
@@ -149,28 +149,28 @@ impl<B: ChunkReader> ChunkReader for Checked<B> {
     }
 }
 
-impl<'a> Reader<'a, disk::File> {
+impl<'a> RowReader<'a, disk::File> {
     /// Opens a file. Fails as wrong input when there is none, or when its columns are not those of the layout.
-    pub fn open(path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+    pub fn open(path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
         let file = disk::File::open(path)
             .map_err(|error| Failure::input(format!("{}: cannot be opened: {error}", path.display())))?;
         Self::new(file, path, layout)
     }
 }
 
-impl<'a> Reader<'a, Bytes> {
-    /// Reads from memory what `path` held. Fails as [`Reader::open`] does.
-    pub fn of_bytes(bytes: Vec<u8>, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+impl<'a> RowReader<'a, Bytes> {
+    /// Reads from memory what `path` held. Fails as [`RowReader::open`] does.
+    pub fn of_bytes(bytes: Vec<u8>, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
         Self::new(bytes.into(), path, layout)
     }
 }
 
-impl<'a, B: ChunkReader + 'static> Reader<'a, B> {
-    fn new(file: B, path: &Path, layout: &'a Layout) -> Result<Self, Failure> {
+impl<'a, B: ChunkReader + 'static> RowReader<'a, B> {
+    fn new(file: B, path: &Path, layout: &'a RowLayout) -> Result<Self, Failure> {
         let refuse =
             |problem: String| Failure::input(format!("{}: {problem}; expected the rows of this study", path.display()));
         trial::decoder::guarded(|| {
-            let file = SerializedFileReader::new(Checked(file)).map_err(|error| refuse(error.to_string()))?;
+            let file = SerializedFileReader::new(CheckedPages(file)).map_err(|error| refuse(error.to_string()))?;
             let schema = file.metadata().file_metadata().schema_descr_ptr();
             let found: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
             if let Some(name) = layout.names().find(|name| !found.contains(&name.as_str())) {
@@ -194,14 +194,14 @@ impl<'a, B: ChunkReader + 'static> Reader<'a, B> {
     }
 
     /// The next rows, a few thousand at most; nothing when all have been read.
-    pub(super) fn next_rows(&mut self) -> Result<Vec<Row>, Failure> {
+    pub(super) fn next_rows(&mut self) -> Result<Vec<StudyRow>, Failure> {
         let path = self.path.clone();
         trial::decoder::guarded(|| self.decoded()).unwrap_or_else(|| {
             Err(Failure::input(format!("{}: it is damaged; expected the rows of this study", path.display())))
         })
     }
 
-    fn decoded(&mut self) -> Result<Vec<Row>, Failure> {
+    fn decoded(&mut self) -> Result<Vec<StudyRow>, Failure> {
         while self.left == 0 {
             if self.group == self.file.num_row_groups() {
                 return Ok(Vec::new());
@@ -226,7 +226,7 @@ impl<'a, B: ChunkReader + 'static> Reader<'a, B> {
     }
 
     /// Hands every row to `take`, in order.
-    pub fn for_each(mut self, mut take: impl FnMut(Row) -> Result<(), Failure>) -> Result<(), Failure> {
+    pub fn for_each(mut self, mut take: impl FnMut(StudyRow) -> Result<(), Failure>) -> Result<(), Failure> {
         // Rows are decoded while those before them are taken.
         std::thread::scope(|scope| {
             let (send, receive) = sync_channel(1);

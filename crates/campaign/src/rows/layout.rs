@@ -8,8 +8,8 @@ use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::schema::types::Type;
 use scenario::TRACE;
 
-use super::columns::{Access, COLUMNS, Column, OWN_COLUMNS, PREDICT_COLUMNS, TRACE_COLUMNS};
-use super::row::Row;
+use super::columns::{Access, COLUMNS, OWN_COLUMNS, PREDICT_COLUMNS, RowColumn, TRACE_COLUMNS};
+use super::row::StudyRow;
 use crate::design::Design;
 
 /// Values of one column for several rows.
@@ -21,22 +21,22 @@ pub(super) enum Values {
 }
 
 /// What the rows of one study look like: the fixed columns, its axes and its draws.
-pub struct Layout {
+pub struct RowLayout {
     methods: Vec<String>,
-    fixed: Vec<&'static Column>,
+    fixed: Vec<&'static RowColumn>,
     /// Names, and the points of the cells.
     axes: Vec<(String, Values)>,
     draws: Vec<String>,
 }
 
 /// Where the values of a column come from.
-enum Source<'a> {
-    Fixed(&'static Column),
+enum ColumnSource<'a> {
+    Fixed(&'static RowColumn),
     Axis(&'a str, &'a Values),
     Draw(usize),
 }
 
-impl Layout {
+impl RowLayout {
     /// The layout of a design.
     pub fn of(design: &Design) -> Self {
         let axis = |(index, name): (usize, &String)| {
@@ -60,10 +60,11 @@ impl Layout {
     }
 
     /// All columns with their names, in order.
-    fn columns(&self) -> impl Iterator<Item = (String, Source<'_>)> {
-        let fixed = self.fixed.iter().map(|&column| (column.name.to_owned(), Source::Fixed(column)));
-        let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), Source::Axis(name, points)));
-        let draws = self.draws.iter().enumerate().map(|(index, key)| (format!("draw.{key}"), Source::Draw(index)));
+    fn columns(&self) -> impl Iterator<Item = (String, ColumnSource<'_>)> {
+        let fixed = self.fixed.iter().map(|&column| (column.name.to_owned(), ColumnSource::Fixed(column)));
+        let axes = self.axes.iter().map(|(name, points)| (format!("axis.{name}"), ColumnSource::Axis(name, points)));
+        let draws =
+            self.draws.iter().enumerate().map(|(index, key)| (format!("draw.{key}"), ColumnSource::Draw(index)));
         fixed.chain(axes).chain(draws)
     }
 
@@ -76,11 +77,11 @@ impl Layout {
     pub(super) fn schema(&self) -> Type {
         let fields = self.columns().map(|(name, source)| {
             let (physical, repetition, logical) = match source {
-                Source::Fixed(Column { access: Access::Count(..), .. }) => {
+                ColumnSource::Fixed(RowColumn { access: Access::Count(..), .. }) => {
                     (Physical::INT64, Repetition::REQUIRED, None)
                 }
-                Source::Fixed(Column { access: Access::Text(..) | Access::Method, .. })
-                | Source::Axis(_, Values::Texts(_)) => {
+                ColumnSource::Fixed(RowColumn { access: Access::Text(..) | Access::Method, .. })
+                | ColumnSource::Axis(_, Values::Texts(_)) => {
                     (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String))
                 }
                 _ => (Physical::DOUBLE, Repetition::OPTIONAL, None),
@@ -102,9 +103,9 @@ impl Layout {
     }
 
     /// All columns of several rows, in order.
-    pub(super) fn take<'a>(&'a self, rows: &'a [Row]) -> impl Iterator<Item = Values> + 'a {
+    pub(super) fn take<'a>(&'a self, rows: &'a [StudyRow]) -> impl Iterator<Item = Values> + 'a {
         self.columns().map(move |(_, source)| match source {
-            Source::Fixed(Column { access, .. }) => match *access {
+            ColumnSource::Fixed(RowColumn { access, .. }) => match *access {
                 Access::Count(get, _) => Values::Counts(rows.iter().map(|row| Some(get(row) as i64)).collect()),
                 Access::Number(get, _) => Values::Numbers(rows.iter().map(get).collect()),
                 Access::Text(get, _) => Values::Texts(rows.iter().map(|row| get(row).map(Cow::into_owned)).collect()),
@@ -112,40 +113,40 @@ impl Layout {
                     Values::Texts(rows.iter().map(|row| Some(self.methods[row.method].clone())).collect())
                 }
             },
-            Source::Axis(_, points) => points.of_cells(rows),
-            Source::Draw(index) => {
+            ColumnSource::Axis(_, points) => points.of_cells(rows),
+            ColumnSource::Draw(index) => {
                 Values::Numbers(rows.iter().map(|row| row.drawn.as_ref().map(|drawn| drawn[index])).collect())
             }
         })
     }
 
     /// Rows from the values of all columns, `length` each; the error names a value that no study writes.
-    pub(super) fn put(&self, columns: Vec<Values>, length: usize) -> Result<Vec<Row>, String> {
-        let mut rows = vec![Row::default(); length];
+    pub(super) fn put(&self, columns: Vec<Values>, length: usize) -> Result<Vec<StudyRow>, String> {
+        let mut rows = vec![StudyRow::default(); length];
         let mut drawn = vec![vec![None; self.draws.len()]; length];
         for ((_, source), values) in self.columns().zip(columns) {
             match (source, values) {
-                (Source::Fixed(Column { access: Access::Count(_, set), .. }), Values::Counts(values)) => {
+                (ColumnSource::Fixed(RowColumn { access: Access::Count(_, set), .. }), Values::Counts(values)) => {
                     present(&mut rows, values).for_each(|(row, value)| set(row, value as u64));
                 }
-                (Source::Fixed(Column { access: Access::Number(_, set), .. }), Values::Numbers(values)) => {
+                (ColumnSource::Fixed(RowColumn { access: Access::Number(_, set), .. }), Values::Numbers(values)) => {
                     present(&mut rows, values).for_each(|(row, value)| set(row, value));
                 }
-                (Source::Fixed(Column { access: Access::Text(_, set), .. }), Values::Texts(values)) => {
+                (ColumnSource::Fixed(RowColumn { access: Access::Text(_, set), .. }), Values::Texts(values)) => {
                     present(&mut rows, values).try_for_each(|(row, value)| set(row, &value))?;
                 }
-                (Source::Fixed(Column { access: Access::Method, .. }), Values::Texts(values)) => {
+                (ColumnSource::Fixed(RowColumn { access: Access::Method, .. }), Values::Texts(values)) => {
                     for (row, label) in rows.iter_mut().zip(values) {
                         let known = self.methods.iter().position(|method| Some(method) == label.as_ref());
                         row.method = known.ok_or_else(|| format!("the study has no method {label:?}"))?;
                     }
                 }
-                (Source::Draw(index), Values::Numbers(values)) => {
+                (ColumnSource::Draw(index), Values::Numbers(values)) => {
                     drawn.iter_mut().zip(values).for_each(|(drawn, value)| drawn[index] = value);
                 }
                 // Axes follow from the cell; other ones belong to another design.
-                (Source::Axis(_, points), values) if points.of_cells(&rows) == values => {}
-                (Source::Axis(name, _), _) => {
+                (ColumnSource::Axis(_, points), values) if points.of_cells(&rows) == values => {}
+                (ColumnSource::Axis(name, _), _) => {
                     return Err(format!("a row has another point of the axis {name:?} than its cell"));
                 }
                 _ => return Err("a column of it has values of another kind".to_owned()),
@@ -161,14 +162,14 @@ impl Layout {
 }
 
 /// The rows that have a value, with it.
-fn present<T>(rows: &mut [Row], values: Vec<Option<T>>) -> impl Iterator<Item = (&mut Row, T)> {
+fn present<T>(rows: &mut [StudyRow], values: Vec<Option<T>>) -> impl Iterator<Item = (&mut StudyRow, T)> {
     rows.iter_mut().zip(values).filter_map(|(row, value)| Some((row, value?)))
 }
 
 impl Values {
     /// Of values of cells, that of the cell of every row; none for a cell that is not there.
-    fn of_cells(&self, rows: &[Row]) -> Self {
-        fn of<T: Clone>(values: &[Option<T>], rows: &[Row]) -> Vec<Option<T>> {
+    fn of_cells(&self, rows: &[StudyRow]) -> Self {
+        fn of<T: Clone>(values: &[Option<T>], rows: &[StudyRow]) -> Vec<Option<T>> {
             rows.iter().map(|row| values.get(row.cell as usize)?.clone()).collect()
         }
         match self {

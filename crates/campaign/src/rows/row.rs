@@ -61,7 +61,7 @@ pub struct TraceAnswer {
 
 /// The result of one method on one trial. Units are in the names; `None` is "not defined".
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Row {
+pub struct StudyRow {
     /// Index of the cell in the design.
     pub cell: u64,
     /// Index of the replicate in the cell.
@@ -99,7 +99,7 @@ pub struct Row {
     /// The same on the validation manoeuvre, which the method has not seen, deg.
     pub validation_rmse_deg: Option<f64>,
     /// Model evaluations of the method.
-    pub evaluations: Option<u64>,
+    pub evaluations: Option<f64>,
     /// Why the method stopped.
     pub stop: Option<&'static str>,
     /// What a trace said.
@@ -111,7 +111,7 @@ pub struct Row {
     pub drawn: Option<Arc<[f64]>>,
 }
 
-impl Row {
+impl StudyRow {
     /// K and T that this answer is held against, 1/s and s: the ship's own for a trace, which models its effects, else
     /// those of the first-order response nearest to it.
     pub fn truth(&self) -> [Option<f64>; 2] {

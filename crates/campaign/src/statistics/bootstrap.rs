@@ -93,7 +93,7 @@ impl Resamples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::{BATCHES, Sums};
+    use crate::statistics::{BATCHES, ErrorSums};
     use rand_distr::StandardNormal;
 
     /// Intervals of the sd of normal samples: they repeat, and cover 95 % within the error of 400 samples, whether a
@@ -105,7 +105,7 @@ mod tests {
             let samples = 400;
             let mut rng = ChaCha8Rng::seed_from_u64(5);
             let covered = (0..samples).filter(|_| {
-                let mut sums = Sums::default();
+                let mut sums = ErrorSums::default();
                 (0..size as u64).for_each(|replicate| sums.add(replicate, rng.sample::<f64, _>(StandardNormal)));
                 let [sd] = resamples.figures(sums.batches(), |total| [sums.sd(total)]);
                 let [lo, hi] = sd.and_then(|figure| figure.ci95).expect("enough values");
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn few_values_have_no_interval() {
-        let mut sums = Sums::default();
+        let mut sums = ErrorSums::default();
         (0..5).for_each(|replicate| sums.add(replicate, replicate as f64));
         let [mean, none] = Resamples::new(5).figures(sums.batches(), |total| [sums.mean(total), None]);
         assert_eq!((mean, none), (Some(Statistic { value: 2.0, ci95: None }), None));

@@ -16,13 +16,13 @@ const ZERO: f64 = 1e-12;
 
 /// A sample that is being taken.
 #[derive(Debug, Clone, Default)]
-pub struct Sample {
+pub struct ErrorSample {
     exact: Vec<f64>,
     /// Counts by bin, in the order of the values; empty while all are exact.
     bins: BTreeMap<i32, u64>,
 }
 
-impl Sample {
+impl ErrorSample {
     /// Adds a finite value; others are left out.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
@@ -170,7 +170,7 @@ mod tests {
     use statrs::distribution::{ContinuousCDF, Normal};
 
     fn sample(values: impl IntoIterator<Item = f64>) -> Ordered {
-        let mut sample = Sample::default();
+        let mut sample = ErrorSample::default();
         values.into_iter().for_each(|value| sample.add(value));
         sample.ordered()
     }

@@ -1,4 +1,4 @@
-//! Sums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives intervals
+//! ErrorSums over replicates in batches: replicate r belongs to batch r mod 256. A bootstrap over batches gives intervals
 //! for every function of moments; with no more than 256 replicates each batch is one trial, and it is the ordinary
 //! bootstrap.
 
@@ -37,15 +37,15 @@ fn batch_of(batches: &mut Vec<BatchSums>, replicate: u64) -> &mut BatchSums {
     &mut batches[place]
 }
 
-/// Sums of one quantity.
+/// ErrorSums of one quantity.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Sums {
+pub struct ErrorSums {
     /// First value: taken off every value, so that a large common error does not drown a small scatter.
     shift: f64,
     batches: Vec<BatchSums>,
 }
 
-impl Sums {
+impl ErrorSums {
     /// Adds the value of a replicate.
     pub fn add(&mut self, replicate: u64, value: f64) {
         if self.batches.is_empty() {
@@ -81,7 +81,7 @@ impl Sums {
     }
 }
 
-/// Sums of the squares of two quantities on trials where both are known: [`BatchSums::first`] belongs to the one,
+/// ErrorSums of the squares of two quantities on trials where both are known: [`BatchSums::first`] belongs to the one,
 /// [`BatchSums::second`] to the other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PairSums {
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn a_small_scatter_about_a_large_error_is_kept() {
-        let mut sums = Sums::default();
+        let mut sums = ErrorSums::default();
         (0..1000).for_each(|replicate| sums.add(replicate, -6.53 + 1e-9 * f64::from(u8::from(replicate % 2 == 0))));
         let total = total(sums.batches());
         assert_eq!(sums.batches().len(), BATCHES);

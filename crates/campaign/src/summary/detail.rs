@@ -56,7 +56,7 @@ impl Cloud {
             return None;
         }
         let drawn_in = |get: fn(&(f64, f64)) -> f64| -> Vec<f64> {
-            let mut sample = crate::statistics::Sample::default();
+            let mut sample = crate::statistics::ErrorSample::default();
             pairs.iter().for_each(|pair| sample.add(get(pair)));
             let ordered = sample.ordered();
             let centre = ordered.quantile(0.5).unwrap_or(0.0);

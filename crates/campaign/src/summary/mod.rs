@@ -12,7 +12,7 @@ mod tracing;
 
 pub use detail::{CellDetail, Cloud, ErrorDensity, MethodDetail};
 pub use predictions::PredictionSummary;
-pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Record, Summary};
+pub use record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 pub use tally::{Tally, summarise};
 pub use tracing::{CALIBRATION, CLEAR, CalibrationBin, TraceSummary, effect_ids};
 

@@ -39,7 +39,7 @@ pub struct IndexErrors {
 
 /// One method on a set of trials.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Record {
+pub struct Performance {
     /// Trials run.
     pub trials: u64,
     /// Reasons of trials without an estimate, with their counts, in the order in which they came.
@@ -62,7 +62,7 @@ pub struct Record {
     pub evaluations: Option<f64>,
 }
 
-impl Record {
+impl Performance {
     /// Number of failed trials.
     pub fn failed(&self) -> u64 {
         self.failures.iter().map(|(_, count)| count).sum()
@@ -77,7 +77,7 @@ pub struct MethodSummary {
     /// Index of the method.
     pub method: usize,
     /// What it did there.
-    pub record: Record,
+    pub record: Performance,
 }
 
 /// One index of one method against the reference, on trials where both gave an answer.
@@ -107,7 +107,7 @@ pub struct PairSummary {
 }
 
 /// All that is said of a study.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Per cell and method, in the order of the rows.
     pub methods: Vec<MethodSummary>,
@@ -116,7 +116,7 @@ pub struct Summary {
     /// Index of the method that others are compared with.
     pub reference: usize,
     /// Per method, over all cells.
-    pub overall: Vec<Record>,
+    pub overall: Vec<Performance>,
     /// Distributions in the cells whose detail was asked for.
     pub details: Vec<CellDetail>,
     /// What traces said, in the cells that have them.
@@ -127,7 +127,7 @@ pub struct Summary {
 
 impl Summary {
     /// The record of a method in a cell.
-    pub fn record(&self, cell: usize, method: usize) -> Option<&Record> {
+    pub fn record(&self, cell: usize, method: usize) -> Option<&Performance> {
         let key = |summary: &MethodSummary| (summary.cell, summary.method);
         let place = self.methods.binary_search_by_key(&(cell, method), key).ok()?;
         Some(&self.methods[place].record)

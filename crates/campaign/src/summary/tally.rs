@@ -3,21 +3,22 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
+use scenario::MethodName;
 
 use super::detail::{CellDetail, Cloud, ErrorDensity, MOST_PAIRS, MethodDetail};
-use super::predictions::PredictionTally;
-use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Record, Summary};
+use super::predictions::{PredictionSummary, add_predictions};
+use super::record::{Comparison, IndexErrors, MethodSummary, PairSummary, Performance, Summary};
 use super::tracing::TraceTally;
 use crate::design::Design;
-use crate::rows::Row;
-use crate::statistics::{BATCHES, PairSums, Resamples, Sample, Statistic, Sums, Z95, share};
+use crate::rows::StudyRow;
+use crate::statistics::{BATCHES, ErrorSample, ErrorSums, PairSums, Resamples, Statistic, Z95, share};
 
 /// The method that others are compared with, where a study has it.
 const REFERENCE: &str = "output-error";
 
 /// Takes rows in their order, cell by cell, and summarises them.
-pub struct Tally {
-    reference: usize,
+pub struct Tally<'a> {
+    design: &'a Design,
     detailed: Vec<usize>,
     cell: usize,
     replicate: u64,
@@ -26,43 +27,41 @@ pub struct Tally {
     resamples: Option<Arc<Resamples>>,
     /// Cells that have ended and are not yet summarised.
     waiting: Vec<ClosedCell>,
-    methods: Vec<MethodSummary>,
-    compared: Vec<PairSummary>,
-    details: Vec<CellDetail>,
-    tracing: TraceTally,
-    predictions: PredictionTally,
+    summary: Summary,
 }
 
 /// Trials times methods of cells that wait to be summarised together, on all threads: enough to be worth it, few enough
 /// that memory does not grow with the design.
 const WAITING: u64 = 1 << 15;
 
-impl Tally {
+/// The sums of a cell whose rows have all been seen.
+struct ClosedCell {
+    cell: usize,
+    present: Vec<Running>,
+    resamples: Arc<Resamples>,
+}
+
+impl<'a> Tally<'a> {
     /// A tally of the rows of a design.
-    pub fn new(design: &Design) -> Self {
-        let methods = design.methods.len();
-        let labelled = design.methods.iter().position(|method| method.label == REFERENCE);
-        let reference =
-            labelled.or_else(|| design.methods.iter().position(|method| method.id == REFERENCE)).unwrap_or(0);
+    pub fn new(design: &'a Design) -> Self {
+        let of = |is_it: fn(&MethodName) -> bool| design.methods.iter().position(is_it);
+        let reference = of(|method| method.label == REFERENCE).or_else(|| of(|method| method.id == REFERENCE));
+        let running = vec![Running::default(); design.methods.len()];
         Self {
-            reference,
+            design,
             detailed: design.detail(),
             cell: 0,
             replicate: 0,
-            present: vec![Running::default(); methods],
-            overall: vec![Running::default(); methods],
+            present: running.clone(),
+            overall: running,
             resamples: None,
             waiting: Vec::new(),
-            methods: Vec::new(),
-            compared: Vec::new(),
-            details: Vec::new(),
-            tracing: TraceTally::new(design),
-            predictions: PredictionTally::default(),
+            summary: Summary { reference: reference.unwrap_or(0), ..Summary::default() },
         }
     }
 
     /// Takes note of a row.
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         let cell = row.cell as usize;
         if (cell, row.replicate) != (self.cell, self.replicate) {
             self.end_trial();
@@ -73,16 +72,16 @@ impl Tally {
             self.cell = cell;
         }
         let errors = row.errors().map(|error| error.map(|error| 100.0 * error));
-        self.tracing.add(row);
-        self.predictions.add(row);
-        self.present[row.method].add(row, &errors, self.detailed.contains(&cell));
+        let own = &mut self.present[row.method];
+        own.add(row, &errors);
+        own.add_details(row, &self.design.cells[cell].missing, self.detailed.contains(&cell));
         // Batches over all cells: a replicate of one cell goes with the same of another, since they may share a ship.
-        self.overall[row.method].add(row, &errors, false);
+        self.overall[row.method].add(row, &errors);
     }
 
     /// Compares all methods with the reference on the trial that has just been seen.
     fn end_trial(&mut self) {
-        let reference = self.present[self.reference].latest;
+        let reference = self.present[self.summary.reference].latest;
         for running in &mut self.present {
             let errors = std::mem::take(&mut running.latest).into_iter().zip(reference);
             for (pair, (error, other)) in running.pairs.iter_mut().zip(errors) {
@@ -97,8 +96,7 @@ impl Tally {
         }
         let resamples = self.resamples(most_batches(&self.present));
         let present = std::mem::replace(&mut self.present, vec![Running::default(); self.overall.len()]);
-        let (cell, reference, detailed) = (self.cell, self.reference, self.detailed.contains(&self.cell));
-        self.waiting.push(ClosedCell { cell, reference, detailed, present, resamples });
+        self.waiting.push(ClosedCell { cell: self.cell, present, resamples });
         let rows = self.waiting.iter().flat_map(|closed| &closed.present).map(|running| running.trials);
         if rows.sum::<u64>() >= WAITING {
             self.summarise();
@@ -107,12 +105,15 @@ impl Tally {
 
     /// Summarises the cells that wait, in parallel; what is said of each goes down in their order.
     fn summarise(&mut self) {
-        let summarised: Vec<_> =
-            std::mem::take(&mut self.waiting).into_par_iter().map(ClosedCell::summarised).collect();
-        for (methods, compared, detail) in summarised {
-            self.methods.extend(methods);
-            self.compared.extend(compared);
-            self.details.extend(detail);
+        let (reference, detailed) = (self.summary.reference, &self.detailed);
+        let waiting = std::mem::take(&mut self.waiting).into_par_iter();
+        let summarised = waiting.map(|closed| closed.summarised(reference, detailed)).collect::<Vec<Summary>>();
+        for Summary { methods, pairs, details, tracing, predictions, .. } in summarised {
+            self.summary.methods.extend(methods);
+            self.summary.pairs.extend(pairs);
+            self.summary.details.extend(details);
+            self.summary.tracing.extend(tracing);
+            self.summary.predictions.extend(predictions);
         }
     }
 
@@ -130,51 +131,40 @@ impl Tally {
         self.end_cell();
         self.summarise();
         let resamples = self.resamples(most_batches(&self.overall));
-        let overall = self.overall.par_iter().map(|running| running.record(&resamples));
-        Summary {
-            overall: overall.collect(),
-            methods: self.methods,
-            pairs: self.compared,
-            reference: self.reference,
-            details: self.details,
-            tracing: self.tracing.finish(),
-            predictions: self.predictions.finish(),
-        }
+        let overall = self.overall.par_iter().map(|running| running.record(&resamples)).collect();
+        Summary { overall, ..self.summary }
     }
 }
 
 /// Summarises rows that are in memory.
-pub fn summarise(rows: &[Row], design: &Design) -> Summary {
+pub fn summarise(rows: &[StudyRow], design: &Design) -> Summary {
     let mut tally = Tally::new(design);
     rows.iter().for_each(|row| tally.add(row));
     tally.finish()
 }
 
-/// The sums of a cell whose rows have all been seen.
-struct ClosedCell {
-    cell: usize,
-    reference: usize,
-    detailed: bool,
-    present: Vec<Running>,
-    resamples: Arc<Resamples>,
-}
-
 impl ClosedCell {
     /// What is said of the cell: every method, every method against the reference, and the distributions where asked
     /// for.
-    fn summarised(self) -> (Vec<MethodSummary>, Vec<PairSummary>, Option<CellDetail>) {
-        let Self { cell, reference, detailed, present, resamples } = &self;
-        let (cell, methods) = (*cell, present.par_iter().enumerate());
-        let detail = detailed.then(|| CellDetail { cell, methods: present.par_iter().map(Running::detail).collect() });
-        let others = methods.clone().filter(|(method, _)| method != reference);
+    fn summarised(self, reference: usize, detailed: &[usize]) -> Summary {
+        let Self { cell, present, resamples } = self;
+        let methods = present.par_iter().enumerate();
+        let others = methods.clone().filter(|(method, _)| *method != reference);
         let compared = others.map(|(method, running)| {
-            let [k, t] = &running.pairs;
-            let (k, t) = (comparison(k, resamples), comparison(t, resamples));
+            let [k, t] = running.pairs.each_ref().map(|pair| comparison(pair, &resamples));
             PairSummary { cell, method, trials: running.pairs[0].trials(), k, t }
         });
-        let methods =
-            methods.map(|(method, running)| MethodSummary { cell, method, record: running.record(resamples) });
-        (methods.collect(), compared.collect(), detail)
+        let detail = || CellDetail { cell, methods: present.par_iter().map(Running::detail).collect() };
+        Summary {
+            pairs: compared.collect(),
+            methods: methods
+                .map(|(method, running)| MethodSummary { cell, method, record: running.record(&resamples) })
+                .collect(),
+            details: detailed.contains(&cell).then(detail).into_iter().collect(),
+            tracing: present.iter().filter_map(|running| running.trace.as_ref()).map(TraceTally::summary).collect(),
+            predictions: present.iter().flat_map(|running| running.predictions.clone()).collect(),
+            ..Summary::default()
+        }
     }
 }
 
@@ -201,17 +191,19 @@ struct Running {
     latest: [Option<f64>; 2],
     /// Errors of K and T beside those of the reference.
     pairs: [PairSums; 2],
-    heading: Sample,
-    validation: Sample,
+    heading: ErrorSample,
+    validation: ErrorSample,
     evaluations: f64,
     cloud: Vec<(f64, f64)>,
+    trace: Option<TraceTally>,
+    predictions: Vec<PredictionSummary>,
 }
 
 /// Reasons that are told apart; a reason may hold numbers of its trial.
 const MOST_REASONS: usize = 50;
 
 impl Running {
-    fn add(&mut self, row: &Row, errors: &[Option<f64>; 3], detailed: bool) {
+    fn add(&mut self, row: &StudyRow, errors: &[Option<f64>; 3]) {
         self.trials += 1;
         self.batches = self.batches.max((row.replicate as usize % BATCHES) + 1);
         if let Some(reason) = row.failure.as_deref() {
@@ -229,8 +221,16 @@ impl Running {
         }
         row.heading_rmse_deg.into_iter().for_each(|error| self.heading.add(error));
         row.validation_rmse_deg.into_iter().for_each(|error| self.validation.add(error));
-        self.evaluations += row.evaluations.unwrap_or(0) as f64;
+        self.evaluations += row.evaluations.unwrap_or(0.0);
         self.latest = [errors[0], errors[1]];
+    }
+
+    /// What is not summed over all cells.
+    fn add_details(&mut self, row: &StudyRow, missing: &[String], detailed: bool) {
+        if let Some(answer) = &row.traced {
+            self.trace.get_or_insert_with(|| TraceTally::new(row, missing)).add(answer);
+        }
+        add_predictions(&mut self.predictions, row);
         if let [Some(k), Some(t)] = self.latest
             && detailed
             && self.cloud.len() < MOST_PAIRS
@@ -249,12 +249,12 @@ impl Running {
         }
     }
 
-    fn record(&self, resamples: &Resamples) -> Record {
+    fn record(&self, resamples: &Resamples) -> Performance {
         let failed: u64 = self.failures.iter().map(|(_, count)| count).sum();
         let (heading, validation) = (self.heading.ordered(), self.validation.ordered());
         let answered = self.trials - failed;
         let [k, t, k_over_t] = self.indices.each_ref().map(|index| index.errors(resamples));
-        Record {
+        Performance {
             trials: self.trials,
             failures: self.failures.clone(),
             failure_rate: share(failed, self.trials),
@@ -277,9 +277,9 @@ impl Running {
 /// Running sums of the errors of one index.
 #[derive(Debug, Clone, Default)]
 struct IndexSums {
-    sample: Sample,
-    sums: Sums,
-    /// Sums of the answers less the first of them, and of their squares, after that first one.
+    sample: ErrorSample,
+    sums: ErrorSums,
+    /// ErrorSums of the answers less the first of them, and of their squares, after that first one.
     answers: Option<(f64, [f64; 2])>,
     /// Sum of the squared bounds, per cent, and their number.
     bounds: (f64, f64),

@@ -1,7 +1,7 @@
 use super::*;
 use crate::design::CellFacts;
 use crate::design::Design;
-use crate::rows::Row;
+use crate::rows::StudyRow;
 use crate::statistics::Statistic;
 use scenario::{MethodName, Words};
 
@@ -26,11 +26,11 @@ fn design(methods: &[&str], cells: usize) -> Design {
 }
 
 /// An answer with relative errors in per cent and intervals of ± 2 %.
-fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> Row {
+fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> StudyRow {
     let (true_k, true_t) = (0.1, 20.0);
     let about = |value: f64, truth: f64| [value - 0.02 * truth, value + 0.02 * truth];
     let (k, t) = (true_k * (1.0 + k / 100.0), true_t * (1.0 + t / 100.0));
-    Row {
+    StudyRow {
         cell,
         replicate,
         method,
@@ -42,8 +42,8 @@ fn answer(cell: u64, replicate: u64, method: usize, k: f64, t: f64) -> Row {
         t_s: Some(t),
         t_ci95_s: Some(about(t, true_t)),
         heading_rmse_deg: Some(0.5),
-        evaluations: Some(7),
-        ..Row::default()
+        evaluations: Some(7.0),
+        ..StudyRow::default()
     }
 }
 
@@ -53,7 +53,7 @@ fn near(figure: Option<Statistic>, value: f64) {
 }
 
 /// Errors of −3, −2, … 3 % of K and a tenth of that of T.
-fn ladder() -> Vec<Row> {
+fn ladder() -> Vec<StudyRow> {
     (0..7).map(|r| answer(0, r, 0, r as f64 - 3.0, 0.1 * (r as f64 - 3.0))).collect()
 }
 
@@ -85,7 +85,11 @@ fn figures_are_those_of_the_errors() {
 #[test]
 fn failures_count_and_do_not_spoil() {
     let mut rows = ladder();
-    rows.extend((7..10).map(|replicate| Row { replicate, failure: Some("not-excited".into()), ..Row::default() }));
+    rows.extend((7..10).map(|replicate| StudyRow {
+        replicate,
+        failure: Some("not-excited".into()),
+        ..StudyRow::default()
+    }));
     let summary = summarise(&rows, &design(&["output-error"], 1));
     let record = summary.record(0, 0).expect("one cell");
     assert_eq!((record.failed(), record.failures.as_slice()), (3, [("not-excited".to_owned(), 3)].as_slice()));
@@ -100,7 +104,7 @@ fn methods_are_compared_on_the_same_trials() {
         let error = if r % 2 == 0 { 1.0 } else { -1.0 };
         // The second method fails on some trials, and only those of both count.
         rows.push(match r % 4 {
-            3 => Row { replicate: r, method: 0, failure: Some("singular".into()), ..Row::default() },
+            3 => StudyRow { replicate: r, method: 0, failure: Some("singular".into()), ..StudyRow::default() },
             _ => answer(0, r, 0, 3.0 * error, 0.5 * error),
         });
         rows.push(answer(0, r, 1, error, error));
@@ -122,8 +126,8 @@ fn cells_are_told_apart_and_pooled() {
     rows.extend(
         ladder()
             .into_iter()
-            .map(|row| Row { cell: 2, ..row })
-            .map(|row| Row { k_per_s: row.k_per_s.map(|k| k + 0.01), ..row }),
+            .map(|row| StudyRow { cell: 2, ..row })
+            .map(|row| StudyRow { k_per_s: row.k_per_s.map(|k| k + 0.01), ..row }),
     );
     let summary = summarise(&rows, &design(&["output-error"], 3));
     near(summary.record(0, 0).expect("rows").k.median, 0.0);

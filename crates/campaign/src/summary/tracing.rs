@@ -7,8 +7,7 @@ use std::sync::LazyLock;
 use ::trace::Verdict;
 use serde::{Deserialize, Serialize};
 
-use crate::design::Design;
-use crate::rows::Row;
+use crate::rows::{StudyRow, TraceAnswer};
 use crate::statistics::{Statistic, share};
 use scenario::HULL;
 
@@ -114,13 +113,12 @@ impl TraceSummary {
     }
 }
 
-/// Counts over the rows of traces.
-#[derive(Debug, Default)]
-pub struct TraceTally {
-    missing: Vec<Vec<String>>,
-    cells: Vec<TraceSummary>,
-    /// Means of every line: of the expected likelihood ratio, and of the coverage of the two bands.
-    means: Vec<[RunningMean; 3]>,
+/// Counts over the traces of one method in one cell.
+#[derive(Debug, Clone)]
+pub(super) struct TraceTally {
+    summary: TraceSummary,
+    /// Means of the expected likelihood ratio, and of the coverage of the two bands.
+    means: [RunningMean; 3],
 }
 
 /// Sum and number of the numbers that there are.
@@ -136,26 +134,16 @@ impl RunningMean {
 }
 
 impl TraceTally {
-    /// A tally of the cells of a design.
-    pub fn new(design: &Design) -> Self {
-        Self { missing: design.cells.iter().map(|cell| cell.missing.clone()).collect(), ..Self::default() }
+    /// Before any trace, for the cell and the method of a row.
+    pub(super) fn new(row: &StudyRow, missing: &[String]) -> Self {
+        let (cell, method, missing) = (row.cell as usize, row.method, missing.to_owned());
+        let summary = TraceSummary { cell, method, missing, ..TraceSummary::default() };
+        Self { summary, means: Default::default() }
     }
 
-    /// Takes note of a row, in the order of rows.
-    pub fn add(&mut self, row: &Row) {
-        let Some(answer) = &row.traced else { return };
-        let (cell, method) = (row.cell as usize, row.method);
-        let of_cell = self.cells.iter().rposition(|line| line.cell != cell).map_or(0, |before| before + 1);
-        let at = match self.cells[of_cell..].iter().position(|line| line.method == method) {
-            Some(own) => of_cell + own,
-            None => {
-                let missing = self.missing[cell].clone();
-                self.cells.push(TraceSummary { cell, method, missing, ..TraceSummary::default() });
-                self.means.push(Default::default());
-                self.cells.len() - 1
-            }
-        };
-        let summary = &mut self.cells[at];
+    /// Takes note of an answer.
+    pub(super) fn add(&mut self, answer: &TraceAnswer) {
+        let Self { summary, means: [expected, fitted, held_out] } = self;
         summary.trials += 1;
         let verdict = Verdict::ALL.iter().position(|verdict| *verdict == answer.verdict);
         verdict.into_iter().for_each(|place| summary.verdicts[place] += 1);
@@ -183,48 +171,48 @@ impl TraceTally {
             let present = u64::from(summary.missing.iter().any(|missing| missing == id));
             summary.calibration[bin] += CalibrationBin { effects: 1, present, sum };
         }
-        let [expected, fitted, held_out] = &mut self.means[at];
         summary.expected = expected.add(answer.expected);
         summary.band = [fitted.add(answer.band_fitted), held_out.add(answer.band_held_out)];
     }
 
-    /// All cells with traces, in order.
-    pub fn finish(self) -> Vec<TraceSummary> {
-        self.cells
+    /// The counts so far.
+    pub(super) fn summary(&self) -> TraceSummary {
+        self.summary.clone()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::{NamedEffect, TraceAnswer};
+    use crate::rows::NamedEffect;
 
-    /// A row that names effects, each with its aliases.
-    fn row(groups: &[&[&str]], margin: Option<f64>) -> Row {
+    /// The summary of traces that name effects, each with its aliases, where some are missing.
+    fn summary(missing: &[&str], trials: &[&[&[&str]]]) -> TraceSummary {
+        let missing: Vec<String> = missing.iter().map(|&id| id.to_owned()).collect();
+        let mut tally = TraceTally::new(&StudyRow::default(), &missing);
         let effect = |ids: &&[&str]| NamedEffect {
             id: ids[0].into(),
             aliases: ids[1..].iter().map(|&alias| alias.into()).collect(),
         };
-        let named = groups.iter().map(effect).collect();
-        let cells = TraceAnswer {
-            verdict: Verdict::Traced,
-            named,
-            probabilities: vec![("wind_moment".into(), 0.97)],
-            margin,
-            expected: Some(4.0),
-            band_fitted: Some(0.9),
-            band_held_out: None,
-        };
-        Row { traced: Some(Box::new(cells)), ..Row::default() }
+        for groups in trials {
+            tally.add(&TraceAnswer {
+                verdict: Verdict::Traced,
+                named: groups.iter().map(effect).collect(),
+                probabilities: vec![("wind_moment".into(), 0.97)],
+                margin: Some(30.0),
+                expected: Some(4.0),
+                band_fitted: Some(0.9),
+                band_held_out: None,
+            });
+        }
+        tally.summary()
     }
 
     #[test]
     fn groups_are_right_when_they_hold_what_is_missing() {
-        let mut tally = TraceTally { missing: vec![vec!["a".into(), "b".into()]], ..TraceTally::default() };
         let trials: [&[&[&str]]; 5] =
             [&[&["a"], &["b"]], &[&["c", "a"], &["b"]], &[&["a"]], &[&["a"], &["b"], &["d"]], &[]];
-        trials.into_iter().for_each(|groups| tally.add(&row(groups, Some(30.0))));
-        let [summary] = tally.finish().try_into().expect("one cell");
+        let summary = summary(&["a", "b"], &trials);
         assert_eq!((summary.trials, summary.complete, summary.wrong, summary.silent), (5, 3, 1, 1));
         assert_eq!((summary.exact, summary.clear), (2, [5, 3]));
         assert_eq!((summary.named["b"], summary.named["c"]), (3, 1));
@@ -234,9 +222,7 @@ mod tests {
     /// Of the effects on the list one is there and was given 97 %, the others are not and were given nothing.
     #[test]
     fn effects_are_counted_by_their_probability() {
-        let mut tally = TraceTally { missing: vec![vec!["wind_moment".into()]], ..TraceTally::default() };
-        tally.add(&row(&[], None));
-        let [summary] = tally.finish().try_into().expect("one cell");
+        let summary = summary(&["wind_moment"], &[&[]]);
         let others = effect_ids().count() as u64 - 1;
         assert_eq!(summary.calibration[0], CalibrationBin { effects: others, present: 0, sum: 0.0 });
         assert_eq!(summary.calibration[6], CalibrationBin { effects: 1, present: 1, sum: 0.97 });
@@ -245,23 +231,7 @@ mod tests {
 
     #[test]
     fn any_name_is_wrong_where_nothing_is_missing() {
-        let mut tally = TraceTally { missing: vec![vec![]], ..TraceTally::default() };
-        tally.add(&row(&[], None));
-        tally.add(&row(&[&["a"]], None));
-        let [summary] = tally.finish().try_into().expect("one cell");
+        let summary = summary(&[], &[&[], &[&["a"]]]);
         assert_eq!((summary.wrong, summary.exact, summary.complete_share()), (1, 1, None));
-    }
-
-    #[test]
-    fn every_trace_of_a_cell_has_a_line_of_its_own() {
-        let mut tally = TraceTally { missing: vec![vec![], vec!["a".into()]], ..TraceTally::default() };
-        for (cell, method, group) in [(0, 1, "a"), (0, 2, "b"), (0, 1, "a"), (1, 1, "a"), (1, 2, "b")] {
-            tally.add(&Row { cell, method, ..row(&[&[group]], None) });
-        }
-        let lines = tally.finish();
-        let told = |line: &TraceSummary| (line.cell, line.method, line.trials, line.exact, line.expected);
-        let expected = Some(4.0);
-        let wanted = [(0, 1, 2, 0, expected), (0, 2, 1, 0, expected), (1, 1, 1, 1, expected), (1, 2, 1, 0, expected)];
-        assert_eq!(lines.iter().map(told).collect::<Vec<_>>(), wanted);
     }
 }

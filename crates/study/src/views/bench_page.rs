@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use campaign::benchmark::BenchDocument;
 use campaign::benchmark::board::FEWEST;
-use campaign::benchmark::cases::{Case, CaseAnswer};
+use campaign::benchmark::cases::{BenchCase, CaseAnswer};
 use report::markdown;
 
 use super::bench_figures::{capital, of_field};
@@ -141,7 +141,7 @@ fn failures<'a>(results: &'a BenchDocument, method: &str) -> BTreeMap<(&'a str, 
     found
 }
 
-fn example(case: &Case, answer: &CaseAnswer) -> String {
+fn example(case: &BenchCase, answer: &CaseAnswer) -> String {
     let on = case.trial.map_or_else(|| case.fitted.join(" + "), |trial| format!("trial {trial}"));
     format!("{on}, {}", answer.reason.as_deref().unwrap_or("no reason was given"))
 }

@@ -1,7 +1,7 @@
 //! Tables of a benchmark: leaderboards, sets, answers one by one.
 
-use campaign::benchmark::board::{Board, LeaderboardRow, ScoreFigure, SetLine, Share, by_set};
-use campaign::benchmark::cases::{Case, Naming};
+use campaign::benchmark::board::{Board, LeaderboardRow, ScoreFigure, SetLine, WilsonShare, by_set};
+use campaign::benchmark::cases::{BenchCase, Naming};
 use campaign::benchmark::naming::{NamingLine, total};
 use campaign::benchmark::{BenchDocument, BenchTask};
 use report::number::{MISSING, fixed, significant};
@@ -30,7 +30,7 @@ fn percent(figure: ScoreFigure) -> ScoreFigure {
     ScoreFigure { value: figure.value.map(times), ci95: figure.ci95.map(|ends| ends.map(|end| end.map(times))) }
 }
 
-fn share(share: Share) -> String {
+fn share(share: WilsonShare) -> String {
     let [low, high] = share.ci95.map(|end| fixed(100.0 * end, 0));
     format!("{} [{low}, {high}]", fixed(100.0 * share.count as f64 / share.of as f64, 0))
 }
@@ -315,7 +315,7 @@ pub fn rows(results: &BenchDocument) -> Table {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let truth = |value: Option<bool>| value.map_or_else(String::new, |value| value.to_string());
     for case in &results.cases {
-        let Case { task, field, set, trial, fitted, scored, missing, answers } = case;
+        let BenchCase { task, field, set, trial, fitted, scored, missing, answers } = case;
         for answer in answers {
             let errors = answer.errors_percent;
             let named: Vec<String> = answer.named.iter().map(|group| group.join("|")).collect();

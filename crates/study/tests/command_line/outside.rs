@@ -1,7 +1,7 @@
 //! Methods that are other programs, as far as the command line goes: what is said of them, and answers that come as a
 //! table. What a program answers is tested where there is one, with the tests of the whole workspace.
 
-use campaign::rows::Row;
+use campaign::rows::StudyRow;
 use campaign::store::Stored;
 
 use crate::desk::Desk;
@@ -114,7 +114,7 @@ fn simulated(desk: &Desk) -> Vec<String> {
 
 const HEAD: &str = "record,K_per_s,T_s,delta_r_deg\n";
 
-fn rows(desk: &Desk, folder: &str) -> Vec<Row> {
+fn rows(desk: &Desk, folder: &str) -> Vec<StudyRow> {
     let mut rows = Vec::new();
     let keep = |row| {
         rows.push(row);
@@ -144,7 +144,7 @@ fn answers_from_the_truth_have_no_error() {
     assert!(fit.is_done().out.contains("6 records together"), "{}", fit.out);
     // The other methods answer as if nobody else had.
     desk.run(&["two.toml", "--seed", "7", "--out", "alone", "--quiet"]).is_done();
-    let beside: Vec<Row> = scored.into_iter().filter(|row| row.method < 2).collect();
+    let beside: Vec<StudyRow> = scored.into_iter().filter(|row| row.method < 2).collect();
     assert_eq!(beside, rows(&desk, "alone"));
     // Whoever asks again gets the same, and answers that have changed are another study.
     desk.run(&["score", "records/perfect.csv", "--out", "scored", "--quiet"]).is_done();
